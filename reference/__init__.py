@@ -1,0 +1,51 @@
+"""
+The paper's equations, solved to certified accuracy.
+
+The solver is loaded on first use, so that `import reference.problem`, all that the other side may share, stays
+independent of it.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from reference.problem import (
+    Amplification,
+    Outcome,
+    Scene,
+    SceneError,
+    State,
+    Trajectory,
+    builtin_scenes,
+    load_scene,
+    phase_grid,
+)
+
+if TYPE_CHECKING:
+    from reference.amplification import amplification
+    from reference.modes import modes
+    from reference.trajectory import trajectory
+
+SOLVER = {"amplification": "reference.amplification", "modes": "reference.modes", "trajectory": "reference.trajectory"}
+
+__all__ = [
+    "Amplification",
+    "Outcome",
+    "Scene",
+    "SceneError",
+    "State",
+    "Trajectory",
+    "amplification",
+    "builtin_scenes",
+    "load_scene",
+    "modes",
+    "phase_grid",
+    "trajectory",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in SOLVER:
+        return getattr(import_module(SOLVER[name]), name)
+    raise AttributeError(f"module 'reference' has no attribute '{name}'")

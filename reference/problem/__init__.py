@@ -1,0 +1,29 @@
+"""The question both sides answer: scene, loading, measured quantity. The only thing they share."""
+
+from reference.problem.amplification import checked_phases, ground_peak, phase_grid
+from reference.problem.excitation import exponents, ground_acceleration, ground_displacement, ground_velocity
+from reference.problem.outcome import ADVICE, Outcome
+from reference.problem.result import Amplification, State, Trajectory
+from reference.problem.scene import GRAVITY, Scene, builtin_scenes, load_scene, parse_scene
+from reference.problem.scene_error import SceneError
+
+__all__ = [
+    "ADVICE",
+    "GRAVITY",
+    "Amplification",
+    "Outcome",
+    "Scene",
+    "SceneError",
+    "State",
+    "Trajectory",
+    "builtin_scenes",
+    "checked_phases",
+    "exponents",
+    "ground_acceleration",
+    "ground_displacement",
+    "ground_peak",
+    "ground_velocity",
+    "load_scene",
+    "parse_scene",
+    "phase_grid",
+]

@@ -1,0 +1,34 @@
+"""Named outcomes of one point, shared by both sides, and what to try when it is not ok."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+
+class Outcome(StrEnum):
+    """How the run of one phase pair ended. Anything but OK means that `mu` is NaN or its error above the tolerance."""
+
+    OK = "ok"
+    TOLERANCE_NOT_MET = "tolerance not met"
+    RIM_REACHED = "rim reached"
+    CONTACT_LOST = "contact lost"
+    PAINLEVE = "painleve paradox"
+    NON_FINITE_LOAD = "non-finite load"
+    NO_GROUND_MOTION = "no ground motion"
+    STEP_LIMIT = "step limit"
+    SOLVER_FAILED = "solver failed"
+    WORKER_DIED = "worker died"
+
+
+ADVICE: dict[Outcome, str] = {
+    Outcome.OK: "nothing to do",
+    Outcome.TOLERANCE_NOT_MET: "the error shown is larger than asked: loosen the tolerance, or give a cutoff v_c",
+    Outcome.RIM_REACHED: "x1^2 + y1^2 reached rho^2 (4.1): lower the amplitude or enlarge the radius",
+    Outcome.CONTACT_LOST: "the contact force reached zero: lower the vertical amplitude, or use the spatial model",
+    Outcome.PAINLEVE: "the mass matrix of (3.9) lost its sign: lower the friction coefficient or the swing",
+    Outcome.NON_FINITE_LOAD: "loads or stiffness overflow double precision: rescale the scene",
+    Outcome.NO_GROUND_MOTION: "(5.1) divides by the ground acceleration: give a nonzero amplitude",
+    Outcome.STEP_LIMIT: "more steps than allowed: shorten the duration or loosen the tolerance",
+    Outcome.SOLVER_FAILED: "the equations of a step could not be solved: loosen the tolerance or change v_reg",
+    Outcome.WORKER_DIED: "the process that computed this point died: run the point alone",
+}

@@ -1,0 +1,211 @@
+"""The scene: the question asked of both sides, read from TOML, validated, in SI units."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import tomllib
+from functools import cached_property
+from importlib import resources
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from reference.problem.scene_error import SceneError, first_fault
+
+GRAVITY = 9.81  # m/s^2, the paper's value (section 5)
+
+Positive = Annotated[float, Field(gt=0.0)]
+NonNegative = Annotated[float, Field(ge=0.0)]
+PerAxis = Annotated[list[Positive], Field(min_length=2, max_length=2)]
+PerHarmonic = Annotated[list[float], Field(min_length=2, max_length=2)]
+
+
+class Table(BaseModel):
+    """One table of the file: unknown keys, wrong types and non-finite numbers are refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+def exactly_one(table: BaseModel, first: str, second: str) -> None:
+    given = [key for key in (first, second) if getattr(table, key) is not None]
+    if len(given) != 1:
+        raise ValueError(f"give exactly one of {first} and {second}, not {len(given)} of them")
+
+
+class Isolator(Table):
+    """Spherical gravity-friction isolator. Exactly one of period and radius, one of friction and lubrication."""
+
+    period: Positive | None = None  # s, of one mass alone on the isolator, T_c
+    radius: Positive | None = None  # m, rho = R - r
+    friction: NonNegative | None = None  # dry friction coefficient, mu of (2.5)
+    lubrication: NonNegative | None = None  # s/m, f_c of (3.14)
+    supports: Annotated[int, Field(ge=3)] | None = None  # K, spatial model
+    ring: Positive | None = None  # m, radius of the circle of supports, spatial model
+    sphere_radius: Positive | None = None  # m, r
+
+    @model_validator(mode="after")
+    def _alternatives(self) -> Isolator:
+        exactly_one(self, "period", "radius")
+        exactly_one(self, "friction", "lubrication")
+        return self
+
+
+class Body(Table):
+    """One rigid body; the first is the platform, every other one is linked to the body before it."""
+
+    mass: Positive  # kg
+    period: PerAxis | None = None  # s, 2 pi sqrt(m / k) in x and y, of the link to the body below
+    stiffness: PerAxis | None = None  # N/m, k^x and k^y of that link
+    height: NonNegative | None = None  # m above the plane of the depression centres, spatial model
+    size: Annotated[list[Positive], Field(min_length=3, max_length=3)] | None = None  # m, box
+
+
+class Excitation(Table):
+    """Two-frequency damped ground acceleration (5.2)-(5.4): rows x, y and optionally z, columns the harmonics."""
+
+    amplitudes: Annotated[list[PerHarmonic], Field(min_length=2, max_length=3)]  # m/s^2, a_ki
+    periods: PerAxis  # s, T_i of the harmonics
+    decay: Annotated[list[NonNegative], Field(min_length=2, max_length=2)]  # 1/s, lambda_i
+
+
+class Acceptance(Table):
+    """Limits for `--check`: exact equations against the translational engine model, same v_reg."""
+
+    median: Positive | None = None  # relative difference of mu_i over the phases, per body
+    maximum: Positive | None = None
+    failed: Annotated[int, Field(ge=0)] = 0  # points without an answer, on both sides together
+
+
+class Scene(Table):
+    """A validated scene. Arrays are SI; body index 0 is the platform, axis index 0 is x."""
+
+    title: str
+    duration: Positive  # s
+    isolator: Isolator
+    bodies: Annotated[list[Body], Field(min_length=1)]
+    excitation: Excitation
+    acceptance: Acceptance = Acceptance()
+    name: str = "scene"  # file stem or built-in name; set by load_scene
+
+    @model_validator(mode="after")
+    def _links(self) -> Scene:
+        platform, *others = self.bodies
+        if platform.period is not None or platform.stiffness is not None:
+            raise ValueError("bodies.0 is the platform: it has no link below, so no period or stiffness")
+        for number, body in enumerate(others, start=1):
+            try:
+                exactly_one(body, "period", "stiffness")
+            except ValueError as fault:
+                raise ValueError(f"bodies.{number}: {fault}") from None
+        derived = (self.radius, self.total_mass, *self.stiffness.ravel())
+        if not all(math.isfinite(value) and value > 0.0 for value in derived):
+            raise ValueError("radius, total mass and link stiffnesses must be finite and positive in SI units")
+        return self
+
+    @property
+    def radius(self) -> float:
+        """rho = R - r in m; from the period of one mass alone, rho = g T_c^2 / (4 pi^2) (section 5)."""
+        if self.isolator.radius is not None:
+            return self.isolator.radius
+        assert self.isolator.period is not None
+        return GRAVITY * (self.isolator.period / (2.0 * math.pi)) ** 2
+
+    @cached_property
+    def masses(self) -> NDArray[np.float64]:
+        """Masses m_i, (N,), kg."""
+        return np.array([body.mass for body in self.bodies])
+
+    @property
+    def total_mass(self) -> float:
+        """m_sum of (3.2), kg: the contact carries every body."""
+        return float(self.masses.sum())
+
+    @cached_property
+    def stiffness(self) -> NDArray[np.float64]:
+        """Link stiffness k_{i+1,i} in x and y, (N-1, 2), N/m; row i links body i and body i + 1."""
+        rows = [
+            body.stiffness
+            if body.stiffness is not None
+            else [body.mass * (2.0 * math.pi / period) ** 2 for period in body.period or ()]
+            for body in self.bodies[1:]
+        ]
+        return np.array(rows, dtype=float).reshape(-1, 2)
+
+    @property
+    def lubricated(self) -> bool:
+        """True for mu = f_c |v| (3.14), False for dry friction."""
+        return self.isolator.lubrication is not None
+
+    @property
+    def friction_coefficient(self) -> float:
+        """Dry friction coefficient mu, or f_c in s/m when the contact is lubricated."""
+        value = self.isolator.lubrication if self.lubricated else self.isolator.friction
+        assert value is not None
+        return value
+
+    @cached_property
+    def amplitudes(self) -> NDArray[np.float64]:
+        """Amplitude matrix a_ki of (5.4), (3, 2), m/s^2, rows x, y, z; zero vertical row if none is given."""
+        matrix = np.zeros((3, 2))
+        matrix[: len(self.excitation.amplitudes)] = self.excitation.amplitudes
+        return matrix
+
+    def with_amplitude(self, amplitude: float) -> Scene:
+        """The same scene with the amplitude matrix scaled so that its largest entry is `amplitude`, m/s^2."""
+        largest = float(np.abs(self.amplitudes).max())
+        if not (math.isfinite(amplitude) and amplitude > 0.0):
+            raise SceneError(self.name, "amplitude", amplitude, "must be finite and greater than 0 m/s^2")
+        if largest == 0.0:
+            raise SceneError(self.name, "excitation.amplitudes", 0.0, "all entries are 0: nothing to scale")
+        data = self.model_dump(exclude_none=True)
+        data["excitation"]["amplitudes"] = (self.amplitudes * (amplitude / largest)).tolist()
+        return Scene.model_validate(data)
+
+    def digest(self) -> str:
+        """Hash of everything that enters a result, for stores of results and for provenance."""
+        content = self.model_dump_json(exclude={"title", "name", "acceptance"})
+        return hashlib.sha256(content.encode()).hexdigest()[:16]
+
+
+def builtin_scenes() -> list[str]:
+    """Names of the paper's own cases, in the order of its figures."""
+    folder = resources.files("reference.problem") / "scenes"
+    return sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
+
+
+def load_scene(source: str | Path, amplitude: float | None = None) -> Scene:
+    """
+    Read a scene: a built-in name (`builtin_scenes()`) or a path to a TOML file.
+
+    `amplitude`, m/s^2, scales the amplitude matrix so that its largest entry has this value.
+    Raises SceneError (file, key, value, rule) when anything in it is wrong.
+    """
+    label = str(source)
+    if label in builtin_scenes():
+        text = (resources.files("reference.problem") / "scenes" / f"{label}.toml").read_bytes()
+    else:
+        try:
+            text = Path(source).read_bytes()
+        except OSError as fault:
+            rule = f"{fault.strerror or fault}; give a TOML file or one of {', '.join(builtin_scenes())}"
+            raise SceneError(label, "scene", label, rule) from None
+    scene = parse_scene(text, label)
+    return scene if amplitude is None else scene.with_amplitude(amplitude)
+
+
+def parse_scene(text: bytes, label: str) -> Scene:
+    """The scene written in `text` (TOML, UTF-8); `label` names it in errors. Raises SceneError."""
+    try:
+        data: dict[str, Any] = tomllib.loads(text.decode())
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as fault:
+        raise SceneError(label, "file", str(fault), "must be valid TOML in UTF-8") from None
+    if "name" in data:
+        raise SceneError(label, "name", data["name"], "unknown key; the scene is named after its file")
+    try:
+        return Scene.model_validate({**data, "name": Path(label).stem})
+    except ValidationError as fault:
+        raise first_fault(label, fault) from None

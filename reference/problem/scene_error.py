@@ -1,0 +1,35 @@
+"""What is said of a wrong scene: one line with file, key, value and rule."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import ValidationError
+
+
+class SceneError(ValueError):
+    """A scene that cannot be used. `str(error)` is one line: file, key, value, rule."""
+
+    def __init__(self, file: str, key: str, value: Any, rule: str) -> None:
+        self.file, self.key, self.value, self.rule = file, key, value, rule
+        super().__init__(f"{file}: {key} = {shortened(value)}: {rule}")
+
+    def __reduce__(self) -> tuple[type[SceneError], tuple[str, str, Any, str]]:
+        return SceneError, (self.file, self.key, self.value, self.rule)  # worker processes send it home
+
+
+def shortened(value: Any, longest: int = 80) -> str:
+    text = " ".join(repr(value).split())
+    return text if len(text) <= longest else text[: longest - 3] + "..."
+
+
+def first_fault(file: str, fault: ValidationError) -> SceneError:
+    """The first thing pydantic found wrong, said in the words of the scene file."""
+    error = fault.errors(include_url=False)[0]
+    key = ".".join(str(part) for part in error["loc"]) or "scene"
+    if error["type"] == "extra_forbidden":
+        return SceneError(file, key, error["input"], "unknown key; remove it or correct its spelling")
+    if error["type"] == "missing":
+        return SceneError(file, key, None, "this key is required")
+    rule = error["msg"].removeprefix("Value error, ")
+    return SceneError(file, key, error["input"], rule)
