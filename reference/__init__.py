@@ -23,11 +23,11 @@ from reference.problem import (
 )
 
 if TYPE_CHECKING:
-    from reference.amplification import amplification
-    from reference.modes import modes
-    from reference.trajectory import trajectory
+    from reference.surface import amplification
+    from reference.natural_modes import modes
+    from reference.motion import trajectory
 
-SOLVER = {"amplification": "reference.amplification", "modes": "reference.modes", "trajectory": "reference.trajectory"}
+SOLVER = {"amplification": "reference.surface", "modes": "reference.natural_modes", "trajectory": "reference.motion"}
 
 __all__ = [
     "Amplification",
