@@ -1,0 +1,116 @@
+"""Natural modes (4.8)-(4.11) against closed form, exact rational arithmetic and the identities they must satisfy."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import reference
+from reference.natural_modes import linear_stiffness
+from reference.problem import GRAVITY, Scene
+
+LOADING = {"amplitudes": [[1.0, 0.0], [0.0, 1.0]], "periods": [0.9, 1.1], "decay": [0.3, 0.3]}
+
+
+def chain(masses: list[float], stiffness: list[list[float]], radius: float) -> Scene:
+    links = [{"mass": m, "stiffness": k} for m, k in zip(masses[1:], stiffness)]
+    return Scene.model_validate(
+        {
+            "title": "chain",
+            "duration": 1.0,
+            "isolator": {"radius": radius, "friction": 0.1},
+            "bodies": [{"mass": masses[0]}, *links],
+            "excitation": LOADING,
+        }
+    )
+
+
+def uniform_chain(count: int, mass: float = 3.0, radius: float = 0.25) -> Scene:
+    """Every link as stiff as the pendulum m_sum g / rho: the fixed-free uniform chain."""
+    pendulum = count * mass * GRAVITY / radius
+    return chain([mass] * count, [[pendulum, pendulum]] * (count - 1), radius)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 17, 200, pytest.param(1000, marks=pytest.mark.long)])
+def test_uniform_chain_frequencies_and_shapes_are_the_closed_form(count):
+    """omega_j = 2 sqrt(k/m) sin theta_j / 2, X_j(i) ~ sin(i theta_j), theta_j = (2j - 1) pi / (2N + 1)."""
+    scene = uniform_chain(count)
+    modes = reference.modes(scene)
+    angle = (2.0 * np.arange(1, count + 1) - 1.0) * np.pi / (2 * count + 1)
+    exact = 2.0 * np.sqrt(count * GRAVITY / scene.radius) * np.sin(0.5 * angle)
+    shape = np.sin(np.outer(np.arange(1, count + 1), angle)) * 2.0 / np.sqrt((2 * count + 1) * scene.masses[0])
+    # participation of these shapes is sum_i sin(i theta) > 0 by the cotangent of theta/2
+    for axis in range(2):
+        np.testing.assert_allclose(modes.frequency[axis], exact, rtol=1e-12)
+        # vectors are as good as eps over the relative gap of neighbours, which is ~ 1/N
+        np.testing.assert_allclose(modes.shape[axis], shape, atol=1e-14 * count * np.abs(shape).max())
+
+
+def test_two_body_scene_has_the_paper_s_periods():
+    """0.63 s and 1.69 s along x for scene I: the chain of section 5 is not resonant at 0.9 s and 1.1 s."""
+    modes = reference.modes(reference.load_scene("fig3-I"))
+    k, pendulum = (2.0 * np.pi / 1.5) ** 2, 2.0 * (2.0 * np.pi) ** 2  # per unit mass
+    root = np.sqrt((2.0 * k + pendulum) ** 2 / 4.0 - k * pendulum)
+    exact = 2.0 * np.pi / np.sqrt((2.0 * k + pendulum) / 2.0 + np.array([-root, root]))
+    np.testing.assert_allclose(modes.period[0], exact, rtol=1e-13)
+    np.testing.assert_allclose(modes.period[0], [1.69, 0.63], atol=5e-3)
+
+
+def stiffness_matrix(stiffness: np.ndarray) -> np.ndarray:
+    above = np.append(stiffness[1:], 0.0)
+    return np.diag(stiffness + above) - np.diag(stiffness[1:], 1) - np.diag(stiffness[1:], -1)
+
+
+def test_every_frequency_of_a_stiff_chain_is_right_to_its_own_size():
+    """Links from 1e-2 s to 10 s: the slowest frequency keeps 13 digits although it is 1e-4 of the fastest."""
+    masses = [5.0, 1.0, 2.0, 0.1, 3.0, 1.0, 1.0, 4.0]
+    periods = [1e-2, 10.0, 1e-2, 3.0, 0.5, 1e-2, 10.0]
+    stiffness = [[m * (2.0 * np.pi / t) ** 2] * 2 for m, t in zip(masses[1:], periods)]
+    scene = chain(masses, stiffness, 2.0)
+    frequency = reference.modes(scene).frequency[0]
+    k = linear_stiffness(scene)[:, 0]
+    for number, omega in enumerate(frequency.tolist()):
+        assert eigenvalues_below(scene.masses, k, Fraction(omega) ** 2 * (1 - Fraction(2, 10**13))) == number
+        assert eigenvalues_below(scene.masses, k, Fraction(omega) ** 2 * (1 + Fraction(2, 10**13))) == number + 1
+
+
+def eigenvalues_below(masses: np.ndarray, stiffness: np.ndarray, bound: Fraction) -> int:
+    """How many omega^2 lie below the bound: negative pivots of C0 - bound M0 in exact rational arithmetic."""
+    k = [Fraction(value) for value in stiffness.tolist()] + [Fraction(0)]
+    count, pivot = 0, Fraction(1)
+    for i, mass in enumerate(masses.tolist()):
+        off = k[i] ** 2 / pivot if i else Fraction(0)
+        pivot = k[i] + k[i + 1] - bound * Fraction(mass) - off
+        count += pivot < 0
+    return count
+
+
+@given(
+    masses=st.lists(st.floats(1e-2, 1e2), min_size=1, max_size=12),
+    seed=st.integers(0, 2**32 - 1),
+    radius=st.floats(1e-2, 1e2),
+)
+@settings(max_examples=60, deadline=None)
+def test_modes_diagonalise_mass_and_stiffness_and_sum_to_the_rigid_shift(masses, seed, radius):
+    stiffness = 10.0 ** np.random.default_rng(seed).uniform(-1, 4, (len(masses) - 1, 2))
+    scene = chain(masses, stiffness.tolist(), radius)
+    modes = reference.modes(scene)
+    assert np.all(np.diff(modes.frequency, axis=1) > 0.0)
+    for axis in range(2):
+        shape, frequency = modes.shape[axis], modes.frequency[axis]
+        k = linear_stiffness(scene)[:, axis]
+        normal = np.sqrt(scene.masses)[:, None] * shape
+        # gaps between neighbouring frequencies may be narrow for random chains: 1e-10 leaves room for 1e-5 of relgap
+        np.testing.assert_allclose(normal.T @ normal, np.eye(len(masses)), atol=1e-10)
+        residual = stiffness_matrix(k) @ shape - scene.masses[:, None] * shape * frequency**2
+        largest = frequency.max() ** 2 * np.sqrt(scene.masses)[:, None]
+        assert np.abs(residual / largest).max() < 1e-10
+        np.testing.assert_allclose(shape @ modes.participation[axis], 1.0, atol=1e-8)  # sum Gamma_i X_i = rigid shift
+        np.testing.assert_allclose(modes.effective_mass[axis].sum(), scene.total_mass, rtol=1e-10)
+        # equilibrium of the whole chain: omega^2 Gamma = k_1 X_1, the base takes the inertia force
+        base = k[0] * shape[0] / frequency**2
+        np.testing.assert_allclose(base, modes.participation[axis], atol=1e-6 * np.sqrt(scene.total_mass))
