@@ -1,0 +1,10 @@
+"""The engine, without its type stubs: those of version 1.13 lack `symbolic` and the `self` of solver methods."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+exudyn: Any = import_module("exudyn")
+items: Any = import_module("exudyn.itemInterface")
+symbolic_function: Any = import_module("exudyn.advancedUtilities").CreateSymbolicUserFunction

@@ -1,0 +1,103 @@
+"""One run of the engine between two instants at constant step, from a stored state, without a word on the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.engine import exudyn
+from multibody.system import EngineModel, EngineState
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Steps of one run in units of the model, the first row being its start."""
+
+    time: Array  # (T,)
+    coordinates: Array  # (T, n)
+    velocities: Array  # (T, n)
+    accelerations: Array  # (T, n)
+    contact: Array  # (T, 4 K): gap, slip speed, two unused entries, per contact
+    force: Array  # (T, 6 K): force vector and normal, per contact; (T, 0) unless recorded
+
+    def state(self, row: int) -> EngineState:
+        return EngineState(self.coordinates[row], self.velocities[row], self.contact[row])
+
+
+@contextmanager
+def silence() -> Iterator[None]:
+    """Keep the engine from writing on the terminal: a failed step is reported by status, not by print."""
+    before = exudyn.config.printToConsole
+    exudyn.config.printToConsole = False
+    try:
+        yield
+    finally:
+        exudyn.config.printToConsole = before
+
+
+class Engine:
+    """Runs one model. `newton` is the tolerance of a step's equations, relative and (a hundredth of it) absolute."""
+
+    def __init__(self, model: EngineModel, newton: float, spectral_radius: float = 0.6) -> None:
+        self.model = model
+        self.steps = 0  # taken so far
+        self.settings = _settings(newton, spectral_radius)
+
+    def run(self, state: EngineState, begin: float, step: float, count: int) -> Motion | None:
+        """`count` steps from `state` at time `begin`; None if the engine could not solve one of them."""
+        data = self.model.mbs.systemData
+        initial = exudyn.ConfigurationType.Initial
+        data.SetODE2Coordinates(state.coordinates, configuration=initial)
+        data.SetODE2Coordinates_t(state.velocities, configuration=initial)
+        data.SetDataCoordinates(state.contact, configuration=initial)
+        self.settings.timeIntegration.startTime = begin
+        self.settings.timeIntegration.endTime = begin + count * step
+        self.settings.timeIntegration.numberOfSteps = count
+        self.steps += count
+        try:
+            if not exudyn.MainSolverImplicitSecondOrder().SolveSystem(self.model.mbs, self.settings):
+                return None
+        except (exudyn.ExudynError, RuntimeError, ValueError):
+            return None
+        return self._read()
+
+    def _read(self) -> Motion:
+        stored = self.model.mbs.GetSensorStoredData
+        recorders = self.model.recorders
+        # the engine's own instants: it halves a step that its Newton iteration could not solve
+        time = stored(recorders.contact[0])[:, 0]
+
+        def columns(sensors: list[Any]) -> Array:
+            parts = [stored(sensor)[:, 1:] for sensor in sensors]
+            return np.hstack(parts) if parts else np.empty((len(time), 0))
+
+        return Motion(
+            time,
+            columns(recorders.coordinates),
+            columns(recorders.velocities),
+            columns(recorders.accelerations),
+            columns(recorders.contact),
+            columns(recorders.contact_force),
+        )
+
+
+def _settings(newton: float, spectral_radius: float) -> Any:
+    settings = exudyn.SimulationSettings()
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 0.0  # every step
+    integration = settings.timeIntegration
+    integration.verboseMode = 0
+    integration.newton.relativeTolerance = newton
+    integration.newton.absoluteTolerance = 1e-2 * newton
+    integration.newton.useModifiedNewton = True
+    integration.generalizedAlpha.spectralRadius = spectral_radius
+    integration.discontinuous.iterationTolerance = newton
+    integration.discontinuous.ignoreMaxIterations = False
+    return settings

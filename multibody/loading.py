@@ -1,0 +1,44 @@
+"""Ground acceleration (5.2)-(5.4) as an expression that the engine evaluates without calling Python."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from multibody.engine import exudyn, symbolic_function
+from multibody.units import Units
+from reference.problem import Scene, exponents
+
+
+class SymbolicGround:
+    """The plate's acceleration in units of the model; its two phases can be changed between runs."""
+
+    def __init__(self, scene: Scene, units: Units) -> None:
+        self.amplitudes = scene.amplitudes / units.acceleration
+        self.exponents = exponents(scene) * units.time
+        self.phases = [exudyn.symbolic.Real(f"alpha{harmonic + 1}", 0.0) for harmonic in range(2)]
+
+    def set_phase(self, phase: Any) -> None:
+        """Initial phases (2,), rad, of the runs that follow."""
+        for symbol, value in zip(self.phases, phase, strict=True):
+            symbol.SetValue(float(value))
+
+    def along(self, axis: int, time: Any) -> Any:
+        """Expression of the acceleration along `axis` at the symbolic instant `time`."""
+        total = exudyn.symbolic.Real(0.0)
+        for amplitude, exponent, phase in zip(self.amplitudes[axis], self.exponents, self.phases, strict=True):
+            if amplitude != 0.0:
+                decay = exudyn.symbolic.exp(exponent.real * time)
+                total = total + amplitude * decay * exudyn.symbolic.cos(exponent.imag * time + phase)
+        return total
+
+
+def symbolic_load(mbs: Any, load: Any, parameter: str, function: Callable[..., Any]) -> Any:
+    """
+    Give `load` the user function `function`, recorded as an expression.
+
+    Returns the expression, which the caller keeps alive as long as the system: the engine does not own it.
+    """
+    expression = symbolic_function(mbs, function, parameter, load)
+    mbs.SetLoadParameter(load, parameter, expression)
+    return expression

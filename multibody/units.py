@@ -1,0 +1,47 @@
+"""
+Units of the engine's model: total mass, rho and sqrt(rho / g).
+
+In them the contact carries 1, the pendulum has length 1 and gravity is 1, so that every tolerance and stiffness
+below is a pure number and a scene of 1 kg runs through the same arithmetic as the same scene of 1e6 kg.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.problem import GRAVITY, Scene
+
+
+@dataclass(frozen=True)
+class Units:
+    """What one unit of the model is in SI: kg, m, s; derived ones below."""
+
+    mass: float
+    length: float
+    time: float
+
+    @property
+    def velocity(self) -> float:
+        return self.length / self.time
+
+    @property
+    def acceleration(self) -> float:
+        return self.length / self.time**2
+
+    @property
+    def force(self) -> float:
+        return self.mass * self.acceleration
+
+
+def units_of(scene: Scene) -> Units:
+    """The units in which `scene` has total mass, rho and g equal to one."""
+    return Units(scene.total_mass, scene.radius, math.sqrt(scene.radius / GRAVITY))
+
+
+def link_stiffness(scene: Scene, units: Units) -> NDArray[np.float64]:
+    """Stiffness of the links in units of the model, (N-1, 2)."""
+    return scene.stiffness * (units.time**2 / units.mass)
