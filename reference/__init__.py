@@ -23,9 +23,9 @@ from reference.problem import (
 )
 
 if TYPE_CHECKING:
-    from reference.surface import amplification
-    from reference.natural_modes import modes
     from reference.motion import trajectory
+    from reference.natural_modes import modes
+    from reference.surface import amplification
 
 SOLVER = {"amplification": "reference.surface", "modes": "reference.natural_modes", "trajectory": "reference.motion"}
 

@@ -1,0 +1,119 @@
+"""What every phase of a run does with a step: begin, judge its length, commit it."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from reference.chain import chain_acceleration
+from reference.collocation import MONOMIALS, NODES, STAGES
+from reference.compiled import compiled
+from reference.ground import ground_at
+from reference.peaks import take_peaks
+from reference.platform import moving
+from reference.record import record_step
+from reference.system import (
+    OLD_LENGTH,
+    REST,
+    SLIDING,
+    STEPS,
+    STOPPING,
+    TIME,
+    Array,
+    Demand,
+    Record,
+    System,
+    Work,
+)
+
+SHRINK, GROW, SAFETY = 0.1, 5.0, 0.85
+ORDER = 7.0  # of the error estimate in the step length
+FLOOR = 0.02  # a body that hardly accelerates is measured against this share of the loading
+FATAL = 1e-9  # of the period: a step this short that still fails has found the instant
+SHORTEST = 1e-16  # of the period
+NEWTON = 0.01  # of the tolerance: where the iteration for a step may end
+
+
+@compiled
+def drive(system: System, work: Work, ux: float, uy: float) -> tuple[float, float]:
+    """Driving acceleration of the platform in the state x (equations.py), m/s^2."""
+    fx, fy = -ux, -uy
+    if work.x.shape[0] > 1:
+        fx += system.above[0, 0] * (work.x[1, 0] - work.x[0, 0])
+        fy += system.above[0, 1] * (work.x[1, 1] - work.x[0, 1])
+    return fx, fy
+
+
+@compiled
+def begin(system: System, phase: Array, work: Work, contact: int) -> None:
+    """Accelerations a0 of the state, and no guess for the first step of the phase."""
+    ux, uy, uz = ground_at(system, phase, work.run[TIME])
+    chain_acceleration(system, work, ux, uy)
+    work.a0[0, 0] = work.a0[0, 1] = 0.0
+    still = work.v[0, 0] == 0.0 and work.v[0, 1] == 0.0
+    if contact != REST and not (contact == SLIDING and still):
+        fx, fy = drive(system, work, ux, uy)
+        ax, ay, _, _, _ = moving(
+            system, contact, work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1], fx, fy, ux, uy, system.gravity + uz
+        )
+        work.a0[0, 0], work.a0[0, 1] = ax, ay
+    work.run[OLD_LENGTH] = 0.0
+
+
+@compiled
+def next_step(work: Work, demand: Demand) -> bool:
+    """Count one more step and set what its error is measured against; False past the limit of steps."""
+    for i in range(work.x.shape[0]):
+        work.scale[i] = max(sqrt(work.best[i]), FLOOR * demand.unit)
+    work.run[STEPS] += 1.0
+    return work.run[STEPS] <= demand.step_limit
+
+
+@compiled
+def remaining(system: System, work: Work, demand: Demand) -> float:
+    """Time left, s; 0 when it is less than a step can be."""
+    left = system.duration - work.run[TIME]
+    return left if left > SHORTEST * demand.period * 10.0 else 0.0
+
+
+@compiled
+def first_guess(work: Work, h: float) -> None:
+    """Stage accelerations of the platform to start Newton's method: the last step's polynomial where it reaches."""
+    old = work.run[OLD_LENGTH]
+    for axis in range(2):
+        for k in range(STAGES):
+            guess = work.a0[0, axis]
+            if 0.0 < h <= 1.1 * old:
+                theta = 1.0 + NODES[k] * h / old
+                guess = 0.0
+                for m in range(STAGES - 1, -1, -1):
+                    guess = guess * theta + work.guess[axis, m]
+            work.a[0, axis, k] = guess
+
+
+@compiled
+def length_factor(error: float, tolerance: float) -> float:
+    """By what to multiply the step length so that the next error meets the tolerance."""
+    if error <= 0.0:
+        return GROW
+    return min(GROW, max(SHRINK, SAFETY * (tolerance / error) ** (1.0 / ORDER)))
+
+
+@compiled
+def commit(work: Work, record: Record, h: float, contact: int, low: float, high: float) -> None:
+    """Make the step's end the new state; its part [low, high] counts for the peaks."""
+    if record.times.shape[0] > 0:
+        record_step(work, record, h, contact)
+    if high > low:
+        take_peaks(work, low, high)
+    for axis in range(2):
+        for k in range(STAGES):
+            coefficient = 0.0
+            for m in range(STAGES):
+                coefficient += MONOMIALS[k, m] * work.a[0, axis, m]
+            work.guess[axis, k] = coefficient
+    work.x[:] = work.x1
+    work.v[:] = work.v1
+    work.a0[:] = work.a[:, :, STAGES - 1]
+    work.run[OLD_LENGTH] = 0.0 if contact in (STOPPING, REST) else h
+    if contact != STOPPING:
+        work.run[TIME] += h

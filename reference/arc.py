@@ -1,0 +1,92 @@
+"""
+The one-sided limits at a stop, closed: every acceleration the platform takes on the way into rest.
+
+As |v| goes to zero forces are frozen, but the slip direction still turns, theta' = a . e_perp(theta), until its
+acceleration points along it. The supremum of (5.1) runs over that whole arc of directions.
+"""
+
+from __future__ import annotations
+
+from math import cos, pi, sin, sqrt
+
+from reference.compiled import compiled
+from reference.near_stop import directed
+from reference.system import System
+
+SAMPLES = 48
+NO_TURN = 1e-6  # of the drive: a sideways acceleration that rounding could have made turns nothing
+
+
+@compiled
+def sideways(
+    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float
+) -> float:
+    """a . e_perp: positive when the direction turns counter-clockwise."""
+    ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, angle)
+    return ay * cos(angle) - ax * sin(angle)
+
+
+@compiled
+def squared_total(
+    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float
+) -> float:
+    """Squared absolute acceleration of the platform sliding in the direction `angle` at vanishing speed."""
+    ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, angle)
+    az = uz
+    if not system.small:
+        az += (px * ax + py * ay) / sqrt(system.radius**2 - px * px - py * py)
+    return (ax + ux) ** 2 + (ay + uy) ** 2 + az * az
+
+
+@compiled
+def settled_direction(
+    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float
+) -> float:
+    """The direction at which the turning from `angle` ends; `angle` itself if it does not turn."""
+    here = sideways(system, px, py, fx, fy, ux, uy, uz, angle)
+    drive = sqrt(fx * fx + fy * fy) + system.friction * abs(system.gravity + uz)
+    if abs(here) <= NO_TURN * drive:
+        return angle
+    sense = 1.0 if here > 0.0 else -1.0
+    inside = angle
+    outside = angle
+    for _ in range(SAMPLES):
+        outside = inside + sense * 2.0 * pi / SAMPLES
+        if sense * sideways(system, px, py, fx, fy, ux, uy, uz, outside) <= 0.0:
+            break
+        inside = outside
+    for _ in range(50):
+        middle = 0.5 * (inside + outside)
+        if sense * sideways(system, px, py, fx, fy, ux, uy, uz, middle) > 0.0:
+            inside = middle
+        else:
+            outside = middle
+    return 0.5 * (inside + outside)
+
+
+@compiled
+def arc_peak(
+    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float
+) -> float:
+    """Largest squared absolute acceleration of the platform over the arc that begins at `angle`, m^2/s^4."""
+    end = settled_direction(system, px, py, fx, fy, ux, uy, uz, angle)
+    stride = (end - angle) / SAMPLES
+    best, top = -1.0, 0
+    for n in range(SAMPLES + 1):
+        value = squared_total(system, px, py, fx, fy, ux, uy, uz, angle + n * stride)
+        if value > best:
+            best, top = value, n
+    low = angle + max(top - 1, 0) * stride
+    high = angle + min(top + 1, SAMPLES) * stride
+    golden = 0.5 * (sqrt(5.0) - 1.0)
+    for _ in range(40):
+        left = high - golden * (high - low)
+        right = low + golden * (high - low)
+        at_left = squared_total(system, px, py, fx, fy, ux, uy, uz, left)
+        at_right = squared_total(system, px, py, fx, fy, ux, uy, uz, right)
+        best = max(best, at_left, at_right)
+        if at_left > at_right:
+            high = right
+        else:
+            low = left
+    return best

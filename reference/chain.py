@@ -1,0 +1,117 @@
+"""
+The linear bodies above the platform (4.4), eliminated from a collocation step at a cost linear in their number.
+
+In the eigenbasis of the collocation matrix each channel j is a tridiagonal system with L = (h lambda_j)^2,
+    (1 + L (b_i + c_i)) a_i - L b_i a_{i-1} - L c_i a_{i+1} = r_i,   b_i = k_{i,i-1}/m_i,  c_i = k_{i+1,i}/m_i,
+solved from the top down: d_i = e_i + L b_i with e_i = 1 + L c_i e_{i+1} / d_{i+1}, which subtracts nothing and so keeps
+its digits however stiff a link is.
+"""
+
+from __future__ import annotations
+
+from reference.collocation import A2, CHANNELS, EIGENVALUES, FROM_CHANNELS, NODES, STAGES, TO_CHANNELS, A
+from reference.compiled import compiled
+from reference.system import System, Work
+
+ONES_IN_CHANNELS = TO_CHANNELS.sum(axis=1)
+NODES_IN_CHANNELS = TO_CHANNELS @ NODES
+
+
+@compiled
+def eliminate_chain(system: System, work: Work, h: float) -> None:
+    """For step length h: the pivots, and `feedback`, what the platform's stage accelerations do to its own drive."""
+    bodies = work.x.shape[0]
+    for axis in range(2):
+        work.feedback[axis] = 0.0
+        if bodies == 1:
+            continue
+        for j in range(CHANNELS):
+            level = (h * EIGENVALUES[j]) ** 2
+            upper = 1.0 + 0.0j
+            pivot = upper
+            for i in range(bodies - 1, 0, -1):
+                if i < bodies - 1:
+                    upper = 1.0 + level * system.above[i, axis] * upper / pivot
+                pivot = upper + level * system.below[i, axis]
+                work.pivot[i, axis, j] = pivot
+            gain = -system.above[0, axis] * level * upper / pivot
+            for k in range(STAGES):
+                left = FROM_CHANNELS[k, j] * gain
+                for m in range(STAGES):
+                    work.feedback[axis, k, m] += (left * TO_CHANNELS[j, m]).real
+
+
+@compiled
+def load_chain(system: System, work: Work, h: float) -> None:
+    """The loads of the eliminated chain from the state and the ground; fills `free`."""
+    bodies = work.x.shape[0]
+    for axis in range(2):
+        for k in range(STAGES):
+            work.free[axis, k] = -work.ground[axis, k]
+        if bodies == 1:
+            continue
+        stretch = work.x[1, axis] - work.x[0, axis]
+        rate = h * (work.v[1, axis] - work.v[0, axis])
+        c0 = system.above[0, axis]
+        for k in range(STAGES):
+            work.free[axis, k] += c0 * (stretch + NODES[k] * rate)
+        for j in range(CHANNELS):
+            drive = 0.0 + 0.0j
+            for k in range(STAGES):
+                drive -= TO_CHANNELS[j, k] * work.ground[axis, k]
+            level = (h * EIGENVALUES[j]) ** 2
+            carried = 0.0 + 0.0j
+            for i in range(bodies - 1, 0, -1):
+                force = -system.below[i, axis] * (work.x[i, axis] - work.x[i - 1, axis])
+                slope = -system.below[i, axis] * (work.v[i, axis] - work.v[i - 1, axis])
+                if i < bodies - 1:
+                    force += system.above[i, axis] * (work.x[i + 1, axis] - work.x[i, axis])
+                    slope += system.above[i, axis] * (work.v[i + 1, axis] - work.v[i, axis])
+                load = drive + force * ONES_IN_CHANNELS[j] + h * slope * NODES_IN_CHANNELS[j]
+                if i < bodies - 1:
+                    load += level * system.above[i, axis] * carried
+                work.load[i, axis, j] = load
+                carried = load / work.pivot[i, axis, j]
+            gain = c0 * level * carried
+            for k in range(STAGES):
+                work.free[axis, k] += (FROM_CHANNELS[k, j] * gain).real
+
+
+@compiled
+def move_chain(system: System, work: Work, h: float) -> None:
+    """Stage accelerations of the bodies from those of the platform; the state at the end of the step in x1, v1."""
+    bodies = work.x.shape[0]
+    for axis in range(2):
+        for i in range(1, bodies):
+            for k in range(STAGES):
+                work.a[i, axis, k] = 0.0
+        if bodies > 1:
+            for j in range(CHANNELS):
+                level = (h * EIGENVALUES[j]) ** 2
+                below = 0.0 + 0.0j
+                for k in range(STAGES):
+                    below += TO_CHANNELS[j, k] * work.a[0, axis, k]
+                for i in range(1, bodies):
+                    below = (work.load[i, axis, j] + level * system.below[i, axis] * below) / work.pivot[i, axis, j]
+                    for k in range(STAGES):
+                        work.a[i, axis, k] += (FROM_CHANNELS[k, j] * below).real
+        for i in range(bodies):
+            velocity = 0.0
+            position = 0.0
+            for k in range(STAGES):
+                velocity += A[STAGES - 1, k] * work.a[i, axis, k]
+                position += A2[STAGES - 1, k] * work.a[i, axis, k]
+            work.v1[i, axis] = work.v[i, axis] + h * velocity
+            work.x1[i, axis] = work.x[i, axis] + h * (work.v[i, axis] + h * position)
+
+
+@compiled
+def chain_acceleration(system: System, work: Work, ux: float, uy: float) -> None:
+    """Accelerations a0 of the bodies above the platform in the state x, v."""
+    bodies = work.x.shape[0]
+    for i in range(1, bodies):
+        for axis in range(2):
+            pull = system.below[i, axis] * (work.x[i - 1, axis] - work.x[i, axis])
+            if i < bodies - 1:
+                pull += system.above[i, axis] * (work.x[i + 1, axis] - work.x[i, axis])
+            work.a0[i, axis] = pull - (ux if axis == 0 else uy)

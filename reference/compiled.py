@@ -1,0 +1,49 @@
+"""
+How the solver is compiled: numba, cached on disk under a hash of the solver's whole source.
+
+Numba looks at the file of a function alone when it decides whether a cached build is still good, not at what it
+calls in other files. A build that belongs to all sources together cannot go stale.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numba
+
+# sums may be reordered; infinities and NaN keep their meaning
+FAST = {"contract", "reassoc", "nsz"}
+
+
+def _cache_folder() -> str:
+    package = Path(__file__).parent
+    digest = hashlib.sha256()
+    for source in sorted(package.rglob("*.py")):
+        digest.update(source.read_bytes())
+    name = f"numba-{digest.hexdigest()[:12]}"
+    for parent in (package / "__pycache__", Path.home() / ".cache" / "phase-resonance", Path(tempfile.gettempdir())):
+        try:
+            parent.mkdir(parents=True, exist_ok=True)
+        except OSError:
+            continue
+        if os.access(parent, os.W_OK):
+            return str(parent / name)
+    return ""
+
+
+CACHE_FOLDER = _cache_folder()
+
+
+def compiled(function: Callable[..., Any]) -> Any:
+    """Compile `function` in nopython mode on first use; divisions by zero give inf or NaN as in NumPy."""
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = before or CACHE_FOLDER  # the user's NUMBA_CACHE_DIR goes first
+    try:
+        return numba.njit(cache=True, error_model="numpy", fastmath=FAST)(function)
+    finally:
+        numba.config.CACHE_DIR = before

@@ -1,0 +1,90 @@
+"""
+Acceleration of the platform: exact equations (3.6)-(3.13) and small-vibration equations (4.3).
+
+Everything is per platform mass m1. The inputs, all horizontal pairs in x, y:
+  px, py    position of the platform relative to the plate, m
+  fx, fy    driving acceleration: spring force of body 2 over m1 minus ground acceleration, m/s^2
+  ux, uy    horizontal ground acceleration xi'', eta'', m/s^2 (used by the small equations only)
+  pressure  g + zeta'', m/s^2
+  speed2    squared sliding speed v-bar^2 of (3.8), m^2/s^2
+  sx, sy    slip vector: friction coefficient times the horizontal part of the slip direction, mu v_h / v-bar
+Both are linear in the slip vector, which is all that the friction law contributes (see friction.py).
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from reference.compiled import compiled
+
+
+@compiled
+def exact_acceleration(
+    px: float,
+    py: float,
+    fx: float,
+    fy: float,
+    pressure: float,
+    speed2: float,
+    sx: float,
+    sy: float,
+    mass_ratio: float,
+    radius: float,
+) -> tuple[float, float, float, float]:
+    """
+    Equations (3.9)-(3.13), the multiplier eliminated: (ax, ay, reaction N / m1, inertia determinant).
+
+    With n = -p / rho the inward normal, M = m_sum / m1 and s the slip vector, Newton's law
+        a_h = f + R (n_h - s),   a_z = -pressure + (R / M) (n_z - s_z),   R = N / m1
+    and the differentiated constraint n . a = v^2 / rho give R = M (v^2 / rho - n_h . f + n_z pressure) / D with
+    D = 1 + (M - 1) (n_h^2 - n_h . s). D is the determinant of M in (3.10) up to a factor that never vanishes; where it
+    reaches zero the equations have no solution (Painleve's paradox). R <= 0 means that the contact opens.
+    """
+    nx = -px / radius
+    ny = -py / radius
+    tilt = nx * nx + ny * ny
+    nz = sqrt(1.0 - tilt)
+    determinant = 1.0 + (mass_ratio - 1.0) * (tilt - nx * sx - ny * sy)
+    reaction = mass_ratio * (speed2 / radius - nx * fx - ny * fy + nz * pressure) / determinant
+    return fx + reaction * (nx - sx), fy + reaction * (ny - sy), reaction, determinant
+
+
+@compiled
+def small_acceleration(
+    px: float,
+    py: float,
+    fx: float,
+    fy: float,
+    ux: float,
+    uy: float,
+    pressure: float,
+    sx: float,
+    sy: float,
+    mass_ratio: float,
+    radius: float,
+) -> tuple[float, float, float, float]:
+    """
+    Equations (4.3) as printed: (ax, ay, reaction N / m1, 1).
+
+    Friction takes mu [M (g + zeta'') w - u (p . w) / rho]: the terms with xi'' p are kept, those with the acceleration
+    and the spring force, of the same order, are dropped as in the paper.
+    """
+    reaction = mass_ratio * pressure
+    lever = (px * sx + py * sy) / radius
+    return (
+        fx - reaction * (px / radius + sx) + ux * lever,
+        fy - reaction * (py / radius + sy) + uy * lever,
+        reaction,
+        1.0,
+    )
+
+
+@compiled
+def vertical_acceleration(
+    px: float, py: float, vx: float, vy: float, ax: float, ay: float, radius: float
+) -> tuple[float, float, float]:
+    """Height above the lowest point z1, vertical velocity and acceleration on the sphere (2.1), (3.4)-(3.5)."""
+    depth = sqrt(radius * radius - px * px - py * py)  # -Delta of (3.3)
+    vz = (px * vx + py * vy) / depth
+    az = (vx * vx + vy * vy + vz * vz + px * ax + py * ay) / depth
+    return (px * px + py * py) / (radius + depth), vz, az

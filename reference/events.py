@@ -1,0 +1,114 @@
+"""Where inside a step something happens, from the polynomials through its stages."""
+
+from __future__ import annotations
+
+from reference.collocation import DENSE, DENSE_VALUES, MONOMIALS, STAGES
+from reference.compiled import compiled
+from reference.platform import rest_excess
+from reference.system import Array, System, Work
+
+NEVER = 2.0
+
+
+@compiled
+def value_at(values: Array, theta: float) -> float:
+    """The polynomial through the stage values (S,), at theta."""
+    total = 0.0
+    for k in range(STAGES - 1, -1, -1):
+        coefficient = 0.0
+        for m in range(STAGES):
+            coefficient += MONOMIALS[k, m] * values[m]
+        total = total * theta + coefficient
+    return total
+
+
+@compiled
+def first_crossing(values: Array, start: float, target: float) -> float:
+    """First theta at which the polynomial through `values` has passed `target`, seen from `start` at theta = 0."""
+    rising = start < target
+    before = 0.0
+    for n in range(1, DENSE.shape[0]):
+        here = 0.0
+        for k in range(STAGES):
+            here += DENSE_VALUES[n, k] * values[k]
+        if (here > target) == rising:
+            low, high = before, DENSE[n]
+            for _ in range(50):
+                middle = 0.5 * (low + high)
+                if (value_at(values, middle) > target) == rising:
+                    high = middle
+                else:
+                    low = middle
+            return high
+        before = DENSE[n]
+    return NEVER
+
+
+@compiled
+def excess_at(system: System, work: Work, theta: float) -> float:
+    """Excess over the condition for rest at theta of a step at rest."""
+    excess, _ = rest_excess(
+        system,
+        work.x[0, 0],
+        work.x[0, 1],
+        value_at(work.free[0], theta),
+        value_at(work.free[1], theta),
+        value_at(work.ground[0], theta),
+        value_at(work.ground[1], theta),
+        system.gravity + value_at(work.ground[2], theta),
+    )
+    return excess
+
+
+@compiled
+def first_onset(system: System, work: Work) -> float:
+    """First theta of a step at rest at which friction can no longer hold the platform."""
+    highest = -1.0e300
+    for k in range(STAGES):
+        excess, reaction = rest_excess(
+            system,
+            work.x[0, 0],
+            work.x[0, 1],
+            work.free[0, k],
+            work.free[1, k],
+            work.ground[0, k],
+            work.ground[1, k],
+            system.gravity + work.ground[2, k],
+        )
+        work.stage[6, k] = reaction
+        # between two stages the force changes little: only a step that comes near the limit is looked at closely
+        highest = max(highest, excess + 0.5 * (system.friction * reaction) ** 2)
+    if highest < 0.0:
+        return NEVER
+    top, place = -1.0e300, 0.0
+    for n in range(1, DENSE.shape[0]):
+        here = excess_at(system, work, DENSE[n])
+        if here > 0.0:
+            return passed(system, work, DENSE[n - 1], DENSE[n])
+        if here > top:
+            top, place = here, DENSE[n]
+    # the force may pass the limit and return between two of these instants
+    low, high = max(0.0, place - DENSE[1]), min(1.0, place + DENSE[1])
+    begin = low
+    for _ in range(30):
+        left, right = low + 0.382 * (high - low), high - 0.382 * (high - low)
+        at_left, at_right = excess_at(system, work, left), excess_at(system, work, right)
+        if max(at_left, at_right) > 0.0:
+            return passed(system, work, begin, left if at_left > 0.0 else right)
+        if at_left > at_right:
+            high = right
+        else:
+            low = left
+    return NEVER
+
+
+@compiled
+def passed(system: System, work: Work, low: float, high: float) -> float:
+    """Where the excess, not positive at low and positive at high, becomes positive."""
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        if excess_at(system, work, middle) > 0.0:
+            high = middle
+        else:
+            low = middle
+    return high

@@ -1,0 +1,79 @@
+"""
+One run from 0 to the end of the motion: the three-structure model around (4.6), every change located.
+
+    rest      -> sliding                     when friction can no longer hold the platform
+    sliding   -> stopping                    when the slide would stop within a step
+    stopping  -> rest, creep or sliding      into the stop, below v_reg, or past the stop
+    creep     -> sliding                     at v_reg (regularised law)
+A lubricated contact is wetted throughout. Each phase carries the state in `Work` on until the contact changes.
+"""
+
+from __future__ import annotations
+
+from reference.advance import drive
+from reference.compiled import compiled
+from reference.ground import ground_at
+from reference.platform import rest_excess
+from reference.rest_phase import rest_phase
+from reference.sliding_phase import sliding_phase, speed2
+from reference.smooth_phase import smooth_phase
+from reference.stopping_phase import stopping_phase
+from reference.system import (
+    CREEPING,
+    LENGTH,
+    LUBRICATED,
+    REGULARIZED,
+    REST,
+    SLIDING,
+    SOLVED,
+    TIME,
+    WETTED,
+    Array,
+    Demand,
+    Record,
+    System,
+    Work,
+)
+
+START = 0.02  # of the shorter loading period: first step
+
+
+@compiled
+def first_contact(system: System, phase: Array, work: Work) -> int:
+    """What the contact does in the initial state."""
+    if system.law == LUBRICATED:
+        return WETTED
+    speed = speed2(system, work)
+    if system.law == REGULARIZED:
+        return CREEPING if speed < system.v_reg**2 else SLIDING
+    if speed > 0.0:
+        return SLIDING
+    ux, uy, uz = ground_at(system, phase, 0.0)
+    fx, fy = drive(system, work, ux, uy)
+    excess, reaction = rest_excess(system, work.x[0, 0], work.x[0, 1], fx, fy, ux, uy, system.gravity + uz)
+    return SLIDING if excess > 0.0 and reaction > 0.0 else REST
+
+
+@compiled
+def march(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> int:
+    """
+    Follow the motion from the state in work.x, work.v to the end; how it ended (system.py), at time work.run[TIME].
+
+    work.best (N,) holds the squared peaks of absolute acceleration, m^2/s^4.
+    """
+    work.best[:] = 0.0
+    work.run[:] = 0.0
+    work.run[LENGTH] = min(START * demand.period, system.duration)
+    contact = first_contact(system, phase, work)
+    while work.run[TIME] < system.duration - 1e-14 * demand.period:
+        if contact == REST:
+            code, contact = rest_phase(system, phase, work, demand, record)
+        elif contact == SLIDING:
+            code, contact = sliding_phase(system, phase, work, demand, record)
+        elif contact in (CREEPING, WETTED):
+            code, contact = smooth_phase(system, phase, work, contact, demand, record)
+        else:
+            code, contact = stopping_phase(system, phase, work, demand, record)
+        if code != SOLVED:
+            return code
+    return SOLVED

@@ -1,0 +1,152 @@
+"""
+Sliding close to a stop, in the stretched time tau with dt = S dtau, S the horizontal speed.
+
+There the direction theta and the logarithm of the speed, sigma = ln S, obey smooth equations however small S is,
+    theta' = a . e_perp(theta),   sigma' = a . e(theta),   t' = S,   p' = S^2 e(theta),
+so the turning of the slip direction on the way into a stop, or past one, is resolved at a constant cost per decade of
+speed. The chain above the platform, slow on this time scale, follows by iteration.
+"""
+
+from __future__ import annotations
+
+from math import cos, exp, sin
+
+import numpy as np
+
+from reference.collocation import NODES, STAGES, A
+from reference.compiled import compiled
+from reference.friction import slip_vector
+from reference.ground import ground_at
+from reference.linear_solve import solve_in_place
+from reference.platform import acceleration
+from reference.steps import absolute_accelerations
+from reference.system import RIM, SLIDING, SOLVED, UNSOLVED, Array, System, Work
+
+ITERATIONS = 40
+NUDGE = 1e-6  # rad, for the slope by the direction: Newton's method needs it to a few digits only
+
+# rows of Work.turning
+DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, LOG_RATIO = range(8)
+
+
+@compiled
+def directed(
+    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, pressure: float,
+    speed: float, angle: float,
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """(ax, ay, reaction / m1, full over horizontal speed) when sliding in the direction `angle` at any speed >= 0."""
+    sx, sy, ratio = slip_vector(px, py, angle, system.friction, system.radius, system.small)
+    ax, ay, reaction, _ = acceleration(system, px, py, fx, fy, ux, uy, pressure, (speed * ratio) ** 2, sx, sy)
+    return ax, ay, reaction, ratio
+
+
+@compiled
+def near_stop_step(
+    system: System, phase: Array, work: Work, t: float, h: float, angle: float, log_speed: float, tolerance: float
+) -> int:
+    """
+    One step of length h in tau from the state x, v = exp(log_speed) e(angle).
+
+    Fills a, total and `turning` at the stages and x1, v1 at the end; `tolerance` bounds the last change of the angle.
+    """
+    bodies = work.x.shape[0]
+    turn, xs, a = work.turning, work.chain, work.a
+    along, across = (
+        work.a0[0, 0] * cos(angle) + work.a0[0, 1] * sin(angle),
+        work.a0[0, 1] * cos(angle) - work.a0[0, 0] * sin(angle),
+    )
+    for k in range(STAGES):
+        turn[DIRECTION, k] = angle
+        turn[SIGMA, k] = log_speed + h * NODES[k] * along
+        # a turn is at most towards the force: do not overshoot it in the guess
+        turn[DIRECTION, k] += max(-0.5, min(0.5, h * NODES[k] * across))
+        for i in range(bodies):
+            for axis in range(2):
+                xs[i, axis, k] = work.x[i, axis]
+                a[i, axis, k] = work.a0[i, axis]
+    reach = 0.0
+    for iteration in range(ITERATIONS):
+        moved = 0.0
+        for k in range(STAGES):
+            elapsed = 0.0
+            for m in range(STAGES):
+                elapsed += A[k, m] * exp(turn[SIGMA, m])
+            turn[CLOCK, k] = t + h * elapsed
+        for i in range(bodies):
+            for axis in range(2):
+                for k in range(STAGES):
+                    if i == 0:
+                        heading = cos(turn[DIRECTION, k]) if axis == 0 else sin(turn[DIRECTION, k])
+                        work.velocity[i, axis, k] = exp(turn[SIGMA, k]) * heading
+                    else:
+                        gained = 0.0
+                        for m in range(STAGES):
+                            gained += A[k, m] * exp(turn[SIGMA, m]) * a[i, axis, m]
+                        work.velocity[i, axis, k] = work.v[i, axis] + h * gained
+                for k in range(STAGES):
+                    shift = 0.0
+                    for m in range(STAGES):
+                        shift += A[k, m] * exp(turn[SIGMA, m]) * work.velocity[i, axis, m]
+                    xs[i, axis, k] = work.x[i, axis] + h * shift
+        for k in range(STAGES):
+            ux, uy, uz = ground_at(system, phase, turn[CLOCK, k])
+            work.ground[0, k], work.ground[1, k], work.ground[2, k] = ux, uy, uz
+            for i in range(1, bodies):
+                for axis in range(2):
+                    pull = system.below[i, axis] * (xs[i - 1, axis, k] - xs[i, axis, k])
+                    if i < bodies - 1:
+                        pull += system.above[i, axis] * (xs[i + 1, axis, k] - xs[i, axis, k])
+                    pull -= work.ground[axis, k]
+                    moved = max(moved, abs(pull - a[i, axis, k]) * exp(turn[SIGMA, k]) * h)
+                    a[i, axis, k] = pull
+            fx, fy = -ux, -uy
+            if bodies > 1:
+                fx += system.above[0, 0] * (xs[1, 0, k] - xs[0, 0, k])
+                fy += system.above[0, 1] * (xs[1, 1, k] - xs[0, 1, k])
+            theta = turn[DIRECTION, k]
+            speed = exp(turn[SIGMA, k])
+            px, py, pressure = xs[0, 0, k], xs[0, 1, k], system.gravity + uz
+            if px * px + py * py >= system.radius**2:
+                return RIM
+            ax, ay, reaction, ratio = directed(system, px, py, fx, fy, ux, uy, pressure, speed, theta)
+            bx, by, _, _ = directed(system, px, py, fx, fy, ux, uy, pressure, speed, theta + NUDGE)
+            ex, ey = cos(theta), sin(theta)
+            gx, gy = cos(theta + NUDGE), sin(theta + NUDGE)
+            a[0, 0, k], a[0, 1, k] = ax, ay
+            turn[ALONG, k] = ax * ex + ay * ey
+            turn[ACROSS, k] = ay * ex - ax * ey
+            turn[ALONG_SLOPE, k] = (bx * gx + by * gy - turn[ALONG, k]) / NUDGE
+            turn[ACROSS_SLOPE, k] = (by * gx - bx * gy - turn[ACROSS, k]) / NUDGE
+            turn[LOG_RATIO, k] = np.log(ratio)
+            work.stage[0, k], work.stage[1, k] = px, py
+            work.stage[2, k], work.stage[3, k] = speed * ex, speed * ey
+            work.stage[4, k], work.stage[5, k] = fx, fy
+            work.stage[6, k], work.stage[7, k] = reaction, (speed * ratio) ** 2
+        for k in range(STAGES):
+            work.residual[k] = angle - turn[DIRECTION, k]
+            for m in range(STAGES):
+                work.residual[k] += h * A[k, m] * turn[ACROSS, m]
+                work.matrix[k, m] = -h * A[k, m] * turn[ACROSS_SLOPE, m]
+            work.matrix[k, k] += 1.0
+        if not solve_in_place(work.matrix[:STAGES, :STAGES], work.residual[:STAGES]):
+            return UNSOLVED
+        for k in range(STAGES):
+            turn[DIRECTION, k] += work.residual[k]
+            moved = max(moved, abs(work.residual[k]))
+        for k in range(STAGES):
+            level = log_speed
+            for m in range(STAGES):
+                level += h * A[k, m] * (turn[ALONG, m] + turn[ALONG_SLOPE, m] * work.residual[m])
+            moved = max(moved, abs(level - turn[SIGMA, k]))
+            turn[SIGMA, k] = level
+        if not moved < 1e3 or (iteration > 4 and moved > 2.0 * reach):
+            return UNSOLVED
+        reach = moved
+        if moved <= tolerance:
+            for i in range(bodies):
+                for axis in range(2):
+                    work.x1[i, axis] = xs[i, axis, STAGES - 1]
+                    work.v1[i, axis] = work.velocity[i, axis, STAGES - 1]
+            absolute_accelerations(system, work, SLIDING)
+            return SOLVED
+    return UNSOLVED

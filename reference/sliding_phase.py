@@ -1,0 +1,163 @@
+"""Sliding, from its onset at rest or from any speed, until it is about to stop."""
+
+from __future__ import annotations
+
+from math import atan2, log, sqrt
+
+from reference.advance import (
+    FATAL,
+    NEWTON,
+    SHORTEST,
+    begin,
+    commit,
+    drive,
+    first_guess,
+    length_factor,
+    next_step,
+    remaining,
+)
+from reference.arc import settled_direction, squared_total
+from reference.chain import eliminate_chain, load_chain
+from reference.collocation import STAGES
+from reference.compiled import compiled
+from reference.events import first_crossing
+from reference.friction import sliding_speed2
+from reference.ground import ground_at, ground_at_stages
+from reference.near_stop import directed
+from reference.steps import moving_step, step_error
+from reference.system import (
+    ANGLE,
+    HELD,
+    LENGTH,
+    LOG_SPEED,
+    OLD_LENGTH,
+    REGULARIZED,
+    REST,
+    SLIDING,
+    SOLVED,
+    STEP_LIMIT,
+    STOPPING,
+    TIME,
+    UNSOLVED,
+    Array,
+    Demand,
+    Record,
+    System,
+    Work,
+)
+
+REACH = 1.5  # a slide that would stop within so many steps is followed in stretched time
+CLOSE = 0.05  # of the period: or would stop within this time
+CALM = 0.5  # rad: what the chain's fastest vibration may turn in the time that is left then
+TURN = 0.3  # cosine of the largest turn of the velocity between two stages
+GRAZE = 1e-6  # of the period: sliding that cannot be begun with a step this long moves nothing
+
+
+@compiled
+def speed2(system: System, work: Work) -> float:
+    """Squared sliding speed in the state x, v."""
+    return sliding_speed2(work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1], system.radius, system.small)
+
+
+@compiled
+def guess_onset(system: System, phase: Array, work: Work, h: float) -> None:
+    """Stage accelerations of a slide that begins: what the driving force has above the friction limit."""
+    ground_at_stages(system, phase, work.run[TIME], h, work)
+    eliminate_chain(system, work, h)
+    load_chain(system, work, h)
+    for k in range(STAGES):
+        reaction = system.mass_ratio * (system.gravity + work.ground[2, k])
+        gx = work.free[0, k] - reaction * work.x[0, 0] / system.radius
+        gy = work.free[1, k] - reaction * work.x[0, 1] / system.radius
+        force = sqrt(gx * gx + gy * gy)
+        excess = max(force - system.friction * reaction, 1e-6 * force)
+        work.a[0, 0, k] = excess * gx / force
+        work.a[0, 1, k] = excess * gy / force
+
+
+@compiled
+def begin_slide(system: System, phase: Array, work: Work, demand: Demand) -> None:
+    """At rest: the direction of the slide, its acceleration at once, and its share in the peak."""
+    ux, uy, uz = ground_at(system, phase, work.run[TIME])
+    fx, fy = drive(system, work, ux, uy)
+    px, py = work.x[0, 0], work.x[0, 1]
+    reaction = system.mass_ratio * (system.gravity + uz)
+    gx, gy = fx - reaction * px / system.radius, fy - reaction * py / system.radius
+    angle = settled_direction(system, px, py, fx, fy, ux, uy, uz, atan2(gy, gx))
+    if demand.cutoff == 0.0:
+        work.best[0] = max(work.best[0], squared_total(system, px, py, fx, fy, ux, uy, uz, angle))
+    ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, angle)
+    work.a0[0, 0], work.a0[0, 1] = ax, ay
+
+
+@compiled
+def turns_too_far(work: Work) -> bool:
+    """Whether the velocity turns too far between two stages to be a smooth slide."""
+    bx, by = work.v[0, 0], work.v[0, 1]
+    for k in range(STAGES):
+        vx, vy = work.stage[2, k], work.stage[3, k]
+        if bx * vx + by * vy < TURN * sqrt((bx * bx + by * by) * (vx * vx + vy * vy)):
+            return True
+        bx, by = vx, vy
+    return False
+
+
+@compiled
+def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> tuple[int, int]:
+    """(how it went, what the contact does next); see march.py."""
+    run = work.run
+    begin(system, phase, work, SLIDING)
+    start2 = speed2(system, work)
+    if start2 == 0.0:
+        begin_slide(system, phase, work, demand)
+    floor2 = (system.v_reg * (1.0 - 1e-5)) ** 2 if system.law == REGULARIZED else 0.0
+    counted2 = demand.cutoff * demand.cutoff
+    while remaining(system, work, demand) > 0.0:
+        if not next_step(work, demand):
+            return STEP_LIMIT, SLIDING
+        h = min(run[LENGTH], remaining(system, work, demand))
+        vx, vy = work.v[0, 0], work.v[0, 1]
+        speed = sqrt(vx * vx + vy * vy)
+        braking = -(vx * work.a0[0, 0] + vy * work.a0[0, 1]) / speed if speed > 0.0 else 0.0
+        if braking > 0.0 and speed < max(REACH * h, CLOSE * demand.period) * braking:
+            if system.fastest * speed <= CALM * braking:
+                run[ANGLE] = atan2(vy, vx)
+                run[LOG_SPEED] = log(speed)
+                return SOLVED, STOPPING
+            h = min(h, max(0.5 * speed / braking, SHORTEST * demand.period))
+        if speed == 0.0:
+            guess_onset(system, phase, work, h)
+        else:
+            first_guess(work, h)
+        code = moving_step(system, phase, work, SLIDING, run[TIME], h, NEWTON * demand.tolerance * work.scale[0])
+        if code == SOLVED and (turns_too_far(work) or work.stage[7].min() < floor2):
+            code = UNSOLVED
+        if code != SOLVED:
+            if speed == 0.0 and h < GRAZE * demand.period:
+                run[HELD] = 10.0 * GRAZE * demand.period
+                return SOLVED, REST
+            if h < (SHORTEST if code == UNSOLVED else FATAL) * demand.period:
+                return code, SLIDING
+            run[LENGTH] = 0.3 * h
+            run[OLD_LENGTH] = 0.0 if run[OLD_LENGTH] > 3.0 * h else run[OLD_LENGTH]
+            continue
+        error = step_error(work, work.scale)
+        factor = length_factor(error, demand.tolerance)
+        if not error <= demand.tolerance:
+            if h < SHORTEST * demand.period:
+                return UNSOLVED, SLIDING
+            run[LENGTH] = h * min(0.7, factor)
+            continue
+        low, high = 0.0, 1.0
+        end2 = work.stage[7, STAGES - 1]
+        if start2 < counted2 and end2 < counted2:
+            high = 0.0
+        elif start2 < counted2:
+            low = min(1.0, first_crossing(work.stage[7], start2, counted2))
+        elif end2 < counted2:
+            high = min(1.0, first_crossing(work.stage[7], start2, counted2))
+        commit(work, record, h, SLIDING, low, high)
+        start2 = end2
+        if h * factor > run[LENGTH] or h == run[LENGTH]:
+            run[LENGTH] = h * factor
+    return SOLVED, SLIDING

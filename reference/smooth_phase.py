@@ -1,0 +1,78 @@
+"""Motion under a friction law without a corner: lubricated, or creep below v_reg under the regularised law."""
+
+from __future__ import annotations
+
+from reference.advance import FATAL, NEWTON, SHORTEST, begin, commit, first_guess, length_factor, next_step, remaining
+from reference.compiled import compiled
+from reference.events import first_crossing
+from reference.friction import sliding_speed2
+from reference.record import note_stick
+from reference.steps import moving_step, step_error
+from reference.system import (
+    CREEPING,
+    LENGTH,
+    SLIDING,
+    SOLVED,
+    STEP_LIMIT,
+    TIME,
+    UNSOLVED,
+    Array,
+    Demand,
+    Record,
+    System,
+    Work,
+)
+
+
+@compiled
+def smooth_phase(
+    system: System, phase: Array, work: Work, contact: int, demand: Demand, record: Record
+) -> tuple[int, int]:
+    """To the end of the motion, or until creep becomes sliding at v_reg; see march.py."""
+    begin(system, phase, work, contact)
+    run = work.run
+    began = run[TIME]
+    level = system.v_reg * system.v_reg
+    if contact == CREEPING:
+        settling = system.v_reg / (system.friction * system.mass_ratio * system.gravity)
+        run[LENGTH] = min(run[LENGTH], 2.0 * settling)
+    while remaining(system, work, demand) > 0.0:
+        if not next_step(work, demand):
+            return STEP_LIMIT, contact
+        h = min(run[LENGTH], remaining(system, work, demand))
+        first_guess(work, h)
+        code = moving_step(system, phase, work, contact, run[TIME], h, NEWTON * demand.tolerance * work.scale[0])
+        if code != SOLVED:
+            if h < (SHORTEST if code == UNSOLVED else FATAL) * demand.period:
+                return code, contact
+            run[LENGTH] = 0.3 * h
+            continue
+        error = step_error(work, work.scale)
+        factor = length_factor(error, demand.tolerance)
+        if not error <= demand.tolerance:
+            if h < SHORTEST * demand.period:
+                return UNSOLVED, contact
+            run[LENGTH] = h * min(0.7, factor)
+            continue
+        if contact == CREEPING and work.stage[7].max() > 0.8 * level:
+            start = sliding_speed2(work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1], system.radius, system.small)
+            # a start on the level itself, coming from sliding, is not a crossing
+            crossing = first_crossing(work.stage[7], min(start, level * (1.0 - 1e-9)), level)
+            if crossing <= 1.0 and (crossing > 1e-3 or start < level * (1.0 - 1e-6)):
+                if crossing < 1.0:
+                    h *= crossing
+                    first_guess(work, h)
+                    if moving_step(
+                        system, phase, work, contact, run[TIME], h, NEWTON * demand.tolerance * work.scale[0]
+                    ) != SOLVED:  # fmt: skip
+                        run[LENGTH] = 0.3 * h
+                        continue
+                commit(work, record, h, contact, 0.0, 1.0)
+                note_stick(record, began, run[TIME])
+                return SOLVED, SLIDING
+        commit(work, record, h, contact, 0.0, 1.0)
+        if h * factor > run[LENGTH] or h == run[LENGTH]:
+            run[LENGTH] = h * factor
+    if contact == CREEPING:
+        note_stick(record, began, run[TIME])
+    return SOLVED, contact

@@ -1,0 +1,160 @@
+"""
+One collocation step in time: at rest, or moving under a friction law.
+
+A step reads the state x, v of `Work`, leaves the stage accelerations in `a`, the platform at the stages in `stage`, the
+absolute accelerations in `total` and the end of the step in x1, v1. It returns SOLVED or what stood in the way.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+
+from reference.chain import eliminate_chain, load_chain, move_chain
+from reference.collocation import A2, AT_START, NODES, STAGES, A
+from reference.compiled import compiled
+from reference.equations import vertical_acceleration
+from reference.ground import ground_at_stages
+from reference.linear_solve import solve_in_place
+from reference.platform import slopes
+from reference.system import OPEN, PAINLEVE, REST, RIM, SOLVED, UNSOLVED, Array, System, Work
+
+ITERATIONS = 12
+
+
+@compiled
+def rest_step(system: System, phase: Array, work: Work, t: float, h: float) -> int:
+    """The platform stays; the chain above it vibrates (4.4)."""
+    ground_at_stages(system, phase, t, h, work)
+    eliminate_chain(system, work, h)
+    load_chain(system, work, h)
+    for axis in range(2):
+        for k in range(STAGES):
+            work.a[0, axis, k] = 0.0
+            work.stage[axis, k] = work.x[0, axis]
+            work.stage[2 + axis, k] = 0.0
+            work.stage[4 + axis, k] = work.free[axis, k]
+    move_chain(system, work, h)
+    absolute_accelerations(system, work, REST)
+    return SOLVED
+
+
+@compiled
+def moving_step(system: System, phase: Array, work: Work, contact: int, t: float, h: float, tolerance: float) -> int:
+    """
+    Newton's method for the stage accelerations of the platform, the chain eliminated exactly.
+
+    `a[0]` holds the first guess on entry. `tolerance`, m/s^2: the iteration ends when the change is below it; the
+    convergence being quadratic, what is left is far smaller.
+    """
+    ground_at_stages(system, phase, t, h, work)
+    eliminate_chain(system, work, h)
+    load_chain(system, work, h)
+    a, stage, matrix = work.a, work.stage, work.matrix
+    for _ in range(ITERATIONS):
+        for k in range(STAGES):
+            for axis in range(2):
+                velocity = 0.0
+                position = 0.0
+                drive = work.free[axis, k]
+                for m in range(STAGES):
+                    velocity += A[k, m] * a[0, axis, m]
+                    position += A2[k, m] * a[0, axis, m]
+                    drive += work.feedback[axis, k, m] * a[0, axis, m]
+                stage[axis, k] = work.x[0, axis] + h * (NODES[k] * work.v[0, axis] + h * position)
+                stage[2 + axis, k] = work.v[0, axis] + h * velocity
+                stage[4 + axis, k] = drive
+            if stage[0, k] ** 2 + stage[1, k] ** 2 >= system.radius**2:
+                return RIM  # (4.1)
+            ax, ay, reaction, determinant, speed2 = slopes(
+                system, contact,
+                stage[0, k], stage[1, k], stage[2, k], stage[3, k], stage[4, k], stage[5, k],
+                work.ground[0, k], work.ground[1, k], system.gravity + work.ground[2, k],
+                work.slopes, k,
+            )  # fmt: skip
+            stage[6, k] = reaction
+            stage[7, k] = speed2
+            if not determinant > 0.0:
+                return PAINLEVE
+            work.residual[k] = ax - a[0, 0, k]
+            work.residual[STAGES + k] = ay - a[0, 1, k]
+        for k in range(STAGES):
+            for row in range(2):
+                for column in range(2):
+                    by_position = h * h * work.slopes[2 * column + row, k]
+                    by_velocity = h * work.slopes[4 + 2 * column + row, k]
+                    by_drive = work.slopes[8 + 2 * column + row, k]
+                    for m in range(STAGES):
+                        matrix[row * STAGES + k, column * STAGES + m] = -(
+                            by_position * A2[k, m] + by_velocity * A[k, m] + by_drive * work.feedback[column, k, m]
+                        )
+            matrix[k, k] += 1.0
+            matrix[STAGES + k, STAGES + k] += 1.0
+        if not solve_in_place(matrix, work.residual):
+            return UNSOLVED
+        change = 0.0
+        for axis in range(2):
+            for k in range(STAGES):
+                correction = work.residual[axis * STAGES + k]
+                a[0, axis, k] += correction
+                change = max(change, abs(correction))
+        if not np.isfinite(change):
+            return UNSOLVED
+        if change <= tolerance:
+            finish_platform(work, h)
+            move_chain(system, work, h)
+            absolute_accelerations(system, work, contact)
+            return SOLVED if stage[6].min() > 0.0 else OPEN
+    return UNSOLVED
+
+
+@compiled
+def finish_platform(work: Work, h: float) -> None:
+    """Stage positions and velocities of the platform after the last correction."""
+    for axis in range(2):
+        for k in range(STAGES):
+            velocity = 0.0
+            position = 0.0
+            for m in range(STAGES):
+                velocity += A[k, m] * work.a[0, axis, m]
+                position += A2[k, m] * work.a[0, axis, m]
+            work.stage[axis, k] = work.x[0, axis] + h * (NODES[k] * work.v[0, axis] + h * position)
+            work.stage[2 + axis, k] = work.v[0, axis] + h * velocity
+
+
+@compiled
+def absolute_accelerations(system: System, work: Work, contact: int) -> None:
+    """Relative plus ground acceleration at the stages; all bodies share the platform's vertical motion (2.2)."""
+    for k in range(STAGES):
+        vertical = work.ground[2, k]
+        if contact != REST and not system.small:
+            stage = work.stage
+            _, _, az = vertical_acceleration(
+                stage[0, k], stage[1, k], stage[2, k], stage[3, k], work.a[0, 0, k], work.a[0, 1, k], system.radius
+            )
+            vertical += az
+        for i in range(work.x.shape[0]):
+            work.total[i, 0, k] = work.a[i, 0, k] + work.ground[0, k]
+            work.total[i, 1, k] = work.a[i, 1, k] + work.ground[1, k]
+            work.total[i, 2, k] = vertical
+
+
+@compiled
+def step_error(work: Work, scale: Array) -> float:
+    """
+    Error of the acceleration inside the step over `scale` (N,), the largest over the bodies.
+
+    The interpolating polynomial, evaluated at the start of the step, misses the acceleration known there by the
+    interpolation error of the step, which falls like h^7.
+    """
+    worst = 0.0
+    for i in range(work.x.shape[0]):
+        squared = 0.0
+        for axis in range(2):
+            defect = -work.a0[i, axis]
+            for k in range(STAGES):
+                defect += AT_START[k] * work.a[i, axis, k]
+            squared += defect * defect
+        worst = max(worst, sqrt(squared) / scale[i])
+    return worst

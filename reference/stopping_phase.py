@@ -1,0 +1,165 @@
+"""The approach to a stop in stretched time (near_stop.py): into rest or creep, or past the stop and on."""
+
+from __future__ import annotations
+
+from math import exp, log, pi
+
+import numpy as np
+
+from reference.advance import FATAL, SHORTEST, commit, drive, length_factor, next_step
+from reference.arc import NO_TURN, arc_peak
+from reference.chain import chain_acceleration
+from reference.collocation import STAGES
+from reference.compiled import compiled
+from reference.events import first_crossing
+from reference.ground import ground_at
+from reference.near_stop import ACROSS, ALONG, CLOCK, DIRECTION, LOG_RATIO, SIGMA, directed, near_stop_step
+from reference.platform import rest_excess
+from reference.steps import step_error
+from reference.system import (
+    ANGLE,
+    CREEPING,
+    LENGTH,
+    LOG_SPEED,
+    OPEN,
+    REGULARIZED,
+    REST,
+    SLIDING,
+    SOLVED,
+    STEP_LIMIT,
+    STOPPING,
+    TIME,
+    UNSOLVED,
+    Array,
+    Demand,
+    Record,
+    System,
+    Work,
+)
+
+CALM = 0.7  # rad: what the chain's fastest vibration may turn during one step
+AWAY = 0.3  # of the length of a plain step: time scale at which a slide that gathers speed leaves stretched time
+CLOSE = 0.05  # of the period: and at least this time scale
+SLOW = 1e-5  # of the loading's velocity: a platform that friction can hold has stopped
+SLOWEST = 1e-10  # of it: so far a stop is followed whose arc decides the peak
+DECISIVE = 0.97  # an arc that stays below this share of the peak so far decides nothing
+BRIEF = 1e-4  # of the period: time left at a stop within which forces are frozen
+REVERSED = 1e-12  # of the loading's velocity: a straight slide that friction cannot hold has come to its turning point
+NEWTON = 1e-3  # of the tolerance
+
+
+@compiled
+def ratio_in(system: System, work: Work, phase: Array) -> tuple[float, float]:
+    """Fill a0 for the state and the direction of the run; log of full over horizontal speed, acceleration's size."""
+    run = work.run
+    ux, uy, uz = ground_at(system, phase, run[TIME])
+    chain_acceleration(system, work, ux, uy)
+    fx, fy = drive(system, work, ux, uy)
+    ax, ay, _, ratio = directed(
+        system, work.x[0, 0], work.x[0, 1], fx, fy, ux, uy, system.gravity + uz, exp(run[LOG_SPEED]), run[ANGLE]
+    )
+    work.a0[0, 0], work.a0[0, 1] = ax, ay
+    return log(ratio), (ax * ax + ay * ay) ** 0.5
+
+
+@compiled
+def has_stopped(system: System, phase: Array, work: Work, demand: Demand) -> int:
+    """REST or SLIDING (a straight slide turns back) if the motion is at a stop, STOPPING if it goes on."""
+    run = work.run
+    unit = demand.unit * demand.period / (2.0 * pi)
+    speed = exp(run[LOG_SPEED])
+    if speed > SLOW * unit:
+        return STOPPING
+    along, across = work.turning[ALONG, STAGES - 1], work.turning[ACROSS, STAGES - 1]
+    ux, uy, uz = ground_at(system, phase, run[TIME])
+    fx, fy = drive(system, work, ux, uy)
+    px, py = work.x[0, 0], work.x[0, 1]
+    excess, reaction = rest_excess(system, px, py, fx, fy, ux, uy, system.gravity + uz)
+    if excess > 0.0:
+        straight = abs(across) <= NO_TURN * system.friction * reaction
+        return SLIDING if straight and along < 0.0 and speed < REVERSED * unit else STOPPING
+    if along >= 0.0 or speed > BRIEF * demand.period * -along:
+        return STOPPING if speed > 1e-200 else REST
+    if demand.cutoff == 0.0:
+        arc = arc_peak(system, px, py, fx, fy, ux, uy, uz, run[ANGLE])
+        if speed > SLOWEST * unit and arc > DECISIVE * DECISIVE * work.best[0]:
+            return STOPPING
+        work.best[0] = max(work.best[0], arc)
+    elif speed > demand.cutoff:
+        return STOPPING
+    return REST
+
+
+@compiled
+def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> tuple[int, int]:
+    """(how it went, what the contact does next); see march.py."""
+    run = work.run
+    log_ratio, size = ratio_in(system, work, phase)
+    h = 0.5 / max(size, 1e-3 * demand.unit)
+    regularized = system.law == REGULARIZED
+    level = log(system.v_reg) if regularized else 0.0
+    counted = log(demand.cutoff) if demand.cutoff > 0.0 else -1e300
+    values = np.empty(STAGES)
+    while True:
+        if not next_step(work, demand):
+            return STEP_LIMIT, STOPPING
+        if system.fastest > 0.0:
+            h = min(h, CALM / (system.fastest * exp(run[LOG_SPEED])))
+        if h * exp(run[LOG_SPEED]) < SHORTEST * demand.period * 1e-3 * exp(min(0.0, run[LOG_SPEED])):
+            return UNSOLVED, STOPPING
+        code = near_stop_step(system, phase, work, run[TIME], h, run[ANGLE], run[LOG_SPEED], NEWTON * demand.tolerance)
+        if code == SOLVED and work.stage[6].min() <= 0.0:
+            code = OPEN
+        if code != SOLVED:
+            if code != UNSOLVED and h * exp(run[LOG_SPEED]) < FATAL * demand.period:
+                return code, STOPPING
+            h *= 0.3
+            continue
+        error = step_error(work, work.scale)
+        factor = length_factor(error, demand.tolerance)
+        if not error <= demand.tolerance:
+            h *= min(0.7, factor)
+            continue
+        end = work.turning[CLOCK, STAGES - 1]
+        if end > system.duration + SHORTEST * demand.period:
+            portion = first_crossing(work.turning[CLOCK], run[TIME], system.duration)
+            if portion < 1.0 - 1e-9:
+                h *= portion
+                continue
+        for k in range(STAGES):
+            values[k] = work.turning[SIGMA, k] + work.turning[LOG_RATIO, k]
+        start_value = run[LOG_SPEED] + log_ratio
+        if regularized and values[STAGES - 1] < level - 1e-6:
+            portion = first_crossing(values, start_value, level)
+            if portion < 1.0:
+                if portion < 1e-9:
+                    return SOLVED, CREEPING
+                h *= portion
+                continue
+        low, high = 0.0, 1.0
+        if start_value < counted and values[STAGES - 1] < counted:
+            high = 0.0
+        elif start_value < counted:
+            low = min(1.0, first_crossing(values, start_value, counted))
+        elif values[STAGES - 1] < counted:
+            high = min(1.0, first_crossing(values, start_value, counted))
+        commit(work, record, h, STOPPING, low, high)
+        run[TIME] = work.turning[CLOCK, STAGES - 1]
+        run[ANGLE] = work.turning[DIRECTION, STAGES - 1]
+        run[LOG_SPEED] = work.turning[SIGMA, STAGES - 1]
+        log_ratio = work.turning[LOG_RATIO, STAGES - 1]
+        h *= factor
+        if run[TIME] >= system.duration - 10.0 * SHORTEST * demand.period:
+            return SOLVED, STOPPING
+        if regularized:
+            if values[STAGES - 1] <= level + 1e-6:
+                return SOLVED, CREEPING
+        else:
+            next_contact = has_stopped(system, phase, work, demand)
+            if next_contact != STOPPING:
+                work.v[0, :] = 0.0
+                return SOLVED, next_contact
+        along = work.turning[ALONG, STAGES - 1]
+        if along > 0.0 and exp(run[LOG_SPEED]) > max(AWAY * run[LENGTH], CLOSE * demand.period) * along:
+            run[LENGTH] = min(run[LENGTH], exp(run[LOG_SPEED]) / along)
+            return SOLVED, SLIDING

@@ -1,0 +1,146 @@
+"""A scene as numbers for compiled code, and the arrays one run works in."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.collocation import CHANNELS, STAGES
+from reference.problem import GRAVITY, Scene, exponents
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+# friction laws (friction.py)
+SET_VALUED, REGULARIZED, LUBRICATED = 0, 1, 2
+# conditions for rest
+CONSISTENT, PRINTED = 0, 1
+# what the contact does
+REST, SLIDING, CREEPING, WETTED, STOPPING = range(5)
+# how the equations of one step, or a whole run, ended
+SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT = range(6)
+# entries of Work.run, the state of a run that is not an array
+TIME, LENGTH, OLD_LENGTH, ANGLE, LOG_SPEED, HELD, STEPS = range(7)
+
+
+class System(NamedTuple):
+    """The paper's system in accelerations: link stiffness over the mass of the body it acts on, 1/s^2."""
+
+    small: bool  # equations (4.3) instead of (3.9)
+    law: int
+    rest_condition: int
+    friction: float  # mu, or f_c in s/m
+    v_reg: float  # m/s, of the regularised law
+    mass_ratio: float  # m_sum / m1
+    radius: float  # m
+    gravity: float  # m/s^2
+    below: Array  # (N, 2), k_{i,i-1} / m_i, zero for the platform
+    above: Array  # (N, 2), k_{i+1,i} / m_i, zero for the last body
+    amplitudes: Array  # (3, 2), m/s^2
+    exponents: Complex  # (2,), 1/s
+    duration: float  # s
+    fastest: float  # rad/s, bound of the chain's natural frequencies
+
+
+class Work(NamedTuple):
+    """Arrays of one run: nothing is allocated while it goes on, and nothing grows with its duration."""
+
+    x: Array  # (N, 2) position at the start of the step
+    v: Array  # (N, 2) velocity
+    a0: Array  # (N, 2) acceleration there
+    x1: Array  # (N, 2) at the end of the step
+    v1: Array
+    a: Array  # (N, 2, S) acceleration at the stages
+    ground: Array  # (3, S) ground acceleration at the stages
+    total: Array  # (N, 3, S) absolute acceleration at the stages
+    free: Array  # (2, S) driving acceleration of the platform if it kept its velocity
+    feedback: Array  # (2, S, S) what its own stage accelerations add to that
+    pivot: Complex  # (N, 2, CHANNELS) eliminated chain
+    load: Complex  # (N, 2, CHANNELS)
+    stage: Array  # (8, S) platform at the stages: px, py, vx, vy, fx, fy, reaction, speed2
+    slopes: Array  # (12, S) derivative of its acceleration
+    matrix: Array  # (2 S, 2 S)
+    residual: Array  # (2 S,)
+    chain: Array  # (N, 2, S) position of the bodies at the stages of a step near a stop
+    velocity: Array  # (N, 2, S)
+    turning: Array  # (8, S) direction, speed and time there
+    guess: Array  # (2, S) coefficients of the platform's acceleration in the step before
+    scale: Array  # (N,) m/s^2, what errors are measured against
+    run: Array  # (7,)
+    best: Array  # (N,) largest squared absolute acceleration so far
+
+
+class Record(NamedTuple):
+    """Samples of one motion for `trajectory`; empty arrays when only the peaks are wanted."""
+
+    times: Array  # (T,)
+    x: Array  # (T, N, 2)
+    v: Array  # (T, N, 2)
+    total: Array  # (T, N, 3)
+    reaction: Array  # (T,), over m1
+    sticks: Array  # (K, 2) intervals of rest, or of creep below v_reg
+    count: NDArray[np.int64]  # (2,) samples and intervals written
+
+
+class Demand(NamedTuple):
+    """What is asked of one run."""
+
+    tolerance: float  # of accelerations, relative
+    unit: float  # m/s^2, the scale errors are measured against from below
+    period: float  # s, the shorter loading period
+    cutoff: float  # m/s, v_c of the resolved peak; 0 for the supremum
+    step_limit: int
+
+
+def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = False) -> System:
+    """The scene in compiled form. `v_reg`, m/s, selects the regularised law; None the set-valued one."""
+    masses, links = scene.masses, scene.stiffness
+    below, above = np.zeros((len(masses), 2)), np.zeros((len(masses), 2))
+    below[1:] = links / masses[1:, None]
+    above[:-1] = links / masses[:-1, None]
+    # without friction the lubricated law with f_c = 0 says the same and has no corner
+    smooth = scene.lubricated or scene.friction_coefficient == 0.0
+    return System(
+        small=small,
+        law=LUBRICATED if smooth else (SET_VALUED if v_reg is None else REGULARIZED),
+        rest_condition=PRINTED if printed_rest else CONSISTENT,
+        friction=scene.friction_coefficient,
+        v_reg=0.0 if v_reg is None else float(v_reg),
+        mass_ratio=float(scene.total_mass / masses[0]),
+        radius=float(scene.radius),
+        gravity=GRAVITY,
+        below=below,
+        above=above,
+        amplitudes=scene.amplitudes,
+        exponents=exponents(scene),
+        duration=float(scene.duration),
+        fastest=float(np.sqrt(2.0 * (below + above).max())),  # Gershgorin's bound
+    )
+
+
+def workspace(bodies: int) -> Work:
+    n, s, c = bodies, STAGES, CHANNELS
+    shapes = {
+        "a": (n, 2, s),
+        "ground": (3, s),
+        "total": (n, 3, s),
+        "free": (2, s),
+        "feedback": (2, s, s),
+        "pivot": (n, 2, c),
+        "load": (n, 2, c),
+        "stage": (8, s),
+        "slopes": (12, s),
+        "matrix": (2 * s, 2 * s),
+        "residual": (2 * s,),
+        "chain": (n, 2, s),
+        "velocity": (n, 2, s),
+        "turning": (8, s),
+        "guess": (2, s),
+        "scale": (n,),
+        "run": (7,),
+        "best": (n,),
+    }
+    kinds = {"pivot": np.complex128, "load": np.complex128}
+    return Work(*(np.zeros(shapes.get(name, (n, 2)), dtype=kinds.get(name, np.float64)) for name in Work._fields))
