@@ -11,6 +11,7 @@ from reference.ground import ground_at
 from reference.peaks import take_peaks
 from reference.platform import moving
 from reference.record import record_step
+from reference.steps import lifted
 from reference.system import (
     OLD_LENGTH,
     REST,
@@ -45,17 +46,32 @@ def drive(system: System, work: Work, ux: float, uy: float) -> tuple[float, floa
 
 @compiled
 def begin(system: System, phase: Array, work: Work, contact: int) -> None:
-    """Accelerations a0 of the state, and no guess for the first step of the phase."""
+    """Accelerations of the state; a slide that has no direction yet is begun by sliding_phase. No guess for a step."""
     ux, uy, uz = ground_at(system, phase, work.run[TIME])
     chain_acceleration(system, work, ux, uy)
-    work.a0[0, 0] = work.a0[0, 1] = 0.0
+    ax = ay = 0.0
     still = work.v[0, 0] == 0.0 and work.v[0, 1] == 0.0
     if contact != REST and not (contact == SLIDING and still):
         fx, fy = drive(system, work, ux, uy)
         ax, ay, _, _, _ = moving(
             system, contact, work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1], fx, fy, ux, uy, system.gravity + uz
         )
-        work.a0[0, 0], work.a0[0, 1] = ax, ay
+    begin_with(system, work, ax, ay, ux, uy, uz, contact == REST)
+
+
+@compiled
+def begin_with(
+    system: System, work: Work, ax: float, ay: float, ux: float, uy: float, uz: float, resting: bool
+) -> None:
+    """The platform's acceleration at the start of a phase, and with it the absolute accelerations there."""
+    work.a0[0, 0], work.a0[0, 1] = ax, ay
+    vertical = uz
+    if not resting:
+        vertical += lifted(system, work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1], ax, ay)
+    for i in range(work.x.shape[0]):
+        work.total0[i, 0] = work.a0[i, 0] + ux
+        work.total0[i, 1] = work.a0[i, 1] + uy
+        work.total0[i, 2] = vertical
     work.run[OLD_LENGTH] = 0.0
 
 
@@ -114,6 +130,7 @@ def commit(work: Work, record: Record, h: float, contact: int, low: float, high:
     work.x[:] = work.x1
     work.v[:] = work.v1
     work.a0[:] = work.a[:, :, STAGES - 1]
+    work.total0[:] = work.total[:, :, STAGES - 1]
     work.run[OLD_LENGTH] = 0.0 if contact in (STOPPING, REST) else h
     if contact != STOPPING:
         work.run[TIME] += h

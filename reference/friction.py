@@ -1,7 +1,7 @@
 """
 Friction at the contact: slip vectors, the condition for rest, the direction in which a slide begins.
 
-Laws: dry and set-valued (2.5), dry and linear below the speed v_reg, lubricated with mu = f_c v (3.14). All of them give
+Laws: dry and set-valued (2.5), dry and linear below the speed v_reg, lubricated with mu = f_c v (3.14). Each gives
 a slip vector s = factor * v_h with v_h the horizontal velocity:
   sliding     factor = mu / v       (v the full sliding speed (3.8))
   creeping    factor = mu / v_reg   (v < v_reg)
@@ -32,8 +32,8 @@ def rest_excess_exact(
     """
     Consistent condition for rest of the exact equations: (excess, reaction / m1).
 
-    The force that holds the platform at rest is (-f, M pressure) per m1; rest is possible while its tangential part is at
-    most mu times its normal part N > 0: while the excess |T|^2 - (mu N)^2 is not positive.
+    The force that holds the platform at rest is (-f, M pressure) per m1; rest is possible while its tangential part is
+    at most mu times its normal part N > 0: while the excess |T|^2 - (mu N)^2 is not positive.
     """
     nx = -px / radius
     ny = -py / radius

@@ -20,6 +20,7 @@ from reference.smooth_phase import smooth_phase
 from reference.stopping_phase import stopping_phase
 from reference.system import (
     CREEPING,
+    HELD,
     LENGTH,
     LUBRICATED,
     REGULARIZED,
@@ -36,6 +37,8 @@ from reference.system import (
 )
 
 START = 0.02  # of the shorter loading period: first step
+
+BORDER = 1e-6  # of it: for so long such a state is left to rest or creep
 
 
 @compiled
@@ -65,6 +68,7 @@ def march(system: System, phase: Array, work: Work, demand: Demand, record: Reco
     work.run[:] = 0.0
     work.run[LENGTH] = min(START * demand.period, system.duration)
     contact = first_contact(system, phase, work)
+    before, idle = -1.0, 0
     while work.run[TIME] < system.duration - 1e-14 * demand.period:
         if contact == REST:
             code, contact = rest_phase(system, phase, work, demand, record)
@@ -76,4 +80,8 @@ def march(system: System, phase: Array, work: Work, demand: Demand, record: Reco
             code, contact = stopping_phase(system, phase, work, demand, record)
         if code != SOLVED:
             return code
+        idle = idle + 1 if work.run[TIME] == before else 0
+        before = work.run[TIME]
+        if idle > 4:  # a state on the border of two phases that each gives to the other
+            work.run[HELD] = max(work.run[HELD], BORDER * demand.period)
     return SOLVED

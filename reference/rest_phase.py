@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from reference.advance import FATAL, SHORTEST, begin, commit, length_factor, next_step, remaining
+from reference.collocation import STAGES
 from reference.compiled import compiled
-from reference.events import first_onset
+from reference.events import excess_at, first_onset
 from reference.record import note_stick
 from reference.steps import rest_step, step_error
 from reference.system import (
@@ -24,6 +25,25 @@ from reference.system import (
     Work,
 )
 
+JUST = 1e-12  # of the squared friction limit: how far past it the onset is located
+
+
+@compiled
+def located_onset(system: System, phase: Array, work: Work, h: float, onset: float) -> float:
+    """Length of the step at rest whose end lies at the onset, just past it; the step is made."""
+    width = 1e-4 * onset
+    slope = (excess_at(system, work, onset) - excess_at(system, work, onset - width)) / (width * h)
+    end = h * onset
+    for _ in range(8):
+        rest_step(system, phase, work, work.run[TIME], end)
+        first_onset(system, work)  # fills the reaction
+        limit = (system.friction * work.stage[6, STAGES - 1]) ** 2
+        excess = excess_at(system, work, 1.0)
+        if not slope > 0.0 or 0.0 < excess <= JUST * limit:
+            break
+        end = min(max(end + (0.5 * JUST * limit - excess) / slope, 0.5 * end), h)
+    return end
+
 
 @compiled
 def rest_phase(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> tuple[int, int]:
@@ -39,7 +59,7 @@ def rest_phase(system: System, phase: Array, work: Work, demand: Demand, record:
         if run[HELD] > 0.0:
             h = min(h, run[HELD])
         rest_step(system, phase, work, run[TIME], h)
-        error = step_error(work, work.scale)
+        error = step_error(work)
         if not error <= demand.tolerance:
             if h < SHORTEST * demand.period:
                 return UNSOLVED, REST
@@ -53,9 +73,7 @@ def rest_phase(system: System, phase: Array, work: Work, demand: Demand, record:
             continue
         if onset <= 1.0 and run[HELD] == 0.0:
             if onset > 0.0:
-                h *= onset
-                rest_step(system, phase, work, run[TIME], h)
-                first_onset(system, work)
+                h = located_onset(system, phase, work, h, onset)
                 commit(work, record, h, REST, 0.0, 1.0)
             note_stick(record, began, run[TIME])
             return SOLVED, SLIDING

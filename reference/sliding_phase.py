@@ -9,6 +9,7 @@ from reference.advance import (
     NEWTON,
     SHORTEST,
     begin,
+    begin_with,
     commit,
     drive,
     first_guess,
@@ -27,6 +28,7 @@ from reference.near_stop import directed
 from reference.steps import moving_step, step_error
 from reference.system import (
     ANGLE,
+    CREEPING,
     HELD,
     LENGTH,
     LOG_SPEED,
@@ -50,6 +52,7 @@ REACH = 1.5  # a slide that would stop within so many steps is followed in stret
 CLOSE = 0.05  # of the period: or would stop within this time
 CALM = 0.5  # rad: what the chain's fastest vibration may turn in the time that is left then
 TURN = 0.3  # cosine of the largest turn of the velocity between two stages
+LOCATED = 1e-9  # of the squared speed: a slide this close to v_reg has come down to it
 GRAZE = 1e-6  # of the period: sliding that cannot be begun with a step this long moves nothing
 
 
@@ -87,7 +90,7 @@ def begin_slide(system: System, phase: Array, work: Work, demand: Demand) -> Non
     if demand.cutoff == 0.0:
         work.best[0] = max(work.best[0], squared_total(system, px, py, fx, fy, ux, uy, uz, angle))
     ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, angle)
-    work.a0[0, 0], work.a0[0, 1] = ax, ay
+    begin_with(system, work, ax, ay, ux, uy, uz, False)
 
 
 @compiled
@@ -110,7 +113,7 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
     start2 = speed2(system, work)
     if start2 == 0.0:
         begin_slide(system, phase, work, demand)
-    floor2 = (system.v_reg * (1.0 - 1e-5)) ** 2 if system.law == REGULARIZED else 0.0
+    floor2 = (system.v_reg * (1.0 - LOCATED)) ** 2 if system.law == REGULARIZED else 0.0
     counted2 = demand.cutoff * demand.cutoff
     while remaining(system, work, demand) > 0.0:
         if not next_step(work, demand):
@@ -130,7 +133,7 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
         else:
             first_guess(work, h)
         code = moving_step(system, phase, work, SLIDING, run[TIME], h, NEWTON * demand.tolerance * work.scale[0])
-        if code == SOLVED and (turns_too_far(work) or work.stage[7].min() < floor2):
+        if code == SOLVED and (turns_too_far(work)):
             code = UNSOLVED
         if code != SOLVED:
             if speed == 0.0 and h < GRAZE * demand.period:
@@ -141,13 +144,20 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
             run[LENGTH] = 0.3 * h
             run[OLD_LENGTH] = 0.0 if run[OLD_LENGTH] > 3.0 * h else run[OLD_LENGTH]
             continue
-        error = step_error(work, work.scale)
+        error = step_error(work)
         factor = length_factor(error, demand.tolerance)
         if not error <= demand.tolerance:
             if h < SHORTEST * demand.period:
                 return UNSOLVED, SLIDING
             run[LENGTH] = h * min(0.7, factor)
             continue
+        if work.stage[7].min() < floor2:
+            slowed = first_crossing(work.stage[7], max(start2, floor2 * (1.0 + 1e-9)), floor2)
+            if slowed < GRAZE:
+                return SOLVED, CREEPING
+            if slowed < 1.0 - GRAZE:
+                run[LENGTH] = h * slowed
+                continue
         low, high = 0.0, 1.0
         end2 = work.stage[7, STAGES - 1]
         if start2 < counted2 and end2 < counted2:
@@ -158,6 +168,8 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
             high = min(1.0, first_crossing(work.stage[7], start2, counted2))
         commit(work, record, h, SLIDING, low, high)
         start2 = end2
+        if end2 < floor2 * (1.0 + LOCATED):
+            return SOLVED, CREEPING
         if h * factor > run[LENGTH] or h == run[LENGTH]:
             run[LENGTH] = h * factor
     return SOLVED, SLIDING

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from reference.advance import FATAL, NEWTON, SHORTEST, begin, commit, first_guess, length_factor, next_step, remaining
+from reference.collocation import STAGES
 from reference.compiled import compiled
 from reference.events import first_crossing
 from reference.friction import sliding_speed2
@@ -10,6 +11,7 @@ from reference.record import note_stick
 from reference.steps import moving_step, step_error
 from reference.system import (
     CREEPING,
+    HELD,
     LENGTH,
     SLIDING,
     SOLVED,
@@ -22,6 +24,9 @@ from reference.system import (
     System,
     Work,
 )
+
+LOCATED = 1e-9  # of the squared speed: creep this close to v_reg has reached it
+GRAZE = 1e-6  # of a step: a crossing this early means that the phase begins on the level
 
 
 @compiled
@@ -40,6 +45,8 @@ def smooth_phase(
         if not next_step(work, demand):
             return STEP_LIMIT, contact
         h = min(run[LENGTH], remaining(system, work, demand))
+        if run[HELD] > 0.0:
+            h = min(h, run[HELD])
         first_guess(work, h)
         code = moving_step(system, phase, work, contact, run[TIME], h, NEWTON * demand.tolerance * work.scale[0])
         if code != SOLVED:
@@ -47,7 +54,7 @@ def smooth_phase(
                 return code, contact
             run[LENGTH] = 0.3 * h
             continue
-        error = step_error(work, work.scale)
+        error = step_error(work)
         factor = length_factor(error, demand.tolerance)
         if not error <= demand.tolerance:
             if h < SHORTEST * demand.period:
@@ -56,21 +63,18 @@ def smooth_phase(
             continue
         if contact == CREEPING and work.stage[7].max() > 0.8 * level:
             start = sliding_speed2(work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1], system.radius, system.small)
-            # a start on the level itself, coming from sliding, is not a crossing
-            crossing = first_crossing(work.stage[7], min(start, level * (1.0 - 1e-9)), level)
-            if crossing <= 1.0 and (crossing > 1e-3 or start < level * (1.0 - 1e-6)):
-                if crossing < 1.0:
-                    h *= crossing
-                    first_guess(work, h)
-                    if moving_step(
-                        system, phase, work, contact, run[TIME], h, NEWTON * demand.tolerance * work.scale[0]
-                    ) != SOLVED:  # fmt: skip
-                        run[LENGTH] = 0.3 * h
-                        continue
-                commit(work, record, h, contact, 0.0, 1.0)
+            crossing = first_crossing(work.stage[7], min(start, level * (1.0 - LOCATED)), level)
+            if crossing < GRAZE and run[HELD] == 0.0:
                 note_stick(record, began, run[TIME])
                 return SOLVED, SLIDING
+            if GRAZE <= crossing < 1.0 - GRAZE:
+                run[LENGTH] = h * crossing
+                continue
         commit(work, record, h, contact, 0.0, 1.0)
+        run[HELD] = 0.0
+        if contact == CREEPING and work.stage[7, STAGES - 1] > level * (1.0 - LOCATED):
+            note_stick(record, began, run[TIME])
+            return SOLVED, SLIDING
         if h * factor > run[LENGTH] or h == run[LENGTH]:
             run[LENGTH] = h * factor
     if contact == CREEPING:

@@ -124,16 +124,22 @@ def finish_platform(work: Work, h: float) -> None:
 
 
 @compiled
+def lifted(system: System, px: float, py: float, vx: float, vy: float, ax: float, ay: float) -> float:
+    """Vertical acceleration of all bodies relative to the plate (2.2); none in the small equations."""
+    if system.small:
+        return 0.0
+    _, _, az = vertical_acceleration(px, py, vx, vy, ax, ay, system.radius)
+    return az
+
+
+@compiled
 def absolute_accelerations(system: System, work: Work, contact: int) -> None:
-    """Relative plus ground acceleration at the stages; all bodies share the platform's vertical motion (2.2)."""
+    """Relative plus ground acceleration at the stages."""
     for k in range(STAGES):
         vertical = work.ground[2, k]
-        if contact != REST and not system.small:
-            stage = work.stage
-            _, _, az = vertical_acceleration(
-                stage[0, k], stage[1, k], stage[2, k], stage[3, k], work.a[0, 0, k], work.a[0, 1, k], system.radius
-            )
-            vertical += az
+        if contact != REST:
+            vx, vy = work.stage[2, k], work.stage[3, k]
+            vertical += lifted(system, work.stage[0, k], work.stage[1, k], vx, vy, work.a[0, 0, k], work.a[0, 1, k])
         for i in range(work.x.shape[0]):
             work.total[i, 0, k] = work.a[i, 0, k] + work.ground[0, k]
             work.total[i, 1, k] = work.a[i, 1, k] + work.ground[1, k]
@@ -141,9 +147,9 @@ def absolute_accelerations(system: System, work: Work, contact: int) -> None:
 
 
 @compiled
-def step_error(work: Work, scale: Array) -> float:
+def step_error(work: Work) -> float:
     """
-    Error of the acceleration inside the step over `scale` (N,), the largest over the bodies.
+    Error of the absolute accelerations inside the step over `scale` (N,), the largest over the bodies.
 
     The interpolating polynomial, evaluated at the start of the step, misses the acceleration known there by the
     interpolation error of the step, which falls like h^7.
@@ -151,10 +157,10 @@ def step_error(work: Work, scale: Array) -> float:
     worst = 0.0
     for i in range(work.x.shape[0]):
         squared = 0.0
-        for axis in range(2):
-            defect = -work.a0[i, axis]
+        for axis in range(3):
+            defect = -work.total0[i, axis]
             for k in range(STAGES):
-                defect += AT_START[k] * work.a[i, axis, k]
+                defect += AT_START[k] * work.total[i, axis, k]
             squared += defect * defect
-        worst = max(worst, sqrt(squared) / scale[i])
+        worst = max(worst, sqrt(squared) / work.scale[i])
     return worst

@@ -6,7 +6,7 @@ from math import exp, log, pi
 
 import numpy as np
 
-from reference.advance import FATAL, SHORTEST, commit, drive, length_factor, next_step
+from reference.advance import FATAL, SHORTEST, begin_with, commit, drive, length_factor, next_step
 from reference.arc import NO_TURN, arc_peak
 from reference.chain import chain_acceleration
 from reference.collocation import STAGES
@@ -43,6 +43,7 @@ CLOSE = 0.05  # of the period: and at least this time scale
 SLOW = 1e-5  # of the loading's velocity: a platform that friction can hold has stopped
 SLOWEST = 1e-10  # of it: so far a stop is followed whose arc decides the peak
 DECISIVE = 0.97  # an arc that stays below this share of the peak so far decides nothing
+LOCATED = 1e-9  # of ln v: a slide this close to v_reg has come down to it
 BRIEF = 1e-4  # of the period: time left at a stop within which forces are frozen
 REVERSED = 1e-12  # of the loading's velocity: a straight slide that friction cannot hold has come to its turning point
 NEWTON = 1e-3  # of the tolerance
@@ -58,7 +59,7 @@ def ratio_in(system: System, work: Work, phase: Array) -> tuple[float, float]:
     ax, ay, _, ratio = directed(
         system, work.x[0, 0], work.x[0, 1], fx, fy, ux, uy, system.gravity + uz, exp(run[LOG_SPEED]), run[ANGLE]
     )
-    work.a0[0, 0], work.a0[0, 1] = ax, ay
+    begin_with(system, work, ax, ay, ux, uy, uz, False)
     return log(ratio), (ax * ax + ay * ay) ** 0.5
 
 
@@ -115,7 +116,7 @@ def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, rec
                 return code, STOPPING
             h *= 0.3
             continue
-        error = step_error(work, work.scale)
+        error = step_error(work)
         factor = length_factor(error, demand.tolerance)
         if not error <= demand.tolerance:
             h *= min(0.7, factor)
@@ -129,11 +130,11 @@ def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, rec
         for k in range(STAGES):
             values[k] = work.turning[SIGMA, k] + work.turning[LOG_RATIO, k]
         start_value = run[LOG_SPEED] + log_ratio
-        if regularized and values[STAGES - 1] < level - 1e-6:
-            portion = first_crossing(values, start_value, level)
-            if portion < 1.0:
-                if portion < 1e-9:
-                    return SOLVED, CREEPING
+        if regularized and values.min() < level - LOCATED:
+            portion = first_crossing(values, max(start_value, level), level - 0.5 * LOCATED)
+            if portion < 1e-9:
+                return SOLVED, CREEPING
+            if portion < 1.0 - 1e-9:
                 h *= portion
                 continue
         low, high = 0.0, 1.0
@@ -152,7 +153,7 @@ def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, rec
         if run[TIME] >= system.duration - 10.0 * SHORTEST * demand.period:
             return SOLVED, STOPPING
         if regularized:
-            if values[STAGES - 1] <= level + 1e-6:
+            if values[STAGES - 1] <= level + LOCATED:
                 return SOLVED, CREEPING
         else:
             next_contact = has_stopped(system, phase, work, demand)

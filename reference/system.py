@@ -50,6 +50,7 @@ class Work(NamedTuple):
     x: Array  # (N, 2) position at the start of the step
     v: Array  # (N, 2) velocity
     a0: Array  # (N, 2) acceleration there
+    total0: Array  # (N, 3) absolute acceleration there
     x1: Array  # (N, 2) at the end of the step
     v1: Array
     a: Array  # (N, 2, S) acceleration at the stages
@@ -123,6 +124,7 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
 def workspace(bodies: int) -> Work:
     n, s, c = bodies, STAGES, CHANNELS
     shapes = {
+        "total0": (n, 3),
         "a": (n, 2, s),
         "ground": (3, s),
         "total": (n, 3, s),
