@@ -1,0 +1,176 @@
+"""
+The models of the study in order, each adding one effect to the one before. Adding a rung is one entry of LADDER.
+
+A rung names the function that answers for it ("package:function", the contract of `reference.amplification` and
+`multibody.amplification`), so that a worker process can import it by itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from reference.problem import Scene
+
+V_REG = 1e-3  # m/s: below it friction grows linearly with the slip velocity, on both sides alike
+REFERENCE_TOLERANCE = (
+    1e-6  # the reference is cheap: asked for at least this, so that its error never blurs a difference
+)
+RECORDED_ON = "one core of a 2-core AMD EPYC (x86-64) virtual machine"
+
+
+def dry(scene: Scene) -> bool:
+    return not scene.lubricated
+
+
+def any_scene(scene: Scene) -> bool:
+    return True
+
+
+@dataclass(frozen=True)
+class Rung:
+    """
+    One model. `adds`: the sentence the report prints. `settings`: keyword arguments of its functions.
+    `assumptions`: its row in the report's table of equations. `seconds_per_point`: recorded cost of one phase pair of
+    a built-in scene with 20 s of motion, on RECORDED_ON. `applies`: whether the scene gives it anything to add.
+    """
+
+    key: str
+    title: str
+    adds: str
+    side: Literal["reference", "engine"]
+    amplification: str
+    trajectory: str
+    settings: Mapping[str, object]
+    assumptions: Mapping[str, str]
+    seconds_per_point: float
+    tile: int  # phase pairs solved in one call: about a second of work
+    applies: Callable[[Scene], bool] = field(default=any_scene)
+
+    def tolerance(self, asked: float) -> float:
+        """Relative error this rung asks of its own numbers when the study asks for `asked`."""
+        return min(asked, REFERENCE_TOLERANCE) if self.side == "reference" else asked
+
+    def seconds(self, scene: Scene, points: int) -> float:
+        """Predicted cost of `points` phase pairs, s on one core: the recorded cost, in proportion to the duration."""
+        return points * self.seconds_per_point * scene.duration / 20.0
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two rungs whose difference is reported, `second` minus `first`, relative to `first`."""
+
+    key: str
+    title: str
+    sentence: str
+    first: Rung
+    second: Rung
+
+
+def rungs_of(scene: Scene, ladder: Sequence[Rung]) -> list[Rung]:
+    """The rungs that apply to this scene, in order."""
+    return [rung for rung in ladder if rung.applies(scene)]
+
+
+def pairs_of(scene: Scene, ladder: Sequence[Rung]) -> list[Pair]:
+    """The total difference and the like-for-like one, between the rungs that apply to this scene."""
+    rungs = rungs_of(scene, ladder)
+    first, last = rungs[0], rungs[-1]
+    reference = [rung for rung in rungs if rung.side == "reference"][-1]
+    engine = next(rung for rung in rungs if rung.side == "engine")
+    return [
+        Pair("total", "total", "the paper's printed equations against the engine", first, last),
+        Pair(
+            "like-for-like",
+            "like for like",
+            "same geometry and same friction law on both sides: this gap must close",
+            reference,
+            engine,
+        ),
+    ]
+
+
+_HORIZONTAL = "2 N horizontal displacements; the vertical one follows from the sphere (2.1)"
+_ARC = "supremum of (5.1) with one-sided limits at stops, in closed form"
+_PEAK = "largest value the computed motion reaches"
+
+LADDER: tuple[Rung, ...] = (
+    Rung(
+        key="small",
+        title="small equations",
+        adds="The paper's small-vibration equations (4.3)-(4.4) as printed, with dry friction that really sticks.",
+        side="reference",
+        amplification="reference:amplification",
+        trajectory="reference:trajectory",
+        settings={"equations": "small", "regularization": None},
+        assumptions={
+            "equations": "(4.3)-(4.4), as printed",
+            "geometry": "small: the sphere enters through g x/rho and the kept friction terms only",
+            "friction": "set-valued Coulomb, or mu = f_c |v| in a lubricated scene",
+            "normal contact": "rigid, m_sum (g + zeta'') to the kept order",
+            "unknowns": _HORIZONTAL,
+            "mu_i": _ARC,
+        },
+        seconds_per_point=1e-3,
+        tile=256,
+    ),
+    Rung(
+        key="exact",
+        title="exact equations",
+        adds="The whole sphere: equations (3.9)-(3.13) with the slips of the print mended, same friction law.",
+        side="reference",
+        amplification="reference:amplification",
+        trajectory="reference:trajectory",
+        settings={"equations": "exact", "regularization": None},
+        assumptions={
+            "equations": "(3.9)-(3.13), slips mended",
+            "geometry": "exact sphere of radius rho",
+            "friction": "set-valued Coulomb, or mu = f_c |v| in a lubricated scene",
+            "normal contact": "rigid, from the constraint with its centripetal part",
+            "unknowns": _HORIZONTAL,
+            "mu_i": _ARC,
+        },
+        seconds_per_point=1e-3,
+        tile=256,
+    ),
+    Rung(
+        key="regularised",
+        title="exact equations, v_reg",
+        adds="Friction linear below v_reg = 1e-3 m/s, as an engine has it: no true rest, no jump at a stop.",
+        side="reference",
+        amplification="reference:amplification",
+        trajectory="reference:trajectory",
+        settings={"equations": "exact", "regularization": V_REG},
+        assumptions={
+            "equations": "(3.9)-(3.13), slips mended",
+            "geometry": "exact sphere of radius rho",
+            "friction": "Coulomb, linear below v_reg = 1e-3 m/s",
+            "normal contact": "rigid, from the constraint with its centripetal part",
+            "unknowns": _HORIZONTAL,
+            "mu_i": _PEAK,
+        },
+        seconds_per_point=1e-3,
+        tile=256,
+        applies=dry,
+    ),
+    Rung(
+        key="translational",
+        title="translational engine",
+        adds="Exudyn: spheres in hollow spheres with an elastic contact, every body free to translate only.",
+        side="engine",
+        amplification="multibody:amplification",
+        trajectory="multibody:trajectory",
+        settings={"model": "translational", "regularization": V_REG},
+        assumptions={
+            "equations": "Newton-Euler of the bodies, assembled by Exudyn",
+            "geometry": "exact spheres: support of radius r in a depression of radius R",
+            "friction": "Coulomb, linear below v_reg = 1e-3 m/s, or mu = f_c |v| in a lubricated scene",
+            "normal contact": "elastic: spring and damper, so the platform sinks by N/k_c",
+            "unknowns": "translations of every body, the platform's vertical one free",
+            "mu_i": _PEAK,
+        },
+        seconds_per_point=0.5,
+        tile=4,
+    ),
+)

@@ -1,0 +1,127 @@
+"""The command line, checked before anything is computed."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NoReturn
+
+from pydantic import ValidationError
+
+from comparison.store import refuse_foreign
+from reference.problem import Scene, SceneError, builtin_scenes, load_scene
+from reference.problem.scene_error import first_fault
+
+DEFAULT_GRID = 12  # phases per axis: the four built-in scenes then take a few minutes on two cores
+DEFAULT_TOLERANCE = 1e-3
+
+
+@dataclass(frozen=True)
+class Options:
+    """What the command line asks for, valid."""
+
+    scenes: tuple[Scene, ...]
+    grid: int
+    out: Path
+    jobs: int
+    tolerance: float
+    check: bool
+    plan: bool
+
+
+class UsageError(ValueError):
+    """A command line that cannot be parsed. `str(error)` is one line."""
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        raise UsageError(f"command line: {message} (--help lists the options)")
+
+
+def parsed(argv: Sequence[str] | None) -> Options:
+    """Options of `python -m comparison.run`. Raises SceneError or UsageError: one line, file, key, value, rule."""
+    given = _parser().parse_args(argv)
+    names: list[str] = given.scenes or builtin_scenes()
+    amplitude = None if given.amplitude is None else _number("--amplitude", given.amplitude, 1e-12, 1e6, "m/s^2")
+    options = Options(
+        scenes=tuple(_scene(name, amplitude) for name in names),
+        grid=_whole("--grid", given.grid, 2, 512),
+        out=given.out,
+        jobs=_whole("--jobs", given.jobs, 1, 1024),
+        tolerance=_number("--tolerance", given.tolerance, 1e-12, 0.1, "relative error of mu"),
+        check=given.check,
+        plan=given.plan,
+    )
+    seen: dict[str, str] = {}
+    for name, scene in zip(names, options.scenes):
+        if scene.name in seen:
+            rule = f"same name as {seen[scene.name]}, which names its surfaces: give each scene once, rename a file"
+            raise SceneError(name, "scene", scene.name, rule)
+        seen[scene.name] = name
+    if not options.plan:
+        refuse_foreign(options.out)
+    return options
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="python -m comparison.run",
+        description="The paper's equations against a multibody engine over a grid of initial phases, as a report.",
+        allow_abbrev=False,
+    )
+    parser.add_argument(
+        "scenes",
+        nargs="*",
+        metavar="SCENE",
+        help=f"TOML file or built-in name (default: {', '.join(builtin_scenes())})",
+    )
+    parser.add_argument("--grid", default=str(DEFAULT_GRID), metavar="N", help="phases per axis (default %(default)s)")
+    parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help="report (default %(default)s)")
+    parser.add_argument("--jobs", default=str(_cores()), metavar="N", help="worker processes (default %(default)s)")
+    parser.add_argument(
+        "--tolerance",
+        default=str(DEFAULT_TOLERANCE),
+        metavar="X",
+        help="relative error asked of every engine mu; the reference is asked for 1e-6 or better (default %(default)s)",
+    )
+    parser.add_argument("--amplitude", metavar="A", help="largest ground acceleration amplitude of every scene, m/s^2")
+    parser.add_argument("--check", action="store_true", help="exit 1 if a scene's acceptance limits are broken")
+    parser.add_argument("--plan", action="store_true", help="print what would be computed and its cost; run nothing")
+    return parser
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _scene(name: str, amplitude: float | None) -> Scene:
+    try:
+        return load_scene(name, amplitude)
+    except ValidationError as fault:  # the amplitude asked for makes the scene impossible
+        raise first_fault(name, fault) from None
+
+
+def _whole(key: str, text: str, least: int, most: int) -> int:
+    rule = f"must be a whole number from {least} to {most}"
+    try:
+        value = int(text)
+    except ValueError:
+        raise SceneError("command line", key, text, rule) from None
+    if not least <= value <= most:
+        raise SceneError("command line", key, value, rule)
+    return value
+
+
+def _number(key: str, text: str, least: float, most: float, unit: str) -> float:
+    rule = f"must be a number from {least:g} to {most:g}, {unit}"
+    try:
+        value = float(text)
+    except ValueError:
+        raise SceneError("command line", key, text, rule) from None
+    if not (math.isfinite(value) and least <= value <= most):
+        raise SceneError("command line", key, value, rule)
+    return value

@@ -1,0 +1,86 @@
+"""What the terminal shows while the workers compute: a bar per stage with the time left, or plain lines."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Protocol
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+EVERY = 15.0  # s between plain lines
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A part of the work: how many points, and the compute time predicted for all of them, s."""
+
+    points: int
+    seconds: float
+
+
+class Display(Protocol):
+    """Told of every finished piece of work."""
+
+    def advance(self, stage: str, points: int) -> None: ...
+
+
+@contextmanager
+def progress(console: Console, stages: Mapping[str, Stage], jobs: int) -> Iterator[Display]:
+    """Live bars on a terminal, plain lines elsewhere."""
+    if not console.is_terminal:
+        yield Lines(console, stages, jobs)
+        return
+    columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[count]}"), TimeRemainingColumn()
+    with Progress(*columns, console=console) as bars:
+        yield Bars(bars, stages)
+
+
+class Bars:
+    """One bar per stage; one for the whole, in which a point weighs what it is predicted to cost."""
+
+    def __init__(self, bars: Progress, stages: Mapping[str, Stage]) -> None:
+        self._bars, self._stages = bars, stages
+        self._done = dict.fromkeys(stages, 0)
+        width = max(map(len, (*stages, "all")))
+        self._tasks = {
+            name: bars.add_task(name.ljust(width), total=stage.points, start=False, count=f"0/{stage.points}")
+            for name, stage in stages.items()
+        }
+        total = sum(stage.seconds for stage in stages.values())
+        self._whole = bars.add_task("all".ljust(width), total=total, count="")
+
+    def advance(self, stage: str, points: int) -> None:
+        task, whole = self._tasks[stage], self._stages[stage]
+        if not self._done[stage]:
+            self._bars.start_task(task)
+        self._done[stage] += points
+        self._bars.update(task, advance=points, count=f"{self._done[stage]}/{whole.points}")
+        self._bars.update(self._whole, advance=whole.seconds * points / whole.points)
+
+
+class Lines:
+    """A line when a stage ends, and every EVERY seconds between; the time left from the speed so far."""
+
+    def __init__(self, console: Console, stages: Mapping[str, Stage], jobs: int) -> None:
+        self._console, self._stages, self._jobs = console, stages, jobs
+        self._done = dict.fromkeys(stages, 0)
+        self._begin = self._last = time.monotonic()
+
+    def advance(self, stage: str, points: int) -> None:
+        self._done[stage] += points
+        now = time.monotonic()
+        if self._done[stage] < self._stages[stage].points and now - self._last < EVERY:
+            return
+        self._last = now
+        count = f"{self._done[stage]} of {self._stages[stage].points} points"
+        self._console.print(f"{now - self._begin:6.0f} s  {stage}: {count}, {self._left(now):.0f} s left", style=None)
+
+    def _left(self, now: float) -> float:
+        """Predicted time left, corrected by how the prediction has fared so far."""
+        done = {name: stage.seconds * self._done[name] / stage.points for name, stage in self._stages.items()}
+        spent, total = sum(done.values()), sum(stage.seconds for stage in self._stages.values())
+        return (total - spent) * (now - self._begin) / spent if spent > 0.0 else total / self._jobs

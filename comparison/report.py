@@ -1,0 +1,179 @@
+"""Writes the report: surfaces.nc, summary.json, figures/*.png and index.html, which needs none of the others."""
+
+from __future__ import annotations
+
+import base64
+import json
+import math
+from collections.abc import Mapping, Sequence
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import numpy as np
+import xarray as xr
+from plotly.offline import get_plotlyjs
+
+from comparison.differences import Difference
+from comparison.figures import draw_pair, figure_name
+from comparison.ladder import Pair, pairs_of, rungs_of
+from comparison.study import Study
+from comparison.summary import outcome_counts, summary
+from reference.problem import ADVICE, Outcome, Scene
+
+
+def write_report(
+    folder: Path,
+    study: Study,
+    surfaces: xr.Dataset,
+    rows: Sequence[Difference],
+    broken: Sequence[str],
+    faults: Sequence[str],
+    run: Mapping[str, Any],
+) -> None:
+    """Write every file of the report into `folder`, which exists and is empty."""
+    surfaces.assign_attrs(command=run["command"], **run["provenance"]).to_netcdf(
+        folder / "surfaces.nc", engine="h5netcdf"
+    )
+    digest = summary(study, surfaces, rows, broken, faults, run)
+    text = json.dumps(digest, indent=1, ensure_ascii=False, allow_nan=False)
+    (folder / "summary.json").write_text(text, encoding="utf-8")
+    figures = folder / "figures"
+    figures.mkdir()
+    for scene in study.scenes:
+        for body in range(1, len(scene.bodies) + 1):
+            for pair in pairs_of(scene, study.ladder):
+                draw_pair(figures / figure_name(scene, body, pair), surfaces, scene, body, pair)
+    (folder / "index.html").write_text(_page(figures, study, surfaces, rows, broken, faults, run), encoding="utf-8")
+
+
+def _page(
+    figures: Path,
+    study: Study,
+    surfaces: xr.Dataset,
+    rows: Sequence[Difference],
+    broken: Sequence[str],
+    faults: Sequence[str],
+    run: Mapping[str, Any],
+) -> str:
+    templates = resources.files("comparison") / "templates"
+    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
+    environment.filters.update(percent=_percent, scientific=lambda value: f"{value:.1e}", degrees=_degrees)
+    page = environment.from_string((templates / "report.html.j2").read_text(encoding="utf-8"))
+    ladder = [rung for rung in study.ladder if any(rung.applies(scene) for scene in study.scenes)]
+    return page.render(
+        study=study,
+        run=run,
+        scenes=[_scene(figures, study, surfaces, scene, rows) for scene in study.scenes],
+        pairs=pairs_of(study.scenes[0], study.ladder),
+        ladder=ladder,
+        properties=_properties(ladder),
+        rows=rows,
+        outcomes=_outcomes(study, surfaces),
+        advice=ADVICE,
+        broken=broken,
+        faults=faults,
+        style=(templates / "report.css").read_text(encoding="utf-8"),
+        script=(templates / "report.js").read_text(encoding="utf-8"),
+        plotly=get_plotlyjs(),
+        data=_embedded(study, surfaces),
+    )
+
+
+def _scene(
+    figures: Path, study: Study, surfaces: xr.Dataset, scene: Scene, rows: Sequence[Difference]
+) -> dict[str, Any]:
+    pairs = pairs_of(scene, study.ladder)
+    return {
+        "scene": scene,
+        "digest": scene.digest(),
+        "pairs": pairs,
+        "verdicts": [
+            _verdict(pair, [row for row in rows if (row.scene, row.pair) == (scene.name, pair.key)]) for pair in pairs
+        ],
+        "bodies": [
+            {
+                "number": body,
+                "pictures": [
+                    {"pair": pair, "png": _inlined(figures / figure_name(scene, body, pair))} for pair in pairs
+                ],
+            }
+            for body in range(1, len(scene.bodies) + 1)
+        ],
+    }
+
+
+def _verdict(pair: Pair, rows: Sequence[Difference]) -> str:
+    """One line: how large the pair's difference is, and where."""
+    known = [row for row in rows if math.isfinite(row.maximum)]
+    if not known:
+        return f"{pair.title.capitalize()}: no phase pair has a value on both sides."
+    worst = max(known, key=lambda row: row.maximum)
+    medians = ", ".join(f"{_percent(row.median)} for body {row.body}" for row in rows)
+    return (
+        f"{pair.title.capitalize()} ({pair.first.title} against {pair.second.title}): median {medians}; "
+        f"largest {_percent(worst.maximum)}, body {worst.body}, at ({_degrees(worst.phases[0])}, "
+        f"{_degrees(worst.phases[1])}); {rows[0].not_ok} of the points not ok."
+    )
+
+
+def _percent(value: float) -> str:
+    return "none" if not math.isfinite(value) else f"{100.0 * value:.2g} %"
+
+
+def _degrees(phase: float) -> str:
+    return f"{math.degrees(phase):.0f}°"
+
+
+def _inlined(path: Path) -> str:
+    return "data:image/png;base64," + base64.b64encode(path.read_bytes()).decode()
+
+
+def _properties(ladder: Sequence[Any]) -> list[dict[str, Any]]:
+    """Rows of the table of assumptions; in each, which models depart from the one before them."""
+    names = list(dict.fromkeys(name for rung in ladder for name in rung.assumptions))
+    table = []
+    for name in names:
+        texts = [rung.assumptions.get(name, "") for rung in ladder]
+        cells = [{"text": text, "differs": i > 0 and text != texts[i - 1]} for i, text in enumerate(texts)]
+        table.append({"name": name, "cells": cells})
+    return table
+
+
+def _outcomes(study: Study, surfaces: xr.Dataset) -> list[dict[str, Any]]:
+    return [
+        {
+            "scene": scene.name,
+            "model": rung.title,
+            "counts": outcome_counts(surfaces, scene.name, rung.key),
+            "cost": float(surfaces["cost"].sel(scene=scene.name, model=rung.key)),
+            "ok": outcome_counts(surfaces, scene.name, rung.key).get(Outcome.OK.value, 0),
+        }
+        for scene in study.scenes
+        for rung in rungs_of(scene, study.ladder)
+    ]
+
+
+def _embedded(study: Study, surfaces: xr.Dataset) -> str:
+    """The surfaces for the page's script, JSON that is safe inside a script element. NaN is null."""
+
+    def listed(scene: Scene, model: str, body: int) -> list[list[float | None]]:
+        mu = np.asarray(surfaces["mu"].sel(scene=scene.name, model=model, body=body))
+        return [[float(f"{value:.7g}") if np.isfinite(value) else None for value in row] for row in mu]
+
+    data = {
+        "grid": study.grid,
+        "titles": {rung.key: rung.title for rung in study.ladder},
+        "scenes": [
+            {
+                "pairs": {pair.key: [pair.first.key, pair.second.key] for pair in pairs_of(scene, study.ladder)},
+                "mu": {
+                    rung.key: [listed(scene, rung.key, body) for body in range(1, len(scene.bodies) + 1)]
+                    for rung in rungs_of(scene, study.ladder)
+                },
+            }
+            for scene in study.scenes
+        ],
+    }
+    return json.dumps(data, allow_nan=False).replace("<", "\\u003c")

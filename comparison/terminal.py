@@ -1,0 +1,52 @@
+"""The tables printed on the terminal: the plan before a run, the differences after it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+
+from comparison.differences import Difference
+from comparison.ladder import RECORDED_ON
+from comparison.options import Options
+from comparison.study import Study
+
+START_UP = 5.0  # s: worker processes start and load the compiled equations, recorded on RECORDED_ON
+
+
+def print_plan(console: Console, study: Study, options: Options) -> None:
+    """What would be computed and its predicted cost."""
+    table = _table("scene", "model", "points", "tolerance", "s on one core")
+    total = 0.0
+    for scene in study.scenes:
+        for rung in study.ladder:
+            if not rung.applies(scene):
+                continue
+            seconds = rung.seconds(scene, study.points)
+            total += seconds
+            cells = str(study.points), f"{rung.tolerance(study.tolerance):.0e}", f"{seconds:.1f}"
+            table.add_row(scene.name, rung.title, *cells)
+    console.print(table)
+    wall = START_UP + total / options.jobs
+    console.print(f"{study.grid} x {study.grid} phases, {options.jobs} worker processes: about {wall:.0f} s.")
+    console.print(f"Costs were recorded on {RECORDED_ON}; another machine scales them all alike.")
+    console.print(f"Nothing was computed. The report would go to {options.out}.")
+
+
+def print_differences(console: Console, rows: Sequence[Difference]) -> None:
+    """Median, 95 % and maximum relative difference, and the points not ok, for every scene, body and pair."""
+    table = _table("scene", "body", "difference", "median", "95 %", "maximum", "not ok")
+    for row in rows:
+        sizes = (f"{value:.1e}" for value in (row.median, row.percentile95, row.maximum))
+        table.add_row(row.scene, str(row.body), row.pair.replace("-", " "), *sizes, str(row.not_ok))
+    console.print(table)
+
+
+def _table(*headings: str) -> Table:
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for heading in headings:
+        words = heading in ("scene", "model", "difference")
+        table.add_column(heading, justify="left" if words else "right", no_wrap=True)
+    return table

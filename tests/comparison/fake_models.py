@@ -1,0 +1,79 @@
+"""Models with a known answer, and models that fail in known ways. Workers import them by name."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparison.ladder import LADDER, Rung
+from reference.problem import Amplification, Outcome, Scene
+
+DEADLY = 2.0 * np.pi * 3 / 4  # alpha1, alpha2 of the one point of a 4 x 4 grid that a failing model fails at
+
+
+def smooth(scene: Scene, phases: NDArray[np.float64], tolerance: float, gap: float = 0.0) -> Amplification:
+    """mu_i = (i + 2 + cos a1 + sin a2) (1 + gap), known to `tolerance`."""
+    shape = 2.0 + np.cos(phases[:, 0]) + np.sin(phases[:, 1])
+    mu = (shape[:, None] + np.arange(1, len(scene.bodies) + 1)) * (1.0 + gap)
+    points = len(phases)
+    return Amplification(mu, tolerance * mu, np.full(points, "ok"), np.full(points, np.nan), 0.001 * points)
+
+
+def deadly(phases: NDArray[np.float64]) -> NDArray[np.bool_]:
+    return np.isclose(phases, DEADLY).all(axis=1)
+
+
+def failing_point(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+    """One point has no answer and says why."""
+    answer = smooth(scene, phases, tolerance)
+    mu, status = answer.mu.copy(), answer.status.astype("U32")
+    mu[deadly(phases)], status[deadly(phases)] = np.nan, Outcome.RIM_REACHED.value
+    return replace(answer, mu=mu, status=status)
+
+
+def silent_nan(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+    """Calls a point without a number ok."""
+    return replace(failing_point(scene, phases, tolerance), status=np.full(len(phases), "ok"))
+
+
+def raising(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+    if deadly(phases).any():
+        raise RuntimeError("the matrix is singular")
+    return smooth(scene, phases, tolerance)
+
+
+def misshapen(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+    answer = smooth(scene, phases, tolerance)
+    return replace(answer, mu=answer.mu[:-1])
+
+
+def killing(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+    """Takes its process with it, as a fault in a native library does."""
+    if deadly(phases).any():
+        os.kill(os.getpid(), signal.SIGKILL)
+    return smooth(scene, phases, tolerance)
+
+
+def slow(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+    time.sleep(0.5)
+    return smooth(scene, phases, tolerance)
+
+
+def forbidden(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+    raise AssertionError("nothing should have been computed")
+
+
+def fake_ladder(engine: str = "smooth", gap: float = 0.01, tile: int = 4) -> tuple[Rung, ...]:
+    """The real ladder with fake functions: the engine lies `gap` above the reference, or is another model here."""
+    rungs = []
+    for rung in LADDER:
+        name = engine if rung.side == "engine" else "smooth"
+        settings = {"gap": gap} if (rung.side, name) == ("engine", "smooth") else {}
+        functions = {"amplification": f"fake_models:{name}", "trajectory": "fake_models:forbidden"}
+        rungs.append(replace(rung, **functions, settings=settings, tile=tile))
+    return tuple(rungs)
