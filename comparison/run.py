@@ -10,7 +10,8 @@ from __future__ import annotations
 import shlex
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from datetime import UTC, datetime
 
 from rich.console import Console
@@ -24,30 +25,33 @@ from comparison.provenance import provenance
 from comparison.store import replaced_when_complete
 from comparison.study import Study
 from comparison.surfaces import labelled_surfaces
-from comparison.sweep import sweep
+from comparison.sweep import process_pool, sweep
 from comparison.terminal import print_differences, print_plan
 from comparison.tiles import Answer, Tile, solve_tile, unanswered
+from comparison.warm_up import warm_up
 from reference.problem import SceneError
 
 PLAIN_WIDTH = 120  # columns of a table that goes to a file or a pipe
 
 
-def main(argv: Sequence[str] | None = None, ladder: Sequence[Rung] = LADDER) -> int:
-    """Run the study the command line asks for; the exit code."""
+def main(
+    argv: Sequence[str] | None = None,
+    ladder: Sequence[Rung] = LADDER,
+    executor: Callable[[int], Executor] = process_pool,
+) -> int:
+    """Run the study the command line asks for, with the models of `ladder` on `executor(jobs)`; the exit code."""
     try:
         options = parsed(argv)
+        console = Console(highlight=False, width=None if sys.stdout.isatty() else PLAIN_WIDTH)
+        study = Study(options.scenes, options.grid, options.tolerance, ladder)
+        if options.plan:
+            print_plan(console, study, options)
+            return 0
+        words = sys.argv[1:] if argv is None else argv
+        return _run(study, options, console, shlex.join(["python", "-m", "comparison.run", *words]), executor)
     except (SceneError, UsageError) as fault:
         print(fault, file=sys.stderr)
         return 2
-    console = Console(highlight=False, width=None if sys.stdout.isatty() else PLAIN_WIDTH)
-    study = Study(options.scenes, options.grid, options.tolerance, ladder)
-    if options.plan:
-        print_plan(console, study, options)
-        return 0
-    words = sys.argv[1:] if argv is None else argv
-    command = shlex.join(["python", "-m", "comparison.run", *words])
-    try:
-        return _run(study, options, console, command)
     except KeyboardInterrupt:
         print("interrupted: nothing was written; the same command starts again", file=sys.stderr)
         return 130
@@ -56,10 +60,11 @@ def main(argv: Sequence[str] | None = None, ladder: Sequence[Rung] = LADDER) -> 
         return 3
 
 
-def _run(study: Study, options: Options, console: Console, command: str) -> int:
+def _run(study: Study, options: Options, console: Console, command: str, executor: Callable[[int], Executor]) -> int:
     from comparison.report import write_report  # plotting libraries: not needed to refuse a command or to plan
 
     begin, began = time.monotonic(), datetime.now(UTC)
+    warm_up(console, study, executor)
     tiles = study.tiles()
     titles = {rung.key: rung.title for rung in study.ladder}
     stages = {
@@ -72,7 +77,7 @@ def _run(study: Study, options: Options, console: Console, command: str) -> int:
         def done(tile: Tile, answer: Answer) -> None:
             display.advance(titles[tile.rung], len(tile.phases))
 
-        answers = sweep(tiles, solve_tile, unanswered, done, options.jobs)
+        answers = sweep(tiles, solve_tile, unanswered, done, options.jobs, executor)
     computed = time.monotonic() - begin
     surfaces = labelled_surfaces(study, tiles, answers)
     rows = differences(study, surfaces)
@@ -89,6 +94,7 @@ def _run(study: Study, options: Options, console: Console, command: str) -> int:
         "jobs": options.jobs,
         "provenance": provenance(),
     }
+    console.print("Drawing the figures and writing the report.")
     with replaced_when_complete(options.out) as folder:
         write_report(folder, study, surfaces, rows, broken, faults, run)
     for line in faults:
@@ -105,7 +111,7 @@ def _print_closing(console: Console, options: Options, run: dict[str, object], s
         f"{seconds:.0f} s with {options.jobs} workers: {run['compute_seconds']} s of compute "
         f"({run['predicted_compute_seconds']} s predicted)."
     )
-    console.print(f"Report: {options.out / 'index.html'}")
+    console.print(f"Report: {options.out / 'index.html'}", soft_wrap=True)  # a path is copied whole
     console.print("Next: open it in a browser; a finer look: --grid N with a larger N; what that costs: --plan.")
     console.print("Relative differences over the phases, per body:")
 
