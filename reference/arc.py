@@ -40,12 +40,13 @@ def squared_total(
 
 @compiled
 def settled_direction(
-    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float
-) -> float:
-    """The direction at which the turning from `angle` ends; `angle` itself if it does not turn."""
+    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float,
+    no_turn: float,
+) -> float:  # fmt: skip
+    """The direction at which the turning from `angle` ends; `angle` itself if it turns by less than no_turn."""
     here = sideways(system, px, py, fx, fy, ux, uy, uz, angle)
     drive = sqrt(fx * fx + fy * fy) + system.friction * abs(system.gravity + uz)
-    if abs(here) <= NO_TURN * drive:
+    if abs(here) <= no_turn * drive:
         return angle
     sense = 1.0 if here > 0.0 else -1.0
     inside = angle
@@ -69,7 +70,7 @@ def arc_peak(
     system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float
 ) -> float:
     """Largest squared absolute acceleration of the platform over the arc that begins at `angle`, m^2/s^4."""
-    end = settled_direction(system, px, py, fx, fy, ux, uy, uz, angle)
+    end = settled_direction(system, px, py, fx, fy, ux, uy, uz, angle, NO_TURN)
     stride = (end - angle) / SAMPLES
     best, top = -1.0, 0
     for n in range(SAMPLES + 1):

@@ -44,6 +44,6 @@ def compiled(function: Callable[..., Any]) -> Any:
     before = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = before or CACHE_FOLDER  # the user's NUMBA_CACHE_DIR goes first
     try:
-        return numba.njit(cache=True, error_model="numpy", fastmath=FAST)(function)
+        return numba.njit(cache=True, error_model="numpy", fastmath=FAST, nogil=True)(function)
     finally:
         numba.config.CACHE_DIR = before

@@ -86,7 +86,7 @@ def begin_slide(system: System, phase: Array, work: Work, demand: Demand) -> Non
     px, py = work.x[0, 0], work.x[0, 1]
     reaction = system.mass_ratio * (system.gravity + uz)
     gx, gy = fx - reaction * px / system.radius, fy - reaction * py / system.radius
-    angle = settled_direction(system, px, py, fx, fy, ux, uy, uz, atan2(gy, gx))
+    angle = settled_direction(system, px, py, fx, fy, ux, uy, uz, atan2(gy, gx), 0.0)
     if demand.cutoff == 0.0:
         work.best[0] = max(work.best[0], squared_total(system, px, py, fx, fy, ux, uy, uz, angle))
     ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, angle)

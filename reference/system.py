@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.collocation import CHANNELS, STAGES
+from reference.compiled import compiled
 from reference.problem import GRAVITY, Scene, exponents
 
 Array = NDArray[np.float64]
@@ -121,28 +122,46 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
     )
 
 
+@compiled
 def workspace(bodies: int) -> Work:
+    """Arrays for runs with this many bodies."""
     n, s, c = bodies, STAGES, CHANNELS
-    shapes = {
-        "total0": (n, 3),
-        "a": (n, 2, s),
-        "ground": (3, s),
-        "total": (n, 3, s),
-        "free": (2, s),
-        "feedback": (2, s, s),
-        "pivot": (n, 2, c),
-        "load": (n, 2, c),
-        "stage": (8, s),
-        "slopes": (12, s),
-        "matrix": (2 * s, 2 * s),
-        "residual": (2 * s,),
-        "chain": (n, 2, s),
-        "velocity": (n, 2, s),
-        "turning": (8, s),
-        "guess": (2, s),
-        "scale": (n,),
-        "run": (7,),
-        "best": (n,),
-    }
-    kinds = {"pivot": np.complex128, "load": np.complex128}
-    return Work(*(np.zeros(shapes.get(name, (n, 2)), dtype=kinds.get(name, np.float64)) for name in Work._fields))
+    return Work(
+        x=np.zeros((n, 2)),
+        v=np.zeros((n, 2)),
+        a0=np.zeros((n, 2)),
+        total0=np.zeros((n, 3)),
+        x1=np.zeros((n, 2)),
+        v1=np.zeros((n, 2)),
+        a=np.zeros((n, 2, s)),
+        ground=np.zeros((3, s)),
+        total=np.zeros((n, 3, s)),
+        free=np.zeros((2, s)),
+        feedback=np.zeros((2, s, s)),
+        pivot=np.zeros((n, 2, c), np.complex128),
+        load=np.zeros((n, 2, c), np.complex128),
+        stage=np.zeros((8, s)),
+        slopes=np.zeros((12, s)),
+        matrix=np.zeros((2 * s, 2 * s)),
+        residual=np.zeros(2 * s),
+        chain=np.zeros((n, 2, s)),
+        velocity=np.zeros((n, 2, s)),
+        turning=np.zeros((8, s)),
+        guess=np.zeros((2, s)),
+        scale=np.zeros(n),
+        run=np.zeros(7),
+        best=np.zeros(n),
+    )
+
+
+def no_record() -> Record:
+    """For runs of which only the peaks are wanted."""
+    return Record(
+        times=np.empty(0),
+        x=np.empty((0, 0, 2)),
+        v=np.empty((0, 0, 2)),
+        total=np.empty((0, 0, 3)),
+        reaction=np.empty(0),
+        sticks=np.empty((0, 2)),
+        count=np.zeros(2, np.int64),
+    )

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from reference.problem.excitation import exponents
@@ -85,13 +85,13 @@ def _refined(left: float, right: float, phase: Array, amplitudes: Array, s: NDAr
     return best
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, nogil=True)
 def _ground_peaks(phases: Array, amplitudes: Array, s: NDArray[np.complex128], duration: float, step: float) -> Array:
     count = math.ceil(duration / step)
     weight0 = np.sqrt((amplitudes[:, 0] ** 2).sum())
     weight1 = np.sqrt((amplitudes[:, 1] ** 2).sum())
     peaks = np.empty(phases.shape[0])
-    for m in prange(phases.shape[0]):
+    for m in range(phases.shape[0]):
         phase = phases[m]
         before = -1.0
         here, _, _ = _square_and_slopes(0.0, phase, amplitudes, s)

@@ -1,0 +1,143 @@
+"""The amplification surface: every phase pair solved and certified, on all threads."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+
+import numba
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference.certified import NOT_MET, certify
+from reference.problem import Amplification, Outcome, Scene, checked_phases, ground_peak
+from reference.system import (
+    OPEN,
+    PAINLEVE,
+    RIM,
+    SOLVED,
+    STEP_LIMIT,
+    UNSOLVED,
+    Demand,
+    System,
+    no_record,
+    pack,
+)
+
+OUTCOMES = {
+    SOLVED: Outcome.OK,
+    NOT_MET: Outcome.TOLERANCE_NOT_MET,
+    RIM: Outcome.RIM_REACHED,
+    OPEN: Outcome.CONTACT_LOST,
+    PAINLEVE: Outcome.PAINLEVE,
+    STEP_LIMIT: Outcome.STEP_LIMIT,
+    UNSOLVED: Outcome.SOLVER_FAILED,
+}
+STEPS_PER_PERIOD = 1000  # a run in trouble ends after so many steps per loading period, and FIRST_STEPS more
+FIRST_STEPS = 20_000
+PARTS = 8  # pieces of the surface per thread, so that none waits long for another
+
+
+def amplification(
+    scene: Scene,
+    phases: ArrayLike,
+    equations: str = "exact",
+    regularization: float | None = None,
+    tolerance: float = 1e-6,
+    cutoff: float | None = None,
+    rest_condition: str = "consistent",
+) -> Amplification:
+    """
+    Amplification factors mu_i (5.1) by the paper's equations, from rest, with certified errors.
+
+    phases: (M, 2), rad. equations: "exact" (3.9)-(3.13) or "small" (4.3)-(4.4). regularization: v_reg, m/s, below
+    which dry friction is linear, or None for the set-valued law; a lubricated scene needs none. tolerance: relative
+    error asked of every mu, 1e-10 to 0.1. cutoff: v_c, m/s, of the resolved peak (set-valued law only), or None for
+    the supremum with its one-sided limits. rest_condition: "consistent", or "printed" for (4.6) as it stands.
+
+    Returns mu and error (M, N), status and instant (M,), cost. Statuses: ok; tolerance not met (mu and its larger error
+    are given); and with mu NaN: rim reached (4.1), contact lost, painleve paradox, non-finite load, no ground motion,
+    step limit, solver failed. Raises ValueError for arguments outside these rules.
+    """
+    pairs = checked_phases(phases)
+    system, demand = checked_demand(scene, equations, regularization, tolerance, cutoff, rest_condition)
+    count, bodies = len(pairs), len(scene.bodies)
+    mu, error = np.full((count, bodies), np.nan), np.full((count, bodies), np.nan)
+    instant = np.full(count, np.nan)
+    status = np.full(count, Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")
+    if not loads_are_finite(system):
+        return Amplification(mu, error, status, np.where(np.isnan(instant), 0.0, instant), 0.0)
+
+    def solve(part: slice) -> float:
+        begin = time.thread_time()
+        ground = ground_peak(scene, pairs[part])
+        moving = ground > 0.0
+        status[part] = Outcome.NO_GROUND_MOTION.value
+        places = np.arange(count)[part][moving]
+        peaks, errors = np.empty((len(places), bodies)), np.empty((len(places), bodies))
+        codes, instants, steps = np.empty(len(places)), np.empty(len(places)), np.empty(len(places))
+        certify(system, pairs[places], demand, no_record(), peaks, errors, codes, instants, steps)
+        for row, place in enumerate(places):
+            outcome = OUTCOMES[int(codes[row])]
+            if outcome == Outcome.OK and not np.isfinite(peaks[row]).all():
+                outcome = Outcome.SOLVER_FAILED
+            status[place] = outcome.value
+            if outcome in (Outcome.OK, Outcome.TOLERANCE_NOT_MET):
+                mu[place], error[place] = peaks[row] / ground[moving][row], errors[row] / ground[moving][row]
+            if outcome != Outcome.OK:
+                instant[place] = instants[row]
+        return time.thread_time() - begin
+
+    threads = numba.get_num_threads()
+    if threads == 1 or count < 2:
+        cost = solve(slice(0, count))
+    else:
+        solve(slice(0, 1))  # compiled once, before the threads need it
+        with ThreadPoolExecutor(threads) as pool:
+            cost = sum(pool.map(solve, parts(count, PARTS * threads)))
+    return Amplification(mu, error, status, instant, cost)
+
+
+def parts(count: int, pieces: int) -> Iterator[slice]:
+    """`count` points cut into at most `pieces` runs of neighbours."""
+    size = max(1, -(-count // pieces))
+    return (slice(first, min(first + size, count)) for first in range(0, count, size))
+
+
+def checked_demand(
+    scene: Scene,
+    equations: str,
+    regularization: float | None,
+    tolerance: float,
+    cutoff: float | None,
+    rest_condition: str,
+) -> tuple[System, Demand]:
+    """The scene in compiled form and what is asked of a run. Raises ValueError, one line, for a wrong argument."""
+    if equations not in ("exact", "small"):
+        raise ValueError(f"equations = {equations!r}: must be 'exact' or 'small'")
+    if rest_condition not in ("consistent", "printed"):
+        raise ValueError(f"rest_condition = {rest_condition!r}: must be 'consistent' or 'printed'")
+    if not 1e-10 <= tolerance <= 0.1:
+        raise ValueError(f"tolerance = {tolerance!r}: must be from 1e-10 to 0.1, relative error of mu")
+    for name, speed in (("regularization", regularization), ("cutoff", cutoff)):
+        if speed is not None and not (np.isfinite(speed) and speed > 0.0):
+            raise ValueError(f"{name} = {speed!r}: must be a finite speed greater than 0 m/s, or None")
+    if cutoff is not None and regularization is not None:
+        raise ValueError(f"cutoff = {cutoff!r}: belongs to the set-valued law; give no regularization with it")
+    system = pack(scene, equations == "small", regularization, rest_condition == "printed")
+    period = min(scene.excitation.periods)
+    return system, Demand(
+        tolerance=float(tolerance),
+        unit=float(np.sqrt((np.abs(scene.amplitudes).sum(axis=1) ** 2).sum())),
+        period=period,
+        cutoff=0.0 if cutoff is None else float(cutoff),
+        step_limit=FIRST_STEPS + int(min(1e9, STEPS_PER_PERIOD * scene.duration / period)),
+    )
+
+
+def loads_are_finite(system: System) -> bool:
+    """Whether squares of accelerations, of which (5.1) is made, stay within double precision."""
+    largest = max(np.abs(part).max(initial=0.0) for part in (system.amplitudes, system.below, system.above))
+    with np.errstate(over="ignore"):
+        return bool(np.isfinite(float(largest) ** 2 * 1e8) and np.isfinite(system.mass_ratio**2))
