@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from fake_models import fake_ladder
 
+from comparison import report
 from comparison.ladder import Rung
 from comparison.run import main
 
@@ -25,14 +26,17 @@ class Run:
 
 
 @pytest.fixture
-def command(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> Callable[..., Run]:
-    """The command line with fake models in threads of this process, in an empty directory unless --out is given."""
+def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Run]:
+    """The command line with fake models in threads of this process and quick figures; --out in an empty directory."""
+    monkeypatch.setattr(report, "draw_pair", lambda path, *rest: path.write_bytes(b"a quick figure"))
 
-    def run(*words: str, ladder: Sequence[Rung] | None = None, executor: Callable[[int], Executor] | None = None) -> Run:
-        report = tmp_path / "report"
-        given = [*words] if "--out" in words else [*words, "--out", str(report)]
-        code = main(given, fake_ladder() if ladder is None else ladder, executor or ThreadPoolExecutor)
-        return Run(code, *capfd.readouterr(), report)
+    def run(
+        *words: str, ladder: Sequence[Rung] | None = None, executor: Callable[[int], Executor] = ThreadPoolExecutor
+    ) -> Run:
+        place = tmp_path / "report"
+        given = [*words] if "--out" in words else [*words, "--out", str(place)]
+        code = main(given, fake_ladder() if ladder is None else ladder, executor)
+        return Run(code, *capfd.readouterr(), place)
 
     return run
 
@@ -40,7 +44,7 @@ def command(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> Callable[..., 
 @pytest.fixture(scope="session")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The report of two scenes, one dry and one lubricated, on a 4 x 4 grid; the engine 1 % above the reference."""
-    report = tmp_path_factory.mktemp("finished") / "report"
-    words = ["fig3-I", "fig4-viscous", "--grid", "4", "--jobs", "2", "--out", str(report)]
+    place = tmp_path_factory.mktemp("finished") / "report"
+    words = ["fig3-I", "fig4-viscous", "--grid", "4", "--jobs", "2", "--out", str(place)]
     assert main(words, fake_ladder(), ThreadPoolExecutor) == 0
-    return report
+    return place

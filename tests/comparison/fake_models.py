@@ -47,9 +47,14 @@ def raising(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Ampl
     return smooth(scene, phases, tolerance)
 
 
-def misshapen(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+def always_raising(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+    raise RuntimeError("the matrix is singular")
+
+
+def misshapen_there(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+    """Answers a deadly phase with a point too few."""
     answer = smooth(scene, phases, tolerance)
-    return replace(answer, mu=answer.mu[:-1])
+    return replace(answer, mu=answer.mu[:-1]) if deadly(phases).any() else answer
 
 
 def killing(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
@@ -61,6 +66,12 @@ def killing(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Ampl
 
 def slow(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
     time.sleep(0.5)
+    return smooth(scene, phases, tolerance)
+
+
+def uneven(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+    """The later in the grid, the sooner it is done."""
+    time.sleep(0.01 * (4.0 * np.pi - float(phases.sum(axis=1).max())) / np.pi)
     return smooth(scene, phases, tolerance)
 
 

@@ -1,0 +1,77 @@
+"""--check exits 1 when a stated limit is broken, --plan computes nothing, and the closing table has its rows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from conftest import Run
+from fake_models import fake_ladder
+
+from reference.problem import builtin_scenes
+
+SMALL = ["fig3-I", "--grid", "2"]
+
+
+def test_check_passes_when_the_limits_hold(command: Callable[..., Run]) -> None:
+    run = command(*SMALL, "--check", ladder=fake_ladder(gap=5e-5))  # the scene allows a median of 1e-4
+    assert (run.code, run.err) == (0, "")
+
+
+def test_check_exits_1_and_names_scene_body_key_found_and_limit(command: Callable[..., Run]) -> None:
+    run = command(*SMALL, "--check", ladder=fake_ladder(gap=5e-4))
+    assert run.code == 1
+    assert "limit broken: fig3-I: body 1: acceptance.median: 0.0005 found, 0.0001 allowed" in run.err
+    assert "limit broken: fig3-I: body 2: acceptance.median" in run.err
+    assert "acceptance.maximum" not in run.err, "5e-4 is within the 2e-2 allowed there"
+
+
+def test_without_check_a_broken_limit_is_reported_but_not_an_exit_code(command: Callable[..., Run]) -> None:
+    run = command(*SMALL, ladder=fake_ladder(gap=5e-4))
+    assert run.code == 0
+    assert "Acceptance limits broken" in (run.report / "index.html").read_text(encoding="utf-8")
+
+
+def test_plan_computes_and_writes_nothing(command: Callable[..., Run]) -> None:
+    def no_pool(jobs: int) -> None:
+        raise AssertionError("nothing should have been started")
+
+    run = command("--plan", ladder=fake_ladder("forbidden"), executor=no_pool)
+    assert run.code == 0
+    assert not run.report.exists()
+    for scene in builtin_scenes():
+        assert scene in run.out
+    assert "Nothing was computed." in run.out
+
+
+def test_plan_predicts_in_proportion_to_the_points(command: Callable[..., Run]) -> None:
+    def total(grid: int) -> float:
+        out = command("fig3-I", "--grid", str(grid), "--plan").out
+        return sum(float(line.split()[-1]) for line in out.splitlines() if line.startswith(" fig3-I"))
+
+    assert total(40) == pytest.approx(4.0 * total(20), rel=0.02)  # printed to 0.1 s
+
+
+def test_the_closing_table_has_a_row_for_every_scene_body_and_pair(command: Callable[..., Run]) -> None:
+    run = command("fig3-I", "fig4-viscous", "--grid", "2")
+    table = run.out.split("Relative differences", 1)[1].splitlines()
+    heading = next(line for line in table if "median" in line).split()
+    assert heading == ["scene", "body", "difference", "median", "95", "%", "maximum", "not", "ok"]
+    rows = [line.split() for line in table if line.strip().startswith("fig")]
+    assert [(row[0], row[1], row[2]) for row in rows] == [
+        (scene, body, pair) for scene in ("fig3-I", "fig4-viscous") for body in "12" for pair in ("total", "like")
+    ]
+    assert {tuple(row[-4:]) for row in rows} == {("1.0e-02", "1.0e-02", "1.0e-02", "0")}
+
+
+def test_without_a_scene_the_study_is_the_papers_four_cases(command: Callable[..., Run]) -> None:
+    run = command("--grid", "2")
+    assert run.code == 0
+    for scene in ("fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"):
+        assert (run.report / "figures" / f"{scene}-body2-total.png").exists()
+
+
+def test_progress_counts_every_point_of_every_model(command: Callable[..., Run]) -> None:
+    run = command(*SMALL)
+    for title in ("small equations", "exact equations", "exact equations, v_reg", "translational engine"):
+        assert f"{title}: 4 of 4 points" in run.out

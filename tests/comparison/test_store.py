@@ -1,0 +1,87 @@
+"""A report is written aside and takes the place of the old one only when it is complete."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from conftest import Run
+from fake_models import fake_ladder
+
+from comparison import report
+from comparison.store import replaced_when_complete
+
+SMALL = ["fig3-I", "--grid", "2"]
+
+
+def test_a_second_run_replaces_the_first(command: Callable[..., Run]) -> None:
+    first = command(*SMALL)
+    before = (first.report / "summary.json").read_text(encoding="utf-8")
+    second = command(*SMALL, "--tolerance", "2e-3")
+    assert second.code == 0
+    after = (second.report / "summary.json").read_text(encoding="utf-8")
+    assert '"tolerance": 0.001' in before
+    assert '"tolerance": 0.002' in after
+    assert [entry.name for entry in first.report.parent.iterdir()] == ["report"]
+
+
+@pytest.mark.parametrize(
+    "fault", [OSError("No space left on device"), KeyboardInterrupt()], ids=["disk full", "Ctrl-C"]
+)
+def test_a_report_that_cannot_be_finished_leaves_the_old_one(
+    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch, fault: BaseException
+) -> None:
+    first = command(*SMALL)
+    before = {entry: entry.read_bytes() for entry in first.report.rglob("*") if entry.is_file()}
+    drawn: list[Path] = []
+
+    def breaks(path: Path, *rest: object) -> None:
+        drawn.append(path)
+        if len(drawn) == 2:  # the surfaces, the summary and a figure are written by then
+            raise fault
+        path.write_bytes(b"a quick figure")
+
+    monkeypatch.setattr(report, "draw_pair", breaks)
+    run = command(*SMALL, "--tolerance", "2e-3")
+    assert run.code == (130 if isinstance(fault, KeyboardInterrupt) else 3)
+    assert run.err.count("\n") == 1
+    assert {entry: entry.read_bytes() for entry in first.report.rglob("*") if entry.is_file()} == before
+    assert [entry.name for entry in first.report.parent.iterdir()] == ["report"]
+
+
+def test_nothing_is_made_when_the_first_report_cannot_be_finished(tmp_path: Path) -> None:
+    def half() -> None:
+        with replaced_when_complete(tmp_path / "a" / "b" / "report") as folder:
+            (folder / "index.html").write_text("half", encoding="utf-8")
+            raise RuntimeError("the second half")
+
+    with pytest.raises(RuntimeError, match="the second half"):
+        half()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_swap_puts_the_old_report_back_when_the_new_one_cannot_move(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = tmp_path / "report"
+    place.mkdir()
+    (place / "index.html").write_text("old", encoding="utf-8")
+    rename = os.rename
+
+    def second_fails(source: Path, target: Path) -> None:
+        if Path(source).name == "new":
+            raise OSError("no")
+        rename(source, target)
+
+    monkeypatch.setattr(os, "rename", second_fails)
+    with pytest.raises(OSError, match="no"), replaced_when_complete(place) as folder:
+        (folder / "index.html").write_text("new", encoding="utf-8")
+    assert (place / "index.html").read_text(encoding="utf-8") == "old"
+    assert list(tmp_path.iterdir()) == [place]
+
+
+def test_the_fake_models_would_notice_a_computation(command: Callable[..., Run]) -> None:
+    run = command(*SMALL, ladder=fake_ladder("forbidden"))
+    assert "nothing should have been computed" in run.err
