@@ -135,6 +135,27 @@ LADDER: tuple[Rung, ...] = (
         tile=256,
     ),
     Rung(
+        key="resolved",
+        title="exact equations, resolved peak",
+        adds="The same motion, read only at rest and while sliding faster than v_c = 1e-3 m/s: what the one-sided "
+        "limits at stops, which no sampling reaches, are worth.",
+        side="reference",
+        amplification="reference:amplification",
+        trajectory="reference:trajectory",
+        settings={"equations": "exact", "regularization": None, "cutoff": V_REG},
+        assumptions={
+            "equations": "(3.9)-(3.13), slips mended",
+            "geometry": "exact sphere of radius rho",
+            "friction": "set-valued Coulomb, or mu = f_c |v| in a lubricated scene",
+            "normal contact": "rigid, from the constraint with its centripetal part",
+            "unknowns": _HORIZONTAL,
+            "mu_i": "largest value at rest or sliding faster than v_c = 1e-3 m/s",
+        },
+        seconds_per_point=1e-3,
+        tile=256,
+        applies=dry,
+    ),
+    Rung(
         key="regularised",
         title="exact equations, v_reg",
         adds="Friction linear below v_reg = 1e-3 m/s, as an engine has it: no true rest, no jump at a stop.",

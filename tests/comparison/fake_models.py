@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import time
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -77,6 +78,25 @@ def uneven(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Ampli
 
 def forbidden(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
     raise AssertionError("nothing should have been computed")
+
+
+def planted(
+    scene: Scene, phases: NDArray[np.float64], tolerance: float, gap: float, claimed: float | None = None
+) -> Amplification:
+    """`gap` above the smooth model, with the relative error `claimed` in place of an honest one."""
+    return smooth(scene, phases, tolerance if claimed is None else claimed, gap)
+
+
+def errors_in(gaps: Mapping[str, float], claimed: Mapping[str, float] | None = None) -> tuple[Rung, ...]:
+    """The real ladder in which the rungs named lie `gaps` above the others and claim the relative errors `claimed`."""
+    return tuple(
+        replace(
+            rung,
+            amplification="fake_models:planted",
+            settings={"gap": gaps.get(rung.key, 0.0), "claimed": (claimed or {}).get(rung.key, 1e-5)},
+        )
+        for rung in LADDER
+    )
 
 
 def fake_ladder(engine: str = "smooth", gap: float = 0.01, tile: int = 4) -> tuple[Rung, ...]:

@@ -1,0 +1,141 @@
+"""The budget adds up, claims only what exceeds its uncertainty, and blames a planted error on the rung that has it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from fake_models import errors_in, fake_ladder
+from numpy.typing import NDArray
+
+from comparison.budget import TOTAL, Entry, budget, closure, steps, torus_distance
+from comparison.ladder import Rung
+from comparison.study import Study
+from comparison.surfaces import labelled_surfaces
+from comparison.tiles import solve_tile
+from reference.problem import load_scene
+
+GRID = 8
+
+
+def _solved(ladder: tuple[Rung, ...], scene: str = "fig3-I", tolerance: float = 1e-5) -> tuple[Study, xr.Dataset]:
+    study = Study((load_scene(scene),), GRID, tolerance, ladder)
+    tiles = study.tiles()
+    return study, labelled_surfaces(study, tiles, [solve_tile(tile) for tile in tiles])
+
+
+def _table(study: Study, surfaces: xr.Dataset, body: int = 1) -> dict[str, Entry]:
+    return {entry.step: entry for entry in budget(study, surfaces) if entry.body == body}
+
+
+@pytest.mark.parametrize("scene", ["fig3-I", "fig4-viscous"])
+def test_the_steps_add_up_to_the_total_at_every_point(scene: str) -> None:
+    study, surfaces = _solved(errors_in({"small": 0.02, "exact": -0.03, "regularised": 0.005}), scene)
+    for body in (1, 2):
+        found = steps(study, surfaces, scene, body)
+        assert found[-1].key == TOTAL
+        assert np.abs(found[-1].size).max() > 1e-3, "there is something to add up"
+        assert closure(found) < 1e-14  # rounding of a handful of numbers near 1
+
+
+@pytest.mark.parametrize("culprit", ["exact", "resolved", "regularised", "translational"])
+def test_an_error_planted_from_one_rung_on_is_blamed_on_that_rung(culprit: str) -> None:
+    """A wrong stiffness, sign or mass stays in every model above the one that introduced it."""
+    keys = [rung.key for rung in fake_ladder()]
+    wrong = keys[keys.index(culprit) :]
+    study, surfaces = _solved(errors_in(dict.fromkeys(wrong, 0.02)))
+    for body in (1, 2):
+        table = _table(study, surfaces, body)
+        assert table[culprit].real == 1.0
+        assert table[culprit].mean == pytest.approx(0.02, rel=1e-9)
+        for key, entry in table.items():
+            if key not in (culprit, TOTAL):
+                assert entry.real == 0.0, "no other rung is blamed"
+                assert entry.maximum < 1e-12
+        assert table[TOTAL].rms == pytest.approx(0.02, rel=1e-9)
+
+
+@pytest.mark.parametrize("culprit", ["exact", "resolved", "regularised"])
+def test_an_error_in_one_rung_alone_shows_in_both_its_steps_and_cancels_in_the_total(culprit: str) -> None:
+    study, surfaces = _solved(errors_in({culprit: 0.02}))
+    table = _table(study, surfaces)
+    keys = list(table)
+    after = keys[keys.index(culprit) + 1]
+    assert table[culprit].mean == pytest.approx(0.02, rel=1e-9)
+    assert table[after].mean == pytest.approx(-0.02, rel=1e-9)
+    assert table[TOTAL].real == 0.0
+
+
+def test_a_coarse_step_with_an_honest_error_is_not_called_a_difference() -> None:
+    study, surfaces = _solved(errors_in({"translational": 0.02}, claimed={"translational": 0.03}))
+    table = _table(study, surfaces)
+    assert table["translational"].real == 0.0
+    assert table["translational"].uncertain == pytest.approx(0.03 * 1.02, rel=1e-3)  # u_A = 1e-5 adds 5e-8
+
+
+def test_a_coarse_step_with_a_false_error_is_blamed_on_the_engine_rung_like_for_like() -> None:
+    """The like-for-like step must vanish: one far above its u_D is an error claimed too small, not physics."""
+    study, surfaces = _solved(errors_in({"translational": 0.02}, claimed={"translational": 1e-6}))
+    table = _table(study, surfaces)
+    assert table["translational"].real == 1.0
+    assert table["translational"].median > 100.0 * table["translational"].uncertain
+
+
+def test_uncertainties_of_the_two_rungs_add_in_quadrature() -> None:
+    study, surfaces = _solved(errors_in({}, claimed={"exact": 3e-3, "small": 4e-3}))
+    np.testing.assert_allclose(steps(study, surfaces, "fig3-I", 1)[0].uncertainty, 5e-3, rtol=1e-12)
+
+
+def test_a_point_without_a_value_on_any_rung_is_left_out_of_every_step() -> None:
+    study, surfaces = _solved(errors_in({"translational": 0.02}))
+    surfaces["mu"].loc[{"model": "exact", "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][5]}] = np.nan
+    for entry in budget(study, surfaces):
+        assert entry.points == GRID**2 - 1
+        assert np.isfinite(entry.rms)
+
+
+def test_a_scene_without_any_common_point_gives_nan_and_no_exception() -> None:
+    study, surfaces = _solved(errors_in({}))
+    surfaces["mu"].loc[{"model": "exact"}] = np.nan
+    assert {entry.points for entry in budget(study, surfaces)} == {0}
+    assert all(np.isnan(entry.median) for entry in budget(study, surfaces))
+
+
+def _with_peak_at(surfaces: xr.Dataset, model: str, row: int, column: int) -> None:
+    mu: NDArray[np.float64] = np.ones((GRID, GRID))
+    mu[row, column] = 2.0
+    surfaces["mu"].loc[{"model": model, "body": 1}] = mu
+
+
+def test_the_peak_moves_the_short_way_round_the_square_that_closes() -> None:
+    study, surfaces = _solved(fake_ladder())
+    for rung in study.ladder:
+        _with_peak_at(surfaces, rung.key, 0, 0)
+    _with_peak_at(surfaces, "translational", GRID - 1, 1)
+    entry = _table(study, surfaces)["translational"]
+    assert entry.peak_moves == pytest.approx(np.sqrt(2.0) * 2.0 * np.pi / GRID, rel=1e-12)
+    assert entry.correlation == pytest.approx(-1.0 / (GRID**2 - 1), rel=1e-9)  # two single peaks apart
+
+
+def test_of_several_equal_peaks_the_nearest_counts() -> None:
+    study, surfaces = _solved(fake_ladder())
+    for rung in study.ladder:
+        _with_peak_at(surfaces, rung.key, 1, 1)
+    other = {"model": "exact", "body": 1, "alpha1": surfaces["alpha1"][5], "alpha2": surfaces["alpha2"][5]}
+    surfaces["mu"].loc[other] = 2.0 * (1.0 + 1e-7)  # higher by less than the error claimed
+    assert _table(study, surfaces)["exact"].peak_moves == 0.0
+
+
+def test_distances_on_the_square_are_those_of_a_torus() -> None:
+    assert torus_distance((0.1, 0.0), (2.0 * np.pi - 0.1, 0.0)) == pytest.approx(0.2)
+    assert torus_distance((0.0, 0.0), (np.pi, np.pi)) == pytest.approx(np.sqrt(2.0) * np.pi)
+
+
+def test_a_rung_more_is_a_step_more_and_nothing_else() -> None:
+    ladder = errors_in({"translational": 0.02})
+    longer = (*ladder, replace(ladder[-1], key="spatial", title="spatial engine"))
+    short, long = (_table(*_solved(one)) for one in (ladder, longer))
+    assert long[TOTAL].mean == pytest.approx(short[TOTAL].mean)
+    assert (list(long), long["spatial"].real) == ([*list(short)[:-1], "spatial", TOTAL], 0.0)
