@@ -1,0 +1,130 @@
+"""The cases of `oracle_values.json`: what is asked, in the words of the scene file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from reference.problem import Scene, load_scene
+
+CUTOFFS = (0.0, 1e-2, 1e-3, 1e-4, 1e-5)  # m/s; 0 is the supremum
+HORIZONTAL = {"periods": [0.9, 1.1], "decay": [0.3333333333, 0.2727272727]}
+
+
+@dataclass(frozen=True)
+class Case:
+    scene: str
+    phase: tuple[float, float]
+    equations: str
+    regularization: float | None = None
+
+    @property
+    def name(self) -> str:
+        law = "" if self.regularization is None else f"-v{self.regularization:.0e}"
+        return f"{self.scene}-{self.phase[0]:g}-{self.phase[1]:g}-{self.equations}{law}"
+
+
+OWN: dict[str, dict[str, Any]] = {
+    "one-body": {
+        "isolator": {"period": 1.0, "friction": 0.08},
+        "bodies": [{"mass": 2.0}],
+        "excitation": {"amplitudes": [[2.0, 0.5], [0.3, 1.5]], **HORIZONTAL},
+    },
+    "three-vertical": {
+        "isolator": {"radius": 0.4, "friction": 0.07},
+        "bodies": [
+            {"mass": 2.0},
+            {"mass": 1.0, "period": [0.5, 0.6]},
+            {"mass": 0.5, "stiffness": [180.0, 240.0]},
+        ],
+        "excitation": {"amplitudes": [[1.0, 0.4], [-0.3, 1.2], [1.3, 0.9]], **HORIZONTAL},
+    },
+    "deep": {  # swings to 0.7 of the radius
+        "isolator": {"period": 1.0, "friction": 0.1},
+        "bodies": [{"mass": 1.0}, {"mass": 0.5, "period": [0.8, 0.7]}],
+        "excitation": {"amplitudes": [[2.8, 1.0], [0.5, 2.8]], "periods": [1.2, 1.4], "decay": [0.25, 0.2]},
+    },
+    "lubricated-vertical": {
+        "isolator": {"radius": 0.3, "lubrication": 0.8},
+        "bodies": [{"mass": 1.0}, {"mass": 2.0, "period": [0.7, 0.4]}],
+        "excitation": {"amplitudes": [[1.5, 0.5], [0.2, 1.5], [1.0, 1.0]], **HORIZONTAL},
+    },
+    "lubricated-thick": {
+        "isolator": {"period": 1.0, "lubrication": 4.0},
+        "bodies": [{"mass": 1.0}, {"mass": 1.0, "period": [1.5, 1.2]}],
+        "excitation": {"amplitudes": [[2.0, 0.5], [0.4, 1.5]], **HORIZONTAL},
+    },
+    "five-bodies": {
+        "isolator": {"period": 1.2, "friction": 0.05},
+        "bodies": [
+            {"mass": 3.0},
+            {"mass": 1.0, "period": [0.5, 0.6]},
+            {"mass": 2.0, "stiffness": [150.0, 90.0]},
+            {"mass": 0.5, "period": [0.9, 0.3]},
+            {"mass": 1.5, "period": [0.4, 1.1]},
+        ],
+        "excitation": {"amplitudes": [[1.0, 0.6], [-0.5, 1.2]], **HORIZONTAL},
+    },
+    "light-platform": {
+        "isolator": {"period": 1.0, "friction": 0.1},
+        "bodies": [{"mass": 0.05}, {"mass": 1.0, "period": [0.6, 0.5]}],
+        "excitation": {"amplitudes": [[1.5, 0.0], [0.4, 1.5]], **HORIZONTAL},
+    },
+    "one-axis": {
+        "isolator": {"period": 1.0, "friction": 0.06},
+        "bodies": [{"mass": 1.0}, {"mass": 1.0, "period": [1.5, 1.2]}],
+        "excitation": {"amplitudes": [[1.0, 0.9], [0.0, 0.0]], **HORIZONTAL},
+    },
+    "held": {  # friction holds the platform throughout
+        "isolator": {"period": 1.0, "friction": 0.6},
+        "bodies": [{"mass": 1.0}, {"mass": 1.0, "period": [0.5, 0.4]}],
+        "excitation": {"amplitudes": [[1.0, 0.2], [0.1, 1.0]], **HORIZONTAL},
+    },
+    "frictionless": {
+        "isolator": {"period": 1.0, "friction": 0.0},
+        "bodies": [{"mass": 1.0}, {"mass": 1.0, "period": [1.5, 1.2]}],
+        "excitation": {"amplitudes": [[0.6, 0.2], [0.1, 0.6]], **HORIZONTAL},
+    },
+}
+
+
+def scene_of(name: str) -> Scene:
+    if name not in OWN:
+        return load_scene(name)
+    return Scene.model_validate({"title": name, "name": name, "duration": 20.0, **OWN[name]})
+
+
+BOTH = ("exact", "small")
+SET_VALUED = [
+    *(Case("fig3-I", p, e) for p in ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (5.1, 3.3)) for e in BOTH),
+    *(Case("fig3-II", p, e) for p in ((0.3, 1.1), (2.5, 4.0)) for e in BOTH),
+    *(Case("fig4-dry", p, e) for p in ((0.3, 1.1), (1.0, 5.0)) for e in BOTH),
+    *(Case("one-body", p, e) for p in ((0.3, 1.1), (3.0, 2.0)) for e in BOTH),
+    *(Case("three-vertical", p, e) for p in ((0.3, 1.1), (2.2, 5.2)) for e in BOTH),
+    *(Case("deep", p, "exact") for p in ((0.3, 1.1), (1.5, 4.5))),
+    *(Case("five-bodies", (0.3, 1.1), e) for e in BOTH),
+    *(Case("light-platform", (0.3, 1.1), e) for e in BOTH),
+    *(Case("one-axis", (0.3, 1.1), e) for e in BOTH),
+    Case("held", (0.3, 1.1), "exact"),
+]
+SMOOTH = [
+    *(Case("fig4-viscous", p, e) for p in ((0.3, 1.1), (2.5, 4.0)) for e in BOTH),
+    *(Case("lubricated-vertical", (0.3, 1.1), e) for e in BOTH),
+    Case("lubricated-thick", (0.3, 1.1), "exact"),
+    *(Case("frictionless", (0.3, 1.1), e) for e in BOTH),
+]
+REGULARISED = [
+    *(Case("fig3-I", (0.3, 1.1), "exact", v) for v in (1e-2, 1e-3, 1e-4, 1e-6)),
+    Case("fig3-I", (0.3, 1.1), "small", 1e-3),
+    *(Case("fig3-I", (2.0, 0.7), "exact", v) for v in (1e-3, 1e-4, 1e-6)),
+    Case("fig3-I", (4.0, 5.5), "small", 1e-4),
+    Case("fig3-II", (2.5, 4.0), "exact", 1e-3),
+    Case("fig4-dry", (0.3, 1.1), "small", 1e-2),
+    Case("one-body", (0.3, 1.1), "exact", 1e-2),
+    Case("three-vertical", (0.3, 1.1), "exact", 1e-2),
+    Case("three-vertical", (0.3, 1.1), "small", 1e-3),
+    Case("deep", (0.3, 1.1), "exact", 1e-3),
+    Case("light-platform", (0.3, 1.1), "exact", 1e-4),
+    Case("one-axis", (0.3, 1.1), "exact", 1e-4),
+]
+CASES = [*SET_VALUED, *SMOOTH, *REGULARISED]

@@ -1,0 +1,169 @@
+"""Accelerations written once more, straight from Newton-Euler, in plain Python: no code shared with the solver."""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+from reference.problem import GRAVITY, Scene
+
+
+class RefusalError(Exception):
+    """The motion left what the equations describe: rim, contact lost, Painleve."""
+
+
+class Law:
+    """
+    One scene at one phase pair. Positions relative to the plate; (ex, ey) is the horizontal unit slip direction.
+
+    `platform` solves diag(m1, m1, m_sum) a = (f - m1 u, -m_sum (g + zeta'')) + N (n - mu w), n.a = |v|^2 / rho for
+    the exact equations, or takes (4.3) as printed for the small ones.
+    """
+
+    def __init__(self, scene: Scene, phase: tuple[float, float], equations: str) -> None:
+        assert equations in ("exact", "small")
+        self.exact = equations == "exact"
+        self.rho = scene.radius
+        self.mass = [float(m) for m in scene.masses]
+        self.total = sum(self.mass)
+        self.links = [(float(kx), float(ky)) for kx, ky in scene.stiffness]
+        self.count = len(self.mass)
+        self.mu = scene.friction_coefficient
+        self.lubricated = scene.lubricated
+        self.duration = scene.duration
+        self.swing = 0.0  # largest sqrt(x1^2 + y1^2)/rho and smallest normal force of the states accepted so far
+        self.least_normal = math.inf
+        load = scene.excitation
+        exponents = [complex(-load.decay[i], 2.0 * math.pi / load.periods[i]) for i in range(2)]
+        self.waves = [(exponents[i], phase[i], scene.amplitudes[:, i].tolist()) for i in range(2)]
+
+    def accept(self, x: float, y: float, normal: float) -> None:
+        if not normal > 0.0:
+            raise RefusalError("contact lost")
+        self.swing = max(self.swing, math.hypot(x, y) / self.rho)
+        self.least_normal = min(self.least_normal, normal)
+
+    def ground(self, t: float) -> tuple[float, float, float]:
+        first, second = (cmath.exp(s * t + 1j * alpha).real for s, alpha, _ in self.waves)
+        a, b = self.waves[0][2], self.waves[1][2]
+        return a[0] * first + b[0] * second, a[1] * first + b[1] * second, a[2] * first + b[2] * second
+
+    def spring_forces(self, q: list[float]) -> list[float]:
+        """Spring force on each body, (2N) interleaved x, y, from positions interleaved likewise."""
+        force = [0.0] * (2 * self.count)
+        for i, (kx, ky) in enumerate(self.links):
+            fx = kx * (q[2 * i + 2] - q[2 * i])
+            fy = ky * (q[2 * i + 3] - q[2 * i + 1])
+            force[2 * i] += fx
+            force[2 * i + 1] += fy
+            force[2 * i + 2] -= fx
+            force[2 * i + 3] -= fy
+        return force
+
+    def delta(self, x: float, y: float) -> float:
+        """z1 - rho of (3.3)."""
+        square = self.rho**2 - x * x - y * y
+        if square <= 0.0:
+            raise RefusalError("rim reached")
+        return -math.sqrt(square)
+
+    def stretch(self, x: float, y: float, ex: float, ey: float) -> float:
+        """Slip speed (3.8) over horizontal speed for the horizontal direction e; 1 for the small equations."""
+        if not self.exact:
+            return 1.0
+        return math.hypot(1.0, (x * ex + y * ey) / self.delta(x, y))
+
+    def platform(
+        self, t: float, x: float, y: float, fx: float, fy: float, slip: tuple[float, float], speed: float
+    ) -> tuple[float, float, float, float]:
+        """
+        (ax, ay, az, N) of the platform. `slip` is mu w as its horizontal part; `speed` the horizontal speed along it
+        (for the centripetal term), whose direction is that of `slip` if there is any friction.
+        """
+        m1, total = self.mass[0], self.total
+        u, v, w = self.ground(t)
+        bx, by, bz = fx / m1 - u, fy / m1 - v, -(GRAVITY + w)
+        sx, sy = slip
+        if not self.exact:
+            normal = total / m1 * (GRAVITY + w)
+            ax = bx - normal * x / self.rho - (normal - x * u / self.rho) * sx + y * u / self.rho * sy
+            ay = by - normal * y / self.rho - (normal - y * v / self.rho) * sy + x * v / self.rho * sx
+            return ax, ay, 0.0, normal * m1
+        z = self.delta(x, y)
+        nx, ny, nz = -x / self.rho, -y / self.rho, -z / self.rho
+        sz = -(x * sx + y * sy) / z
+        dx, dy, dz = nx - sx, ny - sy, nz - sz
+        compliance = (nx * dx + ny * dy) / m1 + nz * dz / total
+        if compliance <= 0.0:
+            raise RefusalError("painleve paradox")
+        normal = (speed / self.rho - (nx * bx + ny * by + nz * bz)) / compliance
+        return bx + normal * dx / m1, by + normal * dy / m1, bz + normal * dz / total, normal
+
+    def speed_square(self, x: float, y: float, vx: float, vy: float) -> float:
+        """|v|^2 of (3.8): with the vertical velocity for the exact equations."""
+        if not self.exact:
+            return vx * vx + vy * vy
+        return vx * vx + vy * vy + ((x * vx + y * vy) / self.delta(x, y)) ** 2
+
+    def sliding(
+        self, t: float, q: list[float], force: list[float], ex: float, ey: float, horizontal: float
+    ) -> tuple[float, float, float, float]:
+        """Set-valued dry law, sliding along the horizontal unit direction e at horizontal speed `horizontal`."""
+        x, y = q[0], q[1]
+        stretch = self.stretch(x, y, ex, ey)
+        scale = self.mu / stretch
+        return self.platform(t, x, y, force[0], force[1], (scale * ex, scale * ey), (horizontal * stretch) ** 2)
+
+    def smooth(
+        self, t: float, q: list[float], force: list[float], vx: float, vy: float, v_reg: float | None, inside: bool
+    ) -> tuple[float, float, float, float]:
+        """Laws that are smooth in each zone: lubricated, frictionless, or regularised in- or outside |v| = v_reg."""
+        x, y = q[0], q[1]
+        square = self.speed_square(x, y, vx, vy)
+        if self.lubricated:
+            factor = self.mu
+        elif self.mu == 0.0:
+            factor = 0.0
+        else:
+            assert v_reg is not None
+            factor = self.mu / (v_reg if inside else math.sqrt(square))
+        return self.platform(t, x, y, force[0], force[1], (factor * vx, factor * vy), square)
+
+    def excess(self, t: float, q: list[float], force: list[float]) -> float:
+        """Rest: required over available friction, minus 1; negative inside the cone. Consistent condition."""
+        x, y = q[0], q[1]
+        sx, sy = self.holding(t, x, y, force)
+        if not self.exact:
+            return math.hypot(sx, sy) / self.mu - 1.0
+        return math.sqrt(self.speed_square(x, y, sx, sy)) / self.mu - 1.0
+
+    def holding(self, t: float, x: float, y: float, force: list[float]) -> tuple[float, float]:
+        """Horizontal part of the mu w that would give a = 0."""
+        m1 = self.mass[0]
+        u, v, w = self.ground(t)
+        rx, ry, rz = m1 * u - force[0], m1 * v - force[1], self.total * (GRAVITY + w)  # reaction needed
+        if self.exact:
+            nx, ny, nz = -x / self.rho, -y / self.rho, -self.delta(x, y) / self.rho
+            normal = rx * nx + ry * ny + rz * nz
+            if normal <= 0.0:
+                raise RefusalError("contact lost")
+            return -(rx / normal - nx), -(ry / normal - ny)
+        r = rz / m1
+        if r <= 0.0:
+            raise RefusalError("contact lost")
+        dx, dy = -(rx / m1 + r * x / self.rho), -(ry / m1 + r * y / self.rho)  # F_3
+        a, b = r - u * x / self.rho, -u * y / self.rho
+        c, d = -v * x / self.rho, r - v * y / self.rho
+        det = a * d - b * c
+        return (d * dx - b * dy) / det, (a * dy - c * dx) / det
+
+    def absolute_squares(self, t: float, force: list[float], platform: tuple[float, float, float]) -> list[float]:
+        """|absolute acceleration|^2 of each body, with the vertical part all share."""
+        u, v, w = self.ground(t)
+        ax, ay, az = platform
+        vertical = (az + w) ** 2
+        squares = [(ax + u) ** 2 + (ay + v) ** 2 + vertical]
+        for i in range(1, self.count):
+            m = self.mass[i]
+            squares.append((force[2 * i] / m) ** 2 + (force[2 * i + 1] / m) ** 2 + vertical)
+        return squares

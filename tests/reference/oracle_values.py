@@ -1,0 +1,76 @@
+"""
+Writes `oracle_values.json`: python tests/reference/oracle_values.py [NAME ...]; all cases take about a quarter hour.
+
+Each number comes with the difference of runs at two tolerances a hundred times apart, which is the error of the coarser
+one and so an upper estimate for the finer one that is kept.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from oracle import CREEP_IS_STIFF, Answer, RefusalError, set_valued_run, smooth_run
+from oracle_cases import CASES, CUTOFFS, SET_VALUED, Case, scene_of
+
+STORE = Path(__file__).with_name("oracle_values.json")
+COARSE, FINE = 1e-10, 1e-12
+STIFF_COARSE, STIFF_FINE = 1e-9, 1e-11  # the implicit method pays more for each digit
+
+
+def answer(case: Case, tolerance: float) -> Answer:
+    scene = scene_of(case.scene)
+    if case in SET_VALUED:
+        return set_valued_run(scene, case.phase, case.equations, list(CUTOFFS), tolerance)
+    return smooth_run(scene, case.phase, case.equations, case.regularization, tolerance)
+
+
+def solved(case: Case) -> dict[str, Any]:
+    stiff = case.regularization is not None and case.regularization < CREEP_IS_STIFF
+    coarse = answer(case, STIFF_COARSE if stiff else COARSE)
+    fine = answer(case, STIFF_FINE if stiff else FINE)
+    return {
+        "name": case.name,
+        "scene": case.scene,
+        "phase": list(case.phase),
+        "equations": case.equations,
+        "regularization": case.regularization,
+        "cutoff": list(CUTOFFS) if case in SET_VALUED else [0.0],
+        "mu": fine.mu.tolist(),
+        "error": np.maximum(np.abs(fine.mu - coarse.mu), 1e-12).tolist(),
+        "position": fine.position.tolist(),
+        "position_error": float(np.abs(fine.position - coarse.position).max()),
+        "swing": fine.swing,
+        "rests": fine.rests,
+        "same_rests": len(fine.rests) == len(coarse.rests),
+    }
+
+
+def main(names: list[str]) -> None:
+    known = {e["name"]: e for e in json.loads(STORE.read_text())} if STORE.exists() else {}
+    for case in CASES:
+        if names and case.name not in names:
+            continue
+        try:
+            known[case.name] = solved(case)
+        except (RefusalError, RuntimeError) as fault:
+            print(f"{case.name}: {fault!r}", flush=True)
+            continue
+        kept = known[case.name]
+        print(
+            case.name,
+            kept["mu"][0],
+            np.max(kept["error"]),
+            f"swing {kept['swing']:.3f}",
+            len(kept["rests"]),
+            flush=True,
+        )
+        ordered = [known[c.name] for c in CASES if c.name in known]
+        STORE.write_text("[\n" + ",\n".join(json.dumps(entry) for entry in ordered) + "\n]\n")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
