@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,8 @@ from multibody.engine import exudyn
 from multibody.system import EngineModel, EngineState
 
 Array = NDArray[np.float64]
+
+SPECTRAL_RADIUS = 0.8  # of generalised alpha: the contact must not ring, the rest must not be damped
 
 
 @dataclass(frozen=True)
@@ -26,6 +28,30 @@ class Motion:
     accelerations: Array  # (T, n)
     contact: Array  # (T, 4 K): gap, slip speed, two unused entries, per contact
     force: Array  # (T, 6 K): force vector and normal, per contact; (T, 0) unless recorded
+
+    @property
+    def gap(self) -> Array:
+        """Gap of each contact, (T, K), negative where it presses."""
+        return self.contact[:, 0::4]
+
+    @property
+    def slip(self) -> Array:
+        """Slip speed of each contact, (T, K)."""
+        return self.contact[:, 1::4]
+
+    def upto(self, row: int) -> Motion:
+        """The rows up to and including `row`."""
+        return Motion(*(getattr(self, column.name)[: row + 1] for column in fields(self)))
+
+    @staticmethod
+    def joined(chunks: list[Motion]) -> Motion:
+        """One motion from chunks, each of which starts with the last row of the one before."""
+        return Motion(
+            *(
+                np.concatenate([getattr(chunk, column.name)[index > 0 :] for index, chunk in enumerate(chunks)])
+                for column in fields(Motion)
+            )
+        )
 
     def state(self, row: int) -> EngineState:
         return EngineState(self.coordinates[row], self.velocities[row], self.contact[row])
@@ -45,10 +71,9 @@ def silence() -> Iterator[None]:
 class Engine:
     """Runs one model. `newton` is the tolerance of a step's equations, relative and (a hundredth of it) absolute."""
 
-    def __init__(self, model: EngineModel, newton: float, spectral_radius: float = 0.6) -> None:
+    def __init__(self, model: EngineModel, newton: float) -> None:
         self.model = model
-        self.steps = 0  # taken so far
-        self.settings = _settings(newton, spectral_radius)
+        self.settings = _settings(newton)
 
     def run(self, state: EngineState, begin: float, step: float, count: int) -> Motion | None:
         """`count` steps from `state` at time `begin`; None if the engine could not solve one of them."""
@@ -60,7 +85,6 @@ class Engine:
         self.settings.timeIntegration.startTime = begin
         self.settings.timeIntegration.endTime = begin + count * step
         self.settings.timeIntegration.numberOfSteps = count
-        self.steps += count
         try:
             if not exudyn.MainSolverImplicitSecondOrder().SolveSystem(self.model.mbs, self.settings):
                 return None
@@ -88,7 +112,7 @@ class Engine:
         )
 
 
-def _settings(newton: float, spectral_radius: float) -> Any:
+def _settings(newton: float) -> Any:
     settings = exudyn.SimulationSettings()
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = 0.0  # every step
@@ -97,7 +121,7 @@ def _settings(newton: float, spectral_radius: float) -> Any:
     integration.newton.relativeTolerance = newton
     integration.newton.absoluteTolerance = 1e-2 * newton
     integration.newton.useModifiedNewton = True
-    integration.generalizedAlpha.spectralRadius = spectral_radius
+    integration.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
     integration.discontinuous.iterationTolerance = newton
     integration.discontinuous.ignoreMaxIterations = False
     return settings

@@ -41,8 +41,11 @@ class EngineModel:
     """
     An assembled engine system that can be run again and again.
 
-    bodies: (N, 3), index of the coordinate that moves body i along x, y, z. radius: of the sphere on which the
-    platform's centre moves, in units of length, for the rim (4.1). keep_alive: what the engine only points to.
+    bodies: (N, 3), index of the coordinate that moves body i along x, y, z. stiffen: sets the contact so that the
+    weight presses it in by a given fraction of rho. start: state from an initial state (None: at rest), the plate's
+    acceleration then, m/s^2, and the same fraction. rim: largest horizontal offset of the platform, units of length.
+    corner: slip speed in units of velocity under which the friction law is linear; inf if it has no such corner.
+    keep_alive: what the engine only points to.
     """
 
     mbs: Any
@@ -50,7 +53,8 @@ class EngineModel:
     ground: SymbolicGround
     recorders: Recorders
     bodies: NDArray[np.int_]
-    start: Callable[[State | None, Array], EngineState]  # from an initial state and the plate's acceleration then
-    penetration: float
-    slip_threshold: float  # speed in units of velocity under which the friction law is linear; inf if it always is
+    stiffen: Callable[[float], None]
+    start: Callable[[State | None, Array, float], EngineState]
+    rim: float
+    corner: float
     keep_alive: tuple[Any, ...]

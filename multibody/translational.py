@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from multibody.engine import exudyn, items
 from multibody.loading import SymbolicGround, symbolic_load
 from multibody.system import EngineModel, EngineState, Recorders
-from multibody.units import link_stiffness, units_of
+from multibody.units import Units, link_stiffness, units_of
 from reference.problem import Scene, State
 
 Array = NDArray[np.float64]
@@ -25,17 +25,16 @@ Array = NDArray[np.float64]
 PLATFORM = 6  # coordinates of the rigid body: x, y, z and three rotations
 LOCKED = 1e15  # moment of inertia, in units of mass * length^2: turns by 1e-11 rad in 20 s under the largest torque
 HOLLOW = 2.0  # R in units of rho; in translation only R - r matters
+DAMPING = 1.0  # ratio of the contact: its own motion dies out within a few of its periods and is not seen
 ALWAYS_LINEAR = 1e6  # v_reg of the lubricated contact in units of velocity, above any speed: mu = f_c |v| throughout
 
 
-def translational(
-    scene: Scene, regularization: float, penetration: float, *, damping: float = 1.0, contact_force: bool = False
-) -> EngineModel:
+def translational(scene: Scene, regularization: float | None, *, contact_force: bool = False) -> EngineModel:
     """
     Assemble the translational model.
 
-    regularization: v_reg, m/s, of dry friction; a lubricated contact is linear without it. penetration: static
-    penetration of the contact as a fraction of rho; damping: its damping ratio. contact_force: record it too.
+    regularization: v_reg, m/s, of dry friction; None where the contact is lubricated or frictionless. contact_force:
+    record it too.
     """
     units = units_of(scene)
     masses = scene.masses / units.mass
@@ -51,9 +50,7 @@ def translational(
     if len(masses) > 1:
         nodes.append(_chain(mbs, platform_node, masses, link_stiffness(scene, units)))
 
-    friction, threshold = scene.friction_coefficient, regularization / units.velocity
-    if scene.lubricated:
-        friction, threshold = friction * units.velocity * ALWAYS_LINEAR, ALWAYS_LINEAR
+    friction, threshold = _law(scene, regularization, units)
     contact_node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
     contact = mbs.AddObject(
         items.ObjectContactSphereSphere(
@@ -62,13 +59,10 @@ def translational(
                 depression,
             ],
             nodeNumber=contact_node,
-            # closer by the static penetration, so that the pendulum at rest has length rho whatever the stiffness
-            spheresRadii=[HOLLOW - (1.0 - penetration), HOLLOW],
+            spheresRadii=[HOLLOW - 1.0, HOLLOW],
             isHollowSphere1=True,
             dynamicFriction=friction,
             frictionProportionalZone=threshold,
-            contactStiffness=1.0 / penetration,
-            contactDamping=2.0 * damping / np.sqrt(penetration),
         )
     )
     ground = SymbolicGround(scene, units)
@@ -78,11 +72,26 @@ def translational(
 
     bodies = np.array([[0, 1, 2]] + [[PLATFORM + 2 * i, PLATFORM + 2 * i + 1, 2] for i in range(len(masses) - 1)])
 
-    def start(initial: State | None, ground_acceleration: Array) -> EngineState:
+    def stiffen(penetration: float) -> None:
+        # closer by the static penetration, so that the pendulum at rest has length rho whatever the stiffness
+        mbs.SetObjectParameter(contact, "spheresRadii", [HOLLOW - (1.0 - penetration), HOLLOW])
+        mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / penetration)
+        mbs.SetObjectParameter(contact, "contactDamping", 2.0 * DAMPING / np.sqrt(penetration))
+
+    def start(initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
         return _start(initial, ground_acceleration / units.acceleration, bodies, units, penetration)
 
-    limit = np.inf if scene.lubricated else threshold
-    return EngineModel(mbs, units, ground, recorders, bodies, start, penetration, limit, (container, expressions))
+    corner = np.inf if scene.lubricated or friction == 0.0 else threshold
+    return EngineModel(mbs, units, ground, recorders, bodies, stiffen, start, 1.0, corner, (container, expressions))
+
+
+def _law(scene: Scene, regularization: float | None, units: Units) -> tuple[float, float]:
+    """Friction coefficient of the contact, and the speed in units of velocity under which it is reduced linearly."""
+    if scene.lubricated:
+        return scene.friction_coefficient * units.velocity * ALWAYS_LINEAR, ALWAYS_LINEAR
+    if regularization is None:
+        return scene.friction_coefficient, 1.0
+    return scene.friction_coefficient, regularization / units.velocity
 
 
 def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array) -> Any:
@@ -156,7 +165,7 @@ def _recorders(mbs: Any, nodes: list[Any], contact_node: Any, contact: Any | Non
 
 
 def _start(
-    initial: State | None, ground: Array, bodies: NDArray[np.int_], units: Any, penetration: float
+    initial: State | None, ground: Array, bodies: NDArray[np.int_], units: Units, penetration: float
 ) -> EngineState:
     """
     The engine's state on the sphere, moving along it, pressed in by as much as a single body would be.

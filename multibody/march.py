@@ -1,0 +1,133 @@
+"""
+One run of the engine in chunks, each with the step that the motion asks for there.
+
+The engine's own control of the step answers to failed Newton iterations, not to wrong results. What a constant step
+gets wrong here is the stop: while the slip speed is small, the slip direction turns and the regularised friction
+relaxes within milliseconds. So the velocity of the platform may change in one step by no more than a fraction of the
+slip speed (of v_reg, where the slip is slower than that). A chunk is kept up to the first step that breaks this, and
+the run starts again from the stored state there with a smaller step; the step grows again once the motion allows it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.integrate import Engine, Motion
+from multibody.peak import Peaks
+from multibody.system import EngineState
+from reference.problem import Outcome
+
+Array = NDArray[np.float64]
+
+RATIO = 4  # between neighbouring step sizes
+DEEPEST = 7  # smallest step is RATIO**-DEEPEST of the largest
+SETTLING = 2  # depth of the first chunk: the contact settles
+LONG, SHORT = 256, 32  # steps in a chunk at the largest step, at smaller ones
+LATEST = 8  # rows at the end of a chunk that decide whether the step may grow
+ALLOWANCE = 100  # times the number of largest steps in the run, before it is given up
+
+
+@dataclass(frozen=True)
+class Control:
+    """step: the largest, in units of time. turn: allowed change of the slip velocity in one step, as its fraction."""
+
+    step: float
+    turn: float
+
+
+@dataclass
+class March:
+    """What a march found: peaks of each body, how it ended, the work, and its chunks if they were kept."""
+
+    peaks: Peaks
+    outcome: Outcome = Outcome.OK
+    instant: float = math.nan  # in units of the model
+    steps: int = 0
+    runs: int = 0
+    chunks: list[Motion] = field(default_factory=list)
+
+
+def march(
+    engine: Engine,
+    start: EngineState,
+    end: float,
+    ground: Callable[[Array], Array],
+    control: Control,
+    *,
+    keep: bool = False,
+) -> March:
+    """Run from `start` at time 0 to `end`; ground: plate's acceleration (T, 3) at times (T,), in units of the model."""
+    model = engine.model
+    result = March(Peaks(len(model.bodies), model.corner))
+    state, time, depth = start, 0.0, SETTLING
+    while time < end * (1.0 - 1e-12):
+        step = control.step / RATIO**depth
+        count = LONG if depth == 0 else SHORT
+        count = min(count, math.ceil((end - time) / step * (1.0 - 1e-12)))
+        step = min(step, (end - time) / count)
+        motion = engine.run(state, time, step, count)
+        result.runs += 1
+        result.steps += count
+        if result.steps * control.step > ALLOWANCE * end:
+            return _ended(result, Outcome.STEP_LIMIT, time)
+        if motion is None or not np.isfinite(motion.accelerations).all():
+            if depth == DEEPEST:
+                return _ended(result, Outcome.SOLVER_FAILED, time)
+            depth += 1
+            continue
+        excess = _excess(motion, engine, step / control.turn)
+        last = len(motion.time) - 1
+        failing = np.flatnonzero(excess > 1.0)
+        refused = depth < DEEPEST and len(failing) > 0
+        if refused:
+            last = max(int(failing[0]) - 1, 0)
+        if last > 0:
+            kept = motion.upto(last)
+            outcome, row = _fate(kept, engine)
+            if keep:
+                result.chunks.append(kept.upto(row))
+            if outcome != Outcome.OK:
+                return _ended(result, outcome, float(kept.time[row]))
+            absolute = kept.accelerations[:, model.bodies] + ground(kept.time)[:, None, :]
+            result.peaks.add(kept.time, absolute, kept.slip)
+            state, time = kept.state(last), float(kept.time[last])
+        if refused:
+            depth += 1 if excess[failing[0]] < RATIO else 2
+            depth = min(depth, DEEPEST)
+        elif depth > 0 and excess[-LATEST:].max() * RATIO < 1.0:
+            depth -= 1
+    return result
+
+
+def _ended(result: March, outcome: Outcome, instant: float) -> March:
+    result.outcome, result.instant = outcome, instant
+    return result
+
+
+def _excess(motion: Motion, engine: Engine, per_turn: float) -> Array:
+    """Change of the slip velocity in one step over what is allowed, (T,)."""
+    corner = engine.model.corner
+    if not np.isfinite(corner):
+        return np.zeros(len(motion.time))
+    acceleration = motion.accelerations[:, engine.model.bodies[0]]
+    size = np.linalg.norm(acceleration, axis=-1)
+    # an acceleration that changes within a step counts twice: it says more about the steps that follow
+    size[1:] = np.maximum(size[1:], 2.0 * np.linalg.norm(np.diff(acceleration, axis=0), axis=-1))
+    excess: Array = per_turn * size / np.maximum(motion.slip.min(axis=1), corner)
+    return excess
+
+
+def _fate(motion: Motion, engine: Engine) -> tuple[Outcome, int]:
+    """The first thing that ends the model's validity and its row; OK and the last row if there is none."""
+    offset = np.hypot(*motion.coordinates[:, engine.model.bodies[0, :2]].T)
+    over = len(motion.time)
+    rim = next(iter(np.flatnonzero(offset >= engine.model.rim)), over)
+    lost = next(iter(np.flatnonzero((motion.gap >= 0.0).all(axis=1))), over)
+    if min(rim, lost) == over:
+        return Outcome.OK, over - 1
+    return (Outcome.RIM_REACHED, int(rim)) if rim <= lost else (Outcome.CONTACT_LOST, int(lost))

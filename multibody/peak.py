@@ -1,0 +1,126 @@
+"""
+Largest absolute acceleration of each body between recorded instants, with the error of reading it.
+
+The regularised law has a corner where the slip speed passes v_reg: accelerations are continuous there and their slopes
+jump. The largest acceleration of a platform that comes to a stop is often that corner, between two samples, so it is
+read from each side by itself, at the instant at which the slip speed passes v_reg.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+KEPT = 6  # samples carried over to the next chunk: what the readings from both sides of an instant need
+NEAR = 0.97  # of the peak: samples below it cannot be raised above it by interpolation at a resolved step
+
+
+class Peaks:
+    """
+    Running maximum over t of |absolute acceleration| per body, fed chunk by chunk; nothing else is kept.
+
+    threshold: slip speed v_reg at which the friction law has its corner; inf if it has none.
+    value: (N,). sampling: (N,), estimated error of the reading between samples. instant: (N,), where.
+    """
+
+    def __init__(self, bodies: int, threshold: float) -> None:
+        self.value = np.zeros(bodies)
+        self.sampling = np.zeros(bodies)
+        self.instant = np.zeros(bodies)
+        self._threshold = threshold
+        self._time = np.empty(0)
+        self._size = np.empty((0, bodies))
+        self._slip = np.empty((0, 0))
+
+    def add(self, time: Array, absolute: Array, slip: Array) -> None:
+        """Samples (T,), (T, N, 3) and slip speeds (T, K), whose first row repeats the last one of the chunk before."""
+        size = np.sqrt((absolute**2).sum(axis=-1))
+        if len(self._time):
+            time = np.concatenate([self._time, time[1:]])
+            size = np.concatenate([self._size, size[1:]])
+            slip = np.concatenate([self._slip, slip[1:]])
+        beyond = slip > self._threshold
+        corners = np.flatnonzero((beyond[1:] != beyond[:-1]).any(axis=1))
+        for body in range(size.shape[1]):
+            self._scan(body, time, size[:, body], slip, corners)
+        self._time, self._size, self._slip = time[-KEPT:], size[-KEPT:], slip[-KEPT:]
+
+    def _scan(self, body: int, time: Array, size: Array, slip: Array, corners: NDArray[np.intp]) -> None:
+        row = int(size.argmax())
+        if size[row] <= NEAR * self.value[body]:
+            return
+        self._offer(body, *_smooth(time, size, row, corners))
+        for left in corners:
+            if max(size[left], size[left + 1]) > NEAR * self.value[body]:
+                instant = _crossing(time[left : left + 2], slip[left : left + 2], self._threshold)
+                self._offer(body, *_corner(time, size, int(left), instant, corners))
+
+    def _offer(self, body: int, value: float, error: float, instant: float) -> None:
+        if value > self.value[body]:
+            self.value[body], self.sampling[body], self.instant[body] = value, error, instant
+
+
+def _smooth(time: Array, size: Array, row: int, corners: NDArray[np.intp]) -> tuple[float, float, float]:
+    """
+    Top of the parabola through the highest sample and its neighbours; its error from a cubic through one more sample.
+
+    The sample itself where a neighbour is missing or a corner lies in between.
+    """
+    sample = float(size[row]), 0.0, float(time[row])
+    first, last = _side(row, len(size), corners)
+    if row - 1 < first or row + 1 > last:
+        return sample
+    t, f = time[row - 1 : row + 2] - time[row], size[row - 1 : row + 2] - size[row]
+    left, right = f[0] / t[0], f[2] / t[2]
+    curvature = (right - left) / (t[2] - t[0])
+    slope = left - curvature * t[0]
+    if curvature >= 0.0:
+        return sample
+    summit = float(np.clip(-0.5 * slope / curvature, t[0], t[2]))
+    rise = (slope + curvature * summit) * summit
+    error = 0.0
+    for extra in (row - 2, row + 2):
+        if first <= extra <= last:
+            s = time[extra] - time[row]
+            third = (size[extra] - size[row] - (slope + curvature * s) * s) / (s * (s - t[0]) * (s - t[2]))
+            error = max(error, abs(third * summit * (summit - t[0]) * (summit - t[2])))
+    return float(size[row] + rise), float(error), float(time[row] + summit)
+
+
+def _corner(
+    time: Array, size: Array, left: int, instant: float, corners: NDArray[np.intp]
+) -> tuple[float, float, float]:
+    """Value at a corner between rows `left` and `left + 1`, extrapolated from both sides; half their gap as error."""
+    first, _ = _side(left, len(size), corners)
+    _, last = _side(left + 1, len(size), corners)
+    before = slice(max(first, left - 2), left + 1)
+    after = slice(left + 1, min(last, left + 3) + 1)
+    readings = [_extrapolated(time[side], size[side], instant) for side in (before, after)]
+    value = 0.5 * (readings[0] + readings[1])
+    return value, 0.5 * abs(readings[0] - readings[1]), instant
+
+
+def _side(row: int, count: int, corners: NDArray[np.intp]) -> tuple[int, int]:
+    """First and last row on the same side of all corners as `row`."""
+    place = int(np.searchsorted(corners, row))
+    first = int(corners[place - 1]) + 1 if place > 0 else 0
+    return first, int(corners[place]) if place < len(corners) else count - 1
+
+
+def _extrapolated(time: Array, values: Array, instant: float) -> float:
+    """The polynomial through the given samples (one to three) at `instant`."""
+    total = 0.0
+    for i in range(len(time)):
+        others = np.delete(time, i)
+        total += float(values[i] * np.prod((instant - others) / (time[i] - others)))
+    return total
+
+
+def _crossing(time: Array, slip: Array, threshold: float) -> float:
+    """Instant between two samples at which a slip speed passes the threshold; the middle of several."""
+    beyond = slip > threshold
+    which = beyond[0] != beyond[1]
+    share = (threshold - slip[0, which]) / (slip[1, which] - slip[0, which])
+    return float(time[0] + share.mean() * (time[1] - time[0]))
