@@ -88,7 +88,7 @@ def _chain(scene: Scene, foot: float) -> NDArray[np.float64]:
 
 
 def _first_circle(misfit: Callable[[float], float], limit: float) -> float:
-    radii = np.linspace(0.0, limit * (1.0 - 1e-9), 20001)
+    radii = np.linspace(0.0, limit * (1.0 - 1e-9), 401)
     values = np.array([misfit(r) for r in radii])
     # the misfit is continuous except where the chain resonates; a root is a change of sign that closes in on zero
     for k in np.flatnonzero(np.sign(values[1:]) != np.sign(values[:-1])):
