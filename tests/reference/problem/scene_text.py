@@ -1,0 +1,29 @@
+"""A valid scene file as text, and edits of it."""
+
+from __future__ import annotations
+
+GOOD = """title = "two bodies"
+duration = 2.0
+
+[isolator]
+period = 1.0
+friction = 0.1
+
+[[bodies]]
+mass = 3.0
+
+[[bodies]]
+mass = 1.0
+period = [1.5, 1.2]
+
+[excitation]
+amplitudes = [[1.0, 0.0], [0.0, 1.0]]
+periods = [0.9, 1.1]
+decay = [0.3, 0.2]
+"""
+
+
+def edited(old: str, new: str) -> str:
+    """GOOD with one line changed; the line must be there exactly once."""
+    assert GOOD.count(old) == 1, old
+    return GOOD.replace(old, new)

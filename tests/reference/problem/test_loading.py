@@ -1,0 +1,148 @@
+"""The ground motion in closed form, its peak, and the phases."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+from reference.problem import (
+    Scene,
+    checked_phases,
+    exponents,
+    ground_acceleration,
+    ground_displacement,
+    ground_peak,
+    ground_velocity,
+    load_scene,
+    phase_grid,
+)
+
+
+def scene(
+    amplitudes=((1.0, 0.4), (-0.3, 1.2), (0.2, 0.7)), periods=(0.9, 1.1), decay=(0.33, 0.0), duration=20.0
+) -> Scene:
+    return Scene.model_validate(
+        {
+            "title": "loading",
+            "duration": duration,
+            "isolator": {"period": 1.0, "friction": 0.1},
+            "bodies": [{"mass": 1.0}],
+            "excitation": {"amplitudes": [list(r) for r in amplitudes], "periods": list(periods), "decay": list(decay)},
+        }
+    )
+
+
+PHASE = (0.3, 1.1)
+
+
+def test_acceleration_is_the_sum_of_damped_cosines_as_printed():
+    """(5.3) term by term in scalars."""
+    load = scene()
+    for t in (0.0, 0.37, 12.0):
+        for row in range(3):
+            value = sum(
+                load.amplitudes[row, k]
+                * math.exp(-load.excitation.decay[k] * t)
+                * math.cos(2.0 * math.pi / load.excitation.periods[k] * t + PHASE[k])
+                for k in range(2)
+            )
+            assert ground_acceleration(load, PHASE, [t])[0, row] == pytest.approx(value, abs=1e-14)
+
+
+@pytest.mark.parametrize("end", [1e-3, 0.1, 1.7, 9.3])
+def test_velocity_and_displacement_integrate_the_acceleration(end):
+    """Velocity by one quadrature, displacement as int (end - t) a dt, to 1e-12."""
+    load = scene()
+    pieces = np.linspace(0.0, end, 2 + int(4 * end))
+    for row in range(3):
+
+        def integral(weight, row=row):
+            def integrand(t):
+                return weight(t) * ground_acceleration(load, PHASE, [t])[0, row]
+
+            return sum(quad(integrand, a, b, epsabs=1e-14, epsrel=1e-13)[0] for a, b in pairwise(pieces))
+
+        assert ground_velocity(load, PHASE, [end])[0, row] == pytest.approx(integral(lambda t: 1.0), abs=1e-12)
+        assert ground_displacement(load, PHASE, [end])[0, row] == pytest.approx(integral(lambda t: end - t), abs=1e-12)
+
+
+def test_displacement_keeps_its_digits_at_small_times():
+    """Against the Taylor series, 16 terms; from times where the closed form would cancel."""
+    load = scene()
+    s = exponents(load)
+    for t in 10.0 ** np.linspace(-12, -1, 45):
+        terms = sum((s * t) ** k / math.factorial(k + 2) for k in range(16))
+        exact = (load.amplitudes @ (t * t * terms * np.exp(1j * np.array(PHASE)))).real
+        np.testing.assert_allclose(ground_displacement(load, PHASE, [t])[0], exact, rtol=1e-12)
+
+
+def test_series_and_closed_form_of_the_displacement_join():
+    """At |s t| = 0.01 the formula changes; the second difference across it must stay the acceleration."""
+    load = scene()
+    for s in exponents(load):
+        centre, step = 0.01 / abs(s), 2e-5
+        ring = ground_displacement(load, PHASE, [centre - step, centre, centre + step])
+        second = (ring[0] - 2.0 * ring[1] + ring[2]) / step**2
+        # rounding: 1e-16 * 1e-6 m / step^2 = 3e-13; the jump that matters would be 1e-14 m / step^2 = 2e-5
+        np.testing.assert_allclose(second, ground_acceleration(load, PHASE, [centre])[0], atol=1e-6)
+
+
+def test_the_plate_starts_from_rest():
+    assert not ground_velocity(scene(), PHASE, [0.0]).any()
+    assert not ground_displacement(scene(), PHASE, [0.0]).any()
+
+
+@given(
+    amplitudes=st.lists(st.lists(st.floats(-2.0, 2.0), min_size=2, max_size=2), min_size=2, max_size=3),
+    periods=st.tuples(st.floats(0.3, 3.0), st.floats(0.3, 3.0)),
+    decay=st.tuples(st.floats(0.0, 3.0), st.floats(0.0, 3.0)),
+    duration=st.floats(0.05, 10.0),
+    phase=st.tuples(st.floats(0.0, 6.3), st.floats(0.0, 6.3)),
+)
+@settings(max_examples=100, deadline=None)
+def test_ground_peak_is_the_maximum_of_dense_samples(amplitudes, periods, decay, duration, phase):
+    load = scene(amplitudes, periods, decay, duration)
+    times = np.linspace(0.0, duration, 20_001)
+    sampled = np.sqrt((ground_acceleration(load, phase, times) ** 2).sum(axis=1).max())
+    peak = ground_peak(load, [phase])[0]
+    assert peak >= sampled * (1.0 - 1e-13)
+    # between samples |u|^2 rises by at most half its curvature times (step/2)^2
+    fastest = 2.0 * np.pi / min(periods) + max(decay)
+    envelope = np.abs(np.array(amplitudes)).sum()
+    assert peak**2 - sampled**2 <= 4.0 * (envelope * fastest * times[1]) ** 2 + 1e-14
+
+
+def test_ground_peak_of_one_decaying_axis_is_its_value_at_once():
+    load = scene([[2.0, 0.0], [0.0, 0.0]], decay=(0.3, 0.3))
+    assert ground_peak(load, [[0.0, 1.0]])[0] == pytest.approx(2.0, rel=1e-15)
+
+
+def test_ground_peak_of_a_still_ground_is_zero():
+    assert ground_peak(scene([[0.0, 0.0], [0.0, 0.0]]), phase_grid(2)).tolist() == [0.0] * 4
+
+
+def test_ground_peak_turns_with_the_signs_of_the_loading():
+    """u -> -u for both phases shifted by pi: the peak is the same to the last bits."""
+    load, phases = load_scene("fig3-II"), phase_grid(6)
+    np.testing.assert_allclose(ground_peak(load, phases + np.pi), ground_peak(load, phases), rtol=1e-12)
+
+
+def test_phase_grid_covers_the_torus_once_with_alpha2_fastest():
+    grid = phase_grid(4)
+    assert grid.shape == (16, 2)
+    np.testing.assert_allclose(grid[:5, 1], np.array([0.0, 0.25, 0.5, 0.75, 0.0]) * 2.0 * np.pi)
+    np.testing.assert_allclose(grid[:5, 0], [0.0, 0.0, 0.0, 0.0, 0.5 * np.pi])
+    assert grid.max() < 2.0 * np.pi
+    assert len({tuple(pair) for pair in grid.tolist()}) == 16
+
+
+@pytest.mark.parametrize("phases", [[0.3, 1.1], [[0.3]], [[0.3, 1.1, 2.0]], [[np.nan, 0.0]], [[0.0, np.inf]]])
+def test_phases_of_another_shape_or_not_finite_are_refused(phases):
+    with pytest.raises(ValueError, match="phases"):
+        checked_phases(phases)
