@@ -42,8 +42,8 @@ def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: P
     for place, mu, rung in zip(((0.0, 0.0, 0.31, 0.86), (0.315, 0.0, 0.31, 0.86)), both, (pair.first, pair.second)):
         axes = figure.add_axes(place, projection="3d")
         assert isinstance(axes, Axes3D)
-        _surface(axes, mu, low, high, f"$\\mu_{{{body}}}$")
-        axes.set_title(rung.title, fontsize=11, pad=0)
+        _surface(axes, mu, low, high)
+        axes.set_title(f"$\\mu_{{{body}}}$, {rung.title}", fontsize=11, pad=0)
     _map(
         figure, figure.add_axes((0.70, 0.14, 0.22, 0.65)), 100.0 * relative_difference(surfaces, scene.name, pair, body)
     )
@@ -55,7 +55,7 @@ def closed(mu: Array) -> tuple[Array, Array]:
     return np.linspace(0.0, 2.0 * np.pi, len(mu) + 1), np.pad(mu, ((0, 1), (0, 1)), mode="wrap")
 
 
-def _surface(axes: Axes3D, mu: Array, low: float, high: float, name: str) -> None:
+def _surface(axes: Axes3D, mu: Array, low: float, high: float) -> None:
     phase, height = closed(mu)
     alpha1, alpha2 = np.meshgrid(phase, phase, indexing="ij")
     colours = {"cmap": HEIGHT_COLOURS, "vmin": low, "vmax": high, "linewidth": 0.2, "edgecolor": (0, 0, 0, 0.35)}
@@ -68,7 +68,6 @@ def _surface(axes: Axes3D, mu: Array, low: float, high: float, name: str) -> Non
     axes.tick_params(labelsize=8, pad=0)
     axes.set_xlabel(r"$\alpha_1$, rad", labelpad=2)
     axes.set_ylabel(r"$\alpha_2$, rad", labelpad=2)
-    axes.set_zlabel(name, labelpad=1)
 
 
 def _map(figure: Figure, axes: Axes, percent: Array) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -15,89 +15,81 @@ import numpy as np
 import xarray as xr
 from plotly.offline import get_plotlyjs
 
+from comparison.budget_figure import budget_figure_name, draw_budget
 from comparison.differences import Difference
+from comparison.effective import PHASES
 from comparison.figures import draw_pair, figure_name
+from comparison.findings import Findings
 from comparison.ladder import Pair, pairs_of, rungs_of
 from comparison.study import Study
 from comparison.summary import outcome_counts, summary
+from comparison.wording import degrees, percent, scientific, significant, symbols
 from reference.problem import ADVICE, Outcome, Scene
 
 
-def write_report(
-    folder: Path,
-    study: Study,
-    surfaces: xr.Dataset,
-    rows: Sequence[Difference],
-    broken: Sequence[str],
-    faults: Sequence[str],
-    run: Mapping[str, Any],
-) -> None:
+def write_report(folder: Path, found: Findings) -> None:
     """Write every file of the report into `folder`, which exists and is empty."""
-    surfaces.assign_attrs(command=run["command"], **run["provenance"]).to_netcdf(
-        folder / "surfaces.nc", engine="h5netcdf"
-    )
-    digest = summary(study, surfaces, rows, broken, faults, run)
-    text = json.dumps(digest, indent=1, ensure_ascii=False, allow_nan=False)
+    study, run = found.study, found.run
+    stamped = found.surfaces.assign_attrs(command=run["command"], **run["provenance"])
+    stamped.to_netcdf(folder / "surfaces.nc", engine="h5netcdf")
+    text = json.dumps(summary(found), indent=1, ensure_ascii=False, allow_nan=False)
     (folder / "summary.json").write_text(text, encoding="utf-8")
     figures = folder / "figures"
     figures.mkdir()
     for scene in study.scenes:
         for body in range(1, len(scene.bodies) + 1):
             for pair in pairs_of(scene, study.ladder):
-                draw_pair(figures / figure_name(scene, body, pair), surfaces, scene, body, pair)
-    (folder / "index.html").write_text(_page(figures, study, surfaces, rows, broken, faults, run), encoding="utf-8")
+                draw_pair(figures / figure_name(scene, body, pair), found.surfaces, scene, body, pair)
+            draw_budget(figures / budget_figure_name(scene, body), study, found.surfaces, scene, body)
+    (folder / "index.html").write_text(_page(figures, found), encoding="utf-8")
 
 
-def _page(
-    figures: Path,
-    study: Study,
-    surfaces: xr.Dataset,
-    rows: Sequence[Difference],
-    broken: Sequence[str],
-    faults: Sequence[str],
-    run: Mapping[str, Any],
-) -> str:
+def _page(figures: Path, found: Findings) -> str:
+    study = found.study
     templates = resources.files("comparison") / "templates"
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
-    environment.filters.update(percent=_percent, scientific=lambda value: f"{value:.1e}", degrees=_degrees)
+    environment.filters.update(
+        percent=percent, scientific=scientific, degrees=degrees, significant=significant, symbols=symbols
+    )
     page = environment.from_string((templates / "report.html.j2").read_text(encoding="utf-8"))
     ladder = [rung for rung in study.ladder if any(rung.applies(scene) for scene in study.scenes)]
     return page.render(
         study=study,
-        run=run,
-        scenes=[_scene(figures, study, surfaces, scene, rows) for scene in study.scenes],
+        run=found.run,
+        scenes=[_scene(figures, found, scene) for scene in study.scenes],
         pairs=pairs_of(study.scenes[0], study.ladder),
         ladder=ladder,
+        titles={"scene": "as stated", **{rung.key: rung.title for rung in study.ladder}},
         properties=_properties(ladder),
-        rows=rows,
-        outcomes=_outcomes(study, surfaces),
+        rows=found.rows,
+        budget=found.budget,
+        effective=found.effective,
+        phases=PHASES,
+        outcomes=_outcomes(study, found.surfaces),
         advice=ADVICE,
-        broken=broken,
-        faults=faults,
+        broken=found.broken,
+        faults=found.faults,
         style=(templates / "report.css").read_text(encoding="utf-8"),
         script=(templates / "report.js").read_text(encoding="utf-8"),
         plotly=get_plotlyjs(),
-        data=_embedded(study, surfaces),
+        data=_embedded(study, found.surfaces),
     )
 
 
-def _scene(
-    figures: Path, study: Study, surfaces: xr.Dataset, scene: Scene, rows: Sequence[Difference]
-) -> dict[str, Any]:
-    pairs = pairs_of(scene, study.ladder)
+def _scene(figures: Path, found: Findings, scene: Scene) -> dict[str, Any]:
+    pairs = pairs_of(scene, found.study.ladder)
+    own = [row for row in found.rows if row.scene == scene.name]
     return {
         "scene": scene,
         "digest": scene.digest(),
-        "pairs": pairs,
-        "verdicts": [
-            _verdict(pair, [row for row in rows if (row.scene, row.pair) == (scene.name, pair.key)]) for pair in pairs
-        ],
+        "verdicts": [_verdict(pair, [row for row in own if row.pair == pair.key]) for pair in pairs],
         "bodies": [
             {
                 "number": body,
                 "pictures": [
                     {"pair": pair, "png": _inlined(figures / figure_name(scene, body, pair))} for pair in pairs
                 ],
+                "budget": _inlined(figures / budget_figure_name(scene, body)),
             }
             for body in range(1, len(scene.bodies) + 1)
         ],
@@ -110,20 +102,12 @@ def _verdict(pair: Pair, rows: Sequence[Difference]) -> str:
     if not known:
         return f"{pair.title.capitalize()}: no phase pair has a value on both sides."
     worst = max(known, key=lambda row: row.maximum)
-    medians = ", ".join(f"{_percent(row.median)} for body {row.body}" for row in rows)
+    medians = ", ".join(f"{percent(row.median)} for body {row.body}" for row in rows)
     return (
         f"{pair.title.capitalize()} ({pair.first.title} against {pair.second.title}): median {medians}; "
-        f"largest {_percent(worst.maximum)}, body {worst.body}, at ({_degrees(worst.phases[0])}, "
-        f"{_degrees(worst.phases[1])}); {rows[0].not_ok} of the points not ok."
+        f"largest {percent(worst.maximum)}, body {worst.body}, at ({degrees(worst.phases[0])}, "
+        f"{degrees(worst.phases[1])}); {rows[0].not_ok} of the points not ok."
     )
-
-
-def _percent(value: float) -> str:
-    return "none" if not math.isfinite(value) else f"{100.0 * value:.2g} %"
-
-
-def _degrees(phase: float) -> str:
-    return f"{math.degrees(phase):.0f}°"
 
 
 def _inlined(path: Path) -> str:

@@ -16,8 +16,8 @@ from datetime import UTC, datetime
 
 from rich.console import Console
 
-from comparison.acceptance import broken_limits
-from comparison.differences import differences
+from comparison.effective import effective_values
+from comparison.findings import findings
 from comparison.ladder import LADDER, Rung
 from comparison.options import Options, UsageError, parsed
 from comparison.progress import Stage, progress
@@ -80,8 +80,8 @@ def _run(study: Study, options: Options, console: Console, command: str, executo
         answers = sweep(tiles, solve_tile, unanswered, done, options.jobs, executor)
     computed = time.monotonic() - begin
     surfaces = labelled_surfaces(study, tiles, answers)
-    rows = differences(study, surfaces)
-    broken = broken_limits(study, surfaces, rows)
+    console.print("Reading the effective values back from one motion of every model.")
+    effective = effective_values(study, options.jobs, executor)
     faults = sorted(
         {f"{tile.scene.name}, {titles[tile.rung]}: {a.fault}" for tile, a in zip(tiles, answers) if a.fault}
     )
@@ -94,16 +94,17 @@ def _run(study: Study, options: Options, console: Console, command: str, executo
         "jobs": options.jobs,
         "provenance": provenance(),
     }
+    found = findings(study, surfaces, effective, faults, run)
     console.print("Drawing the figures and writing the report.")
     with replaced_when_complete(options.out) as folder:
-        write_report(folder, study, surfaces, rows, broken, faults, run)
+        write_report(folder, found)
     for line in faults:
         print(f"solver: {line}", file=sys.stderr)
-    for line in broken if options.check else []:
+    for line in found.broken if options.check else []:
         print(f"limit broken: {line}", file=sys.stderr)
     _print_closing(console, options, run, time.monotonic() - begin)
-    print_differences(console, rows)
-    return 1 if options.check and broken else 0
+    print_differences(console, found.rows)
+    return 1 if options.check and found.broken else 0
 
 
 def _print_closing(console: Console, options: Options, run: dict[str, object], seconds: float) -> None:

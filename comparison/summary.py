@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from comparison.differences import Difference
+from comparison.findings import Findings
 from comparison.ladder import rungs_of
-from comparison.study import Study
 from reference.problem import Scene
 
 SCHEMA = "phase-resonance/summary"
@@ -24,38 +23,36 @@ def outcome_counts(surfaces: xr.Dataset, scene: str, model: str) -> dict[str, in
     return dict(Counter(np.asarray(surfaces["status"].sel(scene=scene, model=model)).ravel().tolist()).most_common())
 
 
-def summary(
-    study: Study,
-    surfaces: xr.Dataset,
-    rows: Sequence[Difference],
-    broken: Sequence[str],
-    faults: Sequence[str],
-    run: Mapping[str, Any],
-) -> dict[str, Any]:
+def summary(found: Findings) -> dict[str, Any]:
     """
     Everything a program needs to judge a run without the report. NaN is written as null.
 
     schema, version; run (command, times, provenance); grid, tolerance; models (key, title, adds, settings); scenes
-    (name, title, digest, models: outcomes and cost in s; differences: one entry per pair and body, see `Difference`);
-    broken (acceptance limits, one line each); faults (what solvers complained about).
+    (name, title, digest, models: outcomes and cost in s; differences: one entry per pair and body, see `Difference`;
+    budget: one per body and step, see `Entry`; effective: one per model, see `Effective`); broken (acceptance limits,
+    one line each); faults (what solvers complained about).
     """
+    study = found.study
     return {
         "schema": SCHEMA,
         "version": VERSION,
-        "run": dict(run),
+        "run": dict(found.run),
         "grid": study.grid,
         "tolerance": study.tolerance,
         "models": [
             {"key": rung.key, "title": rung.title, "adds": rung.adds, "settings": dict(rung.settings)}
             for rung in study.ladder
         ],
-        "scenes": [_scene(study, scene, surfaces, rows) for scene in study.scenes],
-        "broken": list(broken),
-        "faults": list(faults),
+        "scenes": [_scene(found, scene) for scene in study.scenes],
+        "broken": list(found.broken),
+        "faults": list(found.faults),
     }
 
 
-def _scene(study: Study, scene: Scene, surfaces: xr.Dataset, rows: Sequence[Difference]) -> dict[str, Any]:
+def _scene(found: Findings, scene: Scene) -> dict[str, Any]:
+    def own(rows: Sequence[Any]) -> list[dict[str, Any]]:
+        return [_finite(asdict(row)) for row in rows if row.scene == scene.name]
+
     return {
         "name": scene.name,
         "title": scene.title,
@@ -65,15 +62,21 @@ def _scene(study: Study, scene: Scene, surfaces: xr.Dataset, rows: Sequence[Diff
         "acceptance": scene.acceptance.model_dump(),
         "models": {
             rung.key: {
-                "outcomes": outcome_counts(surfaces, scene.name, rung.key),
-                "cost": float(surfaces["cost"].sel(scene=scene.name, model=rung.key)),
+                "outcomes": outcome_counts(found.surfaces, scene.name, rung.key),
+                "cost": float(found.surfaces["cost"].sel(scene=scene.name, model=rung.key)),
             }
-            for rung in rungs_of(scene, study.ladder)
+            for rung in rungs_of(scene, found.study.ladder)
         },
-        "differences": [_finite(asdict(row)) for row in rows if row.scene == scene.name],
+        "differences": own(found.rows),
+        "budget": own(found.budget),
+        "effective": own(found.effective),
     }
 
 
-def _finite(entry: dict[str, Any]) -> dict[str, Any]:
+def _finite(value: Any) -> Any:
     """JSON knows no NaN: null instead."""
-    return {key: None if isinstance(value, float) and not np.isfinite(value) else value for key, value in entry.items()}
+    if isinstance(value, dict):
+        return {key: _finite(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(part) for part in value]
+    return None if isinstance(value, float) and not np.isfinite(value) else value

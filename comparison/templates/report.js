@@ -25,9 +25,9 @@ function draw(box) {
     type: "surface", x: phase, y: phase, z: turned(wrapped(mu)), scene, colorscale: colours, cmin: range[0], cmax: range[1],
     colorbar: { x, len: 0.7, thickness: 10, tickfont: { size: 10 } }, showscale: x !== null, hovertemplate: hover(unit),
   });
-  const camera = box.camera || { eye: { x: -1.35, y: -1.75, z: 1.05 }, center: { x: 0, y: 0, z: -0.12 } };
-  const space = (x0, x1, name, range) => ({ domain: { x: [x0, x1], y: [0, 0.93] }, camera, aspectmode: "manual",
-    aspectratio: { x: 1, y: 1, z: 0.65 }, xaxis: axis("α₁"), yaxis: axis("α₂"), zaxis: { title: { text: name }, range } });
+  const camera = box.camera || { eye: { x: -1.15, y: -1.5, z: 0.9 }, center: { x: 0, y: 0, z: -0.1 } };
+  const space = (x0, x1, range) => ({ domain: { x: [x0, x1], y: [0, 1] }, camera, aspectmode: "manual",
+    aspectratio: { x: 1, y: 1, z: 0.65 }, xaxis: axis("α₁"), yaxis: axis("α₂"), zaxis: { title: { text: "" }, range } });
   const heading = (x, text) => ({ x, y: 1, xref: "paper", yref: "paper", showarrow: false, text: `<b>${text}</b>`, font: { size: 13 } });
   const mu = `μ<sub>${body}</sub>`;
   Plotly.react(box, [
@@ -36,9 +36,9 @@ function draw(box) {
     surface(percent, "scene3", [[0, "#2166ac"], [0.5, "#f7f7f7"], [1, "#b2182b"]], [-reach, reach], 1, " %"),
   ], {
     margin: { l: 0, r: 10, t: 6, b: 0 }, font: { size: 11 },
-    scene: space(0, 0.3, mu, [low, high]), scene2: space(0.31, 0.62, mu, [low, high]),
-    scene3: space(0.69, 0.99, "%", [-reach, reach]),
-    annotations: [heading(0.13, data.titles[first]), heading(0.46, data.titles[second]),
+    scene: space(0, 0.3, [low, high]), scene2: space(0.31, 0.62, [low, high]),
+    scene3: space(0.69, 0.99, [-reach, reach]),
+    annotations: [heading(0.13, `${mu}, ${data.titles[first]}`), heading(0.46, `${mu}, ${data.titles[second]}`),
       heading(0.85, "difference, % of the first")],
   }, { displaylogo: false, responsive: true, modeBarButtonsToRemove: ["toImage"] });
   if (!box.linked) {

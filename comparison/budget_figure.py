@@ -1,0 +1,64 @@
+"""One map per step of the budget: how much each rung of the ladder adds to mu_i, and where that is real."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from comparison.budget import TOTAL, Step, steps
+from comparison.figures import QUARTER_NAMES, QUARTERS, SIGN_COLOURS, closed
+from comparison.study import Study
+from reference.problem import Scene
+
+LINEAR = 1e-6  # relative: below it the colours are linear, above it logarithmic in both directions
+
+
+def budget_figure_name(scene: Scene, body: int) -> str:
+    """File name of the figure of one scene and body."""
+    return f"{scene.name}-body{body}-budget.png"
+
+
+def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> None:
+    """Write one map per step, and of the total, to `path`, PNG: percent of the first model's mu_i on one scale."""
+    from matplotlib.colors import SymLogNorm
+
+    found = steps(study, surfaces, scene.name, body)
+    figure = Figure(figsize=(13.0, 3.4), dpi=110)
+    FigureCanvasAgg(figure)
+    figure.suptitle(f"{scene.title} ({scene.name}), body {body}: what each model adds", fontsize=12, y=0.98)
+    sizes = np.abs(np.concatenate([step.size[np.isfinite(step.size)] for step in found] or [np.zeros(0)]))
+    largest = max(float(sizes.max()) if sizes.size else 0.0, 10.0 * LINEAR)
+    norm = SymLogNorm(100.0 * LINEAR, vmin=-100.0 * largest, vmax=100.0 * largest)
+    width = 0.86 / len(found)
+    for index, step in enumerate(found):
+        axes = figure.add_axes((0.045 + index * width, 0.14, 0.82 * width, 0.64))
+        image = _map(axes, step, norm)
+        if index:
+            axes.set_yticklabels([])
+    bar = figure.colorbar(image, cax=figure.add_axes((0.915, 0.14, 0.01, 0.64)))
+    bar.set_label("% of the first model's value", fontsize=8)
+    bar.ax.tick_params(labelsize=8)
+    figure.savefig(path)
+
+
+def _map(axes: Axes, step: Step, norm: object) -> object:
+    phase, size = closed(100.0 * step.size)
+    _, real = closed(step.real.astype(float))
+    axes.set_facecolor("0.75")
+    image = axes.pcolormesh(phase, phase, size.T, cmap=SIGN_COLOURS, norm=norm, shading="nearest")
+    hidden = np.where(np.isfinite(size) & (real == 0.0), 1.0, np.nan)
+    axes.pcolor(phase, phase, hidden.T, hatch="////", alpha=0.0, shading="nearest")
+    axes.set_xlim(0.0, 2.0 * np.pi)
+    axes.set_ylim(0.0, 2.0 * np.pi)
+    axes.set_aspect("equal")
+    axes.set_xticks(QUARTERS, QUARTER_NAMES, fontsize=8)
+    axes.set_yticks(QUARTERS, QUARTER_NAMES, fontsize=8)
+    known = np.isfinite(step.size)
+    share = f"real at {100.0 * step.real[known].mean():.0f} %" if known.any() else "no common point"
+    axes.set_title(f"{'total' if step.key == TOTAL else step.second.title}\n{share}", fontsize=9)
+    return image

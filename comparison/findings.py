@@ -1,0 +1,46 @@
+"""Everything a run found, as the report and the summary need it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import xarray as xr
+
+from comparison.acceptance import broken_limits
+from comparison.budget import Entry, budget
+from comparison.differences import Difference, differences
+from comparison.effective import Effective
+from comparison.study import Study
+
+
+@dataclass(frozen=True)
+class Findings:
+    """
+    surfaces: see `labelled_surfaces`. rows: differences of pairs of models. budget: what every rung adds. effective:
+    values read back from each model. broken: acceptance limits, one line each. faults: what solvers complained about.
+    run: command, times, provenance.
+    """
+
+    study: Study
+    surfaces: xr.Dataset
+    rows: Sequence[Difference]
+    budget: Sequence[Entry]
+    effective: Sequence[Effective]
+    broken: Sequence[str]
+    faults: Sequence[str]
+    run: Mapping[str, Any]
+
+
+def findings(
+    study: Study,
+    surfaces: xr.Dataset,
+    effective: Sequence[Effective],
+    faults: Sequence[str],
+    run: Mapping[str, Any],
+) -> Findings:
+    """What the surfaces say once they are complete."""
+    rows = differences(study, surfaces)
+    broken = broken_limits(study, surfaces, rows)
+    return Findings(study, surfaces, rows, budget(study, surfaces), effective, broken, faults, run)
