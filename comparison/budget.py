@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -116,7 +117,7 @@ def torus_distance(one: Sequence[float], other: Sequence[float]) -> float:
 
 def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> Entry:
     size, known = np.abs(step.size), np.isfinite(step.size)
-    names = {
+    names: dict[str, Any] = {
         "scene": scene,
         "body": step.body,
         "step": step.key,
@@ -125,7 +126,7 @@ def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> Entry:
         "points": int(known.sum()),
     }
     if not known.any():
-        nothing = dict.fromkeys(
+        nothing: dict[str, Any] = dict.fromkeys(
             ("mean", "median", "rms", "percentile95", "maximum", "real", "uncertain", "peak_moves", "correlation"),
             float("nan"),
         )

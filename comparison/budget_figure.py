@@ -8,6 +8,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import QuadMesh
+from matplotlib.colors import SymLogNorm
 from matplotlib.figure import Figure
 
 from comparison.budget import TOTAL, Step, steps
@@ -25,12 +27,11 @@ def budget_figure_name(scene: Scene, body: int) -> str:
 
 def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> None:
     """Write one map per step, and of the total, to `path`, PNG: percent of the first model's mu_i on one scale."""
-    from matplotlib.colors import SymLogNorm
-
     found = steps(study, surfaces, scene.name, body)
     figure = Figure(figsize=(13.0, 3.4), dpi=110)
     FigureCanvasAgg(figure)
-    figure.suptitle(f"{scene.title} ({scene.name}), body {body}: what each model adds", fontsize=12, y=0.98)
+    heading = f"{scene.title} ({scene.name}), body {body}: what each model adds (dots: within its uncertainty)"
+    figure.suptitle(heading, fontsize=12, y=0.98)
     sizes = np.abs(np.concatenate([step.size[np.isfinite(step.size)] for step in found] or [np.zeros(0)]))
     largest = max(float(sizes.max()) if sizes.size else 0.0, 10.0 * LINEAR)
     norm = SymLogNorm(100.0 * LINEAR, vmin=-100.0 * largest, vmax=100.0 * largest)
@@ -46,13 +47,12 @@ def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, bo
     figure.savefig(path)
 
 
-def _map(axes: Axes, step: Step, norm: object) -> object:
+def _map(axes: Axes, step: Step, norm: SymLogNorm) -> QuadMesh:
     phase, size = closed(100.0 * step.size)
-    _, real = closed(step.real.astype(float))
     axes.set_facecolor("0.75")
     image = axes.pcolormesh(phase, phase, size.T, cmap=SIGN_COLOURS, norm=norm, shading="nearest")
-    hidden = np.where(np.isfinite(size) & (real == 0.0), 1.0, np.nan)
-    axes.pcolor(phase, phase, hidden.T, hatch="////", alpha=0.0, shading="nearest")
+    row, column = np.nonzero(np.isfinite(step.size) & ~step.real)
+    axes.plot(phase[row], phase[column], ".", color="0.35", markersize=160.0 / len(phase) / 4.0, markeredgewidth=0.0)
     axes.set_xlim(0.0, 2.0 * np.pi)
     axes.set_ylim(0.0, 2.0 * np.pi)
     axes.set_aspect("equal")

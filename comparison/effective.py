@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,7 +93,7 @@ def _lost(task: tuple[Scene, Rung], outcome: Outcome, fault: str) -> Effective:
     return Effective(scene.name, rung.key, fault=f"{outcome}: {fault}")
 
 
-def _measured(scene: Scene, motion: Trajectory) -> dict[str, float]:
+def _measured(scene: Scene, motion: Trajectory) -> dict[str, Any]:
     place = motion.position[:, 0]
     ground = ground_acceleration(scene, PHASES, motion.time)
     swing = (place**2).sum(axis=1)

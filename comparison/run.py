@@ -26,9 +26,9 @@ from comparison.store import replaced_when_complete
 from comparison.study import Study
 from comparison.surfaces import labelled_surfaces
 from comparison.sweep import process_pool, sweep
-from comparison.terminal import print_differences, print_plan
+from comparison.terminal import START_UP, print_differences, print_plan
 from comparison.tiles import Answer, Tile, solve_tile, unanswered
-from comparison.warm_up import warm_up
+from comparison.warm_up import WARM_UP, warm_up
 from reference.problem import SceneError
 
 PLAIN_WIDTH = 120  # columns of a table that goes to a file or a pipe
@@ -64,20 +64,28 @@ def _run(study: Study, options: Options, console: Console, command: str, executo
     from comparison.report import write_report  # plotting libraries: not needed to refuse a command or to plan
 
     begin, began = time.monotonic(), datetime.now(UTC)
-    warm_up(console, study, executor)
-    tiles = study.tiles()
-    titles = {rung.key: rung.title for rung in study.ladder}
+    tiles = [warm_up(study), *study.tiles()]
+    titles = {WARM_UP: "compiling the reference", **{rung.key: rung.title for rung in study.ladder}}
+    compiled = {rung.key for rung in study.ladder if rung.side == "reference"}
+    pending = {WARM_UP}
     stages = {
         rung.title: Stage(sum(len(tile.phases) for tile in tiles if tile.rung == rung.key), study.seconds(rung))
         for rung in study.ladder
     }
     stages = {title: stage for title, stage in stages.items() if stage.points}
+    stages = {titles[WARM_UP]: Stage(1, START_UP), **stages}
+    console.print("On a new installation the reference is compiled first, once: that takes minutes.")
     with progress(console, stages, options.jobs) as display:
 
         def done(tile: Tile, answer: Answer) -> None:
+            pending.discard(tile.rung)
             display.advance(titles[tile.rung], len(tile.phases))
 
-        answers = sweep(tiles, solve_tile, unanswered, done, options.jobs, executor)
+        def ready(tile: Tile) -> bool:
+            return not pending or tile.rung not in compiled
+
+        answers = sweep(tiles, solve_tile, unanswered, done, options.jobs, executor, ready)
+    tiles, answers = tiles[1:], answers[1:]
     computed = time.monotonic() - begin
     surfaces = labelled_surfaces(study, tiles, answers)
     console.print("Reading the effective values back from one motion of every model.")

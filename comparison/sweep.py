@@ -35,6 +35,10 @@ def _begin_worker() -> None:
     numba.set_num_threads(1)
 
 
+def at_once(task: object) -> bool:
+    return True
+
+
 def sweep(
     tasks: Sequence[Task],
     solve: Callable[[Task], Result],
@@ -42,9 +46,13 @@ def sweep(
     done: Callable[[Task, Result], None],
     jobs: int,
     executor: Callable[[int], Executor] = process_pool,
+    ready: Callable[[Task], bool] = at_once,
 ) -> list[Result]:
     """
     `solve` every task on `executor(jobs)`; `done` is called as results arrive, in any order.
+
+    A task that is not `ready` lets others pass; it is asked again whenever a result has arrived, and starts in any
+    case when nothing else is left to wait for.
 
     When a worker dies, the tasks then in flight run once more, each alone in a fresh process; one that dies again is
     answered by `lost(task, Outcome.WORKER_DIED, message)`, so that only the culprit is given up.
@@ -57,8 +65,8 @@ def sweep(
 
     queue = deque(range(len(tasks)))
     while queue:
-        for index in _drain(tasks, queue, solve, lost, keep, executor, jobs):
-            if _drain(tasks, deque([index]), solve, lost, keep, executor, 1):
+        for index in _drain(tasks, queue, solve, lost, keep, executor, jobs, ready):
+            if _drain(tasks, deque([index]), solve, lost, keep, executor, 1, at_once):
                 keep(index, lost(tasks[index], Outcome.WORKER_DIED, "the worker process died, twice"))
     return [results[index] for index in range(len(tasks))]
 
@@ -71,6 +79,7 @@ def _drain(
     keep: Callable[[int, Result], None],
     executor: Callable[[int], Executor],
     jobs: int,
+    ready: Callable[[Task], bool],
 ) -> list[int]:
     """Work through the queue until it is empty or a worker dies; the tasks in flight at that moment."""
     flying: dict[Future[Result], int] = {}
@@ -78,12 +87,16 @@ def _drain(
     try:
         while queue or flying:
             while queue and len(flying) < jobs:  # no more in flight than workers: few suspects when one dies
-                index = queue.popleft()
+                index = next((index for index in queue if ready(tasks[index])), None if flying else queue[0])
+                if index is None:
+                    break
+                queue.remove(index)
                 try:
                     flying[pool.submit(solve, tasks[index])] = index
                 except BrokenExecutor:
-                    queue.appendleft(index)
-                    return sorted(flying.values()) or [queue.popleft()]
+                    if flying:
+                        queue.appendleft(index)
+                    return sorted(flying.values()) or [index]
             for future in wait(flying, return_when=FIRST_COMPLETED).done:
                 try:
                     result = future.result()

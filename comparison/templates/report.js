@@ -25,7 +25,7 @@ function draw(box) {
     type: "surface", x: phase, y: phase, z: turned(wrapped(mu)), scene, colorscale: colours, cmin: range[0], cmax: range[1],
     colorbar: { x, len: 0.7, thickness: 10, tickfont: { size: 10 } }, showscale: x !== null, hovertemplate: hover(unit),
   });
-  const camera = box.camera || { eye: { x: -1.15, y: -1.5, z: 0.9 }, center: { x: 0, y: 0, z: -0.1 } };
+  const camera = box.camera || { eye: { x: -1.25, y: -1.63, z: 0.98 }, center: { x: 0, y: 0, z: -0.1 } };
   const space = (x0, x1, range) => ({ domain: { x: [x0, x1], y: [0, 1] }, camera, aspectmode: "manual",
     aspectratio: { x: 1, y: 1, z: 0.65 }, xaxis: axis("α₁"), yaxis: axis("α₂"), zaxis: { title: { text: "" }, range } });
   const heading = (x, text) => ({ x, y: 1, xref: "paper", yref: "paper", showarrow: false, text: `<b>${text}</b>`, font: { size: 13 } });

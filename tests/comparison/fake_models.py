@@ -5,14 +5,14 @@ from __future__ import annotations
 import os
 import signal
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from comparison.ladder import LADDER, Rung
-from reference.problem import Amplification, Outcome, Scene
+from reference.problem import GRAVITY, Amplification, Outcome, Scene, Trajectory
 
 DEADLY = 2.0 * np.pi * 3 / 4  # alpha1, alpha2 of the one point of a 4 x 4 grid that a failing model fails at
 
@@ -76,8 +76,39 @@ def uneven(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Ampli
     return smooth(scene, phases, tolerance)
 
 
-def forbidden(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+def forbidden(scene: Scene, phases: object, **settings: object) -> Amplification:
     raise AssertionError("nothing should have been computed")
+
+
+def sliding(
+    scene: Scene,
+    phase: Sequence[float],
+    radius: float,
+    friction: float,
+    mass: float,
+    swing: float = 0.05,
+    status: str = "ok",
+) -> Trajectory:
+    """
+    Slides to and fro on a sphere of `radius` under the contact force that `mass` and `friction` give.
+
+    The bodies together are accelerated by exactly that force; the scene's own masses make them lighter or heavier.
+    """
+    time = np.linspace(0.0, scene.duration, 601)
+    angle, rate = swing / radius * np.sin(2.0 * time), 2.0 * swing / radius * np.cos(2.0 * time)
+    zero = np.zeros_like(time)
+    place = radius * np.stack([np.sin(angle), zero, 1.0 - np.cos(angle)], axis=1)
+    velocity = radius * (rate * np.stack([np.cos(angle), zero, np.sin(angle)])).T
+    speed = np.linalg.norm(velocity, axis=1)
+    normal = np.stack([-np.sin(angle), zero, np.cos(angle)], axis=1)
+    force = np.where(time == 0.0, 1.0, 1.0 + 0.1 * np.sin(3.0 * time)) * mass * GRAVITY
+    strength = friction * (speed if scene.lubricated else 1.0) * force
+    direction = np.divide(velocity, speed[:, None], out=np.zeros_like(velocity), where=speed[:, None] > 0.0)
+    total = (force[:, None] * normal - strength[:, None] * direction) / scene.total_mass
+    total[:, 2] -= GRAVITY
+    bodies = len(scene.bodies)
+    spread = [np.repeat(part[:, None, :], bodies, axis=1) for part in (place, velocity, total)]
+    return Trajectory(time, *spread, contact_force=force, stick=[], status=status, instant=np.nan)
 
 
 def planted(

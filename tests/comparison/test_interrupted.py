@@ -13,7 +13,8 @@ import pytest
 
 HERE = Path(__file__).parent
 SCRIPT = """
-import sys
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background inherits it ignored
 sys.path[:0] = [{here!r}, {root!r}]
 from comparison.run import main
 from fake_models import fake_ladder

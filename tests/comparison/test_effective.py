@@ -1,0 +1,82 @@
+"""Effective values come from the motion: a model that computes with other values than it was given is seen."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from conftest import Run
+from fake_models import fake_ladder
+
+from comparison.effective import PHASES, effective_values, read_back, stated
+from comparison.ladder import Rung
+from comparison.study import Study
+from reference.problem import ground_acceleration, load_scene
+
+TRUE = {"radius": 0.31, "friction": 0.123, "mass": 2.2}  # the scene says 0.248 m, 0.1 and 2 kg
+
+
+def _rung(**settings: object) -> Rung:
+    return replace(fake_ladder()[-1], trajectory="fake_models:sliding", settings=settings)
+
+
+def test_what_the_model_really_computed_with_is_read_from_its_motion() -> None:
+    found = read_back((load_scene("fig3-I"), _rung(**TRUE)))
+    assert found.fault == ""
+    assert found.radius == pytest.approx(TRUE["radius"], rel=1e-12)
+    assert found.mass == pytest.approx(TRUE["mass"], rel=1e-12)
+    assert found.contact == pytest.approx(TRUE["mass"] * 9.81, rel=1e-12)
+    assert found.friction == pytest.approx(TRUE["friction"], rel=1e-9)
+
+
+def test_in_a_lubricated_scene_friction_is_read_per_speed() -> None:
+    found = read_back((load_scene("fig4-viscous"), _rung(**{**TRUE, "friction": 0.7})))
+    assert found.friction == pytest.approx(0.7, rel=1e-9)
+
+
+def test_the_scene_states_what_the_motion_is_held_against() -> None:
+    scene = load_scene("fig3-II")
+    value = stated(scene)
+    assert value.radius == scene.radius
+    assert (value.friction, value.mass) == (0.1, 2.0)
+    ground = ground_acceleration(scene, PHASES, [0.0])[0]
+    assert value.acceleration == pytest.approx(np.linalg.norm(ground))
+
+
+def test_a_model_whose_motion_fails_says_why_and_has_no_value() -> None:
+    found = read_back((load_scene("fig3-I"), fake_ladder()[-1]))
+    assert found.fault == "AssertionError: nothing should have been computed"
+    assert np.isnan([found.radius, found.friction, found.contact, found.mass]).all()
+
+
+def test_a_motion_that_ended_early_has_no_value() -> None:
+    found = read_back((load_scene("fig3-I"), _rung(**TRUE, status="rim reached")))
+    assert found.fault == "the motion ended: rim reached"
+    assert np.isnan(found.radius)
+
+
+def test_a_platform_that_never_moves_has_no_radius_and_no_friction() -> None:
+    found = read_back((load_scene("fig3-I"), _rung(**TRUE, swing=0.0)))
+    assert np.isnan(found.radius)
+    assert np.isnan(found.friction)
+    assert found.mass == pytest.approx(TRUE["mass"], rel=1e-12)
+
+
+def test_every_scene_has_its_own_statement_and_its_models_below_it() -> None:
+    study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), 2, 1e-3, fake_ladder())
+    found = effective_values(study, 2, ThreadPoolExecutor)
+    dry = ["scene", "small", "exact", "resolved", "regularised", "translational"]
+    assert [one.model for one in found if one.scene == "fig3-I"] == dry
+    assert [one.model for one in found if one.scene == "fig4-viscous"] == ["scene", "small", "exact", "translational"]
+
+
+def test_the_summary_carries_them_with_null_for_what_is_not_known(command: Callable[..., Run]) -> None:
+    run = command("fig3-I", "--grid", "2")
+    (scene,) = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))["scenes"]
+    assert scene["effective"][0]["model"] == "scene"
+    assert scene["effective"][0]["mass"] == 2.0
+    assert scene["effective"][1]["mass"] is None

@@ -1,0 +1,59 @@
+"""The reference is compiled by one worker; the engine's points go on meanwhile, the reference's wait for it."""
+
+from __future__ import annotations
+
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
+from fake_models import fake_ladder
+
+from comparison.study import Study
+from comparison.sweep import sweep
+from comparison.warm_up import WARM_UP, warm_up
+from reference.problem import Outcome, load_scene
+
+
+def _lost(task: str, outcome: Outcome, fault: str) -> str:
+    return f"{outcome}: {fault}"
+
+
+def test_what_is_not_ready_lets_others_pass_and_starts_as_soon_as_it_is() -> None:
+    compiled = threading.Event()
+    began: list[str] = []
+
+    def solve(task: str) -> str:
+        began.append(task)
+        if task == "compile":
+            assert compiled.wait(timeout=10.0), "the engine's tasks ran meanwhile"
+        if task == "engine 2":
+            compiled.set()
+        return task
+
+    done: list[str] = []
+    results = sweep(
+        ["compile", "reference 1", "reference 2", "engine 1", "engine 2"],
+        solve,
+        _lost,
+        lambda task, result: done.append(task),
+        2,
+        ThreadPoolExecutor,
+        lambda task: (task != "reference 1" and task != "reference 2") or "compile" in done,
+    )
+    assert began[:3] == ["compile", "engine 1", "engine 2"]
+    assert sorted(began[3:]) == ["reference 1", "reference 2"]
+    assert results == ["compile", "reference 1", "reference 2", "engine 1", "engine 2"], "in the order of the tasks"
+
+
+def test_what_is_never_ready_runs_when_nothing_else_is_left() -> None:
+    results = sweep(
+        ["a", "b"], str.upper, _lost, lambda task, result: None, 2, ThreadPoolExecutor, lambda task: task == "a"
+    )
+    assert results == ["A", "B"]
+
+
+def test_the_first_call_is_one_short_point_of_the_reference() -> None:
+    study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), 8, 1e-3, fake_ladder())
+    tile = warm_up(study)
+    assert (tile.rung, len(tile.phases), tile.scene.duration) == (WARM_UP, 1, 0.5)
+    assert tile.amplification == study.ladder[0].amplification
+    assert study.scenes[0].duration == 20.0, "the scene itself is not shortened"
