@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 RATIO = 4  # between neighbouring step sizes
 DEEPEST = 7  # smallest step is RATIO**-DEEPEST of the largest
 SETTLING = 2  # depth of the first chunk: the contact settles
-LONG, SHORT = 256, 32  # steps in a chunk at the largest step, at smaller ones
+LONG, SHORT = 256, 32  # steps in a chunk at the largest step at most, at smaller ones
 LATEST = 8  # rows at the end of a chunk that decide whether the step may grow
 ALLOWANCE = 100  # times the number of largest steps in the run, before it is given up
 
@@ -64,10 +64,10 @@ def march(
     """Run from `start` at time 0 to `end`; ground: plate's acceleration (T, 3) at times (T,), in units of the model."""
     model = engine.model
     result = March(Peaks(len(model.bodies), model.corner))
-    state, time, depth = start, 0.0, SETTLING
+    state, time, depth, ahead = start, 0.0, SETTLING, LONG
     while time < end * (1.0 - 1e-12):
         step = control.step / RATIO**depth
-        count = LONG if depth == 0 else SHORT
+        count = ahead if depth == 0 else SHORT
         count = min(count, math.ceil((end - time) / step * (1.0 - 1e-12)))
         step = min(step, (end - time) / count)
         motion = engine.run(state, time, step, count)
@@ -96,6 +96,7 @@ def march(
             absolute = kept.accelerations[:, model.bodies] + ground(kept.time)[:, None, :]
             result.peaks.add(kept.time, absolute, kept.slip)
             state, time = kept.state(last), float(kept.time[last])
+            ahead = _steps_ahead(kept, engine, control)
         if refused:
             depth += 1 if excess[failing[0]] < RATIO else 2
             depth = min(depth, DEEPEST)
@@ -122,11 +123,28 @@ def _excess(motion: Motion, engine: Engine, per_turn: float) -> Array:
     return excess
 
 
+def _steps_ahead(motion: Motion, engine: Engine, control: Control) -> int:
+    """How many of the largest steps to try: up to where the slip speed, going on as now, asks for smaller ones."""
+    corner = engine.model.corner
+    if len(motion.time) < 2 or not np.isfinite(corner):
+        return LONG
+    slip = motion.slip[-2:].min(axis=1)
+    rate = (slip[1] - slip[0]) / (motion.time[-1] - motion.time[-2])
+    target = corner
+    if slip[1] > corner:
+        size = float(np.linalg.norm(motion.accelerations[-1, engine.model.bodies[0]]))
+        target = max(corner, size * control.step / control.turn)
+    if (target - slip[1]) * rate <= 0.0:
+        return LONG
+    return int(np.clip((target - slip[1]) / rate / control.step, SHORT, LONG))
+
+
 def _fate(motion: Motion, engine: Engine) -> tuple[Outcome, int]:
     """The first thing that ends the model's validity and its row; OK and the last row if there is none."""
-    offset = np.hypot(*motion.coordinates[:, engine.model.bodies[0, :2]].T)
+    # by height: the horizontal offset only touches rho there and falls again beyond
+    rise = motion.coordinates[:, engine.model.bodies[0, 2]]
     over = len(motion.time)
-    rim = next(iter(np.flatnonzero(offset >= engine.model.rim)), over)
+    rim = next(iter(np.flatnonzero(rise >= engine.model.rim)), over)
     lost = next(iter(np.flatnonzero((motion.gap >= 0.0).all(axis=1))), over)
     if min(rim, lost) == over:
         return Outcome.OK, over - 1

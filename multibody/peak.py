@@ -111,11 +111,12 @@ def _side(row: int, count: int, corners: NDArray[np.intp]) -> tuple[int, int]:
 
 def _extrapolated(time: Array, values: Array, instant: float) -> float:
     """The polynomial through the given samples (one to three) at `instant`."""
-    total = 0.0
-    for i in range(len(time)):
-        others = np.delete(time, i)
-        total += float(values[i] * np.prod((instant - others) / (time[i] - others)))
-    return total
+    nodes, table = time.tolist(), values.tolist()
+    for order in range(1, len(nodes)):  # Neville
+        for i in range(len(nodes) - order):
+            span = nodes[i + order] - nodes[i]
+            table[i] = ((instant - nodes[i]) * table[i + 1] + (nodes[i + order] - instant) * table[i]) / span
+    return float(table[0])
 
 
 def _crossing(time: Array, slip: Array, threshold: float) -> float:

@@ -26,11 +26,14 @@ Array = NDArray[np.float64]
 LEVELS = 8
 STEPS_PER_PERIOD = 150  # of the fastest motion that matters, at level 0
 STATIC = 0.02  # of the shortest period of loading and pendulum: faster links follow without swinging
-TURN = 0.2  # allowed change of the slip velocity in one step at level 0, as its fraction
-PENETRATION = 4e-6  # of rho, at level 0
-NEWTON = 4e-6  # relative tolerance of the forces, at level 0
+TURN = 0.14  # allowed change of the slip velocity in one step at level 0, as its fraction
+PENETRATION = 1e-6  # of rho, at level 0
+STIFFEST = 1e-8  # of rho: rounding of the position is then 2e-8 of the weight
+NEWTON = 1e-5  # relative tolerance of the forces, at level 0
+ROUNDING = 1e-15  # of the position, in units of rho; over the penetration: of the forces
 SAFETY_TWO, SAFETY_MORE = 3.0, 1.25  # Roache's factors for two levels and for more
-BASE = 1e-5  # relative: what two levels can have in common, for instance the carried rounding of the contact
+CHANCE = 4e-4  # relative: what level 0 typically gets wrong; two levels may agree by chance, so no estimate is smaller
+FLOOR = 1e-6  # relative: below this, rounding and the compliance that is left are not measured
 
 
 @dataclass(frozen=True)
@@ -84,9 +87,10 @@ def refine(
         return ground_acceleration(scene, phase, time * units.time) / units.acceleration
 
     for level in range(LEVELS):
-        penetration = PENETRATION / 4.0**level
+        penetration = max(PENETRATION / 4.0**level, STIFFEST)
         model.stiffen(penetration)
-        engine = Engine(model, NEWTON / 4.0**level)
+        newton = NEWTON / 4.0**level
+        engine = Engine(model, newton, max(1e-3 * newton, ROUNDING / penetration))
         control = Control(step / 2.0**level, TURN / 2.0**level)
         marches.append(march(engine, model.start(initial, first, penetration), end, ground, control, keep=keep))
         if level == 0:
@@ -120,7 +124,10 @@ def _errors(marches: list[March]) -> Array:
         # the change before last, at the expected order, guards against two levels that agree by chance
         change = np.maximum(change, np.abs(before.value - marches[-3].peaks.value) / 4.0)
         safety = SAFETY_MORE
-    errors: Array = safety * change / 3.0 + now.sampling + BASE * now.value
+    level = len(marches) - 1
+    errors: Array = (
+        np.maximum(safety * change / 3.0, CHANCE / 4.0**level * now.value) + now.sampling + FLOOR * now.value
+    )
     return errors
 
 

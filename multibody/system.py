@@ -43,7 +43,7 @@ class EngineModel:
 
     bodies: (N, 3), index of the coordinate that moves body i along x, y, z. stiffen: sets the contact so that the
     weight presses it in by a given fraction of rho. start: state from an initial state (None: at rest), the plate's
-    acceleration then, m/s^2, and the same fraction. rim: largest horizontal offset of the platform, units of length.
+    acceleration then, m/s^2, and the same fraction. rim: largest rise of the platform, in units of length.
     corner: slip speed in units of velocity under which the friction law is linear; inf if it has no such corner.
     keep_alive: what the engine only points to.
     """

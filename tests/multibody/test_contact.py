@@ -1,0 +1,117 @@
+"""The contact of the engine against closed forms: what one mass does on the sphere."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scenes_at_hand import CONSTANT, one_body
+from scipy.integrate import solve_ivp
+from scipy.special import ellipk
+
+import multibody
+from multibody.integrate import Engine, silence
+from multibody.surface import assembled
+from multibody.system import EngineState
+from reference.problem import GRAVITY, Scene, State, Trajectory
+
+
+def started(scene: Scene, position: tuple[float, float], velocity: tuple[float, float], **options: float) -> Trajectory:
+    """The motion from an initial state of the single body."""
+    state = State(np.array([position]), np.array([velocity]))
+    return multibody.trajectory(scene, (0.0, 0.0), initial=state, **options)  # type: ignore[arg-type]
+
+
+def test_the_weight_presses_the_contact_in_by_the_static_penetration() -> None:
+    model = assembled(one_body(), "translational", 1e-3)
+    penetration = 1e-4
+    model.stiffen(penetration)
+    begin = model.start(None, np.zeros(3), penetration)
+    raised = begin.coordinates + np.array([0.0, 0.0, penetration, 0.0, 0.0, 0.0])  # touching, not yet pressed in
+    with silence():
+        motion = Engine(model, 1e-8, 1e-12).run(EngineState(raised, begin.velocities, np.zeros(4)), 0.0, 1e-3, 1000)
+    assert motion is not None
+    assert motion.gap[0, 0] == pytest.approx(0.0, abs=1e-15)
+    # settled after 100 of its own time constants, up to Newton's tolerance
+    assert motion.gap[-1, 0] == pytest.approx(-penetration, rel=1e-6)
+    assert motion.coordinates[-1, 2] == pytest.approx(0.0, abs=1e-6 * penetration)
+
+
+def test_a_held_platform_creeps_with_v_reg_times_force_over_friction_limit() -> None:
+    push, mu, v_reg = 0.5, 0.1, 1e-3
+    scene = one_body(friction=mu, duration=0.3, amplitudes=[[-push, 0.0], [0.0, 0.0]], periods=(CONSTANT, CONSTANT))
+    motion = multibody.trajectory(scene, (0.0, 0.0), regularization=v_reg, tolerance=1e-4)
+    x, v, a = motion.position[-1, 0, 0], motion.velocity[-1, 0, 0], motion.absolute_acceleration[-1, 0, 0] + push
+    force = push - GRAVITY * x / scene.radius - a
+    assert 0.4 < force / push < 1.0
+    # the slope of the sphere, x / rho = 6e-4, enters squared
+    assert v == pytest.approx(v_reg * force / (mu * motion.contact_force[-1]), rel=2e-6)
+    assert motion.stick == [(0.0, scene.duration)]
+
+
+def test_sliding_stops_after_v_squared_over_two_mu_g() -> None:
+    speed, mu, v_reg, radius = 1.0, 0.1, 1e-3, 1e4
+    scene = one_body(radius=radius, friction=mu, duration=1.2)
+    motion = started(scene, (0.0, 0.0), (speed, 0.0), regularization=v_reg, tolerance=1e-5)
+    flat = speed**2 / (2.0 * mu * GRAVITY)
+    # the slope of the sphere takes x / (2 rho mu) of it, the last bit below v_reg gives v_reg^2 / (2 mu g) back
+    distance = flat * (1.0 - flat / (2.0 * radius * mu)) + v_reg**2 / (2.0 * mu * GRAVITY)
+    assert motion.position[-1, 0, 0] == pytest.approx(distance, rel=2e-5)
+    assert motion.stick[0][0] == pytest.approx(speed / (mu * GRAVITY), rel=2e-3)
+
+
+def test_planar_sliding_follows_the_closed_form_with_the_centripetal_force() -> None:
+    mu, radius, begin, speed = 0.15, 0.25, 1.0, 0.5
+    scene = one_body(radius=radius, friction=mu, duration=0.4)
+    position = (radius * np.sin(begin), 0.0)
+    motion = started(scene, position, (-speed * np.cos(begin), 0.0), tolerance=1e-4)
+    angle = np.arctan2(motion.position[:, 0, 0], radius - motion.position[:, 0, 2])
+    falling = motion.velocity[:, 0, 0] < -0.1
+
+    def particular(th: np.ndarray | float) -> np.ndarray | float:
+        weight = 2.0 * GRAVITY / (radius * (1.0 + 4.0 * mu**2))
+        return weight * ((1.0 - 2.0 * mu**2) * np.cos(th) + 3.0 * mu * np.sin(th))
+
+    amplitude = ((speed / radius) ** 2 - particular(begin)) * np.exp(-2.0 * mu * begin)
+    expected = radius * np.sqrt(amplitude * np.exp(2.0 * mu * angle) + particular(angle))
+    measured = np.linalg.norm(motion.velocity[:, 0], axis=-1)
+    assert angle[falling].min() < -0.5
+    # h^2 of 3.5 ms steps against the swing of 1 s
+    np.testing.assert_allclose(measured[falling], expected[falling], rtol=1e-4)
+
+
+def test_a_frictionless_swing_has_the_large_angle_period() -> None:
+    radius, begin = 0.25, 1.0
+    scene = one_body(radius=radius, friction=0.0, duration=1.3)
+    motion = started(scene, (radius * np.sin(begin), 0.0), (0.0, 0.0), tolerance=1e-5)
+    x, time = motion.position[:, 0, 0], motion.time
+    rows = np.flatnonzero(x[1:] * x[:-1] < 0.0)[:2]
+    zeros = time[rows] - x[rows] * np.diff(time)[rows] / np.diff(x)[rows]
+    half = 2.0 * np.sqrt(radius / GRAVITY) * ellipk(np.sin(begin / 2.0) ** 2)
+    assert zeros[1] - zeros[0] == pytest.approx(half, rel=1e-5)
+
+
+def test_a_conical_pendulum_keeps_its_circle_at_its_own_rate() -> None:
+    radius, cone = 0.25, 0.6
+    rate = np.sqrt(GRAVITY / (radius * np.cos(cone)))
+    scene = one_body(radius=radius, friction=0.0, duration=2.0)
+    across = radius * np.sin(cone)
+    motion = started(scene, (across, 0.0), (0.0, rate * across), tolerance=1e-5)
+    x, y = motion.position[:, 0, 0], motion.position[:, 0, 1]
+    np.testing.assert_allclose(np.hypot(x, y), across, rtol=2e-5)
+    assert np.unwrap(np.arctan2(y, x))[-1] == pytest.approx(rate * scene.duration, rel=1e-5)
+    # the compliance gives way by N / k more than at rest: 1e-8 of rho
+    np.testing.assert_allclose(motion.contact_force, GRAVITY / np.cos(cone), rtol=1e-4)
+
+
+def test_a_lubricated_platform_is_a_pendulum_with_linear_drag() -> None:
+    lubrication, radius = 0.05, 0.25
+    scene = one_body(radius=radius, lubrication=lubrication, duration=1.0)
+    motion = started(scene, (0.05, 0.0), (0.0, 0.0), regularization=None, tolerance=1e-5)
+
+    def planar(t: float, y: np.ndarray) -> list[float]:
+        th, rate = y
+        drag = lubrication * radius * rate * (GRAVITY * np.cos(th) / radius + rate**2)
+        return [rate, -GRAVITY / radius * np.sin(th) - drag]
+
+    exact = solve_ivp(planar, (0.0, 1.0), [np.arcsin(0.05 / radius), 0.0], rtol=1e-10, atol=1e-12)
+    assert motion.position[-1, 0, 0] == pytest.approx(radius * np.sin(exact.y[0, -1]), abs=1e-5 * 0.05)
