@@ -1,0 +1,40 @@
+"""Scenes for the tests, in few words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from reference.problem import Scene
+
+Rows = Sequence[Sequence[float]]
+
+
+def chain(
+    radius: float = 0.25,
+    friction: float = 0.1,
+    masses: Sequence[float] = (1.0,),
+    stiffness: Rows = (),
+    amplitudes: Rows = ((1.0, 0.0), (0.0, 1.0)),
+    periods: Sequence[float] = (0.9, 1.1),
+    decay: Sequence[float] = (0.3, 0.3),
+    duration: float = 20.0,
+    lubrication: float | None = None,
+) -> Scene:
+    """Bodies of `masses` on links of `stiffness` (N-1, 2), SI; lubrication f_c replaces the dry friction if given."""
+    law: dict[str, Any] = {"friction": friction} if lubrication is None else {"lubrication": lubrication}
+    bodies: list[dict[str, Any]] = [{"mass": masses[0]}]
+    bodies += [{"mass": m, "stiffness": list(k)} for m, k in zip(masses[1:], stiffness)]
+    return Scene.model_validate(
+        {
+            "title": "chain",
+            "duration": duration,
+            "isolator": {"radius": radius, **law},
+            "bodies": bodies,
+            "excitation": {
+                "amplitudes": [list(row) for row in amplitudes],
+                "periods": list(periods),
+                "decay": list(decay),
+            },
+        }
+    )

@@ -1,0 +1,152 @@
+"""
+Energy along a run: kinetic + gravity + springs = work of the ground - work of friction; Newton's law at each sample.
+
+Powers are integrated by Gauss's rule between the instants where the contact sticks or slides and a grid fine enough
+for the kinks that remain where a slide turns round without a rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from chains import chain
+from numpy.polynomial.legendre import leggauss
+
+import reference
+from reference.problem import GRAVITY, Scene, Trajectory, ground_acceleration, load_scene
+
+TOLERANCE = 1e-7
+GRID = 2e-3  # s
+PHASE = (0.3, 1.1)
+
+
+@dataclass(frozen=True)
+class Run:
+    name: str
+    scene: Scene
+    equations: str = "exact"
+    regularization: float | None = None
+
+
+TWO = {"masses": [1.0, 1.0], "stiffness": [[17.0, 27.0]]}
+VERTICAL = [[1.0, 0.4], [-0.3, 1.2], [1.3, 0.9]]
+RUNS = [
+    Run("rest, slide, stop", load_scene("fig3-I")),
+    Run("rest, slide, stop, small", load_scene("fig3-I"), "small"),
+    Run("planar", load_scene("fig4-dry")),
+    Run("vertical loading", chain(0.4, 0.07, [2.0, 1.0, 0.5], [[150.0, 110.0], [180.0, 240.0]], VERTICAL)),
+    Run("deep swing", chain(0.25, 0.1, amplitudes=[[2.8, 1.0], [0.5, 2.8]], periods=[1.2, 1.4], **TWO)),
+    Run("regularised", load_scene("fig3-I"), regularization=1e-3),
+    Run("regularised, small", load_scene("fig3-I"), "small", 1e-2),
+    Run("lubricated", load_scene("fig4-viscous")),
+    Run("lubricated, vertical", chain(0.3, lubrication=0.8, amplitudes=VERTICAL, **TWO)),
+    Run("lubricated, small", load_scene("fig4-viscous"), "small"),
+    Run("frictionless", chain(0.25, 0.0, amplitudes=[[0.6, 0.2], [0.1, 0.6]], **TWO)),
+    Run("held", chain(0.25, 0.6, **TWO)),
+    Run("one body", chain(0.25, 0.05, [2.0], amplitudes=[[2.0, 0.5], [0.3, 1.5]])),
+]
+
+
+def sampled(run: Run) -> tuple[Trajectory, np.ndarray, np.ndarray]:
+    """The run at Gauss nodes, with the weights of the nodes and the cell each is in."""
+    plain = reference.trajectory(run.scene, PHASE, run.equations, run.regularization, TOLERANCE)
+    assert plain.status == "ok"
+    duration = run.scene.duration
+    corners = [t for interval in plain.stick for t in interval]
+    edges = np.unique(np.concatenate([np.arange(0.0, duration, GRID), corners, [duration]]))
+    edges = edges[np.append(True, np.diff(edges) > 1e-9)]
+    nodes, weights = leggauss(3)
+    width = np.diff(edges)
+    times = edges[:-1, None] + 0.5 * width[:, None] * (1.0 + nodes)
+    full = reference.trajectory(run.scene, PHASE, run.equations, run.regularization, TOLERANCE, times=times.ravel())
+    return full, (0.5 * width[:, None] * weights).ravel(), times.ravel()
+
+
+def slip_force(run: Run, motion: Trajectory) -> np.ndarray:
+    """Friction force over the contact force, (T, 3), opposite to the slip, where the contact slides."""
+    velocity = motion.velocity[:, 0]
+    speed = np.sqrt((velocity**2).sum(axis=-1))
+    coefficient = run.scene.friction_coefficient
+    if run.scene.lubricated:
+        return -coefficient * velocity
+    if run.regularization is not None:
+        return -coefficient * velocity / np.maximum(speed, run.regularization)[:, None]
+    moving = speed > 0.0
+    return -coefficient * velocity / np.where(moving, speed, 1.0)[:, None]
+
+
+def stored(run: Run, motion: Trajectory) -> np.ndarray:
+    """Kinetic, elastic and gravitational energy, (T,), J."""
+    scene = run.scene
+    kinetic = 0.5 * (scene.masses[:, None] * motion.velocity[:, :, :2] ** 2).sum(axis=(1, 2))
+    elastic = 0.5 * (scene.stiffness * np.diff(motion.position[:, :, :2], axis=1) ** 2).sum(axis=(1, 2))
+    if run.equations == "small":
+        square = (motion.position[:, 0, :2] ** 2).sum(axis=-1)
+        return kinetic + elastic + 0.5 * scene.total_mass * GRAVITY / scene.radius * square
+    vertical = 0.5 * scene.total_mass * motion.velocity[:, 0, 2] ** 2
+    return kinetic + elastic + vertical + scene.total_mass * GRAVITY * motion.position[:, 0, 2]
+
+
+def powers(run: Run, motion: Trajectory) -> tuple[np.ndarray, np.ndarray]:
+    """Power of the ground and of friction, (T,) each, W."""
+    scene = run.scene
+    ground = ground_acceleration(scene, PHASE, motion.time)
+    velocity = motion.velocity
+    shaking = -(scene.masses[:, None] * velocity[:, :, :2] * ground[:, None, :2]).sum(axis=(1, 2))
+    friction = slip_force(run, motion)
+    if run.equations == "small":
+        platform, place = velocity[:, 0, :2], motion.position[:, 0, :2]
+        along = (place * friction[:, :2]).sum(axis=-1) * (ground[:, :2] * platform).sum(axis=-1)
+        weight = (friction[:, :2] * platform).sum(axis=-1) * scene.total_mass * (GRAVITY + ground[:, 2])
+        return shaking, weight - scene.masses[0] * along / scene.radius  # the terms with xi'' x of (4.3)
+    shaking -= scene.total_mass * velocity[:, 0, 2] * ground[:, 2]
+    return shaking, motion.contact_force * (friction * velocity[:, 0]).sum(axis=-1)
+
+
+@pytest.mark.parametrize("run", RUNS, ids=lambda run: run.name)
+def test_energy_is_balanced(run):
+    """At every instant, to ten times the tolerance of the largest amount of energy that is exchanged."""
+    motion, weights, _ = sampled(run)
+    assert motion.status == "ok"
+    shaking, friction = powers(run, motion)
+    # work up to a node: all earlier nodes in full and half of its own, so compare where cells end
+    work = np.cumsum(weights * (shaking + friction))[2::3]
+    exchanged = np.cumsum(weights * np.abs(shaking))[-1]
+    energy = stored(run, motion)
+    # energy at the cells' ends, by the parabola through the three nodes of the cell
+    nodes, _ = leggauss(3)
+    basis = [np.prod([(1.0 - nodes[j]) / (nodes[k] - nodes[j]) for j in range(3) if j != k]) for k in range(3)]
+    ends = energy.reshape(-1, 3) @ np.array(basis)
+    assert np.all(friction <= 1e-12 * np.abs(shaking).max())
+    np.testing.assert_allclose(ends, work, atol=10.0 * TOLERANCE * exchanged)
+
+
+@pytest.mark.parametrize("run", [r for r in RUNS if r.equations == "exact"], ids=lambda run: run.name)
+def test_newton_s_law_holds_in_space_at_every_sample_of_a_slide(run):
+    """m1 a_h = f + N (n - mu w)_h and m_sum (a_z + g) = N (n - mu w)_z, with accelerations as reported."""
+    scene = run.scene
+    motion = reference.trajectory(scene, PHASE, run.equations, run.regularization, TOLERANCE)
+    place, total = motion.position, motion.absolute_acceleration
+    normal = np.stack([-place[:, 0, 0], -place[:, 0, 1], scene.radius - place[:, 0, 2]], axis=1) / scene.radius
+    np.testing.assert_allclose((normal**2).sum(axis=1), 1.0, rtol=1e-12)
+    reaction = motion.contact_force[:, None] * (normal + slip_force(run, motion))
+    force = np.zeros_like(place[:, :, :2])
+    elastic = scene.stiffness * np.diff(place[:, :, :2], axis=1)
+    force[:, :-1] += elastic
+    force[:, 1:] -= elastic
+    force[:, 0] += reaction[:, :2]
+    speed = np.sqrt((motion.velocity[:, 0] ** 2).sum(axis=-1))
+    dry = run.regularization is None and not scene.lubricated and scene.friction_coefficient > 0.0
+    # within a creep the friction is velocity over v_reg: its digits are those of the velocity
+    slides = speed > (1e-2 if dry else 0.0)
+    error = (scene.masses[:, None] * total[:, :, :2] - force)[slides]
+    scale = scene.total_mass * GRAVITY
+    creep = 1.0 if run.regularization is None else 0.1 / run.regularization
+    if slides.any():
+        assert np.abs(error).max() <= 100.0 * TOLERANCE * scale * creep
+        vertical = scene.total_mass * (total[:, 0, 2] + GRAVITY) - reaction[:, 2]
+        assert np.abs(vertical[slides]).max() <= 100.0 * TOLERANCE * scale * creep
+    upper = scene.masses[1:, None] * total[:, 1:, :2] - force[:, 1:]
+    assert np.abs(upper).max(initial=0.0) <= 10.0 * TOLERANCE * scale

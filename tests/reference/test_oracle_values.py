@@ -1,0 +1,75 @@
+"""The solver against the independent answers of `oracle_values.json` (made by oracle_values.py)."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from oracle import set_valued_run, smooth_run
+from oracle_cases import CASES, scene_of
+
+import reference
+
+VALUES: list[dict[str, Any]] = json.loads(Path(__file__).with_name("oracle_values.json").read_text())
+TOLERANCE = 1e-7
+# a resolved peak is read where |v| passes the cutoff: it is as good as that instant, not as good as a maximum
+CUTOFF_LOSS = 10.0
+
+
+def ask(entry: dict[str, Any], tolerance: float, cutoff: float | None = None) -> reference.Amplification:
+    return reference.amplification(
+        scene_of(entry["scene"]),
+        [entry["phase"]],
+        equations=entry["equations"],
+        regularization=entry["regularization"],
+        tolerance=tolerance,
+        cutoff=cutoff,
+    )
+
+
+@pytest.mark.parametrize("entry", VALUES, ids=lambda entry: entry["name"])
+def test_amplification_is_the_oracle_s(entry):
+    """Supremum (or smooth law), and the resolved peak at every cutoff, each body."""
+    for cutoff, mu, error in zip(entry["cutoff"], entry["mu"], entry["error"]):
+        found = ask(entry, TOLERANCE, cutoff or None)
+        assert found.status[0] == "ok"
+        slack = CUTOFF_LOSS if cutoff else 1.0
+        np.testing.assert_array_less(
+            np.abs(found.mu[0] - mu), np.array(error) + slack * TOLERANCE * np.array(mu), err_msg=f"cutoff {cutoff}"
+        )
+
+
+@pytest.mark.parametrize("entry", [e for e in VALUES if e["regularization"] is None], ids=lambda entry: entry["name"])
+def test_trajectory_ends_where_the_oracle_does_and_rests_when_it_rests(entry):
+    scene = scene_of(entry["scene"])
+    run = reference.trajectory(scene, entry["phase"], entry["equations"], tolerance=TOLERANCE, times=[scene.duration])
+    assert run.status == "ok"
+    swing = entry["swing"] * scene.radius
+    np.testing.assert_allclose(run.position[0, :, :2], entry["position"], atol=1e3 * TOLERANCE * swing)
+    if entry["same_rests"] and scene.friction_coefficient > 0.0 and not scene.lubricated:
+        found, wanted = np.array(run.stick), np.array(entry["rests"])
+        assert found.shape == wanted.shape
+        # the end of a rest is a root of a curve that may be flat: digits halve
+        np.testing.assert_allclose(found, wanted, atol=10.0 * TOLERANCE**0.5)
+
+
+def test_the_cases_cover_every_law_and_every_phase_of_contact():
+    assert [entry["name"] for entry in VALUES] == [case.name for case in CASES]
+    assert {entry["equations"] for entry in VALUES} == {"exact", "small"}
+    assert {entry["regularization"] for entry in VALUES} == {None, 1e-2, 1e-3, 1e-4, 1e-6}
+    assert any(entry["rests"] and entry["swing"] > 0.6 for entry in VALUES)
+    assert max(max(map(max, entry["error"])) for entry in VALUES) < 1e-8
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("entry", VALUES, ids=lambda entry: entry["name"])
+def test_the_stored_values_are_what_the_oracle_says(entry):
+    scene, phase = scene_of(entry["scene"]), tuple(entry["phase"])
+    if entry["regularization"] is None and not scene.lubricated and scene.friction_coefficient > 0.0:
+        answer = set_valued_run(scene, phase, entry["equations"], entry["cutoff"], 1e-8)
+    else:
+        answer = smooth_run(scene, phase, entry["equations"], entry["regularization"], 1e-8)
+    np.testing.assert_allclose(answer.mu, entry["mu"], rtol=3e-6)
