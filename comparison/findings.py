@@ -12,6 +12,7 @@ from comparison.acceptance import broken_limits
 from comparison.budget import Entry, budget
 from comparison.differences import Difference, differences
 from comparison.effective import Effective
+from comparison.slips import Effect
 from comparison.study import Study
 
 
@@ -19,8 +20,8 @@ from comparison.study import Study
 class Findings:
     """
     surfaces: see `labelled_surfaces`. rows: differences of pairs of models. budget: what every rung adds. effective:
-    values read back from each model. broken: acceptance limits, one line each. faults: what solvers complained about.
-    run: command, times, provenance.
+    values read back from each model. effects: what slips of the print do to mu. broken: acceptance limits, one line
+    each. faults: what solvers complained about. run: command, times, provenance.
     """
 
     study: Study
@@ -28,6 +29,7 @@ class Findings:
     rows: Sequence[Difference]
     budget: Sequence[Entry]
     effective: Sequence[Effective]
+    effects: Sequence[Effect]
     broken: Sequence[str]
     faults: Sequence[str]
     run: Mapping[str, Any]
@@ -37,10 +39,11 @@ def findings(
     study: Study,
     surfaces: xr.Dataset,
     effective: Sequence[Effective],
+    effects: Sequence[Effect],
     faults: Sequence[str],
     run: Mapping[str, Any],
 ) -> Findings:
     """What the surfaces say once they are complete."""
     rows = differences(study, surfaces)
     broken = broken_limits(study, surfaces, rows)
-    return Findings(study, surfaces, rows, budget(study, surfaces), effective, broken, faults, run)
+    return Findings(study, surfaces, rows, budget(study, surfaces), effective, effects, broken, faults, run)

@@ -21,6 +21,7 @@ from comparison.effective import PHASES
 from comparison.figures import draw_pair, figure_name
 from comparison.findings import Findings
 from comparison.ladder import Pair, pairs_of, rungs_of
+from comparison.slips import SLIPS, Effect
 from comparison.study import Study
 from comparison.summary import outcome_counts, summary
 from comparison.wording import degrees, percent, scientific, significant, symbols
@@ -65,6 +66,7 @@ def _page(figures: Path, found: Findings) -> str:
         budget=found.budget,
         effective=found.effective,
         phases=PHASES,
+        slips=_slips(found),
         outcomes=_outcomes(study, found.surfaces),
         advice=ADVICE,
         broken=found.broken,
@@ -123,6 +125,29 @@ def _properties(ladder: Sequence[Any]) -> list[dict[str, Any]]:
         cells = [{"text": text, "differs": i > 0 and text != texts[i - 1]} for i, text in enumerate(texts)]
         table.append({"name": name, "cells": cells})
     return table
+
+
+def _slips(found: Findings) -> list[dict[str, Any]]:
+    """The slips with one sentence each about their largest effect in every scene they touch."""
+    rows = []
+    for number, slip in enumerate(SLIPS):
+        effects = [effect for effect in found.effects if effect.slip == number and (effect.change or effect.fault)]
+        rows.append(
+            {"slip": slip, "effects": [_effect(effect) for effect in effects] or [slip.none or "no scene here"]}
+        )
+    return rows
+
+
+def _effect(effect: Effect) -> str:
+    if effect.fault:
+        return f"{effect.scene}: {effect.fault}"
+    change = np.array(effect.change)
+    lost = "" if np.isfinite(change).all() else "no answer at some phases; "
+    sizes = [
+        f"mu_{body} by up to {percent(float(np.nanmax(np.abs(column)))) if np.isfinite(column).any() else 'any size'}"
+        for body, column in enumerate(change.T, start=1)
+    ]
+    return f"{effect.scene}: {lost}{', '.join(sizes)}"
 
 
 def _outcomes(study: Study, surfaces: xr.Dataset) -> list[dict[str, Any]]:

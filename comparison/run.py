@@ -22,6 +22,7 @@ from comparison.ladder import LADDER, Rung
 from comparison.options import Options, UsageError, parsed
 from comparison.progress import Stage, progress
 from comparison.provenance import provenance
+from comparison.slips import slip_effects
 from comparison.store import replaced_when_complete
 from comparison.study import Study
 from comparison.surfaces import labelled_surfaces
@@ -90,6 +91,8 @@ def _run(study: Study, options: Options, console: Console, command: str, executo
     surfaces = labelled_surfaces(study, tiles, answers)
     console.print("Reading the effective values back from one motion of every model.")
     effective = effective_values(study, options.jobs, executor)
+    console.print("Measuring what the slips of the print do to the surfaces.")
+    effects = slip_effects(study, options.jobs, executor)
     faults = sorted(
         {f"{tile.scene.name}, {titles[tile.rung]}: {a.fault}" for tile, a in zip(tiles, answers) if a.fault}
     )
@@ -102,7 +105,7 @@ def _run(study: Study, options: Options, console: Console, command: str, executo
         "jobs": options.jobs,
         "provenance": provenance(),
     }
-    found = findings(study, surfaces, effective, faults, run)
+    found = findings(study, surfaces, effective, effects, faults, run)
     console.print("Drawing the figures and writing the report.")
     with replaced_when_complete(options.out) as folder:
         write_report(folder, found)

@@ -12,6 +12,7 @@ import xarray as xr
 
 from comparison.findings import Findings
 from comparison.ladder import rungs_of
+from comparison.slips import SLIPS
 from reference.problem import Scene
 
 SCHEMA = "phase-resonance/summary"
@@ -29,8 +30,8 @@ def summary(found: Findings) -> dict[str, Any]:
 
     schema, version; run (command, times, provenance); grid, tolerance; models (key, title, adds, settings); scenes
     (name, title, digest, models: outcomes and cost in s; differences: one entry per pair and body, see `Difference`;
-    budget: one per body and step, see `Entry`; effective: one per model, see `Effective`); broken (acceptance limits,
-    one line each); faults (what solvers complained about).
+    budget: one per body and step, see `Entry`; effective: one per model, see `Effective`); slips (see `Slip` and
+    `Effect`); broken (acceptance limits, one line each); faults (what solvers complained about).
     """
     study = found.study
     return {
@@ -44,6 +45,17 @@ def summary(found: Findings) -> dict[str, Any]:
             for rung in study.ladder
         ],
         "scenes": [_scene(found, scene) for scene in study.scenes],
+        "slips": [
+            {
+                "where": slip.where,
+                "printed": slip.printed,
+                "corrected": slip.corrected,
+                "why": slip.why,
+                "none": slip.none,
+                "effects": [_finite(asdict(effect)) for effect in found.effects if effect.slip == number],
+            }
+            for number, slip in enumerate(SLIPS)
+        ],
         "broken": list(found.broken),
         "faults": list(found.faults),
     }

@@ -7,9 +7,9 @@ import re
 
 from markupsafe import Markup, escape
 
-SUBSCRIPTS = re.compile(r"\b([vfkm])_(reg|c|sum)\b|\bu_(D|A|B)\b")
-GREEK = {"rho": "ρ", "mu": "μ", "zeta": "ζ", "xi": "ξ"}
-LETTERS = re.compile(rf"\b({'|'.join(GREEK)})\b")
+SUBSCRIPTS = re.compile(r"(?<![\w])([a-zA-Zμλ]+)_(\w+)")
+GREEK = {"beta": "β", "eta": "η", "lambda": "λ", "mu": "μ", "rho": "ρ", "tau": "τ", "xi": "ξ", "zeta": "ζ"}
+LETTERS = re.compile(rf"(?<![a-zA-Z])({'|'.join(GREEK)})(?![a-zA-Z])")
 
 
 def percent(value: float) -> str:
@@ -31,11 +31,5 @@ def degrees(phase: float) -> str:
 
 def symbols(text: str) -> Markup:
     """Names such as v_reg and rho as they are printed: with subscripts and Greek letters."""
-    greek = LETTERS.sub(lambda found: GREEK[found.group(1)], str(escape(text))).replace("mu_i", "μ_i")
-    lowered = SUBSCRIPTS.sub(lambda found: _lowered(found), greek).replace("μ_i", "μ<sub>i</sub>")
-    return Markup(lowered)
-
-
-def _lowered(found: re.Match[str]) -> str:
-    letter, index = found.group(0).split("_")
-    return f"{letter}<sub>{index}</sub>"
+    greek = LETTERS.sub(lambda found: GREEK[found.group(1)], str(escape(text)))
+    return Markup(SUBSCRIPTS.sub(r"\1<sub>\2</sub>", greek))

@@ -10,9 +10,11 @@ from pathlib import Path
 import pytest
 from fake_models import fake_ladder
 
+import comparison.run
 from comparison import report
 from comparison.ladder import Rung
 from comparison.run import main
+from comparison.slips import Effect
 
 
 @dataclass(frozen=True)
@@ -28,7 +30,9 @@ class Run:
 @pytest.fixture
 def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Run]:
     """The command line with fake models in threads of this process and quick figures; --out in an empty directory."""
-    monkeypatch.setattr(report, "draw_pair", lambda path, *rest: path.write_bytes(b"a quick figure"))
+    for name in ("draw_pair", "draw_budget"):
+        monkeypatch.setattr(report, name, lambda path, *rest: path.write_bytes(b"a quick figure"))
+    monkeypatch.setattr(comparison.run, "slip_effects", lambda *rest: [])  # it asks no model of the ladder
 
     def run(
         *words: str, ladder: Sequence[Rung] | None = None, executor: Callable[[int], Executor] = ThreadPoolExecutor
@@ -45,6 +49,9 @@ def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pyte
 def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The report of two scenes, one dry and one lubricated, on a 4 x 4 grid; the engine 1 % above the reference."""
     place = tmp_path_factory.mktemp("finished") / "report"
+    effects = [Effect("fig3-I", 0, ((0.5, -0.25), (float("nan"), 0.125))), Effect("fig3-I", 1, fault="it broke")]
     words = ["fig3-I", "fig4-viscous", "--grid", "4", "--jobs", "2", "--out", str(place)]
-    assert main(words, fake_ladder(), ThreadPoolExecutor) == 0
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(comparison.run, "slip_effects", lambda *rest: effects)
+        assert main(words, fake_ladder(), ThreadPoolExecutor) == 0
     return place
