@@ -28,16 +28,21 @@ RATIO = 4  # between neighbouring step sizes
 DEEPEST = 7  # smallest step is RATIO**-DEEPEST of the largest
 SETTLING = 2  # depth of the first chunk: the contact settles
 LONG, SHORT = 256, 32  # steps in a chunk at the largest step at most, at smaller ones
+STEPS_OF_RATE = 4  # over which the rate of a gap is taken
 LATEST = 8  # rows at the end of a chunk that decide whether the step may grow
 ALLOWANCE = 100  # times the number of largest steps in the run, before it is given up
 
 
 @dataclass(frozen=True)
 class Control:
-    """step: the largest, in units of time. turn: allowed change of the slip velocity in one step, as its fraction."""
+    """
+    step: the largest, in units of time. turn: allowed change of the slip velocity in one step, as its fraction.
+    penetration: of the contact, for which the model was stiffened.
+    """
 
     step: float
     turn: float
+    penetration: float
 
 
 @dataclass
@@ -97,6 +102,8 @@ def march(
             result.peaks.add(kept.time, absolute, kept.slip)
             state, time = kept.state(last), float(kept.time[last])
             ahead = _steps_ahead(kept, engine, control)
+            if refused:
+                state = model.settle(state, _gap_rate(kept), control.penetration)
         if refused:
             depth += 1 if excess[failing[0]] < RATIO else 2
             depth = min(depth, DEEPEST)
@@ -121,6 +128,15 @@ def _excess(motion: Motion, engine: Engine, per_turn: float) -> Array:
     size[1:] = np.maximum(size[1:], 2.0 * np.linalg.norm(np.diff(acceleration, axis=0), axis=-1))
     excess: Array = per_turn * size / np.maximum(motion.slip.min(axis=1), corner)
     return excess
+
+
+def _gap_rate(motion: Motion) -> Array:
+    """Rate of each gap at the end of a chunk, (K,), over an even number of steps: the contact may alternate."""
+    rows = min(STEPS_OF_RATE, (len(motion.time) - 1) // 2 * 2)
+    if rows == 0:
+        return np.zeros(motion.gap.shape[1])
+    rate: Array = (motion.gap[-1] - motion.gap[-1 - rows]) / (motion.time[-1] - motion.time[-1 - rows])
+    return rate
 
 
 def _steps_ahead(motion: Motion, engine: Engine, control: Control) -> int:

@@ -91,7 +91,7 @@ def refine(
         model.stiffen(penetration)
         newton = NEWTON / 4.0**level
         engine = Engine(model, newton, max(1e-3 * newton, ROUNDING / penetration))
-        control = Control(step / 2.0**level, TURN / 2.0**level)
+        control = Control(step / 2.0**level, TURN / 2.0**level, penetration)
         marches.append(march(engine, model.start(initial, first, penetration), end, ground, control, keep=keep))
         if level == 0:
             continue

@@ -43,9 +43,10 @@ class EngineModel:
 
     bodies: (N, 3), index of the coordinate that moves body i along x, y, z. stiffen: sets the contact so that the
     weight presses it in by a given fraction of rho. start: state from an initial state (None: at rest), the plate's
-    acceleration then, m/s^2, and the same fraction. rim: largest rise of the platform, in units of length.
-    corner: slip speed in units of velocity under which the friction law is linear; inf if it has no such corner.
-    keep_alive: what the engine only points to.
+    acceleration then, m/s^2, and the same fraction. settle: state to go on from with a smaller step, from the last one,
+    the rate of each gap (K,) and the same fraction. rim: largest rise of the platform, in units of length. corner: slip
+    speed in units of velocity under which the friction law is linear; inf if it has no such corner. keep_alive: what
+    the engine only points to.
     """
 
     mbs: Any
@@ -55,6 +56,7 @@ class EngineModel:
     bodies: NDArray[np.int_]
     stiffen: Callable[[float], None]
     start: Callable[[State | None, Array, float], EngineState]
+    settle: Callable[[EngineState, Array, float], EngineState]
     rim: float
     corner: float
     keep_alive: tuple[Any, ...]

@@ -1,0 +1,70 @@
+"""Same law, same geometry: the engine and the paper's exact equations must give the same factors."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scenes_at_hand import changed
+
+import multibody
+import reference
+from reference.problem import Outcome, load_scene
+
+PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (0.867, 4.951)])
+V_REG = 1e-3
+
+
+@pytest.mark.parametrize(
+    ("scene", "regularization"), [("fig3-I", V_REG), ("fig3-II", V_REG), ("fig4-viscous", None), ("fig4-dry", V_REG)]
+)
+def test_every_factor_lies_within_its_error_of_the_exact_equations(scene: str, regularization: float | None) -> None:
+    loaded, phases = load_scene(scene), PHASES if scene == "fig3-I" else PHASES[:1]
+    engine = multibody.amplification(loaded, phases, regularization=regularization)
+    equations = reference.amplification(loaded, phases, equations="exact", regularization=regularization)
+    assert engine.status.tolist() == [Outcome.OK] * len(phases)
+    assert (engine.error <= 1e-3 * engine.mu).all()
+    assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
+
+
+def test_a_smaller_tolerance_is_met_by_refinement() -> None:
+    scene = changed(load_scene("fig3-I"), duration=4.0)
+    equations = reference.amplification(scene, PHASES[:1], equations="exact", regularization=V_REG)
+    errors = []
+    for tolerance in (1e-3, 1e-5):
+        engine = multibody.amplification(scene, PHASES[:1], regularization=V_REG, tolerance=tolerance)
+        assert (engine.error <= tolerance * engine.mu).all()
+        errors.append(np.abs(engine.mu - equations.mu).max())
+        assert errors[-1] <= (engine.error + equations.error).max()
+    assert errors[1] < 0.2 * errors[0]
+
+
+def test_longer_chains_agree_as_well() -> None:
+    floors = [{"mass": 2.0}, {"mass": 1.0, "period": [0.5, 0.4]}, {"mass": 0.5, "stiffness": [40.0, 60.0]}]
+    scene = changed(load_scene("fig3-II"), bodies=floors, duration=6.0)
+    engine = multibody.amplification(scene, PHASES[:1], regularization=V_REG)
+    equations = reference.amplification(scene, PHASES[:1], equations="exact", regularization=V_REG)
+    assert engine.mu.shape == (1, 3)
+    assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
+
+
+def test_vertical_shaking_agrees_as_well() -> None:
+    scene = load_scene("fig3-I")
+    shaken = changed(scene, duration=6.0, excitation={"amplitudes": [[1.0, 0.0], [0.0, 1.0], [2.0, 1.0]]})
+    engine = multibody.amplification(shaken, PHASES[:1], regularization=V_REG)
+    equations = reference.amplification(shaken, PHASES[:1], equations="exact", regularization=V_REG)
+    assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
+
+
+def test_a_million_times_the_mass_gives_the_same_factors() -> None:
+    scene = changed(load_scene("fig3-I"), duration=4.0)
+    heavy = changed(scene, bodies=[{**body, "mass": 1e6 * body["mass"]} for body in scene.model_dump()["bodies"]])
+    light, large = (multibody.amplification(each, PHASES[:1]) for each in (scene, heavy))
+    # rounding of the link stiffness, carried through 3000 steps
+    np.testing.assert_allclose(large.mu, light.mu, rtol=1e-10)
+
+
+def test_phases_do_not_depend_on_their_neighbours_in_one_call() -> None:
+    scene = changed(load_scene("fig3-I"), duration=2.0)
+    together = multibody.amplification(scene, PHASES[:2]).mu
+    alone = np.vstack([multibody.amplification(scene, [phase]).mu for phase in PHASES[1::-1]])[::-1]
+    np.testing.assert_array_equal(together, alone)

@@ -1,0 +1,60 @@
+"""Reading the largest value between samples: smooth tops, corners of the law, and the error given for both."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from multibody.peak import Peaks
+
+Signal = Callable[[np.ndarray], np.ndarray]
+
+
+def read(signal: Signal, slip: Signal, threshold: float, chunks: int, step: float = 0.02) -> Peaks:
+    """Peaks of |signal| on [0, 1), sampled with `step` and handed over in `chunks`."""
+    time = np.arange(0.0, 1.0, step)
+    peaks = Peaks(1, threshold)
+    edges = np.linspace(0, len(time) - 1, chunks + 1).astype(int)
+    for begin, end in pairwise(edges):
+        t = time[begin : end + 1]
+        absolute = np.zeros((len(t), 1, 3))
+        absolute[:, 0, 0] = signal(t)
+        peaks.add(t, absolute, slip(t)[:, None])
+    return peaks
+
+
+@pytest.mark.parametrize("chunks", [1, 2, 7, 16])
+@pytest.mark.parametrize("shift", [0.0, 0.003, 0.011, 0.019])
+def test_a_smooth_top_is_read_to_fourth_order_however_it_is_cut(chunks: int, shift: float) -> None:
+    peaks = read(lambda t: np.cos(3.0 * (t - 0.5 - shift)), lambda t: np.ones_like(t), np.inf, chunks)
+    # a parabola misses the quartic term, at most (3 h)^4 / 24 half-way between two samples
+    assert peaks.value[0] == pytest.approx(1.0, abs=3e-7)
+    assert peaks.instant[0] == pytest.approx(0.5 + shift, abs=1e-4)
+
+
+@pytest.mark.parametrize("chunks", [1, 2, 7])
+@pytest.mark.parametrize("corner", [0.5, 0.503, 0.511, 0.519])
+def test_a_corner_is_read_from_both_sides(chunks: int, corner: float) -> None:
+    def signal(t: np.ndarray) -> np.ndarray:
+        return np.where(t < corner, 1.0 + 2.0 * (t - corner) + (t - corner) ** 2, np.exp(-9.0 * (t - corner)))
+
+    peaks = read(signal, lambda t: 1.0 + corner - t, 1.0, chunks)
+    assert peaks.instant[0] == pytest.approx(corner, abs=1e-12)
+    # the decay is extrapolated by a parabola over up to one step, (9 h)^3 off; half of it is the error given
+    assert abs(peaks.value[0] - 1.0) <= peaks.sampling[0] + 1e-12
+    assert peaks.sampling[0] < 0.5 * 0.18**3
+
+
+def test_a_corner_that_is_not_looked_for_is_misread() -> None:
+    def signal(t: np.ndarray) -> np.ndarray:
+        return np.where(t < 0.511, 1.0 + 2.0 * (t - 0.511), np.exp(-9.0 * (t - 0.511)))
+
+    assert abs(read(signal, lambda t: np.ones_like(t), np.inf, 1).value[0] - 1.0) > 0.02
+
+
+def test_the_end_of_the_record_counts() -> None:
+    peaks = read(lambda t: t, lambda t: np.ones_like(t), np.inf, 3)
+    assert peaks.value[0] == pytest.approx(0.98)
