@@ -13,7 +13,9 @@ LETTERS = re.compile(rf"(?<![a-zA-Z])({'|'.join(GREEK)})(?![a-zA-Z])")
 
 
 def percent(value: float) -> str:
-    return "none" if not math.isfinite(value) else f"{100.0 * value:.2g} %"
+    if not math.isfinite(value):
+        return "none"
+    return f"{100.0 * value:.0f} %" if abs(value) >= 0.1 else f"{100.0 * value:.2g} %"
 
 
 def scientific(value: float) -> str:

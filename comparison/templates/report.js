@@ -65,7 +65,11 @@ function show(box) {
 }
 const watcher = new IntersectionObserver(entries => entries.forEach(({ target, isIntersecting }) => {
   if (isIntersecting && !visible.has(target)) { visible.add(target); show(target); }
-  if (!isIntersecting && visible.delete(target)) { Plotly.purge(target); target.linked = false; }
+  if (!isIntersecting && visible.delete(target)) {
+    target.querySelectorAll("canvas").forEach(canvas => canvas.getContext("webgl")?.getExtension("WEBGL_lose_context")?.loseContext());
+    Plotly.purge(target);
+    target.linked = false;
+  }
 }), { rootMargin: "150px" });
 boxes.forEach(box => watcher.observe(box));
 

@@ -1,0 +1,27 @@
+"""The README gives one command line for the study and one for the tests, and what it points to is there."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def test_there_are_two_command_lines_each_of_one_line() -> None:
+    blocks = re.findall(r"^```sh\n(.*?)^```$", README, flags=re.MULTILINE | re.DOTALL)
+    assert [block.count("\n") for block in blocks] == [1, 1]
+    study, tests = blocks
+    assert study.endswith("-m comparison.run\n")
+    assert tests.endswith("-m pytest\n"), "the line that the continuous integration runs as it stands"
+    assert all(block.startswith("python3 -m venv .venv && .venv/bin/pip install ") for block in blocks)
+
+
+def test_every_file_the_readme_points_to_exists() -> None:
+    for target in re.findall(r"\]\((?!http)([^)]+)\)", README):
+        assert (ROOT / target).exists(), target
+
+
+def test_nothing_is_left_to_be_filled_in() -> None:
+    assert not re.search(r"TODO|TBD|XXX|<!--|\?\?\?", README)
