@@ -112,8 +112,8 @@ LADDER: tuple[Rung, ...] = (
             "unknowns": _HORIZONTAL,
             "mu_i": _ARC,
         },
-        seconds_per_point=1e-3,
-        tile=256,
+        seconds_per_point=0.012,
+        tile=64,
     ),
     Rung(
         key="exact",
@@ -131,8 +131,8 @@ LADDER: tuple[Rung, ...] = (
             "unknowns": _HORIZONTAL,
             "mu_i": _ARC,
         },
-        seconds_per_point=1e-3,
-        tile=256,
+        seconds_per_point=0.012,
+        tile=64,
     ),
     Rung(
         key="resolved",
@@ -151,8 +151,8 @@ LADDER: tuple[Rung, ...] = (
             "unknowns": _HORIZONTAL,
             "mu_i": "largest value at rest or sliding faster than v_c = 1e-3 m/s",
         },
-        seconds_per_point=1e-3,
-        tile=256,
+        seconds_per_point=0.015,
+        tile=64,
         applies=dry,
     ),
     Rung(
@@ -171,8 +171,8 @@ LADDER: tuple[Rung, ...] = (
             "unknowns": _HORIZONTAL,
             "mu_i": _PEAK,
         },
-        seconds_per_point=1e-3,
-        tile=256,
+        seconds_per_point=0.012,
+        tile=64,
         applies=dry,
     ),
     Rung(
@@ -191,7 +191,7 @@ LADDER: tuple[Rung, ...] = (
             "unknowns": "translations of every body, the platform's vertical one free",
             "mu_i": _PEAK,
         },
-        seconds_per_point=0.5,
-        tile=4,
+        seconds_per_point=0.7,
+        tile=2,
     ),
 )

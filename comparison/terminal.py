@@ -32,6 +32,7 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
     wall = START_UP + total / options.jobs
     console.print(f"{study.grid} x {study.grid} phases, {options.jobs} worker processes: about {wall:.0f} s.")
     console.print(f"Costs were recorded on {RECORDED_ON}; another machine scales them all alike.")
+    console.print("On a new installation compiling the reference adds some minutes of one worker, once.")
     console.print(f"Nothing was computed. The report would go to {options.out}.")
 
 
