@@ -1,0 +1,193 @@
+"""Each way a run can fail, provoked by a scene, with the instant it happens at."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from chains import chain
+from oracle_law import Law
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import reference
+from reference.problem import ADVICE, GRAVITY, Outcome, Scene, State, load_scene, phase_grid
+
+PHASE = (0.3, 1.1)
+BOTH = pytest.mark.parametrize("equations", ["exact", "small"])
+
+
+def refused(scene: Scene, outcome: Outcome, **options) -> float:
+    """The instant of the outcome; mu is NaN, a good neighbour in the same call is untouched."""
+    found = reference.amplification(scene, [PHASE, PHASE], **options)
+    assert found.status.tolist() == [outcome, outcome]
+    assert np.isnan(found.mu).all()
+    assert ADVICE[outcome]
+    assert found.instant[0] == found.instant[1]
+    return float(found.instant[0])
+
+
+@BOTH
+@pytest.mark.parametrize("regularization", [None, 1e-3])
+def test_a_platform_shaken_to_the_rim_is_told_when(equations, regularization):
+    scene = chain(0.05, 0.05, amplitudes=[[25.0, 0.0], [0.0, 25.0]], duration=3.0)
+    instant = refused(scene, Outcome.RIM_REACHED, equations=equations, regularization=regularization)
+    run = reference.trajectory(scene, PHASE, equations, regularization, times=np.linspace(0.0, instant, 2001)[:-1])
+    swing = np.hypot(run.position[:, 0, 0], run.position[:, 0, 1]) / scene.radius
+    assert 0.0 < instant < scene.duration
+    assert np.all(swing < 1.0)
+    assert swing[-1] > 0.98
+
+
+def test_a_thrown_platform_reaches_the_rim_when_its_energy_says():
+    """Frictionless from the middle: t = int rho d theta / sqrt(v^2 - 2 g rho (1 - cos theta)) up to a quarter circle."""
+    scene = chain(0.25, 0.0, amplitudes=[[1e-9, 0.0], [0.0, 0.0]], duration=1.0)
+    speed = 2.5
+    run = reference.trajectory(
+        scene, PHASE, "exact", initial=State(np.zeros((1, 2)), np.array([[0.6 * speed, 0.8 * speed]]))
+    )
+    time, _ = quad(
+        lambda angle: scene.radius / np.sqrt(speed**2 - 2.0 * GRAVITY * scene.radius * (1.0 - np.cos(angle))),
+        0.0, 0.5 * np.pi,
+    )  # fmt: skip
+    assert run.status == Outcome.RIM_REACHED
+    # the solver ends where its coordinates do, within its own step of the rim
+    assert run.instant == pytest.approx(time, abs=1e-4)
+
+
+@BOTH
+def test_a_contact_that_opens_at_rest_is_told_at_the_root_of_the_ground_motion(equations):
+    """Vertical loading alone: at rest in the middle N = m_sum (g + zeta''), zero at a root known in closed form."""
+    scene = chain(
+        0.25, 0.1, amplitudes=[[0.0, 0.0], [0.0, 0.0], [12.0, 0.0]], masses=[1.0, 1.0], stiffness=[[20.0, 30.0]]
+    )
+    instant = refused(scene, Outcome.CONTACT_LOST, equations=equations)
+
+    def pressure(t: float) -> float:
+        return GRAVITY + 12.0 * np.exp(-0.3 * t) * np.cos(2.0 * np.pi / 0.9 * t + PHASE[0])
+
+    times = np.linspace(0.0, 1.0, 1001)
+    first = int(np.argmax([pressure(t) < 0.0 for t in times]))
+    root = brentq(pressure, times[first - 1], times[first])
+    assert instant == pytest.approx(root, abs=1e-6)
+
+
+@BOTH
+@pytest.mark.parametrize("regularization", [None, 1e-3])
+def test_a_contact_that_opens_in_sliding_is_told_when(equations, regularization):
+    scene = chain(0.25, 0.05, amplitudes=[[2.0, 0.0], [0.0, 2.0], [20.0, 0.0]])
+    instant = refused(scene, Outcome.CONTACT_LOST, equations=equations, regularization=regularization)
+    run = reference.trajectory(scene, PHASE, equations, regularization, times=np.linspace(0.0, instant, 501)[:-1])
+    assert np.all(run.contact_force > 0.0)
+    assert run.contact_force[-1] < 0.2 * GRAVITY
+
+
+def test_the_paradox_of_painleve_is_told_where_the_inertia_has_lost_its_sign():
+    """
+    Light platform under a heavy body, strong friction, thrown from a slope towards the middle.
+
+    1 + (m_sum/m1 - 1)(tilt^2 - n . mu w) must be positive for the contact to have an answer; here it is not.
+    """
+    scene = chain(0.25, 0.9, masses=[0.02, 2.0], stiffness=[[50.0, 50.0]], amplitudes=[[0.5, 0.0], [0.0, 0.5]])
+    place = 0.12
+    tilt, level = place / scene.radius, np.sqrt(1.0 - (place / scene.radius) ** 2)
+    assert 1.0 + 100.0 * (tilt * tilt - tilt * 0.9 * level) < 0.0
+    start = State(np.array([[place, 0.0], [place, 0.0]]), np.array([[-1.0, 0.0], [-1.0, 0.0]]))
+    for regularization in (None, 1e-3):
+        run = reference.trajectory(scene, PHASE, "exact", regularization, initial=start)
+        assert run.status == Outcome.PAINLEVE
+        assert run.instant == pytest.approx(0.0, abs=1e-6)
+
+
+@BOTH
+def test_loads_beyond_double_precision_are_told_at_once(equations):
+    scene = chain(amplitudes=[[1e200, 0.0], [0.0, 1.0]])
+    assert refused(scene, Outcome.NON_FINITE_LOAD, equations=equations) == 0.0
+    assert reference.trajectory(scene, PHASE, equations).status == Outcome.NON_FINITE_LOAD
+
+
+def test_a_still_ground_has_no_amplification():
+    scene = chain(amplitudes=[[0.0, 0.0], [0.0, 0.0]])
+    refused(scene, Outcome.NO_GROUND_MOTION)
+
+
+def test_a_run_of_endless_steps_ends():
+    """A link of a microsecond's period: 2e7 vibrations in 20 s."""
+    scene = chain(masses=[1.0, 1.0], stiffness=[[4e13, 4e13]])
+    found = reference.amplification(scene, [PHASE])
+    assert found.status[0] in (Outcome.STEP_LIMIT, Outcome.OK)
+    assert found.cost < 60.0
+    if found.status[0] == Outcome.STEP_LIMIT:
+        assert 0.0 <= found.instant[0] <= scene.duration
+
+
+def test_a_failed_point_leaves_its_neighbours_alone():
+    """Phases that reach the rim and phases that do not, in one call: the good ones as if asked alone."""
+    scene = chain(0.25, 0.05, [2.0], amplitudes=[[2.0, 0.5], [0.3, 1.5]])
+    phases = phase_grid(4) + 0.1
+    together = reference.amplification(scene, phases, "small")
+    good = together.status == Outcome.OK
+    assert 0 < good.sum() < len(phases)
+    assert set(together.status[~good]) == {Outcome.RIM_REACHED}
+    assert np.isnan(together.mu[~good]).all()
+    assert np.isfinite(together.instant[~good]).all()
+    assert np.isnan(together.instant[good]).all()
+    alone = reference.amplification(scene, phases[good], "small")
+    np.testing.assert_array_equal(together.mu[good], alone.mu)
+
+
+def test_every_outcome_has_advice():
+    assert set(ADVICE) == set(Outcome)
+    assert all("\n" not in text and text for text in ADVICE.values())
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"equations": "linear"}, "equations = 'linear'"),
+        ({"rest_condition": "none"}, "rest_condition = 'none'"),
+        ({"tolerance": 0.0}, "tolerance = 0.0"),
+        ({"tolerance": float("nan")}, "tolerance = nan"),
+        ({"tolerance": 1.0}, "tolerance = 1.0"),
+        ({"regularization": 0.0}, "regularization = 0.0"),
+        ({"regularization": -1e-3}, "regularization = -0.001"),
+        ({"regularization": float("inf")}, "regularization = inf"),
+        ({"cutoff": 0.0}, "cutoff = 0.0"),
+        ({"cutoff": 1e-3, "regularization": 1e-3}, "cutoff = 0.001"),
+    ],
+)
+def test_wrong_arguments_are_refused_by_name_and_value(options, words):
+    with pytest.raises(ValueError, match=words) as caught:
+        reference.amplification(load_scene("fig3-I"), [PHASE], **options)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("initial", "words"),
+    [
+        (State(np.zeros((1, 2)), np.zeros((1, 2))), "shape"),
+        (State(np.full((2, 2), np.nan), np.zeros((2, 2))), "finite"),
+        (State(np.array([[0.3, 0.0], [0.0, 0.0]]), np.zeros((2, 2))), "rim"),
+    ],
+)
+def test_impossible_initial_states_are_refused(initial, words):
+    with pytest.raises(ValueError, match=words):
+        reference.trajectory(load_scene("fig3-I"), PHASE, initial=initial)
+
+
+@pytest.mark.parametrize("times", [[1.0, 0.5], [0.0, 21.0], [-1.0, 0.0], [[0.0, 1.0]], [np.nan]])
+def test_impossible_times_are_refused(times):
+    with pytest.raises(ValueError, match="times"):
+        reference.trajectory(load_scene("fig3-I"), PHASE, times=times)
+
+
+def test_the_printed_rest_condition_is_looser_and_changes_the_answer():
+    """(4.6) as printed lets friction hold sqrt(2) of its limit at the origin: the first rest lasts longer."""
+    scene = load_scene("fig3-I")
+    consistent = reference.trajectory(scene, PHASE, "small")
+    printed = reference.trajectory(scene, PHASE, "small", rest_condition="printed")
+    assert printed.stick[0][1] > consistent.stick[0][1]
+    law = Law(scene, PHASE, "small")
+    end = consistent.stick[0][1]
+    run = reference.trajectory(scene, PHASE, "small", times=[end])
+    q = run.position[0, :, :2].ravel().tolist()
+    assert law.excess(end, q, law.spring_forces(q)) == pytest.approx(0.0, abs=1e-6)
