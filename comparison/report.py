@@ -24,6 +24,7 @@ from comparison.ladder import Pair, pairs_of, rungs_of
 from comparison.slips import SLIPS, Effect
 from comparison.study import Study
 from comparison.summary import outcome_counts, summary
+from comparison.verification import CHECKS
 from comparison.wording import degrees, percent, scientific, significant, symbols
 from reference.problem import ADVICE, Outcome, Scene
 
@@ -67,6 +68,7 @@ def _page(figures: Path, found: Findings) -> str:
         effective=found.effective,
         phases=PHASES,
         slips=_slips(found),
+        checks=CHECKS,
         outcomes=_outcomes(study, found.surfaces),
         advice=ADVICE,
         broken=found.broken,
