@@ -39,7 +39,7 @@ def test_a_platform_shaken_to_the_rim_is_told_when(equations, regularization):
 
 
 def test_a_thrown_platform_reaches_the_rim_when_its_energy_says():
-    """Frictionless from the middle: t = int rho d theta / sqrt(v^2 - 2 g rho (1 - cos theta)) up to a quarter circle."""
+    """Frictionless from the middle: t = int rho d theta / sqrt(v^2 - 2 g rho (1 - cos theta)) over a quarter circle."""
     scene = chain(0.25, 0.0, amplitudes=[[1e-9, 0.0], [0.0, 0.0]], duration=1.0)
     speed = 2.5
     run = reference.trajectory(
