@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import reference
+from reference.closed_form import uniform_chain_frequencies, uniform_chain_shapes
 from reference.natural_modes import linear_stiffness
 from reference.problem import GRAVITY, Scene
 
@@ -40,9 +41,9 @@ def test_uniform_chain_frequencies_and_shapes_are_the_closed_form(count):
     """omega_j = 2 sqrt(k/m) sin theta_j / 2, X_j(i) ~ sin(i theta_j), theta_j = (2j - 1) pi / (2N + 1)."""
     scene = uniform_chain(count)
     modes = reference.modes(scene)
-    angle = (2.0 * np.arange(1, count + 1) - 1.0) * np.pi / (2 * count + 1)
-    exact = 2.0 * np.sqrt(count * GRAVITY / scene.radius) * np.sin(0.5 * angle)
-    shape = np.sin(np.outer(np.arange(1, count + 1), angle)) * 2.0 / np.sqrt((2 * count + 1) * scene.masses[0])
+    stiffness = scene.total_mass * GRAVITY / scene.radius
+    exact = uniform_chain_frequencies(count, scene.masses[0], stiffness)
+    shape = uniform_chain_shapes(count, scene.masses[0])
     # participation of these shapes is sum_i sin(i theta) > 0 by the cotangent of theta/2
     for axis in range(2):
         np.testing.assert_allclose(modes.frequency[axis], exact, rtol=1e-12)
