@@ -161,7 +161,7 @@ def _fate(motion: Motion, engine: Engine) -> tuple[Outcome, int]:
     rise = motion.coordinates[:, engine.model.bodies[0, 2]]
     over = len(motion.time)
     rim = next(iter(np.flatnonzero(rise >= engine.model.rim)), over)
-    lost = next(iter(np.flatnonzero((motion.gap >= 0.0).all(axis=1))), over)
+    lost = over if engine.model.liftoff else next(iter(np.flatnonzero((motion.gap >= 0.0).all(axis=1))), over)
     if min(rim, lost) == over:
         return Outcome.OK, over - 1
     return (Outcome.RIM_REACHED, int(rim)) if rim <= lost else (Outcome.CONTACT_LOST, int(lost))

@@ -23,8 +23,11 @@ def trajectory(
     One motion in the plate's frame for one phase pair (2,), rad, from rest or from `initial`.
 
     The instants are the engine's own, closer at stops; they are those of the run whose peaks meet `tolerance`, as in
-    `amplification`, with the same statuses; a run that ends early is returned up to there. `stick`: intervals in which
-    the slip is slower than v_reg. `extra`: slip_speed (T,), m/s. Raises ValueError for wrong arguments.
+    `amplification`, with the same statuses; a run that ends early is returned up to there. `contact_force`: sum over
+    the supports. `stick`: intervals in which every support slips slower than v_reg. `extra`: slip_speed (T, K), m/s,
+    and support_force (T, K), N, of K contacts (one in the translational model); the spatial model adds yaw and tilt of the
+    platform (T,), rad, and liftoff (L, 3): support, start and end, s, of every time a contact is open. Raises
+    ValueError for wrong arguments.
     """
     pair = checked_phases(np.reshape(np.asarray(phase, float), (1, -1)))[0]
     checked("tolerance", tolerance)
@@ -35,18 +38,34 @@ def trajectory(
     motion = Motion.joined(point.finest.chunks)
     time = motion.time * units.time
     ground = ground_acceleration(scene, pair, time)
-    slip = motion.slip[:, 0]
+    vectors = motion.force.reshape(len(time), -1, 2, 3)  # per contact: force, normal
+    support_force = np.abs((vectors[:, :, 0] * vectors[:, :, 1]).sum(axis=-1)) * units.force
+    extra = {"slip_speed": motion.slip * units.velocity, "support_force": support_force}
+    if model == "spatial":
+        extra |= _attitude(motion, time)
     return Trajectory(
         time=time,
         position=motion.coordinates[:, bodies] * units.length,
         velocity=motion.velocities[:, bodies] * units.velocity,
         absolute_acceleration=motion.accelerations[:, bodies] * units.acceleration + ground[:, None, :],
-        contact_force=np.abs((motion.force[:, :3] * motion.force[:, 3:]).sum(axis=1)) * units.force,
-        stick=_intervals(time, (slip < built.corner) & np.isfinite(built.corner)),
+        contact_force=support_force.sum(axis=1),
+        stick=_intervals(time, (motion.slip < built.corner).all(axis=1) & np.isfinite(built.corner)),
         status=point.outcome,
         instant=point.instant,
-        extra={"slip_speed": slip * units.velocity},
+        extra=extra,
     )
+
+
+def _attitude(motion: Motion, time: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    """How the platform turns, and when it leaves a support."""
+    roll, pitch, yaw = motion.coordinates[:, 3:6].T
+    open_at = [
+        (float(support), *interval)
+        for support, gap in enumerate(motion.gap.T)
+        for interval in _intervals(time, gap >= 0.0)
+    ]
+    tilt = np.arcsin(np.hypot(np.sin(pitch), np.sin(roll) * np.cos(pitch)))
+    return {"yaw": yaw, "tilt": tilt, "liftoff": np.array(open_at).reshape(-1, 3)}
 
 
 def _intervals(time: NDArray[np.float64], holds: NDArray[np.bool_]) -> list[tuple[float, float]]:

@@ -10,11 +10,12 @@ from numpy.typing import ArrayLike
 
 from multibody.integrate import silence
 from multibody.refine import refine
+from multibody.spatial import spatial
 from multibody.system import EngineModel
 from multibody.translational import translational
 from reference.problem import Amplification, Outcome, Scene, checked_phases, ground_peak
 
-BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": translational}
+BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": translational, "spatial": spatial}
 
 
 def assembled(scene: Scene, model: str, regularization: float | None, *, contact_force: bool = False) -> EngineModel:

@@ -14,10 +14,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from multibody.contact import DAMPING, contact_law, pressed_in, settled
 from multibody.engine import exudyn, items
 from multibody.loading import SymbolicGround, symbolic_load
-from multibody.system import EngineModel, EngineState, Recorders
-from multibody.units import Units, link_stiffness, units_of
+from multibody.recorders import recorded
+from multibody.system import EngineModel, EngineState
+from multibody.units import link_stiffness, units_of
 from reference.problem import Scene, State
 
 Array = NDArray[np.float64]
@@ -25,8 +27,6 @@ Array = NDArray[np.float64]
 PLATFORM = 6  # coordinates of the rigid body: x, y, z and three rotations
 LOCKED = 1e15  # moment of inertia, in units of mass * length^2: turns by 1e-11 rad in 20 s under the largest torque
 HOLLOW = 2.0  # R in units of rho; in translation only R - r matters
-DAMPING = 1.0  # ratio of the contact: its own motion dies out within a few of its periods and is not seen
-ALWAYS_LINEAR = 1e6  # v_reg of the lubricated contact in units of velocity, above any speed: mu = f_c |v| throughout
 
 
 def translational(scene: Scene, regularization: float | None, *, contact_force: bool = False) -> EngineModel:
@@ -50,7 +50,7 @@ def translational(scene: Scene, regularization: float | None, *, contact_force: 
     if len(masses) > 1:
         nodes.append(_chain(mbs, platform_node, masses, link_stiffness(scene, units)))
 
-    friction, threshold = _law(scene, regularization, units)
+    friction, threshold = contact_law(scene, regularization, units)
     contact_node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
     contact = mbs.AddObject(
         items.ObjectContactSphereSphere(
@@ -67,7 +67,7 @@ def translational(scene: Scene, regularization: float | None, *, contact_force: 
     )
     ground = SymbolicGround(scene, units)
     expressions = _inertial_loads(mbs, ground, masses, depression, nodes)
-    recorders = _recorders(mbs, nodes, contact_node, contact if contact_force else None)
+    recorders = recorded(mbs, nodes, [contact_node], [contact] if contact_force else [])
     mbs.Assemble()
 
     bodies = np.array([[0, 1, 2]] + [[PLATFORM + 2 * i, PLATFORM + 2 * i + 1, 2] for i in range(len(masses) - 1)])
@@ -79,24 +79,22 @@ def translational(scene: Scene, regularization: float | None, *, contact_force: 
         mbs.SetObjectParameter(contact, "contactDamping", 2.0 * DAMPING / np.sqrt(penetration))
 
     def start(initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
-        return _start(initial, ground_acceleration / units.acceleration, bodies, units, penetration)
+        coordinates, velocities = np.zeros(PLATFORM + 2 * len(masses) - 2), np.zeros(PLATFORM + 2 * len(masses) - 2)
+        if initial is not None:
+            coordinates[bodies[:, :2]] = np.asarray(initial.position, float) / units.length
+            velocities[bodies[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
+        coordinates[:3], velocities[:3], gap, slip = pressed_in(
+            coordinates[:2], velocities[:2], ground_acceleration / units.acceleration, penetration
+        )
+        return EngineState(coordinates, velocities, np.array([gap, slip, 0.0, 0.0]))
 
     def settle(state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
-        return _settled(state, float(gap_rate[0]), penetration)
+        return settled(state, float(gap_rate[0]), penetration)
 
     corner = np.inf if scene.lubricated or friction == 0.0 else threshold
     return EngineModel(
-        mbs, units, ground, recorders, bodies, stiffen, start, settle, 1.0, corner, (container, expressions)
+        mbs, units, ground, recorders, bodies, stiffen, start, settle, 1.0, corner, False, (container, expressions)
     )
-
-
-def _law(scene: Scene, regularization: float | None, units: Units) -> tuple[float, float]:
-    """Friction coefficient of the contact, and the speed in units of velocity under which it is reduced linearly."""
-    if scene.lubricated:
-        return scene.friction_coefficient * units.velocity * ALWAYS_LINEAR, ALWAYS_LINEAR
-    if regularization is None:
-        return scene.friction_coefficient, 1.0
-    return scene.friction_coefficient, regularization / units.velocity
 
 
 def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array) -> Any:
@@ -145,69 +143,3 @@ def _inertial_loads(mbs: Any, ground: SymbolicGround, masses: Array, depression:
             load = mbs.AddLoad(items.LoadCoordinate(markerNumber=mbs.AddMarker(coordinate)))
             expressions.append(symbolic_load(mbs, load, "loadUserFunction", on_body(i, axis)))
     return expressions
-
-
-def _recorders(mbs: Any, nodes: list[Any], contact_node: Any, contact: Any | None) -> Recorders:
-    kind = exudyn.OutputVariableType
-
-    def at(node: Any, quantity: Any) -> Any:
-        sensor = items.SensorNode(nodeNumber=node, outputVariableType=quantity, storeInternal=True, writeToFile=False)
-        return mbs.AddSensor(sensor)
-
-    def of_contact(quantity: Any) -> Any:
-        sensor = items.SensorObject(
-            objectNumber=contact, outputVariableType=quantity, storeInternal=True, writeToFile=False
-        )
-        return mbs.AddSensor(sensor)
-
-    return Recorders(
-        coordinates=[at(node, kind.Coordinates) for node in nodes],
-        velocities=[at(node, kind.Coordinates_t) for node in nodes],
-        accelerations=[at(node, kind.Coordinates_tt) for node in nodes],
-        contact=[at(contact_node, kind.Coordinates)],
-        contact_force=[] if contact is None else [of_contact(kind.Force), of_contact(kind.Director1)],
-    )
-
-
-def _start(
-    initial: State | None, ground: Array, bodies: NDArray[np.int_], units: Units, penetration: float
-) -> EngineState:
-    """
-    The engine's state on the sphere, moving along it, pressed in by as much as a single body would be.
-
-    For several bodies off the vertical the penetration is not exact; the contact damps the difference out within
-    a few of its own time constants.
-    """
-    count = PLATFORM + 2 * (len(bodies) - 1)
-    coordinates, velocities = np.zeros(count), np.zeros(count)
-    if initial is not None:
-        coordinates[bodies[:, :2]] = np.asarray(initial.position, float) / units.length
-        velocities[bodies[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
-    offset, speed = coordinates[:2], velocities[:2]
-    height = float(np.sqrt(max(1.0 - float(offset @ offset), 0.0)))
-    normal = np.array([-offset[0], -offset[1], height])
-    vertical = offset @ speed / height if height > 0.0 else np.inf
-    slip = np.sqrt(speed @ speed + vertical**2)
-    pressed = penetration * (normal @ ground + normal[2] + slip**2)
-    coordinates[:3] = np.array([0.0, 0.0, 1.0]) - normal * (1.0 + pressed - penetration)
-    velocities[2] = vertical
-    return EngineState(coordinates, velocities, np.array([-pressed, slip, 0.0, 0.0]))
-
-
-def _settled(state: EngineState, gap_rate: float, penetration: float) -> EngineState:
-    """
-    The same state with the same contact force, carried by the gap alone and not by a leftover of normal velocity.
-
-    At a given step the engine's position and velocity disagree along the normal by O(h^2), and the contact's damper
-    turns that into a force which the gap makes up for. A smaller step would start with that balance upset and ring.
-    """
-    coordinates, velocities, contact = state.coordinates.copy(), state.velocities.copy(), state.contact.copy()
-    normal = np.array([0.0, 0.0, 1.0]) - coordinates[:3]
-    normal /= np.linalg.norm(normal)
-    damping = 2.0 * DAMPING / np.sqrt(penetration)
-    excess = float(normal @ velocities[:3]) - gap_rate
-    lift = -penetration * damping * excess
-    velocities[:3] -= normal * excess
-    coordinates[:3] -= normal * lift
-    contact[0] -= lift
-    return EngineState(coordinates, velocities, contact)

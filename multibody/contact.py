@@ -1,0 +1,60 @@
+"""What the contact of every model has in common: the friction law's corner, first penetration, a settled restart."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.system import EngineState
+from multibody.units import Units
+from reference.problem import Scene
+
+Array = NDArray[np.float64]
+
+DAMPING = 1.0  # ratio of the contact: its own motion dies out within a few of its periods and is not seen
+ALWAYS_LINEAR = 1e6  # v_reg of the lubricated contact in units of velocity, above any speed: mu = f_c |v| throughout
+
+
+def contact_law(scene: Scene, regularization: float | None, units: Units) -> tuple[float, float]:
+    """Friction coefficient of the contact, and the speed in units of velocity under which it is reduced linearly."""
+    if scene.lubricated:
+        return scene.friction_coefficient * units.velocity * ALWAYS_LINEAR, ALWAYS_LINEAR
+    if regularization is None:
+        return scene.friction_coefficient, 1.0
+    return scene.friction_coefficient, regularization / units.velocity
+
+
+def pressed_in(offset: Array, speed: Array, ground: Array, penetration: float) -> tuple[Array, Array, float, float]:
+    """
+    Platform on the sphere, moving along it, pressed in by as much as a single body would be; in units of the model.
+
+    offset, speed: horizontal (2,). ground: the plate's acceleration (3,). Returns displacement (3,), velocity (3,),
+    gap, slip speed. For several bodies off the vertical the penetration is not exact; the contact damps the difference
+    out within a few of its own time constants.
+    """
+    height = float(np.sqrt(max(1.0 - float(offset @ offset), 0.0)))
+    normal = np.array([-offset[0], -offset[1], height])
+    vertical = float(offset @ speed) / height if height > 0.0 else np.inf
+    slip = float(np.sqrt(speed @ speed + vertical**2))
+    pressed = penetration * float(normal @ ground + normal[2] + slip**2)
+    place = np.array([0.0, 0.0, 1.0]) - normal * (1.0 + pressed - penetration)
+    return place, np.array([*speed, vertical]), -pressed, slip
+
+
+def settled(state: EngineState, gap_rate: float, penetration: float) -> EngineState:
+    """
+    The same state with the same contact force, carried by the gap alone and not by a leftover of normal velocity.
+
+    At a given step the engine's position and velocity disagree along the normal by O(h^2), and the contact's damper
+    turns that into a force which the gap makes up for. A smaller step would start with that balance upset and ring.
+    """
+    coordinates, velocities, contact = state.coordinates.copy(), state.velocities.copy(), state.contact.copy()
+    normal = np.array([0.0, 0.0, 1.0]) - coordinates[:3]
+    normal /= np.linalg.norm(normal)
+    damping = 2.0 * DAMPING / np.sqrt(penetration)
+    excess = float(normal @ velocities[:3]) - gap_rate
+    lift = -penetration * damping * excess
+    velocities[:3] -= normal * excess
+    coordinates[:3] -= normal * lift
+    contact[0] -= lift
+    return EngineState(coordinates, velocities, contact)

@@ -1,0 +1,158 @@
+"""
+The spatial model: rigid bodies free to turn, supports on a ring, contacts that open and close.
+
+Platform and bodies are boxes with six degrees of freedom at their heights. The platform's underside has one depression
+per support, each with its own unilateral contact, so supports share the load as overturning demands. A link is a set of
+upright bars clamped at both ends: stiff in tension and in bending about the horizontal axes, with the scene's shear
+stiffness acting half-way up, and against twist the stiffness of bars that stand on the ring, ring^2 (kx + ky) / 2.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.contact import DAMPING, contact_law, pressed_in
+from multibody.engine import exudyn, items
+from multibody.loading import SymbolicGround, symbolic_load
+from multibody.recorders import recorded
+from multibody.system import EngineModel, EngineState
+from multibody.units import Units, link_stiffness, units_of
+from reference.problem import Scene, State
+
+Array = NDArray[np.float64]
+
+PER_BODY = 6  # x, y, z of the centre of mass and three rotations
+STIFF = 1e5  # of a bar in tension (and, times rho^2, in bending), in units of weight / rho: gives way by 1e-5 rho
+
+
+def spatial(scene: Scene, regularization: float | None, *, contact_force: bool = False) -> EngineModel:
+    """
+    Assemble the spatial model; arguments as in `translational`.
+
+    Raises ValueError if the scene lacks supports, ring, sphere_radius, or the height or size of a body.
+    """
+    units = units_of(scene)
+    ring, radius, heights, sizes = _geometry(scene, units)
+    masses = scene.masses / units.mass
+    container = exudyn.SystemContainer()
+    mbs = container.AddSystem()
+    frame = mbs.AddObject(items.ObjectGround())
+    nodes, bodies = [], []
+    for mass, height, size in zip(masses, heights, sizes):
+        nodes.append(mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0, 0.0, height, 0.0, 0.0, 0.0])))
+        inertia = mass / 12.0 * (size @ size - size**2)
+        box = items.ObjectRigidBody(nodeNumber=nodes[-1], mass=mass, inertia=[*inertia, 0.0, 0.0, 0.0])
+        bodies.append(mbs.AddObject(box))
+    for link, stiffness in enumerate(link_stiffness(scene, units)):
+        carried = float(masses[link + 1 :].sum())
+        _bars(mbs, bodies[link : link + 2], heights[link : link + 2], carried, stiffness, float(np.hypot(*ring[0])))
+
+    friction, threshold = contact_law(scene, regularization, units)
+    contacts, contact_nodes = [], []
+    for place in ring:
+        contact_nodes.append(
+            mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
+        )
+        support = items.MarkerBodyRigid(bodyNumber=frame, localPosition=[*place, 1.0])
+        depression = items.MarkerBodyRigid(bodyNumber=bodies[0], localPosition=[*place, -heights[0]])
+        contacts.append(
+            mbs.AddObject(
+                items.ObjectContactSphereSphere(
+                    markerNumbers=[mbs.AddMarker(support), mbs.AddMarker(depression)],
+                    nodeNumber=contact_nodes[-1],
+                    spheresRadii=[radius, radius + 1.0],
+                    isHollowSphere1=True,
+                    dynamicFriction=friction,
+                    frictionProportionalZone=threshold,
+                )
+            )
+        )
+    ground = SymbolicGround(scene, units)
+    expressions = []
+    for mass, body in zip(masses, bodies):
+        centre = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body))
+        load = mbs.AddLoad(items.LoadForceVector(markerNumber=centre, loadVector=[0.0, 0.0, -mass]))
+        expressions.append(symbolic_load(mbs, load, "loadVectorUserFunction", _inertial(ground, float(mass))))
+    recorders = recorded(mbs, nodes, contact_nodes, contacts if contact_force else [])
+    mbs.Assemble()
+
+    count = len(contacts)
+
+    def stiffen(penetration: float) -> None:
+        for contact in contacts:
+            mbs.SetObjectParameter(contact, "spheresRadii", [radius + penetration, radius + 1.0])
+            mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / (count * penetration))
+            mbs.SetObjectParameter(contact, "contactDamping", 2.0 * DAMPING / (count * np.sqrt(penetration)))
+
+    index = PER_BODY * np.arange(len(masses))[:, None] + np.arange(3)
+
+    def start(initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
+        coordinates, velocities = np.zeros(PER_BODY * len(masses)), np.zeros(PER_BODY * len(masses))
+        if initial is not None:
+            coordinates[index[:, :2]] = np.asarray(initial.position, float) / units.length
+            velocities[index[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
+        place, velocity, gap, slip = pressed_in(
+            coordinates[:2], velocities[:2], ground_acceleration / units.acceleration, penetration
+        )
+        coordinates[:3], velocities[:3] = place, velocity
+        coordinates[index[1:, 2]], velocities[index[1:, 2]] = place[2], velocity[2]
+        return EngineState(coordinates, velocities, np.tile([gap, slip, 0.0, 0.0], count))
+
+    def settle(state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
+        return state
+
+    corner = np.inf if scene.lubricated or friction == 0.0 else threshold
+    keep = (container, expressions)
+    return EngineModel(mbs, units, ground, recorders, index, stiffen, start, settle, 1.0, corner, True, keep)
+
+
+def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:
+    """Supports (K, 2), sphere radius, heights (N,), sizes (N, 3), all in units of length. Raises ValueError."""
+    isolator = scene.isolator
+    wanted = {f"isolator.{key}": getattr(isolator, key) for key in ("supports", "ring", "sphere_radius")}
+    for number, body in enumerate(scene.bodies):
+        wanted |= {f"bodies.{number}.{key}": getattr(body, key) for key in ("height", "size")}
+    missing = [key for key, value in wanted.items() if value is None]
+    if missing:
+        raise ValueError(f"model: 'spatial': {scene.name} needs {', '.join(missing)}")
+    assert isolator.supports is not None
+    assert isolator.ring is not None
+    assert isolator.sphere_radius is not None
+    angles = 2.0 * np.pi * (np.arange(isolator.supports) + 0.5) / isolator.supports
+    ring = isolator.ring / units.length * np.column_stack([np.cos(angles), np.sin(angles)])
+    heights = np.array([body.height for body in scene.bodies]) / units.length
+    sizes = np.array([body.size for body in scene.bodies]) / units.length
+    return ring, isolator.sphere_radius / units.length, heights, sizes
+
+
+def _bars(mbs: Any, bodies: list[Any], heights: Array, carried: float, stiffness: Array, ring: float) -> None:
+    """The link between two neighbours, acting half-way between their centres; carried: mass above it."""
+    middle = 0.5 * (heights[1] - heights[0])
+    markers = [
+        mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[0.0, 0.0, sign * middle]))
+        for body, sign in zip(bodies, (1.0, -1.0))
+    ]
+    twist = ring**2 * stiffness.mean()
+    stiff = np.array([0.0, 0.0, STIFF, STIFF, STIFF, 0.0])
+    mbs.AddObject(
+        items.ObjectConnectorRigidBodySpringDamper(
+            markerNumbers=markers,
+            stiffness=np.diag([*stiffness, *stiff[2:5], twist]),
+            # the stiff directions are damped critically, the others not at all
+            damping=np.diag(2.0 * np.sqrt(stiff * carried)),
+            # at rest the bars carry what stands on them without giving way
+            offset=[0.0, 0.0, carried / STIFF, 0.0, 0.0, 0.0],
+        )
+    )
+
+
+def _inertial(ground: SymbolicGround, mass: float) -> Any:
+    """Weight and -m times the plate's acceleration."""
+
+    def force(mbs: Any, t: Any, loadVector: Any) -> list[Any]:
+        return [-mass * ground.along(0, t), -mass * ground.along(1, t), -mass - mass * ground.along(2, t)]
+
+    return force

@@ -1,0 +1,102 @@
+"""What the engine's answers cost: formulations and solvers, one point against one plain run, memory of many runs."""
+
+from __future__ import annotations
+
+import resource
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import multibody
+from multibody import refine
+from multibody.integrate import Engine
+from reference.problem import load_scene
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from multibody_formulations import FORMULATIONS, PENETRATION, SOLVERS, run
+
+PHASE = np.array([0.3, 1.1])
+
+
+def short(duration: float) -> Any:
+    return load_scene("fig3-I").model_copy(update={"duration": duration})
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_formulation_and_solver(benchmark: Any, formulation: str, solver: str) -> None:
+    scene = short(2.0)
+    candidate = FORMULATIONS[formulation](scene, PENETRATION)
+    peaks, _ = benchmark(run, scene, candidate, PHASE, solver, 1e-3 if solver in SOLVERS[:2] else 2e-4)
+    assert np.isfinite(peaks).all()
+
+
+def test_one_point(benchmark: Any) -> None:
+    result = benchmark(multibody.amplification, short(2.0), [PHASE])
+    assert result.status[0] == "ok"
+
+
+def test_both_formulations_are_the_same_system() -> None:
+    scene = short(2.0)
+    peaks = [
+        run(scene, build(scene, PENETRATION), PHASE, "generalised alpha", 1e-3)[0] for build in FORMULATIONS.values()
+    ]
+    # the same equations and steps; Newton's tolerance of 1e-5 on the forces is left
+    np.testing.assert_allclose(peaks[0], peaks[1], rtol=1e-4)
+
+
+@pytest.mark.long
+def test_a_point_costs_at_most_two_plain_runs_in_the_median() -> None:
+    scene = load_scene("fig3-I")
+    plain = FORMULATIONS["rigid body"](scene, PENETRATION)
+    phases = np.random.default_rng(5).uniform(0.0, 2.0 * np.pi, (9, 2))
+    multibody.amplification(scene, phases[:1])  # compiles the loading's peak
+    ratios = []
+    for phase in phases:
+        _, cost = run(scene, plain, phase, "generalised alpha", 1e-3, modified=False)
+        ratios.append(multibody.amplification(scene, [phase]).cost / cost)
+    assert np.median(ratios) <= 2.0
+
+
+@pytest.mark.long
+def test_building_and_reading_back_take_at_most_a_tenth_of_the_solve(monkeypatch: pytest.MonkeyPatch) -> None:
+    spent = {"build": 0.0, "read": 0.0, "run": 0.0}
+
+    def clocked(name: str, function: Any) -> Any:
+        def call(*arguments: Any, **options: Any) -> Any:
+            begin = time.process_time()
+            try:
+                return function(*arguments, **options)
+            finally:
+                spent[name] += time.process_time() - begin
+
+        return call
+
+    from multibody import surface
+
+    monkeypatch.setattr(surface, "assembled", clocked("build", surface.assembled))
+    monkeypatch.setattr(Engine, "_read", clocked("read", Engine._read))
+    monkeypatch.setattr(Engine, "run", clocked("run", Engine.run))
+    multibody.amplification(load_scene("fig3-I"), np.random.default_rng(5).uniform(0.0, 6.0, (8, 2)))
+    assert spent["build"] + spent["read"] <= 0.1 * (spent["run"] - spent["read"])
+
+
+@pytest.mark.long
+def test_ten_thousand_short_runs_leave_no_memory_behind(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(refine, "LEVELS", 2)
+    scene = short(0.02)
+    phases = np.random.default_rng(5).uniform(0.0, 2.0 * np.pi, (10_000, 2))
+
+    def resident() -> float:
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+
+    multibody.amplification(scene, phases[:100])
+    before = resident()
+    for tile in np.array_split(phases, 100):  # a fresh system for every hundred, as a sweep does
+        multibody.amplification(scene, tile)
+    assert resident() - before < 50.0
