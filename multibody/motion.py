@@ -25,8 +25,8 @@ def trajectory(
     The instants are the engine's own, closer at stops; they are those of the run whose peaks meet `tolerance`, as in
     `amplification`, with the same statuses; a run that ends early is returned up to there. `contact_force`: sum over
     the supports. `stick`: intervals in which every support slips slower than v_reg. `extra`: slip_speed (T, K), m/s,
-    and support_force (T, K), N, of K contacts (one in the translational model); the spatial model adds yaw and tilt of the
-    platform (T,), rad, and liftoff (L, 3): support, start and end, s, of every time a contact is open. Raises
+    and support_force (T, K), N, of K contacts (one in the translational model); the spatial model adds yaw and tilt of
+    the platform (T,), rad, and liftoff (L, 3): support, start and end, s, of every time a contact is open. Raises
     ValueError for wrong arguments.
     """
     pair = checked_phases(np.reshape(np.asarray(phase, float), (1, -1)))[0]

@@ -1,10 +1,10 @@
 """
 One phase pair to a tolerance: the whole run at successive levels of accuracy, and an error from their differences.
 
-From one level to the next everything the answer depends on becomes better by the same factor: the squared step (the
-largest, and that at stops), the compliance of the contact, the tolerance of Newton's iteration. The peaks converge like
-h^2 and like the compliance, so the difference of two levels is three times the error of the finer one from all these
-sources together.
+From one level to the next everything the answer depends on becomes better at once: the step, the largest and that at
+stops, by two; the compliance of the contact and the tolerance of Newton's iteration by four. Peaks in smooth motion
+converge by four, those at stops by two to four (measured), so that the difference of two levels, at the factor seen or
+at two, is the error of the finer one from all these sources together.
 """
 
 from __future__ import annotations
@@ -31,7 +31,8 @@ PENETRATION = 1e-6  # of rho, at level 0
 STIFFEST = 1e-8  # of rho: rounding of the position is then 2e-8 of the weight
 NEWTON = 1e-5  # relative tolerance of the forces, at level 0
 ROUNDING = 1e-15  # of the position, in units of rho; over the penetration: of the forces
-SAFETY_TWO, SAFETY_MORE = 3.0, 1.25  # Roache's factors for two levels and for more
+SAFETY_TWO, SAFETY_MORE = 1.5, 1.25  # on the error that two levels, and three or more, show (Roache)
+SLOWEST, FASTEST = 2.0, 4.0  # factor by which a level reduces the error: at stops, in smooth motion
 CHANCE = 4e-4  # relative: what level 0 typically gets wrong; two levels may agree by chance, so no estimate is smaller
 FLOOR = 1e-6  # relative: below this, rounding and the compliance that is left are not measured
 
@@ -119,15 +120,14 @@ def _errors(marches: list[March]) -> Array:
     """Estimated errors of the last march's peaks, in units of the model."""
     now, before = marches[-1].peaks, marches[-2].peaks
     change = np.abs(now.value - before.value)
-    safety = SAFETY_TWO
+    safety, rate = SAFETY_TWO, np.full_like(change, SLOWEST)
     if len(marches) > 2 and marches[-3].outcome == Outcome.OK:
-        # the change before last, at the expected order, guards against two levels that agree by chance
-        change = np.maximum(change, np.abs(before.value - marches[-3].peaks.value) / 4.0)
-        safety = SAFETY_MORE
+        earlier = np.abs(before.value - marches[-3].peaks.value)
+        change = np.maximum(change, earlier / FASTEST)  # guards against two levels that agree by chance
+        safety, rate = SAFETY_MORE, np.clip(earlier / np.maximum(change, np.finfo(float).tiny), SLOWEST, FASTEST)
     level = len(marches) - 1
-    errors: Array = (
-        np.maximum(safety * change / 3.0, CHANCE / 4.0**level * now.value) + now.sampling + FLOOR * now.value
-    )
+    likely = np.maximum(safety * change / (rate - 1.0), CHANCE / 4.0**level * now.value)
+    errors: Array = likely + now.sampling + FLOOR * now.value
     return errors
 
 
