@@ -7,9 +7,11 @@ import re
 
 from markupsafe import Markup, escape
 
-SUBSCRIPTS = re.compile(r"(?<![\w])([a-zA-Zμλ]+)_(\w+)")
-GREEK = {"beta": "β", "eta": "η", "lambda": "λ", "mu": "μ", "rho": "ρ", "tau": "τ", "xi": "ξ", "zeta": "ζ"}
-LETTERS = re.compile(rf"(?<![a-zA-Z])({'|'.join(GREEK)})(?![a-zA-Z])")
+POWERS = re.compile(r"\^(\w)")
+SUBSCRIPTS = re.compile(r"(?<=[\w>])_(\w+)")
+SMALL = {"beta": "β", "eta": "η", "lambda": "λ", "mu": "μ", "rho": "ρ", "tau": "τ", "xi": "ξ", "zeta": "ζ"}
+GREEK = {**SMALL, "Delta": "Δ", "Phi": "Φ"}
+LETTERS = re.compile(rf"(?<![a-zA-Z^])(d?)({'|'.join(GREEK)})(?![a-zA-Z])")
 
 
 def percent(value: float) -> str:
@@ -32,6 +34,6 @@ def degrees(phase: float) -> str:
 
 
 def symbols(text: str) -> Markup:
-    """Names such as v_reg and rho as they are printed: with subscripts and Greek letters."""
-    greek = LETTERS.sub(lambda found: GREEK[found.group(1)], str(escape(text)))
-    return Markup(SUBSCRIPTS.sub(r"\1<sub>\2</sub>", greek))
+    """Names such as v_reg, l^3 and rho as they are printed: with indices, powers and Greek letters."""
+    greek = LETTERS.sub(lambda found: found.group(1) + GREEK[found.group(2)], str(escape(text)))
+    return Markup(SUBSCRIPTS.sub(r"<sub>\1</sub>", POWERS.sub(r"<sup>\1</sup>", greek)))
