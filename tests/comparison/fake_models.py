@@ -66,7 +66,7 @@ def killing(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Ampl
 
 
 def slow(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
-    time.sleep(0.5)
+    time.sleep(60.0)
     return smooth(scene, phases, tolerance)
 
 

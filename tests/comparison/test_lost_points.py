@@ -87,5 +87,11 @@ def test_check_counts_lost_points_as_a_broken_limit(command: Callable[..., Run])
     assert (run.report / "index.html").exists(), "the report that shows why is there"
 
 
+def test_check_does_not_pass_a_limit_that_nothing_was_held_against(command: Callable[..., Run]) -> None:
+    run = command(*GRID, "--check", ladder=fake_ladder("always_raising"))
+    assert run.code == 1
+    assert "limit broken: fig3-I: body 1: acceptance.median: nan found, 0.0001 allowed" in run.err
+
+
 def test_the_deadly_phase_is_on_the_grid() -> None:
     assert np.isclose(2.0 * np.pi * np.arange(4) / 4, DEADLY).sum() == 1
