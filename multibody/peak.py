@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 KEPT = 6  # samples carried over to the next chunk: what the readings from both sides of an instant need
+AFTER = 3  # samples behind a corner, from which it is read
 NEAR = 0.97  # of the peak: samples below it cannot be raised above it by interpolation at a resolved step
 
 
@@ -30,6 +31,7 @@ class Peaks:
         self.sampling = np.zeros(bodies)
         self.instant = np.zeros(bodies)
         self._threshold = threshold
+        self._read = -np.inf  # start of the last interval whose corner was read
         self._time = np.empty(0)
         self._size = np.empty((0, bodies))
         self._slip = np.empty((0, 0))
@@ -43,23 +45,32 @@ class Peaks:
             slip = np.concatenate([self._slip, slip[1:]])
         beyond = slip > self._threshold
         corners = np.flatnonzero((beyond[1:] != beyond[:-1]).any(axis=1))
+        # each corner is read once, as soon as there are samples behind it
+        ready = [int(left) for left in corners if left + AFTER < len(time) and time[left] > self._read]
         for body in range(size.shape[1]):
-            self._scan(body, time, size[:, body], slip, corners)
+            self._scan(body, time, size[:, body], slip, corners, ready)
+        if ready:
+            self._read = float(time[ready[-1]])
         self._time, self._size, self._slip = time[-KEPT:], size[-KEPT:], slip[-KEPT:]
 
-    def _scan(self, body: int, time: Array, size: Array, slip: Array, corners: NDArray[np.intp]) -> None:
+    def _scan(
+        self, body: int, time: Array, size: Array, slip: Array, corners: NDArray[np.intp], ready: list[int]
+    ) -> None:
         row = int(size.argmax())
         if size[row] <= NEAR * self.value[body]:
             return
         self._offer(body, *_smooth(time, size, row, corners))
-        for left in corners:
+        for left in ready:
             if max(size[left], size[left + 1]) > NEAR * self.value[body]:
-                instant = _crossing(time[left : left + 2], slip[left : left + 2], self._threshold)
-                self._offer(body, *_corner(time, size, int(left), instant, corners))
+                self._offer(body, *_corner(time, size, slip, left, self._threshold, corners))
 
     def _offer(self, body: int, value: float, error: float, instant: float) -> None:
+        possible = max(value + error, self.value[body] + self.sampling[body])
         if value > self.value[body]:
-            self.value[body], self.sampling[body], self.instant[body] = value, error, instant
+            self.value[body], self.instant[body] = value, instant
+            self.sampling[body] = max(error, possible - value)
+        else:
+            self.sampling[body] = possible - self.value[body]
 
 
 def _smooth(time: Array, size: Array, row: int, corners: NDArray[np.intp]) -> tuple[float, float, float]:
@@ -90,16 +101,33 @@ def _smooth(time: Array, size: Array, row: int, corners: NDArray[np.intp]) -> tu
 
 
 def _corner(
-    time: Array, size: Array, left: int, instant: float, corners: NDArray[np.intp]
+    time: Array, size: Array, slip: Array, left: int, threshold: float, corners: NDArray[np.intp]
 ) -> tuple[float, float, float]:
-    """Value at a corner between rows `left` and `left + 1`, extrapolated from both sides; half their gap as error."""
+    """
+    Value at a corner between rows `left` and `left + 1`, extrapolated from both sides.
+
+    Each side tells by itself when the slip speed passes the threshold, whose rate jumps there as well. Error: half the
+    gap between the two readings, and what their two instants leave open.
+    """
     first, _ = _side(left, len(size), corners)
     _, last = _side(left + 1, len(size), corners)
     before = slice(max(first, left - 2), left + 1)
     after = slice(left + 1, min(last, left + 3) + 1)
+    contact = int(((slip[left] > threshold) != (slip[left + 1] > threshold)).argmax())
+    ends = float(time[left]), float(time[left + 1])
+    instants = [
+        _passing(time[side], slip[side, contact], threshold, ends)
+        for side in (before, after)
+        if side.stop - side.start > 1
+    ]
+    if not instants:
+        low, high = slip[left, contact], slip[left + 1, contact]
+        instants = [ends[0] + (threshold - low) / (high - low) * (ends[1] - ends[0])]
+    instant = sum(instants) / len(instants)
     readings = [_extrapolated(time[side], size[side], instant) for side in (before, after)]
-    value = 0.5 * (readings[0] + readings[1])
-    return value, 0.5 * abs(readings[0] - readings[1]), instant
+    slope = max(abs(float(size[left + 1] - size[left])), abs(readings[0] - readings[1])) / (ends[1] - ends[0])
+    error = 0.5 * abs(readings[0] - readings[1]) + 0.5 * (max(instants) - min(instants)) * slope
+    return 0.5 * (readings[0] + readings[1]), error, instant
 
 
 def _side(row: int, count: int, corners: NDArray[np.intp]) -> tuple[int, int]:
@@ -119,9 +147,11 @@ def _extrapolated(time: Array, values: Array, instant: float) -> float:
     return float(table[0])
 
 
-def _crossing(time: Array, slip: Array, threshold: float) -> float:
-    """Instant between two samples at which a slip speed passes the threshold; the middle of several."""
-    beyond = slip > threshold
-    which = beyond[0] != beyond[1]
-    share = (threshold - slip[0, which]) / (slip[1, which] - slip[0, which])
-    return float(time[0] + share.mean() * (time[1] - time[0]))
+def _passing(time: Array, slip: Array, threshold: float, ends: tuple[float, float]) -> float:
+    """Instant between `ends` at which the slip speed of one side (two or three samples) passes the threshold."""
+    near, far = (-1, -2) if time[-1] <= ends[0] else (0, 1)
+    rate = (slip[near] - slip[far]) / (time[near] - time[far])
+    if rate == 0.0:
+        return 0.5 * (ends[0] + ends[1])
+    instant = float(np.clip(time[near] + (threshold - slip[near]) / rate, *ends))
+    return float(np.clip(instant - (_extrapolated(time, slip, instant) - threshold) / rate, *ends))

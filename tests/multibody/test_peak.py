@@ -48,6 +48,22 @@ def test_a_corner_is_read_from_both_sides(chunks: int, corner: float) -> None:
     assert peaks.sampling[0] < 0.5 * 0.18**3
 
 
+@pytest.mark.parametrize("chunks", [1, 2, 7, 16])
+@pytest.mark.parametrize("corner", [0.503, 0.511, 0.519])
+def test_the_rate_of_slip_may_jump_at_the_corner(chunks: int, corner: float) -> None:
+    def signal(t: np.ndarray) -> np.ndarray:
+        return np.where(t < corner, 1.0 + 3.0 * (t - corner), 1.0 - 0.4 * (t - corner))
+
+    def slip(t: np.ndarray) -> np.ndarray:
+        return np.where(t < corner, 1.0 + 0.2 * (t - corner), 1.0 + 0.7 * (t - corner) + (t - corner) ** 2)
+
+    peaks = read(signal, slip, 1.0, chunks)
+    # slip is a parabola on either side, of which one correction of the secant leaves h^3
+    assert peaks.instant[0] == pytest.approx(corner, abs=1e-4)
+    assert abs(peaks.value[0] - 1.0) <= peaks.sampling[0] + 1e-12
+    assert peaks.sampling[0] < 5e-4
+
+
 def test_a_corner_that_is_not_looked_for_is_misread() -> None:
     def signal(t: np.ndarray) -> np.ndarray:
         return np.where(t < 0.511, 1.0 + 2.0 * (t - 0.511), np.exp(-9.0 * (t - 0.511)))
