@@ -5,14 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.march import march
-from reference.problem import Outcome, Scene, State, Trajectory, checked_phases, ground_acceleration
+from reference.problem import Outcome, Scene, State, Trajectory, checked_phases
+from reference.solver.runs import runs
+from reference.solver.samples import sampled
+from reference.solver.system import Array, Demand, Record, System, record_of
 from reference.surface import OUTCOMES, checked_demand, loads_are_finite
-from reference.system import TIME, Array, Record, System, workspace
 
 SAMPLES_PER_PERIOD = 64  # of the shorter loading period, when no times are given
 MOST_SAMPLES = 200_000
-STICKS = 10_000  # intervals of rest that are kept
+ROOM = 1024  # steps, to begin with
 
 
 def trajectory(
@@ -37,39 +38,49 @@ def trajectory(
     system, demand = checked_demand(scene, equations, regularization, tolerance, None, rest_condition)
     instants = _checked_times(scene, times)
     bodies = len(scene.bodies)
-    count = len(instants)
-    record = Record(
-        times=instants,
-        x=np.full((count, bodies, 2), np.nan),
-        v=np.full((count, bodies, 2), np.nan),
-        total=np.full((count, bodies, 3), np.nan),
-        reaction=np.full(count, np.nan),
-        sticks=np.zeros((STICKS, 2)),
-        count=np.zeros(2, np.int64),
-    )
-    work = workspace(bodies)
+    x, v = np.zeros((bodies, 2)), np.zeros((bodies, 2))
     if initial is not None:
-        work.x[:], work.v[:] = _checked_state(initial, system, bodies)
-    outcome = Outcome.NON_FINITE_LOAD
+        x, v = _checked_state(initial, system, bodies)
+        demand = demand._replace(unit=demand.unit + _acceleration(system, x, v))
+    outcome, instant, record = Outcome.NON_FINITE_LOAD, 0.0, record_of(0, bodies)
     if loads_are_finite(system):
-        outcome = OUTCOMES[march(system, pair, work, demand, record)]
-    sampled, sticks = (int(number) for number in record.count)
-    x, v = record.x[:sampled], record.v[:sampled]
-    height, climb = _vertical(x[:, 0], v[:, 0], system)
-    ground = ground_acceleration(scene, pair, instants[:sampled])
-    total = record.total[:sampled]
-    if system.small:  # no vertical motion relative to the plate
-        total[:, :, 2] = ground[:, None, 2]
+        outcome, instant, record = _recorded(system, pair, x, v, demand)
+    instants = instants[instants <= instant] if outcome != Outcome.OK else instants
+    steps, sticks = (int(number) for number in record.count)
+    instants = instants if steps else instants[:0]
+    motion = sampled(record, instants)
+    height, climb = _vertical(motion.x[:, 0], motion.v[:, 0], system)
+    shape = (len(instants), bodies, 1)
     return Trajectory(
-        time=instants[:sampled],
-        position=np.concatenate([x, np.broadcast_to(height[:, None, None], (sampled, bodies, 1))], axis=-1),
-        velocity=np.concatenate([v, np.broadcast_to(climb[:, None, None], (sampled, bodies, 1))], axis=-1),
-        absolute_acceleration=total,
-        contact_force=record.reaction[:sampled] * scene.masses[0],
+        time=instants,
+        position=np.concatenate([motion.x, np.broadcast_to(height[:, None, None], shape)], axis=-1),
+        velocity=np.concatenate([motion.v, np.broadcast_to(climb[:, None, None], shape)], axis=-1),
+        absolute_acceleration=motion.total,
+        contact_force=motion.reaction * scene.masses[0],
         stick=[(float(a), float(b)) for a, b in record.sticks[:sticks]],
         status=outcome.value,
-        instant=np.nan if outcome == Outcome.OK else float(work.run[TIME]),
+        instant=np.nan if outcome == Outcome.OK else instant,
     )
+
+
+def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) -> tuple[Outcome, float, Record]:
+    """The run with all its steps, however many: (how and when it ended, s, its record)."""
+    bodies = len(x)
+    room = ROOM
+    while True:
+        record = record_of(room, bodies)
+        peaks, codes, instants, steps = np.empty((1, bodies)), np.empty(1), np.empty(1), np.empty(1)
+        runs(system, phase[None], x, v, demand, record, peaks, codes, instants, steps)
+        if record.count.max() <= room:
+            return OUTCOMES[int(codes[0])], float(instants[0]), record
+        room = int(record.count.max())
+
+
+def _acceleration(system: System, x: Array, v: Array) -> float:
+    """An upper bound of the accelerations that a state brings with it, m/s^2."""
+    gravity = system.mass_ratio * system.gravity
+    links = 2.0 * ((system.below + system.above) * np.abs(x).max()).max()
+    return float(gravity * float(np.hypot(*x[0])) / system.radius + (v[0] ** 2).sum() / system.radius + links)
 
 
 def _checked_times(scene: Scene, times: ArrayLike | None) -> Array:
@@ -87,7 +98,7 @@ def _checked_state(initial: State, system: System, bodies: int) -> tuple[Array, 
     x, v = np.asarray(initial.position, float), np.asarray(initial.velocity, float)
     if x.shape != (bodies, 2) or v.shape != (bodies, 2) or not (np.isfinite(x).all() and np.isfinite(v).all()):
         raise ValueError(f"initial: position and velocity must be finite and of shape ({bodies}, 2)")
-    if np.hypot(*x[0]) >= system.radius:
+    if float(np.hypot(*x[0])) >= system.radius:
         raise ValueError(f"initial: the platform must start inside the rim (4.1), rho = {system.radius:.6g} m")
     return x, v
 

@@ -10,9 +10,9 @@ import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.certified import NOT_MET, certify
 from reference.problem import Amplification, Outcome, Scene, checked_phases, ground_peak
-from reference.system import (
+from reference.solver.certified import NOT_MET, certified_peaks
+from reference.solver.system import (
     OPEN,
     PAINLEVE,
     RIM,
@@ -21,7 +21,6 @@ from reference.system import (
     UNSOLVED,
     Demand,
     System,
-    no_record,
     pack,
 )
 
@@ -75,18 +74,14 @@ def amplification(
         moving = ground > 0.0
         status[part] = Outcome.NO_GROUND_MOTION.value
         places = np.arange(count)[part][moving]
-        peaks, errors = np.empty((len(places), bodies)), np.empty((len(places), bodies))
-        codes, instants, steps = np.empty(len(places)), np.empty(len(places)), np.empty(len(places))
-        certify(system, pairs[places], demand, no_record(), peaks, errors, codes, instants, steps)
-        for row, place in enumerate(places):
-            outcome = OUTCOMES[int(codes[row])]
-            if outcome == Outcome.OK and not np.isfinite(peaks[row]).all():
-                outcome = Outcome.SOLVER_FAILED
-            status[place] = outcome.value
-            if outcome in (Outcome.OK, Outcome.TOLERANCE_NOT_MET):
-                mu[place], error[place] = peaks[row] / ground[moving][row], errors[row] / ground[moving][row]
-            if outcome != Outcome.OK:
-                instant[place] = instants[row]
+        peaks = certified_peaks(system, pairs[places], demand)
+        outcomes = np.array([OUTCOMES[int(code)] for code in peaks.code], dtype=object)
+        outcomes[(outcomes == Outcome.OK) & ~np.isfinite(peaks.value).all(axis=1)] = Outcome.SOLVER_FAILED
+        known = (outcomes == Outcome.OK) | (outcomes == Outcome.TOLERANCE_NOT_MET)
+        status[places] = [outcome.value for outcome in outcomes]
+        mu[places[known]] = peaks.value[known] / ground[moving][known, None]
+        error[places[known]] = peaks.error[known] / ground[moving][known, None]
+        instant[places] = np.where(outcomes == Outcome.OK, np.nan, peaks.instant)
         return time.thread_time() - begin
 
     threads = numba.get_num_threads()

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from reference.collocation import DENSE, DENSE_VALUES, MONOMIALS, STAGES
-from reference.compiled import compiled
-from reference.platform import rest_excess
-from reference.system import Array, System, Work
+from reference.solver.collocation import DENSE, DENSE_VALUES, MONOMIALS, STAGES
+from reference.solver.compiled import compiled
+from reference.solver.platform import rest_excess
+from reference.solver.system import Array, System, Work
 
 NEVER = 2.0
 

@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
-from reference.advance import FATAL, NEWTON, SHORTEST, begin, commit, first_guess, length_factor, next_step, remaining
-from reference.collocation import STAGES
-from reference.compiled import compiled
-from reference.events import first_crossing
-from reference.friction import sliding_speed2
-from reference.record import note_stick
-from reference.steps import moving_step, step_error
-from reference.system import (
+from reference.solver.advance import (
+    FATAL,
+    NEWTON,
+    SHORTEST,
+    begin,
+    commit,
+    first_guess,
+    length_factor,
+    next_step,
+    remaining,
+)
+from reference.solver.collocation import STAGES
+from reference.solver.compiled import compiled
+from reference.solver.events import first_crossing
+from reference.solver.friction import sliding_speed2
+from reference.solver.record import note_stick
+from reference.solver.steps import moving_step, step_error
+from reference.solver.system import (
     CREEPING,
     HELD,
     LENGTH,

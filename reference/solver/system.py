@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.collocation import CHANNELS, STAGES
-from reference.compiled import compiled
 from reference.problem import GRAVITY, Scene, exponents
+from reference.solver.collocation import CHANNELS, STAGES
+from reference.solver.compiled import compiled
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -19,7 +19,8 @@ SET_VALUED, REGULARIZED, LUBRICATED = 0, 1, 2
 # conditions for rest
 CONSISTENT, PRINTED = 0, 1
 # what the contact does
-REST, SLIDING, CREEPING, WETTED, STOPPING = range(5)
+# numpy integers: numba would build a function once more for every literal it is called with
+REST, SLIDING, CREEPING, WETTED, STOPPING = (np.int64(number) for number in range(5))
 # how the equations of one step, or a whole run, ended
 SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT = range(6)
 # entries of Work.run, the state of a run that is not an array
@@ -75,15 +76,21 @@ class Work(NamedTuple):
 
 
 class Record(NamedTuple):
-    """Samples of one motion for `trajectory`; empty arrays when only the peaks are wanted."""
+    """The steps of one motion for `trajectory` (samples.py); of capacity 0 when only the peaks are wanted."""
 
-    times: Array  # (T,)
-    x: Array  # (T, N, 2)
+    start: Array  # (T,) s, time at the start of each step
+    length: Array  # (T,) s, or of the stretched time near a stop
+    contact: Array  # (T,)
+    x: Array  # (T, N, 2) at the start
     v: Array  # (T, N, 2)
-    total: Array  # (T, N, 3)
-    reaction: Array  # (T,), over m1
-    sticks: Array  # (K, 2) intervals of rest, or of creep below v_reg
-    count: NDArray[np.int64]  # (2,) samples and intervals written
+    a: Array  # (T, N, 2, S) acceleration at the stages
+    position: Array  # (T, N, 2, S) near a stop
+    velocity: Array  # (T, N, 2, S) near a stop
+    clock: Array  # (T, S) time at the stages near a stop
+    total: Array  # (T, N, 3, S)
+    reaction: Array  # (T, S) over m1
+    sticks: Array  # (T, 2) intervals of rest, or of creep below v_reg
+    count: NDArray[np.int64]  # (2,) steps and intervals made, which may be more than there is room for
 
 
 class Demand(NamedTuple):
@@ -154,14 +161,21 @@ def workspace(bodies: int) -> Work:
     )
 
 
-def no_record() -> Record:
-    """For runs of which only the peaks are wanted."""
+def record_of(capacity: int, bodies: int) -> Record:
+    """Room for so many steps."""
+    t, n, s = capacity, bodies, STAGES
     return Record(
-        times=np.empty(0),
-        x=np.empty((0, 0, 2)),
-        v=np.empty((0, 0, 2)),
-        total=np.empty((0, 0, 3)),
-        reaction=np.empty(0),
-        sticks=np.empty((0, 2)),
+        start=np.zeros(t),
+        length=np.zeros(t),
+        contact=np.zeros(t),
+        x=np.zeros((t, n, 2)),
+        v=np.zeros((t, n, 2)),
+        a=np.zeros((t, n, 2, s)),
+        position=np.zeros((t, n, 2, s)),
+        velocity=np.zeros((t, n, 2, s)),
+        clock=np.zeros((t, s)),
+        total=np.zeros((t, n, 3, s)),
+        reaction=np.zeros((t, s)),
+        sticks=np.zeros((t, 2)),
         count=np.zeros(2, np.int64),
     )

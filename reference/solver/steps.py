@@ -11,16 +11,17 @@ from math import sqrt
 
 import numpy as np
 
-from reference.chain import eliminate_chain, load_chain, move_chain
-from reference.collocation import A2, AT_START, NODES, STAGES, A
-from reference.compiled import compiled
-from reference.equations import vertical_acceleration
-from reference.ground import ground_at_stages
-from reference.linear_solve import solve_in_place
-from reference.platform import slopes
-from reference.system import OPEN, PAINLEVE, REST, RIM, SOLVED, UNSOLVED, Array, System, Work
+from reference.solver.chain import eliminate_chain, load_chain, move_chain
+from reference.solver.collocation import A2, AT_START, NODES, STAGES, A
+from reference.solver.compiled import compiled
+from reference.solver.equations import vertical_acceleration
+from reference.solver.ground import ground_at_stages
+from reference.solver.linear_solve import solve_in_place
+from reference.solver.platform import slopes
+from reference.solver.system import OPEN, PAINLEVE, REST, RIM, SOLVED, UNSOLVED, Array, System, Work
 
 ITERATIONS = 12
+CLOSE_TO_RIM = 0.99  # of the squared radius
 
 
 @compiled
@@ -66,7 +67,7 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
                 stage[2 + axis, k] = work.v[0, axis] + h * velocity
                 stage[4 + axis, k] = drive
             if stage[0, k] ** 2 + stage[1, k] ** 2 >= system.radius**2:
-                return RIM  # (4.1)
+                return beyond_rim(system, work)
             ax, ay, reaction, determinant, speed2 = slopes(
                 system, contact,
                 stage[0, k], stage[1, k], stage[2, k], stage[3, k], stage[4, k], stage[5, k],
@@ -107,6 +108,12 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
             absolute_accelerations(system, work, contact)
             return SOLVED if stage[6].min() > 0.0 else OPEN
     return UNSOLVED
+
+
+@compiled
+def beyond_rim(system: System, work: Work) -> int:
+    """RIM (4.1) if the step began close to it; otherwise the iteration strayed there."""
+    return RIM if work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > CLOSE_TO_RIM * system.radius**2 else UNSOLVED
 
 
 @compiled

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from reference.compiled import compiled
+from reference.solver.compiled import compiled
 
 
 @compiled

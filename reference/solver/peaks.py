@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from reference.collocation import DENSE, DENSE_VALUES, MONOMIALS, STAGES
-from reference.compiled import compiled
-from reference.system import Array, Work
+from reference.solver.collocation import DENSE, DENSE_VALUES, MONOMIALS, STAGES
+from reference.solver.compiled import compiled
+from reference.solver.system import Array, Work
 
 # A step resolved to the tolerance turns by a small part of a wave between two stages: a peak between them stands less
 # than this share above the higher one.

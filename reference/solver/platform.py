@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import sqrt
 
-from reference.compiled import compiled
-from reference.equations import exact_acceleration, small_acceleration
-from reference.friction import rest_excess_exact, rest_excess_printed, rest_excess_small, sliding_speed2
-from reference.system import CREEPING, PRINTED, SLIDING, System
+from reference.solver.compiled import compiled
+from reference.solver.equations import exact_acceleration, small_acceleration
+from reference.solver.friction import rest_excess_exact, rest_excess_printed, rest_excess_small, sliding_speed2
+from reference.solver.system import CREEPING, PRINTED, SLIDING, System
 
 
 @compiled

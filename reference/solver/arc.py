@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from math import cos, pi, sin, sqrt
 
-from reference.compiled import compiled
-from reference.near_stop import directed
-from reference.system import System
+from reference.solver.compiled import compiled
+from reference.solver.near_stop import directed
+from reference.solver.system import System
 
 SAMPLES = 48
 NO_TURN = 1e-6  # of the drive: a sideways acceleration that rounding could have made turns nothing

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from math import cos, sin, sqrt
 
-from reference.compiled import compiled
+from reference.solver.compiled import compiled
 
 
 @compiled

@@ -10,15 +10,15 @@ A lubricated contact is wetted throughout. Each phase carries the state in `Work
 
 from __future__ import annotations
 
-from reference.advance import drive
-from reference.compiled import compiled
-from reference.ground import ground_at
-from reference.platform import rest_excess
-from reference.rest_phase import rest_phase
-from reference.sliding_phase import sliding_phase, speed2
-from reference.smooth_phase import smooth_phase
-from reference.stopping_phase import stopping_phase
-from reference.system import (
+from reference.solver.advance import drive
+from reference.solver.compiled import compiled
+from reference.solver.ground import ground_at
+from reference.solver.platform import rest_excess
+from reference.solver.rest_phase import rest_phase
+from reference.solver.sliding_phase import sliding_phase, speed2
+from reference.solver.smooth_phase import smooth_phase
+from reference.solver.stopping_phase import stopping_phase
+from reference.solver.system import (
     CREEPING,
     HELD,
     LENGTH,

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from reference.collocation import NODES, STAGES
-from reference.compiled import compiled
-from reference.system import Array, System, Work
+from reference.solver.collocation import NODES, STAGES
+from reference.solver.compiled import compiled
+from reference.solver.system import Array, System, Work
 
 
 @compiled

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from reference.advance import FATAL, SHORTEST, begin, commit, length_factor, next_step, remaining
-from reference.collocation import STAGES
-from reference.compiled import compiled
-from reference.events import excess_at, first_onset
-from reference.record import note_stick
-from reference.steps import rest_step, step_error
-from reference.system import (
+from reference.solver.advance import FATAL, SHORTEST, begin, commit, length_factor, next_step, remaining
+from reference.solver.collocation import STAGES
+from reference.solver.compiled import compiled
+from reference.solver.events import excess_at, first_onset
+from reference.solver.record import note_stick
+from reference.solver.steps import rest_step, step_error
+from reference.solver.system import (
     HELD,
     LENGTH,
     OPEN,

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from math import atan2, log, sqrt
+from math import atan2, cos, log, sin, sqrt
 
-from reference.advance import (
+from reference.solver.advance import (
     FATAL,
     NEWTON,
     SHORTEST,
@@ -17,16 +17,17 @@ from reference.advance import (
     next_step,
     remaining,
 )
-from reference.arc import settled_direction, squared_total
-from reference.chain import eliminate_chain, load_chain
-from reference.collocation import STAGES
-from reference.compiled import compiled
-from reference.events import first_crossing
-from reference.friction import sliding_speed2
-from reference.ground import ground_at, ground_at_stages
-from reference.near_stop import directed
-from reference.steps import moving_step, step_error
-from reference.system import (
+from reference.solver.arc import settled_direction, squared_total
+from reference.solver.chain import eliminate_chain, load_chain
+from reference.solver.collocation import STAGES
+from reference.solver.compiled import compiled
+from reference.solver.events import first_crossing
+from reference.solver.friction import sliding_speed2
+from reference.solver.ground import ground_at, ground_at_stages
+from reference.solver.near_stop import directed
+from reference.solver.platform import rest_excess
+from reference.solver.steps import moving_step, step_error
+from reference.solver.system import (
     ANGLE,
     CREEPING,
     HELD,
@@ -53,6 +54,8 @@ CLOSE = 0.05  # of the period: or would stop within this time
 CALM = 0.5  # rad: what the chain's fastest vibration may turn in the time that is left then
 TURN = 0.3  # cosine of the largest turn of the velocity between two stages
 LOCATED = 1e-9  # of the squared speed: a slide this close to v_reg has come down to it
+LEAST = 1e-12  # of the drive: a slide that begins has a direction
+BARELY = 1e-4  # of the squared friction limit
 GRAZE = 1e-6  # of the period: sliding that cannot be begun with a step this long moves nothing
 
 
@@ -64,18 +67,20 @@ def speed2(system: System, work: Work) -> float:
 
 @compiled
 def guess_onset(system: System, phase: Array, work: Work, h: float) -> None:
-    """Stage accelerations of a slide that begins: what the driving force has above the friction limit."""
+    """Stage accelerations of a slide that begins: what the drive leaves along the direction of the onset."""
     ground_at_stages(system, phase, work.run[TIME], h, work)
     eliminate_chain(system, work, h)
     load_chain(system, work, h)
+    angle = work.run[ANGLE]
+    ex, ey = cos(angle), sin(angle)
     for k in range(STAGES):
-        reaction = system.mass_ratio * (system.gravity + work.ground[2, k])
-        gx = work.free[0, k] - reaction * work.x[0, 0] / system.radius
-        gy = work.free[1, k] - reaction * work.x[0, 1] / system.radius
-        force = sqrt(gx * gx + gy * gy)
-        excess = max(force - system.friction * reaction, 1e-6 * force)
-        work.a[0, 0, k] = excess * gx / force
-        work.a[0, 1, k] = excess * gy / force
+        ax, ay, _, _ = directed(
+            system, work.x[0, 0], work.x[0, 1], work.free[0, k], work.free[1, k],
+            work.ground[0, k], work.ground[1, k], system.gravity + work.ground[2, k], 0.0, angle,
+        )  # fmt: skip
+        along = max(ax * ex + ay * ey, LEAST * (abs(work.free[0, k]) + abs(work.free[1, k])))
+        work.a[0, 0, k] = along * ex
+        work.a[0, 1, k] = along * ey
 
 
 @compiled
@@ -89,8 +94,19 @@ def begin_slide(system: System, phase: Array, work: Work, demand: Demand) -> Non
     angle = settled_direction(system, px, py, fx, fy, ux, uy, uz, atan2(gy, gx), 0.0)
     if demand.cutoff == 0.0:
         work.best[0] = max(work.best[0], squared_total(system, px, py, fx, fy, ux, uy, uz, angle))
+    work.run[ANGLE] = angle
     ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, angle)
     begin_with(system, work, ax, ay, ux, uy, uz, False)
+
+
+@compiled
+def barely_slips(system: System, phase: Array, work: Work) -> bool:
+    """Whether the drive exceeds the friction limit by so little that a slide need not begin yet."""
+    ux, uy, uz = ground_at(system, phase, work.run[TIME])
+    fx, fy = drive(system, work, ux, uy)
+    px, py = work.x[0, 0], work.x[0, 1]
+    excess, reaction = rest_excess(system, px, py, fx, fy, ux, uy, system.gravity + uz)
+    return excess <= BARELY * (system.friction * reaction) ** 2
 
 
 @compiled
@@ -137,6 +153,8 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
             code = UNSOLVED
         if code != SOLVED:
             if speed == 0.0 and h < GRAZE * demand.period:
+                if not barely_slips(system, phase, work):
+                    return UNSOLVED, SLIDING
                 run[HELD] = 10.0 * GRAZE * demand.period
                 return SOLVED, REST
             if h < (SHORTEST if code == UNSOLVED else FATAL) * demand.period:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from reference.compiled import compiled
-from reference.system import Array
+from reference.solver.compiled import compiled
+from reference.solver.system import Array
 
 
 @compiled

@@ -13,16 +13,17 @@ from math import cos, exp, sin
 
 import numpy as np
 
-from reference.collocation import NODES, STAGES, A
-from reference.compiled import compiled
-from reference.friction import slip_vector
-from reference.ground import ground_at
-from reference.linear_solve import solve_in_place
-from reference.platform import acceleration
-from reference.steps import absolute_accelerations
-from reference.system import RIM, SLIDING, SOLVED, UNSOLVED, Array, System, Work
+from reference.solver.collocation import NODES, STAGES, A
+from reference.solver.compiled import compiled
+from reference.solver.friction import slip_vector
+from reference.solver.ground import ground_at
+from reference.solver.linear_solve import solve_in_place
+from reference.solver.platform import acceleration
+from reference.solver.steps import absolute_accelerations, beyond_rim
+from reference.solver.system import SLIDING, SOLVED, UNSOLVED, Array, System, Work
 
 ITERATIONS = 40
+SETTLED = 1e-13  # rad: rounding moves the angles by this much
 NUDGE = 1e-6  # rad, for the slope by the direction: Newton's method needs it to a few digits only
 
 # rows of Work.turning
@@ -107,7 +108,7 @@ def near_stop_step(
             speed = exp(turn[SIGMA, k])
             px, py, pressure = xs[0, 0, k], xs[0, 1, k], system.gravity + uz
             if px * px + py * py >= system.radius**2:
-                return RIM
+                return beyond_rim(system, work)
             ax, ay, reaction, ratio = directed(system, px, py, fx, fy, ux, uy, pressure, speed, theta)
             bx, by, _, _ = directed(system, px, py, fx, fy, ux, uy, pressure, speed, theta + NUDGE)
             ex, ey = cos(theta), sin(theta)
@@ -142,7 +143,7 @@ def near_stop_step(
         if not moved < 1e3 or (iteration > 4 and moved > 2.0 * reach):
             return UNSOLVED
         reach = moved
-        if moved <= tolerance:
+        if moved <= max(tolerance, SETTLED):
             for i in range(bodies):
                 for axis in range(2):
                     work.x1[i, axis] = xs[i, axis, STAGES - 1]

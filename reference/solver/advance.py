@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from math import sqrt
 
-from reference.chain import chain_acceleration
-from reference.collocation import MONOMIALS, NODES, STAGES
-from reference.compiled import compiled
-from reference.ground import ground_at
-from reference.peaks import take_peaks
-from reference.platform import moving
-from reference.record import record_step
-from reference.steps import lifted
-from reference.system import (
+from reference.solver.chain import chain_acceleration
+from reference.solver.collocation import MONOMIALS, NODES, STAGES
+from reference.solver.compiled import compiled
+from reference.solver.ground import ground_at
+from reference.solver.peaks import take_peaks
+from reference.solver.platform import moving
+from reference.solver.record import record_step
+from reference.solver.steps import lifted
+from reference.solver.system import (
     OLD_LENGTH,
     REST,
     SLIDING,
@@ -117,7 +117,7 @@ def length_factor(error: float, tolerance: float) -> float:
 @compiled
 def commit(work: Work, record: Record, h: float, contact: int, low: float, high: float) -> None:
     """Make the step's end the new state; its part [low, high] counts for the peaks."""
-    if record.times.shape[0] > 0:
+    if record.start.shape[0] > 0:
         record_step(work, record, h, contact)
     if high > low:
         take_peaks(work, low, high)

@@ -9,9 +9,9 @@ its digits however stiff a link is.
 
 from __future__ import annotations
 
-from reference.collocation import A2, CHANNELS, EIGENVALUES, FROM_CHANNELS, NODES, STAGES, TO_CHANNELS, A
-from reference.compiled import compiled
-from reference.system import System, Work
+from reference.solver.collocation import A2, CHANNELS, EIGENVALUES, FROM_CHANNELS, NODES, STAGES, TO_CHANNELS, A
+from reference.solver.compiled import compiled
+from reference.solver.system import System, Work
 
 ONES_IN_CHANNELS = TO_CHANNELS.sum(axis=1)
 NODES_IN_CHANNELS = TO_CHANNELS @ NODES

@@ -6,17 +6,17 @@ from math import exp, log, pi
 
 import numpy as np
 
-from reference.advance import FATAL, SHORTEST, begin_with, commit, drive, length_factor, next_step
-from reference.arc import NO_TURN, arc_peak
-from reference.chain import chain_acceleration
-from reference.collocation import STAGES
-from reference.compiled import compiled
-from reference.events import first_crossing
-from reference.ground import ground_at
-from reference.near_stop import ACROSS, ALONG, CLOCK, DIRECTION, LOG_RATIO, SIGMA, directed, near_stop_step
-from reference.platform import rest_excess
-from reference.steps import step_error
-from reference.system import (
+from reference.solver.advance import FATAL, SHORTEST, begin_with, commit, drive, length_factor, next_step
+from reference.solver.arc import NO_TURN, arc_peak
+from reference.solver.chain import chain_acceleration
+from reference.solver.collocation import STAGES
+from reference.solver.compiled import compiled
+from reference.solver.events import first_crossing
+from reference.solver.ground import ground_at
+from reference.solver.near_stop import ACROSS, ALONG, CLOCK, DIRECTION, LOG_RATIO, SIGMA, directed, near_stop_step
+from reference.solver.platform import rest_excess
+from reference.solver.steps import step_error
+from reference.solver.system import (
     ANGLE,
     CREEPING,
     LENGTH,

@@ -1,0 +1,76 @@
+"""Peaks with an error that holds: every run is made twice, and again while the two disagree by too much."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from reference.solver.runs import runs
+from reference.solver.system import SOLVED, Array, Demand, Record, System, record_of
+
+RATIO = 30.0  # between the tolerances of the two runs
+SHARE = 0.3  # of their difference that may be left in the finer run; its error is expected to be 1 / RATIO of it
+LUCK = 2e-4  # of the tolerance inside a step: two runs that agree better do so by luck
+ROUNDING = 1e-12  # relative error that no tolerance removes: some hundred steps, some ten operations each
+LOOSEST = 1e-4  # tolerance of accelerations inside a step, of the first finer run
+TIGHTEST = 1e-11
+# accelerations inside a step are resolved to so much less than the peaks made of all steps: their errors are local
+EASE = 30.0
+
+NOT_MET = 100  # code of a run whose error stays above what was asked; the others are those of system.py
+
+
+class Peaks(NamedTuple):
+    """Largest absolute accelerations and their estimated errors, and how, when and at what cost the runs ended."""
+
+    value: Array  # (M, N) m/s^2
+    error: Array  # (M, N) m/s^2
+    code: Array  # (M,)
+    instant: Array  # (M,) s
+    steps: Array  # (M,) of the last run
+
+
+def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float, record: Record | None = None) -> Peaks:
+    """One run from rest for every phase pair (M, 2) with this tolerance inside the steps; errors are NaN."""
+    count, bodies = len(phases), len(system.below)
+    rest = np.zeros((bodies, 2))
+    peaks = Peaks(
+        np.empty((count, bodies)), np.full((count, bodies), np.nan), np.empty(count), np.empty(count), np.empty(count)
+    )
+    asked = demand._replace(tolerance=tolerance)
+    runs(system, phases, rest, rest, asked, record_of(0, bodies), peaks.value, peaks.code, peaks.instant, peaks.steps)
+    return peaks
+
+
+def certified_peaks(system: System, phases: Array, demand: Demand) -> Peaks:
+    """
+    Peaks to the relative tolerance of `demand`, with errors.
+
+    The tolerance inside the steps is tightened until two runs agree; one that cannot be finished is tried again, too.
+    """
+    tolerance = min(LOOSEST, max(EASE * demand.tolerance, TIGHTEST))
+    before = peaks_at(system, phases, demand, RATIO * tolerance)
+    found = before
+    open_ = np.arange(len(phases))
+    while len(open_):
+        after = peaks_at(system, phases[open_], demand, tolerance)
+        error = _error(before, after, tolerance)
+        for total, part in zip(found, after._replace(error=error)):
+            total[open_] = part
+        solved = (before.code == SOLVED) & (after.code == SOLVED)
+        met = solved & (error <= demand.tolerance * after.value).all(axis=1)
+        refused = (before.code == after.code) & (after.code != SOLVED)
+        again = ~(met | refused)
+        if tolerance <= TIGHTEST:
+            found.code[open_[again & solved]] = NOT_MET
+            break
+        before = Peaks(*(part[again] for part in after))
+        open_ = open_[again]
+        tolerance = max(tolerance / RATIO, TIGHTEST)
+    return found
+
+
+def _error(before: Peaks, after: Peaks, tolerance: float) -> Array:
+    """Estimated error of `after`, (M, N): a share of what the finer run changed, or of what it might have."""
+    return SHARE * np.abs(after.value - before.value) + (LUCK * tolerance + ROUNDING) * after.value

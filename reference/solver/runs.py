@@ -1,0 +1,31 @@
+"""Runs from one initial state under many phases: what Python calls."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from reference.solver.compiled import entry
+from reference.solver.march import march
+from reference.solver.system import STEPS, TIME, Array, Demand, Record, System, workspace
+
+
+@entry
+def runs(
+    system: System, phases: Array, x: Array, v: Array, demand: Demand, record: Record,
+    peaks: Array, codes: Array, instants: Array, steps: Array,
+) -> None:  # fmt: skip
+    """
+    Follow the motion from x, v (N, 2) for every phase pair (M, 2), rad.
+
+    Fills peaks (M, N), the largest absolute accelerations, m/s^2, and how (system.py), when (s) and after how many
+    steps each run ended (M,).
+    """
+    work = workspace(peaks.shape[1])
+    for m in range(phases.shape[0]):
+        work.x[:] = x
+        work.v[:] = v
+        codes[m] = march(system, phases[m], work, demand, record)
+        instants[m] = work.run[TIME]
+        steps[m] = work.run[STEPS]
+        for i in range(peaks.shape[1]):
+            peaks[m, i] = sqrt(work.best[i])
