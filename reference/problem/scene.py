@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from reference.problem.scene_error import SceneError, first_fault
+from reference.problem.scene_error import MisfitError, SceneError, first_fault
 
 GRAVITY = 9.81  # m/s^2, the paper's value (section 5)
 
@@ -94,17 +94,25 @@ class Scene(Table):
     @model_validator(mode="after")
     def _links(self) -> Scene:
         platform, *others = self.bodies
-        if platform.period is not None or platform.stiffness is not None:
-            raise ValueError("bodies.0 is the platform: it has no link below, so no period or stiffness")
+        for key in ("period", "stiffness"):
+            if (value := getattr(platform, key)) is not None:
+                raise MisfitError(f"bodies.0.{key}", value, "the platform has no link below: remove this key")
         for number, body in enumerate(others, start=1):
             try:
                 exactly_one(body, "period", "stiffness")
             except ValueError as fault:
-                raise ValueError(f"bodies.{number}: {fault}") from None
-        derived = (self.radius, self.total_mass, *self.stiffness.ravel())
-        if not all(math.isfinite(value) and value > 0.0 for value in derived):
-            raise ValueError("radius, total mass and link stiffnesses must be finite and positive in SI units")
+                raise MisfitError(f"bodies.{number}", body.model_dump(exclude_none=True), str(fault)) from None
+        derived = {"isolator: radius in m": self.radius, "bodies: total mass in kg": self.total_mass}
+        derived |= {
+            f"bodies.{i + 1}: k^{'xy'[axis]} in N/m": float(k) for (i, axis), k in np.ndenumerate(self.stiffness)
+        }
+        for key, value in derived.items():
+            if not (math.isfinite(value) and value > 0.0):
+                raise MisfitError(key, value, "must be finite and positive in double precision")
         return self
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Scene) and self.model_dump() == other.model_dump()
 
     @property
     def radius(self) -> float:
@@ -112,7 +120,8 @@ class Scene(Table):
         if self.isolator.radius is not None:
             return self.isolator.radius
         assert self.isolator.period is not None
-        return GRAVITY * (self.isolator.period / (2.0 * math.pi)) ** 2
+        pace = self.isolator.period / (2.0 * math.pi)
+        return GRAVITY * pace * pace  # a product overflows to inf, which validation refuses; a power raises
 
     @cached_property
     def masses(self) -> NDArray[np.float64]:
@@ -122,7 +131,7 @@ class Scene(Table):
     @property
     def total_mass(self) -> float:
         """m_sum of (3.2), kg: the contact carries every body."""
-        return float(self.masses.sum())
+        return sum(self.masses.tolist())  # inf without a warning where it overflows
 
     @cached_property
     def stiffness(self) -> NDArray[np.float64]:
@@ -130,7 +139,7 @@ class Scene(Table):
         rows = [
             body.stiffness
             if body.stiffness is not None
-            else [body.mass * (2.0 * math.pi / period) ** 2 for period in body.period or ()]
+            else [body.mass * (2.0 * math.pi / period) * (2.0 * math.pi / period) for period in body.period or ()]
             for body in self.bodies[1:]
         ]
         return np.array(rows, dtype=float).reshape(-1, 2)
@@ -162,7 +171,8 @@ class Scene(Table):
         if largest == 0.0:
             raise SceneError(self.name, "excitation.amplitudes", 0.0, "all entries are 0: nothing to scale")
         data = self.model_dump(exclude_none=True)
-        data["excitation"]["amplitudes"] = (self.amplitudes * (amplitude / largest)).tolist()
+        scaled = (self.amplitudes / largest) * amplitude
+        data["excitation"]["amplitudes"] = scaled.tolist()
         return Scene.model_validate(data)
 
     def digest(self) -> str:
@@ -190,8 +200,9 @@ def load_scene(source: str | Path, amplitude: float | None = None) -> Scene:
     else:
         try:
             text = Path(source).read_bytes()
-        except OSError as fault:
-            rule = f"{fault.strerror or fault}; give a TOML file or one of {', '.join(builtin_scenes())}"
+        except (OSError, ValueError) as fault:  # ValueError: no path at all, such as one with a null byte
+            reason = getattr(fault, "strerror", None) or fault
+            rule = f"{reason}; give a TOML file or one of {', '.join(builtin_scenes())}"
             raise SceneError(label, "scene", label, rule) from None
     scene = parse_scene(text, label)
     return scene if amplitude is None else scene.with_amplitude(amplitude)
@@ -201,7 +212,7 @@ def parse_scene(text: bytes, label: str) -> Scene:
     """The scene written in `text` (TOML, UTF-8); `label` names it in errors. Raises SceneError."""
     try:
         data: dict[str, Any] = tomllib.loads(text.decode())
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as fault:
+    except (ValueError, RecursionError) as fault:
         raise SceneError(label, "file", str(fault), "must be valid TOML in UTF-8") from None
     if "name" in data:
         raise SceneError(label, "name", data["name"], "unknown key; the scene is named after its file")

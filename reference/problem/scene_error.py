@@ -18,6 +18,14 @@ class SceneError(ValueError):
         return SceneError, (self.file, self.key, self.value, self.rule)  # worker processes send it home
 
 
+class MisfitError(ValueError):
+    """Values that are wrong together, found after each was valid alone; `first_fault` makes a SceneError of it."""
+
+    def __init__(self, key: str, value: Any, rule: str) -> None:
+        self.key, self.value, self.rule = key, value, rule
+        super().__init__(f"{key}: {rule}")
+
+
 def shortened(value: Any, longest: int = 80) -> str:
     text = " ".join(repr(value).split())
     return text if len(text) <= longest else text[: longest - 3] + "..."
@@ -26,6 +34,9 @@ def shortened(value: Any, longest: int = 80) -> str:
 def first_fault(file: str, fault: ValidationError) -> SceneError:
     """The first thing pydantic found wrong, said in the words of the scene file."""
     error = fault.errors(include_url=False)[0]
+    misfit = error.get("ctx", {}).get("error")
+    if isinstance(misfit, MisfitError):
+        return SceneError(file, misfit.key, misfit.value, misfit.rule)
     key = ".".join(str(part) for part in error["loc"]) or "scene"
     if error["type"] == "extra_forbidden":
         return SceneError(file, key, error["input"], "unknown key; remove it or correct its spelling")

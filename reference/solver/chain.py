@@ -19,12 +19,9 @@ NODES_IN_CHANNELS = TO_CHANNELS @ NODES
 
 @compiled
 def eliminate_chain(system: System, work: Work, h: float) -> None:
-    """For step length h: the pivots, and `feedback`, what the platform's stage accelerations do to its own drive."""
+    """For step length h: the pivots."""
     bodies = work.x.shape[0]
     for axis in range(2):
-        work.feedback[axis] = 0.0
-        if bodies == 1:
-            continue
         for j in range(CHANNELS):
             level = (h * EIGENVALUES[j]) ** 2
             upper = 1.0 + 0.0j
@@ -34,7 +31,18 @@ def eliminate_chain(system: System, work: Work, h: float) -> None:
                     upper = 1.0 + level * system.above[i, axis] * upper / pivot
                 pivot = upper + level * system.below[i, axis]
                 work.pivot[i, axis, j] = pivot
-            gain = -system.above[0, axis] * level * upper / pivot
+            work.gain[axis, j] = level * upper / pivot
+
+
+@compiled
+def feed_back(system: System, work: Work, h: float) -> None:
+    """What the platform's stage accelerations do to its own drive through the eliminated chain."""
+    for axis in range(2):
+        work.feedback[axis] = 0.0
+        if work.x.shape[0] == 1:
+            continue
+        for j in range(CHANNELS):
+            gain = -system.above[0, axis] * work.gain[axis, j]
             for k in range(STAGES):
                 left = FROM_CHANNELS[k, j] * gain
                 for m in range(STAGES):

@@ -7,9 +7,9 @@ from reference.solver.system import Array
 
 
 @compiled
-def solve_in_place(matrix: Array, rhs: Array) -> bool:
-    """Overwrites rhs (n,) by the solution; False if the matrix (n, n), destroyed, is singular or not finite."""
-    n = rhs.shape[0]
+def factorize(matrix: Array, pivots: Array) -> bool:
+    """Overwrites matrix (n, n) by its factors, pivots (n,) by rows; False if it is singular or not finite."""
+    n = pivots.shape[0]
     for i in range(n):
         best = abs(matrix[i, i])
         row = i
@@ -19,20 +19,34 @@ def solve_in_place(matrix: Array, rhs: Array) -> bool:
                 row = k
         if not best > 0.0:
             return False
+        pivots[i] = row
         if row != i:
-            for j in range(i, n):
+            for j in range(n):
                 matrix[i, j], matrix[row, j] = matrix[row, j], matrix[i, j]
-            rhs[i], rhs[row] = rhs[row], rhs[i]
         inverse = 1.0 / matrix[i, i]
         for k in range(i + 1, n):
             factor = matrix[k, i] * inverse
+            matrix[k, i] = factor
             if factor != 0.0:
                 for j in range(i + 1, n):
                     matrix[k, j] -= factor * matrix[i, j]
-                rhs[k] -= factor * rhs[i]
+    return True
+
+
+@compiled
+def solve(factors: Array, pivots: Array, rhs: Array) -> None:
+    """Overwrites rhs (n,) by the solution, with what `factorize` left."""
+    n = pivots.shape[0]
+    for i in range(n):
+        row = int(pivots[i])
+        rhs[i], rhs[row] = rhs[row], rhs[i]
+    for i in range(1, n):
+        total = rhs[i]
+        for j in range(i):
+            total -= factors[i, j] * rhs[j]
+        rhs[i] = total
     for i in range(n - 1, -1, -1):
         total = rhs[i]
         for j in range(i + 1, n):
-            total -= matrix[i, j] * rhs[j]
-        rhs[i] = total / matrix[i, i]
-    return True
+            total -= factors[i, j] * rhs[j]
+        rhs[i] = total / factors[i, i]

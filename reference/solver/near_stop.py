@@ -17,7 +17,7 @@ from reference.solver.collocation import NODES, STAGES, A
 from reference.solver.compiled import compiled
 from reference.solver.friction import slip_vector
 from reference.solver.ground import ground_at
-from reference.solver.linear_solve import solve_in_place
+from reference.solver.linear_solve import factorize, solve
 from reference.solver.platform import acceleration
 from reference.solver.steps import absolute_accelerations, beyond_rim
 from reference.solver.system import SLIDING, SOLVED, UNSOLVED, Array, System, Work
@@ -27,7 +27,7 @@ SETTLED = 1e-13  # rad: rounding moves the angles by this much
 NUDGE = 1e-6  # rad, for the slope by the direction: Newton's method needs it to a few digits only
 
 # rows of Work.turning
-DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, LOG_RATIO = range(8)
+DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, LOG_RATIO, SPEED = range(9)
 
 
 @compiled
@@ -69,25 +69,27 @@ def near_stop_step(
     for iteration in range(ITERATIONS):
         moved = 0.0
         for k in range(STAGES):
+            turn[SPEED, k] = exp(turn[SIGMA, k])
+        for k in range(STAGES):
             elapsed = 0.0
             for m in range(STAGES):
-                elapsed += A[k, m] * exp(turn[SIGMA, m])
+                elapsed += A[k, m] * turn[SPEED, m]
             turn[CLOCK, k] = t + h * elapsed
         for i in range(bodies):
             for axis in range(2):
                 for k in range(STAGES):
                     if i == 0:
                         heading = cos(turn[DIRECTION, k]) if axis == 0 else sin(turn[DIRECTION, k])
-                        work.velocity[i, axis, k] = exp(turn[SIGMA, k]) * heading
+                        work.velocity[i, axis, k] = turn[SPEED, k] * heading
                     else:
                         gained = 0.0
                         for m in range(STAGES):
-                            gained += A[k, m] * exp(turn[SIGMA, m]) * a[i, axis, m]
+                            gained += A[k, m] * turn[SPEED, m] * a[i, axis, m]
                         work.velocity[i, axis, k] = work.v[i, axis] + h * gained
                 for k in range(STAGES):
                     shift = 0.0
                     for m in range(STAGES):
-                        shift += A[k, m] * exp(turn[SIGMA, m]) * work.velocity[i, axis, m]
+                        shift += A[k, m] * turn[SPEED, m] * work.velocity[i, axis, m]
                     xs[i, axis, k] = work.x[i, axis] + h * shift
         for k in range(STAGES):
             ux, uy, uz = ground_at(system, phase, turn[CLOCK, k])
@@ -98,14 +100,14 @@ def near_stop_step(
                     if i < bodies - 1:
                         pull += system.above[i, axis] * (xs[i + 1, axis, k] - xs[i, axis, k])
                     pull -= work.ground[axis, k]
-                    moved = max(moved, abs(pull - a[i, axis, k]) * exp(turn[SIGMA, k]) * h)
+                    moved = max(moved, abs(pull - a[i, axis, k]) * turn[SPEED, k] * h)
                     a[i, axis, k] = pull
             fx, fy = -ux, -uy
             if bodies > 1:
                 fx += system.above[0, 0] * (xs[1, 0, k] - xs[0, 0, k])
                 fy += system.above[0, 1] * (xs[1, 1, k] - xs[0, 1, k])
             theta = turn[DIRECTION, k]
-            speed = exp(turn[SIGMA, k])
+            speed = turn[SPEED, k]
             px, py, pressure = xs[0, 0, k], xs[0, 1, k], system.gravity + uz
             if px * px + py * py >= system.radius**2:
                 return beyond_rim(system, work)
@@ -129,8 +131,10 @@ def near_stop_step(
                 work.residual[k] += h * A[k, m] * turn[ACROSS, m]
                 work.matrix[k, m] = -h * A[k, m] * turn[ACROSS_SLOPE, m]
             work.matrix[k, k] += 1.0
-        if not solve_in_place(work.matrix[:STAGES, :STAGES], work.residual[:STAGES]):
+        matrix, pivots, residual = work.matrix[:STAGES, :STAGES], work.pivots[:STAGES], work.residual[:STAGES]
+        if not factorize(matrix, pivots):
             return UNSOLVED
+        solve(matrix, pivots, residual)
         for k in range(STAGES):
             turn[DIRECTION, k] += work.residual[k]
             moved = max(moved, abs(work.residual[k]))

@@ -6,6 +6,7 @@ from math import atan2, cos, log, sin, sqrt
 
 from reference.solver.advance import (
     FATAL,
+    GROW,
     NEWTON,
     SHORTEST,
     begin,
@@ -49,6 +50,8 @@ from reference.solver.system import (
     Work,
 )
 
+FIRST = 0.2  # of the period: longest first step of a slide
+CAUTIOUS = 2.0  # growth of a step that had to be shortened
 REACH = 1.5  # a slide that would stop within so many steps is followed in stretched time
 CLOSE = 0.05  # of the period: or would stop within this time
 CALM = 0.5  # rad: what the chain's fastest vibration may turn in the time that is left then
@@ -129,6 +132,8 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
     start2 = speed2(system, work)
     if start2 == 0.0:
         begin_slide(system, phase, work, demand)
+        run[LENGTH] = min(run[LENGTH], FIRST * demand.period)
+    growth = GROW
     floor2 = (system.v_reg * (1.0 - LOCATED)) ** 2 if system.law == REGULARIZED else 0.0
     counted2 = demand.cutoff * demand.cutoff
     while remaining(system, work, demand) > 0.0:
@@ -160,6 +165,7 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
             if h < (SHORTEST if code == UNSOLVED else FATAL) * demand.period:
                 return code, SLIDING
             run[LENGTH] = 0.3 * h
+            growth = CAUTIOUS
             run[OLD_LENGTH] = 0.0 if run[OLD_LENGTH] > 3.0 * h else run[OLD_LENGTH]
             continue
         error = step_error(work)
@@ -189,5 +195,6 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
         if end2 < floor2 * (1.0 + LOCATED):
             return SOLVED, CREEPING
         if h * factor > run[LENGTH] or h == run[LENGTH]:
-            run[LENGTH] = h * factor
+            run[LENGTH] = h * min(factor, growth)
+        growth = GROW
     return SOLVED, SLIDING

@@ -62,13 +62,15 @@ class Work(NamedTuple):
     feedback: Array  # (2, S, S) what its own stage accelerations add to that
     pivot: Complex  # (N, 2, CHANNELS) eliminated chain
     load: Complex  # (N, 2, CHANNELS)
+    gain: Complex  # (2, CHANNELS) what the chain gives back to the platform
     stage: Array  # (8, S) platform at the stages: px, py, vx, vy, fx, fy, reaction, speed2
     slopes: Array  # (12, S) derivative of its acceleration
     matrix: Array  # (2 S, 2 S)
     residual: Array  # (2 S,)
+    pivots: Array  # (2 S,) rows of the factorised matrix
     chain: Array  # (N, 2, S) position of the bodies at the stages of a step near a stop
     velocity: Array  # (N, 2, S)
-    turning: Array  # (8, S) direction, speed and time there
+    turning: Array  # (9, S) direction, speed and time there
     guess: Array  # (2, S) coefficients of the platform's acceleration in the step before
     scale: Array  # (N,) m/s^2, what errors are measured against
     run: Array  # (7,)
@@ -147,13 +149,15 @@ def workspace(bodies: int) -> Work:
         feedback=np.zeros((2, s, s)),
         pivot=np.zeros((n, 2, c), np.complex128),
         load=np.zeros((n, 2, c), np.complex128),
+        gain=np.zeros((2, c), np.complex128),
         stage=np.zeros((8, s)),
         slopes=np.zeros((12, s)),
         matrix=np.zeros((2 * s, 2 * s)),
         residual=np.zeros(2 * s),
+        pivots=np.zeros(2 * s),
         chain=np.zeros((n, 2, s)),
         velocity=np.zeros((n, 2, s)),
-        turning=np.zeros((8, s)),
+        turning=np.zeros((9, s)),
         guess=np.zeros((2, s)),
         scale=np.zeros(n),
         run=np.zeros(7),
