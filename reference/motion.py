@@ -46,7 +46,7 @@ def trajectory(
     if loads_are_finite(system):
         outcome, instant, record = _recorded(system, pair, x, v, demand)
     instants = instants[instants <= instant] if outcome != Outcome.OK else instants
-    steps, sticks = (int(number) for number in record.count)
+    steps, sticks = (int(number) for number in record.made)
     instants = instants if steps else instants[:0]
     motion = sampled(record, instants)
     height, climb = _vertical(motion.x[:, 0], motion.v[:, 0], system)
@@ -69,11 +69,12 @@ def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) 
     room = ROOM
     while True:
         record = record_of(room, bodies)
-        peaks, codes, instants, steps = np.empty((1, bodies)), np.empty(1), np.empty(1), np.empty(1)
-        runs(system, phase[None], x, v, demand, record, peaks, codes, instants, steps)
-        if record.count.max() <= room:
+        peaks, doubts = np.empty((1, bodies)), np.empty((1, bodies))
+        codes, instants, steps = np.empty(1), np.empty(1), np.empty(1)
+        runs(system, phase[None], x, v, demand, record, peaks, doubts, codes, instants, steps)
+        if record.made.max() <= room:
             return OUTCOMES[int(codes[0])], float(instants[0]), record
-        room = int(record.count.max())
+        room = int(record.made.max())
 
 
 def _acceleration(system: System, x: Array, v: Array) -> float:

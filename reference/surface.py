@@ -81,6 +81,7 @@ def amplification(
         status[places] = [outcome.value for outcome in outcomes]
         mu[places[known]] = peaks.value[known] / ground[moving][known, None]
         error[places[known]] = peaks.error[known] / ground[moving][known, None]
+        instant[part] = 0.0
         instant[places] = np.where(outcomes == Outcome.OK, np.nan, peaks.instant)
         return time.thread_time() - begin
 
@@ -122,9 +123,11 @@ def checked_demand(
         raise ValueError(f"cutoff = {cutoff!r}: belongs to the set-valued law; give no regularization with it")
     system = pack(scene, equations == "small", regularization, rest_condition == "printed")
     period = min(scene.excitation.periods)
+    with np.errstate(over="ignore"):  # refused by loads_are_finite
+        unit = float(np.sqrt((np.abs(scene.amplitudes).sum(axis=1) ** 2).sum()))
     return system, Demand(
         tolerance=float(tolerance),
-        unit=float(np.sqrt((np.abs(scene.amplitudes).sum(axis=1) ** 2).sum())),
+        unit=unit,
         period=period,
         cutoff=0.0 if cutoff is None else float(cutoff),
         step_limit=FIRST_STEPS + int(min(1e9, STEPS_PER_PERIOD * scene.duration / period)),

@@ -31,6 +31,7 @@ ORDER = 7.0  # of the error estimate in the step length
 FLOOR = 0.02  # a body that hardly accelerates is measured against this share of the loading
 FATAL = 1e-9  # of the period: a step this short that still fails has found the instant
 SHORTEST = 1e-16  # of the period
+LAST = 1e-11  # of it, or of the duration: a time within which no acceleration changes
 NEWTON = 0.01  # of the tolerance: where the iteration for a step may end
 
 
@@ -86,9 +87,9 @@ def next_step(work: Work, demand: Demand) -> bool:
 
 @compiled
 def remaining(system: System, work: Work, demand: Demand) -> float:
-    """Time left, s; 0 when it is less than a step can be."""
+    """Time left, s; 0 when it is so little that nothing changes."""
     left = system.duration - work.run[TIME]
-    return left if left > SHORTEST * demand.period * 10.0 else 0.0
+    return left if left > LAST * min(demand.period, system.duration) else 0.0
 
 
 @compiled

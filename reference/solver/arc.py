@@ -15,7 +15,7 @@ from reference.solver.system import System
 
 SAMPLES = 48
 GOLDEN = 20  # steps of the search: its error is of the order of the square of 1e-5 of a sample
-NO_TURN = 1e-6  # of the drive: a sideways acceleration that rounding could have made turns nothing
+NO_TURN = 1e-9  # of the drive: a sideways acceleration that rounding could have made turns nothing
 
 
 @compiled

@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from reference.solver.runs import runs
-from reference.solver.system import SOLVED, Array, Demand, Record, System, record_of
+from reference.solver.system import SOLVED, Array, Demand, System, record_of
 
 RATIO = 30.0  # between the tolerances of the two runs
 SHARE = 0.3  # of their difference that may be left in the finer run; its error is expected to be 1 / RATIO of it
-LUCK = 2e-4  # of the tolerance inside a step: two runs that agree better do so by luck
+LUCK = 3e-4  # of the tolerance inside a step: two runs that agree better do so by luck
 ROUNDING = 1e-12  # relative error that no tolerance removes: some hundred steps, some ten operations each
 LOOSEST = 1e-4  # tolerance of accelerations inside a step, of the first finer run
 TIGHTEST = 1e-11
@@ -31,15 +31,15 @@ class Peaks(NamedTuple):
     steps: Array  # (M,) of the last run
 
 
-def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float, record: Record | None = None) -> Peaks:
-    """One run from rest for every phase pair (M, 2) with this tolerance inside the steps; errors are NaN."""
+def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float) -> Peaks:
+    """One run from rest for every phase pair (M, 2), this tolerance inside the steps; errors are those of reading."""
     count, bodies = len(phases), len(system.below)
     rest = np.zeros((bodies, 2))
     peaks = Peaks(
-        np.empty((count, bodies)), np.full((count, bodies), np.nan), np.empty(count), np.empty(count), np.empty(count)
+        np.empty((count, bodies)), np.empty((count, bodies)), np.empty(count), np.empty(count), np.empty(count)
     )
     asked = demand._replace(tolerance=tolerance)
-    runs(system, phases, rest, rest, asked, record_of(0, bodies), peaks.value, peaks.code, peaks.instant, peaks.steps)
+    runs(system, phases, rest, rest, asked, record_of(0, bodies), *peaks)
     return peaks
 
 
@@ -72,5 +72,6 @@ def certified_peaks(system: System, phases: Array, demand: Demand) -> Peaks:
 
 
 def _error(before: Peaks, after: Peaks, tolerance: float) -> Array:
-    """Estimated error of `after`, (M, N): a share of what the finer run changed, or of what it might have."""
-    return SHARE * np.abs(after.value - before.value) + (LUCK * tolerance + ROUNDING) * after.value
+    """Estimated error of `after`, (M, N): what reading the peak leaves, and what the runs' states leave."""
+    between = np.abs(after.value - before.value)
+    return after.error + SHARE * between + (LUCK * tolerance + ROUNDING) * after.value

@@ -38,21 +38,22 @@ def _cache_folder() -> str:
 
 CACHE_FOLDER = _cache_folder()
 
-
+njit: Any = numba.njit
+config: Any = numba.config
 # divisions by zero give inf or NaN as in NumPy; other threads go on meanwhile
 OPTIONS = {"error_model": "numpy", "fastmath": FAST, "nogil": True}
 
 
 def compiled(function: Callable[..., Any]) -> Any:
     """A part of the solver, called by compiled code alone: it is built into the entry, and not wrapped for Python."""
-    return numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)(function)
+    return njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)(function)
 
 
 def entry(function: Callable[..., Any]) -> Any:
     """Compile `function` with everything it calls on first use, and keep the build on disk."""
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = before or CACHE_FOLDER  # the user's NUMBA_CACHE_DIR goes first
+    before = config.CACHE_DIR
+    config.CACHE_DIR = before or CACHE_FOLDER  # the user's NUMBA_CACHE_DIR goes first
     try:
-        return numba.njit(cache=True, **OPTIONS)(function)
+        return njit(cache=True, **OPTIONS)(function)
     finally:
-        numba.config.CACHE_DIR = before
+        config.CACHE_DIR = before

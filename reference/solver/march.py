@@ -10,7 +10,7 @@ A lubricated contact is wetted throughout. Each phase carries the state in `Work
 
 from __future__ import annotations
 
-from reference.solver.advance import drive
+from reference.solver.advance import drive, remaining
 from reference.solver.compiled import compiled
 from reference.solver.ground import ground_at
 from reference.solver.platform import rest_excess
@@ -25,9 +25,12 @@ from reference.solver.system import (
     LUBRICATED,
     REGULARIZED,
     REST,
+    RIM,
     SLIDING,
     SOLVED,
+    STEP_LIMIT,
     TIME,
+    UNSOLVED,
     WETTED,
     Array,
     Demand,
@@ -38,6 +41,8 @@ from reference.solver.system import (
 
 START = 0.02  # of the shorter loading period: first step
 
+NEARLY = 1e-8  # of it: what little may be left when a step fails
+AT_RIM = 0.998  # of the squared radius
 BORDER = 1e-6  # of it: for so long such a state is left to rest or creep
 
 
@@ -58,6 +63,15 @@ def first_contact(system: System, phase: Array, work: Work) -> int:
 
 
 @compiled
+def named(system: System, work: Work, demand: Demand, code: int) -> int:
+    """What a run that cannot go on has come to: nearly its end, the rim (4.1), or the trouble that it reports."""
+    if code != STEP_LIMIT and system.duration - work.run[TIME] < NEARLY * demand.period:
+        return SOLVED
+    at_rim = work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > AT_RIM * system.radius**2
+    return RIM if at_rim and code in (UNSOLVED, STEP_LIMIT) else code
+
+
+@compiled
 def march(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> int:
     """
     Follow the motion from the state in work.x, work.v to the end; how it ended (system.py), at time work.run[TIME].
@@ -65,11 +79,12 @@ def march(system: System, phase: Array, work: Work, demand: Demand, record: Reco
     work.best (N,) holds the squared peaks of absolute acceleration, m^2/s^4.
     """
     work.best[:] = 0.0
+    work.doubt[:] = 0.0
     work.run[:] = 0.0
     work.run[LENGTH] = min(START * demand.period, system.duration)
     contact = first_contact(system, phase, work)
     before, idle = -1.0, 0
-    while work.run[TIME] < system.duration - 1e-14 * demand.period:
+    while remaining(system, work, demand) > 0.0:
         if contact == REST:
             code, contact = rest_phase(system, phase, work, demand, record)
         elif contact == SLIDING:
@@ -79,7 +94,7 @@ def march(system: System, phase: Array, work: Work, demand: Demand, record: Reco
         else:
             code, contact = stopping_phase(system, phase, work, demand, record)
         if code != SOLVED:
-            return code
+            return named(system, work, demand, code)
         idle = idle + 1 if work.run[TIME] == before else 0
         before = work.run[TIME]
         if idle > 4:  # a state on the border of two phases that each gives to the other

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from reference.solver.collocation import DENSE, DENSE_VALUES, MONOMIALS, STAGES
+from reference.solver.collocation import DENSE, DENSE_VALUES, MONOMIALS, NODES, STAGES
 from reference.solver.compiled import compiled
 from reference.solver.system import Array, Work
 
@@ -27,6 +27,15 @@ def polynomial_squares(coefficients: Array, theta: float) -> tuple[float, float,
         slope += 2.0 * p * dp
         curvature += 2.0 * (dp * dp + p * ddp)
     return value, slope, curvature
+
+
+@compiled
+def interpolation_error(theta: float) -> float:
+    """Error at theta of the polynomial through the stages, over that at the start of the step."""
+    ratio = 1.0
+    for k in range(STAGES):
+        ratio *= 1.0 - theta / NODES[k]
+    return abs(ratio)
 
 
 @compiled
@@ -73,4 +82,7 @@ def take_peaks(work: Work, low: float, high: float) -> None:
                 break
             theta = min(max(theta - slope / curvature, max(low, place - spacing)), min(high, place + spacing))
         squared, _, _ = polynomial_squares(coefficients, theta)
-        work.best[i] = max(work.best[i], top, squared)
+        top = max(top, squared)
+        if top > work.best[i]:
+            work.best[i] = top
+            work.doubt[i] = interpolation_error(theta) * work.defect[i]

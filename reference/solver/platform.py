@@ -7,7 +7,7 @@ from math import sqrt
 from reference.solver.compiled import compiled
 from reference.solver.equations import exact_acceleration, small_acceleration
 from reference.solver.friction import rest_excess_exact, rest_excess_printed, rest_excess_small, sliding_speed2
-from reference.solver.system import CREEPING, PRINTED, SLIDING, System
+from reference.solver.system import CREEPING, PRINTED, SLIDING, Array, System
 
 
 @compiled
@@ -92,7 +92,7 @@ def slopes(
     ux: float,
     uy: float,
     pressure: float,
-    out: object,
+    out: Array,
     k: int,
 ) -> tuple[float, float, float, float, float]:
     """

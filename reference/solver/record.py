@@ -10,8 +10,8 @@ from reference.solver.system import STOPPING, TIME, Record, Work
 @compiled
 def record_step(work: Work, record: Record, h: float, contact: int) -> None:
     """Keep the step just made (not yet committed) while there is room; count it in any case."""
-    n = record.count[0]
-    record.count[0] += 1
+    n = record.made[0]
+    record.made[0] += 1
     if n >= record.start.shape[0]:
         return
     record.start[n] = work.run[TIME]
@@ -32,11 +32,11 @@ def record_step(work: Work, record: Record, h: float, contact: int) -> None:
 @compiled
 def note_stick(record: Record, start: float, end: float) -> None:
     """One interval of rest; intervals that touch are one."""
-    n = record.count[1]
+    n = record.made[1]
     if 0 < n <= record.sticks.shape[0] and record.sticks[n - 1, 1] == start:
         record.sticks[n - 1, 1] = end
         return
     if n < record.sticks.shape[0]:
         record.sticks[n, 0] = start
         record.sticks[n, 1] = end
-    record.count[1] += 1
+    record.made[1] += 1

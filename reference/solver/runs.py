@@ -12,13 +12,13 @@ from reference.solver.system import STEPS, TIME, Array, Demand, Record, System, 
 @entry
 def runs(
     system: System, phases: Array, x: Array, v: Array, demand: Demand, record: Record,
-    peaks: Array, codes: Array, instants: Array, steps: Array,
+    peaks: Array, doubts: Array, codes: Array, instants: Array, steps: Array,
 ) -> None:  # fmt: skip
     """
     Follow the motion from x, v (N, 2) for every phase pair (M, 2), rad.
 
-    Fills peaks (M, N), the largest absolute accelerations, m/s^2, and how (system.py), when (s) and after how many
-    steps each run ended (M,).
+    Fills peaks (M, N), the largest absolute accelerations, m/s^2, and doubts (M, N), the error of reading them; how
+    (system.py), when (s) and after how many steps each run ended (M,).
     """
     work = workspace(peaks.shape[1])
     for m in range(phases.shape[0]):
@@ -29,3 +29,4 @@ def runs(
         steps[m] = work.run[STEPS]
         for i in range(peaks.shape[1]):
             peaks[m, i] = sqrt(work.best[i])
+            doubts[m, i] = work.doubt[i]

@@ -21,7 +21,7 @@ class Samples(NamedTuple):
 
 def sampled(record: Record, times: Array) -> Samples:
     """The motion at rising times (T,), s, none of them after the last step."""
-    steps = int(record.count[0])
+    steps = int(record.made[0])
     near = record.contact[:steps] == STOPPING
     row = np.clip(np.searchsorted(record.start[:steps], times, side="right") - 1, 0, steps - 1)
     h = record.length[row]

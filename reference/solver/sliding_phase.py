@@ -57,6 +57,7 @@ CLOSE = 0.05  # of the period: or would stop within this time
 CALM = 0.5  # rad: what the chain's fastest vibration may turn in the time that is left then
 TURN = 0.3  # cosine of the largest turn of the velocity between two stages
 LOCATED = 1e-9  # of the squared speed: a slide this close to v_reg has come down to it
+STIFF = 0.03  # share of the friction limit times the step: at a lower speed the direction follows the force
 LEAST = 1e-12  # of the drive: a slide that begins has a direction
 BARELY = 1e-4  # of the squared friction limit
 GRAZE = 1e-6  # of the period: sliding that cannot be begun with a step this long moves nothing
@@ -96,7 +97,10 @@ def begin_slide(system: System, phase: Array, work: Work, demand: Demand) -> Non
     gx, gy = fx - reaction * px / system.radius, fy - reaction * py / system.radius
     angle = settled_direction(system, px, py, fx, fy, ux, uy, uz, atan2(gy, gx), 0.0)
     if demand.cutoff == 0.0:
-        work.best[0] = max(work.best[0], squared_total(system, px, py, fx, fy, ux, uy, uz, angle))
+        onset = squared_total(system, px, py, fx, fy, ux, uy, uz, angle)
+        if onset > work.best[0]:
+            work.best[0] = onset
+            work.doubt[0] = 0.0
     work.run[ANGLE] = angle
     ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, angle)
     begin_with(system, work, ax, ay, ux, uy, uz, False)
@@ -149,7 +153,9 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
                 run[LOG_SPEED] = log(speed)
                 return SOLVED, STOPPING
             h = min(h, max(0.5 * speed / braking, SHORTEST * demand.period))
-        if speed == 0.0:
+        if speed < STIFF * h * system.friction * system.mass_ratio * system.gravity:
+            if speed > 0.0:
+                run[ANGLE] = atan2(vy, vx)
             guess_onset(system, phase, work, h)
         else:
             first_guess(work, h)

@@ -17,6 +17,7 @@ from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
 from reference.solver.events import first_crossing
 from reference.solver.friction import sliding_speed2
+from reference.solver.platform import slip_factor
 from reference.solver.record import note_stick
 from reference.solver.steps import moving_step, step_error
 from reference.solver.system import (
@@ -48,9 +49,9 @@ def smooth_phase(
     run = work.run
     began = run[TIME]
     level = system.v_reg * system.v_reg
+    rate = slip_factor(system, contact, 0.0) * system.mass_ratio * system.gravity  # 1/s, of the velocity's decay
     if contact == CREEPING:
-        settling = system.v_reg / (system.friction * system.mass_ratio * system.gravity)
-        run[LENGTH] = min(run[LENGTH], 2.0 * settling)
+        run[LENGTH] = min(run[LENGTH], 2.0 / rate)
     while remaining(system, work, demand) > 0.0:
         if not next_step(work, demand):
             return STEP_LIMIT, contact
@@ -58,7 +59,9 @@ def smooth_phase(
         if run[HELD] > 0.0:
             h = min(h, run[HELD])
         first_guess(work, h)
-        code = moving_step(system, phase, work, contact, run[TIME], h, NEWTON * demand.tolerance * work.scale[0])
+        # where friction is stiff a small error of the acceleration is a large one of the velocity, and so of the force
+        enough = NEWTON * demand.tolerance * work.scale[0] / (1.0 + h * rate)
+        code = moving_step(system, phase, work, contact, run[TIME], h, enough)
         if code != SOLVED:
             if h < (SHORTEST if code == UNSOLVED else FATAL) * demand.period:
                 return code, contact

@@ -85,7 +85,7 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
                 correction = work.residual[axis * STAGES + k]
                 a[0, axis, k] += correction
                 change = max(change, abs(correction))
-        if not np.isfinite(change) or (iteration > 0 and change > before):
+        if not np.isfinite(change) or (iteration > 1 and fresh and change > before):
             return UNSOLVED
         if change <= tolerance:
             place_platform(work, h)
@@ -182,5 +182,6 @@ def step_error(work: Work) -> float:
             for k in range(STAGES):
                 defect += AT_START[k] * work.total[i, axis, k]
             squared += defect * defect
-        worst = max(worst, (sqrt(squared) - noise) / work.scale[i])
+        work.defect[i] = sqrt(squared)
+        worst = max(worst, (work.defect[i] - noise) / work.scale[i])
     return worst

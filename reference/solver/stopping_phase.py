@@ -7,7 +7,7 @@ from math import exp, log, pi
 import numpy as np
 
 from reference.solver.advance import FATAL, SHORTEST, begin_with, commit, drive, length_factor, next_step
-from reference.solver.arc import NO_TURN, arc_peak
+from reference.solver.arc import arc_peak
 from reference.solver.chain import chain_acceleration
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
@@ -45,6 +45,7 @@ SLOWEST = 1e-10  # of it: so far a stop is followed whose arc decides the peak
 DECISIVE = 0.97  # an arc that stays below this share of the peak so far decides nothing
 LOCATED = 1e-9  # of ln v: a slide this close to v_reg has come down to it
 BRIEF = 1e-4  # of the period: time left at a stop within which forces are frozen
+STRAIGHT = 1e-6  # of the friction: a slide that turns by less turns back on its own line
 REVERSED = 1e-12  # of the loading's velocity: a straight slide that friction cannot hold has come to its turning point
 NEWTON = 1e-3  # of the tolerance
 
@@ -77,7 +78,7 @@ def has_stopped(system: System, phase: Array, work: Work, demand: Demand) -> int
     px, py = work.x[0, 0], work.x[0, 1]
     excess, reaction = rest_excess(system, px, py, fx, fy, ux, uy, system.gravity + uz)
     if excess > 0.0:
-        straight = abs(across) <= NO_TURN * system.friction * reaction
+        straight = abs(across) <= STRAIGHT * system.friction * reaction
         return SLIDING if straight and along < 0.0 and speed < REVERSED * unit else STOPPING
     if along >= 0.0 or speed > BRIEF * demand.period * -along:
         return STOPPING if speed > 1e-200 else REST
@@ -85,7 +86,9 @@ def has_stopped(system: System, phase: Array, work: Work, demand: Demand) -> int
         arc = arc_peak(system, px, py, fx, fy, ux, uy, uz, run[ANGLE])
         if speed > SLOWEST * unit and arc > DECISIVE * DECISIVE * work.best[0]:
             return STOPPING
-        work.best[0] = max(work.best[0], arc)
+        if arc > work.best[0]:
+            work.best[0] = arc
+            work.doubt[0] = 0.0
     elif speed > demand.cutoff:
         return STOPPING
     return REST

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ SET_VALUED, REGULARIZED, LUBRICATED = 0, 1, 2
 CONSISTENT, PRINTED = 0, 1
 # what the contact does
 # numpy integers: numba would build a function once more for every literal it is called with
-REST, SLIDING, CREEPING, WETTED, STOPPING = (np.int64(number) for number in range(5))
+REST, SLIDING, CREEPING, WETTED, STOPPING = cast("tuple[int, ...]", tuple(map(np.int64, range(5))))
 # how the equations of one step, or a whole run, ended
 SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT = range(6)
 # entries of Work.run, the state of a run that is not an array
@@ -75,6 +75,8 @@ class Work(NamedTuple):
     scale: Array  # (N,) m/s^2, what errors are measured against
     run: Array  # (7,)
     best: Array  # (N,) largest squared absolute acceleration so far
+    doubt: Array  # (N,) m/s^2, error of reading it inside its step
+    defect: Array  # (N,) m/s^2, interpolation error of the step at its start
 
 
 class Record(NamedTuple):
@@ -92,7 +94,7 @@ class Record(NamedTuple):
     total: Array  # (T, N, 3, S)
     reaction: Array  # (T, S) over m1
     sticks: Array  # (T, 2) intervals of rest, or of creep below v_reg
-    count: NDArray[np.int64]  # (2,) steps and intervals made, which may be more than there is room for
+    made: NDArray[np.int64]  # (2,) steps and intervals made, which may be more than there is room for
 
 
 class Demand(NamedTuple):
@@ -162,6 +164,8 @@ def workspace(bodies: int) -> Work:
         scale=np.zeros(n),
         run=np.zeros(7),
         best=np.zeros(n),
+        doubt=np.zeros(n),
+        defect=np.zeros(n),
     )
 
 
@@ -181,5 +185,5 @@ def record_of(capacity: int, bodies: int) -> Record:
         total=np.zeros((t, n, 3, s)),
         reaction=np.zeros((t, s)),
         sticks=np.zeros((t, 2)),
-        count=np.zeros(2, np.int64),
+        made=np.zeros(2, np.int64),
     )
