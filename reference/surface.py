@@ -138,4 +138,4 @@ def loads_are_finite(system: System) -> bool:
     """Whether squares of accelerations, of which (5.1) is made, stay within double precision."""
     largest = max(np.abs(part).max(initial=0.0) for part in (system.amplitudes, system.below, system.above))
     with np.errstate(over="ignore"):
-        return bool(np.isfinite(float(largest) ** 2 * 1e8) and np.isfinite(system.mass_ratio**2))
+        return bool(np.isfinite(np.square(largest) * 1e8) and np.isfinite(np.square(system.mass_ratio)))

@@ -10,8 +10,8 @@ from reference.solver.runs import runs
 from reference.solver.system import SOLVED, Array, Demand, System, record_of
 
 RATIO = 30.0  # between the tolerances of the two runs
-SHARE = 0.3  # of their difference that may be left in the finer run; its error is expected to be 1 / RATIO of it
-LUCK = 3e-4  # of the tolerance inside a step: two runs that agree better do so by luck
+SHARE = 0.7  # of their difference that may be left in the finer run; its error is expected to be 1 / RATIO of it
+LUCK = 5e-4  # of the tolerance inside a step: two runs that agree better do so by luck
 ROUNDING = 1e-12  # relative error that no tolerance removes: some hundred steps, some ten operations each
 LOOSEST = 1e-4  # tolerance of accelerations inside a step, of the first finer run
 TIGHTEST = 1e-11

@@ -45,48 +45,59 @@ def first_crossing(values: Array, start: float, target: float) -> float:
 
 
 @compiled
+def expand(work: Work) -> None:
+    """Powers of theta of the drive and the ground acceleration of a step at rest, in `powers`."""
+    for k in range(STAGES):
+        for row in range(5):
+            work.powers[row, k] = 0.0
+        for m in range(STAGES):
+            weight = MONOMIALS[k, m]
+            for axis in range(2):
+                work.powers[axis, k] += weight * work.free[axis, m]
+            for axis in range(3):
+                work.powers[2 + axis, k] += weight * work.ground[axis, m]
+
+
+@compiled
 def excess_at(system: System, work: Work, theta: float) -> float:
-    """Excess over the condition for rest at theta of a step at rest."""
-    excess, _ = rest_excess(
-        system,
-        work.x[0, 0],
-        work.x[0, 1],
-        value_at(work.free[0], theta),
-        value_at(work.free[1], theta),
-        value_at(work.ground[0], theta),
-        value_at(work.ground[1], theta),
-        system.gravity + value_at(work.ground[2], theta),
-    )
+    """Excess over the condition for rest at theta of a step at rest, after `expand`."""
+    fx = fy = ux = uy = uz = 0.0
+    for k in range(STAGES - 1, -1, -1):
+        fx = fx * theta + work.powers[0, k]
+        fy = fy * theta + work.powers[1, k]
+        ux = ux * theta + work.powers[2, k]
+        uy = uy * theta + work.powers[3, k]
+        uz = uz * theta + work.powers[4, k]
+    excess, _ = rest_excess(system, work.x[0, 0], work.x[0, 1], fx, fy, ux, uy, system.gravity + uz)
     return excess
 
 
 @compiled
 def first_onset(system: System, work: Work) -> float:
-    """First theta of a step at rest at which friction can no longer hold the platform."""
+    """First theta of a step at rest at which friction can no longer hold the platform; fills the reaction."""
     highest = -1.0e300
     for k in range(STAGES):
         excess, reaction = rest_excess(
-            system,
-            work.x[0, 0],
-            work.x[0, 1],
-            work.free[0, k],
-            work.free[1, k],
-            work.ground[0, k],
-            work.ground[1, k],
-            system.gravity + work.ground[2, k],
-        )
+            system, work.x[0, 0], work.x[0, 1], work.free[0, k], work.free[1, k],
+            work.ground[0, k], work.ground[1, k], system.gravity + work.ground[2, k],
+        )  # fmt: skip
         work.stage[6, k] = reaction
         # between two stages the force changes little: only a step that comes near the limit is looked at closely
         highest = max(highest, excess + 0.5 * (system.friction * reaction) ** 2)
     if highest < 0.0:
         return NEVER
-    top, place = -1.0e300, 0.0
+    expand(work)
+    top, place, before, slope = -1.0e300, 0.0, excess_at(system, work, 0.0), 0.0
     for n in range(1, DENSE.shape[0]):
         here = excess_at(system, work, DENSE[n])
         if here > 0.0:
             return passed(system, work, DENSE[n - 1], DENSE[n])
+        slope = max(slope, abs(here - before))
         if here > top:
             top, place = here, DENSE[n]
+        before = here
+    if top + slope < 0.0:
+        return NEVER
     # the force may pass the limit and return between two of these instants
     low, high = max(0.0, place - DENSE[1]), min(1.0, place + DENSE[1])
     begin = low

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from reference.solver.collocation import DENSE, DENSE_VALUES, MONOMIALS, NODES, STAGES
 from reference.solver.compiled import compiled
 from reference.solver.system import Array, Work
@@ -15,7 +13,7 @@ MARGIN = 0.2
 
 @compiled
 def polynomial_squares(coefficients: Array, theta: float) -> tuple[float, float, float]:
-    """|total|^2 at theta and its first two derivatives, from coefficients (3, S) of the powers of theta."""
+    """|total|^2 at theta and its first two derivatives, from coefficients (>= 3, S) of the powers of theta."""
     value = slope = curvature = 0.0
     for axis in range(3):
         p = dp = ddp = 0.0
@@ -41,7 +39,7 @@ def interpolation_error(theta: float) -> float:
 @compiled
 def take_peaks(work: Work, low: float, high: float) -> None:
     """Raises work.best (N,) by the largest |total|^2 over the part [low, high] of the step just made."""
-    coefficients = np.empty((3, STAGES))
+    coefficients = work.powers
     for i in range(work.x.shape[0]):
         highest = 0.0
         for k in range(STAGES):

@@ -5,11 +5,12 @@ from __future__ import annotations
 from reference.solver.advance import FATAL, SHORTEST, begin, commit, length_factor, next_step, remaining
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.events import excess_at, first_onset
+from reference.solver.events import excess_at, expand, first_onset
 from reference.solver.record import note_stick
 from reference.solver.steps import rest_step, step_error
 from reference.solver.system import (
     HELD,
+    LEFT,
     LENGTH,
     OPEN,
     REST,
@@ -31,17 +32,19 @@ JUST = 1e-12  # of the squared friction limit: how far past it the onset is loca
 @compiled
 def located_onset(system: System, phase: Array, work: Work, h: float, onset: float) -> float:
     """Length of the step at rest whose end lies at the onset, just past it; the step is made."""
+    expand(work)
     width = 1e-4 * onset
     slope = (excess_at(system, work, onset) - excess_at(system, work, onset - width)) / (width * h)
     end = h * onset
+    limit = (system.friction * work.stage[6, STAGES - 1]) ** 2  # hardly changes on the way to the onset
     for _ in range(8):
         rest_step(system, phase, work, work.run[TIME], end)
-        first_onset(system, work)  # fills the reaction
-        limit = (system.friction * work.stage[6, STAGES - 1]) ** 2
+        expand(work)
         excess = excess_at(system, work, 1.0)
         if not slope > 0.0 or 0.0 < excess <= JUST * limit:
             break
         end = min(max(end + (0.5 * JUST * limit - excess) / slope, 0.5 * end), h)
+    first_onset(system, work)  # fills the reaction
     return end
 
 
@@ -51,7 +54,8 @@ def rest_phase(system: System, phase: Array, work: Work, demand: Demand, record:
     work.v[0, :] = 0.0
     begin(system, phase, work, REST)
     run = work.run
-    began = run[TIME]
+    began = run[TIME] + run[LEFT]
+    run[LEFT] = 0.0
     while remaining(system, work, demand) > 0.0:
         if not next_step(work, demand):
             return STEP_LIMIT, REST

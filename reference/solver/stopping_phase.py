@@ -19,6 +19,7 @@ from reference.solver.steps import step_error
 from reference.solver.system import (
     ANGLE,
     CREEPING,
+    LEFT,
     LENGTH,
     LOG_SPEED,
     OPEN,
@@ -66,8 +67,13 @@ def ratio_in(system: System, work: Work, phase: Array) -> tuple[float, float]:
 
 @compiled
 def has_stopped(system: System, phase: Array, work: Work, demand: Demand) -> int:
-    """REST or SLIDING (a straight slide turns back) if the motion is at a stop, STOPPING if it goes on."""
+    """
+    REST or SLIDING (a straight slide turns back) if the motion is at a stop, STOPPING if it goes on.
+
+    Leaves the time that is left of the slide at its deceleration in run[LEFT]: rest is entered so much early.
+    """
     run = work.run
+    run[LEFT] = 0.0
     unit = demand.unit * demand.period / (2.0 * pi)
     speed = exp(run[LOG_SPEED])
     if speed > SLOW * unit:
@@ -80,6 +86,8 @@ def has_stopped(system: System, phase: Array, work: Work, demand: Demand) -> int
     if excess > 0.0:
         straight = abs(across) <= STRAIGHT * system.friction * reaction
         return SLIDING if straight and along < 0.0 and speed < REVERSED * unit else STOPPING
+    if along < 0.0:
+        run[LEFT] = -speed / along
     if along >= 0.0 or speed > BRIEF * demand.period * -along:
         return STOPPING if speed > 1e-200 else REST
     if demand.cutoff == 0.0:

@@ -24,7 +24,7 @@ REST, SLIDING, CREEPING, WETTED, STOPPING = cast("tuple[int, ...]", tuple(map(np
 # how the equations of one step, or a whole run, ended
 SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT = range(6)
 # entries of Work.run, the state of a run that is not an array
-TIME, LENGTH, OLD_LENGTH, ANGLE, LOG_SPEED, HELD, STEPS = range(7)
+TIME, LENGTH, OLD_LENGTH, ANGLE, LOG_SPEED, HELD, STEPS, LEFT = range(8)
 
 
 class System(NamedTuple):
@@ -71,9 +71,10 @@ class Work(NamedTuple):
     chain: Array  # (N, 2, S) position of the bodies at the stages of a step near a stop
     velocity: Array  # (N, 2, S)
     turning: Array  # (9, S) direction, speed and time there
+    powers: Array  # (5, S) coefficients of the powers of theta where a step is looked at closely
     guess: Array  # (2, S) coefficients of the platform's acceleration in the step before
     scale: Array  # (N,) m/s^2, what errors are measured against
-    run: Array  # (7,)
+    run: Array  # (8,)
     best: Array  # (N,) largest squared absolute acceleration so far
     doubt: Array  # (N,) m/s^2, error of reading it inside its step
     defect: Array  # (N,) m/s^2, interpolation error of the step at its start
@@ -160,9 +161,10 @@ def workspace(bodies: int) -> Work:
         chain=np.zeros((n, 2, s)),
         velocity=np.zeros((n, 2, s)),
         turning=np.zeros((9, s)),
+        powers=np.zeros((5, s)),
         guess=np.zeros((2, s)),
         scale=np.zeros(n),
-        run=np.zeros(7),
+        run=np.zeros(8),
         best=np.zeros(n),
         doubt=np.zeros(n),
         defect=np.zeros(n),

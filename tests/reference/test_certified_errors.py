@@ -43,7 +43,20 @@ def test_mu_is_within_its_error_and_its_tolerance_of_a_run_a_hundred_times_tight
     both = good & (fine.status == "ok")
     gap = np.abs(coarse.mu - fine.mu)[both]
     assert np.all(gap <= 1e-5 * fine.mu[both])
-    assert np.all(gap <= (coarse.error + fine.error)[both])
+    # the error is stated to hold for 99 % of the points: of these fifty or so values, one may be beyond it
+    assert np.mean(gap <= (coarse.error + fine.error)[both]) >= 0.98
+
+
+def test_the_error_holds_for_99_percent_and_is_not_far_too_large():
+    ratios = []
+    for name, law in (("fig3-I", "exact"), ("fig3-II", "small"), ("fig3-II", "regularised"), ("fig4-viscous", "exact")):
+        phases = phase_grid(8) + 0.1
+        found = reference.amplification(SCENES[name], phases, **LAWS[law])
+        truth = reference.amplification(SCENES[name], phases, tolerance=1e-9, **LAWS[law])
+        assert (found.status == "ok").all()
+        ratios.append((found.error / np.maximum(np.abs(found.mu - truth.mu), 1e-12)).ravel())
+    assert np.mean(np.concatenate(ratios) >= 1.0) >= 0.99
+    assert np.median(np.concatenate(ratios)) <= 30.0
 
 
 @pytest.mark.parametrize("name", ["fig3-I", "fig4-viscous"])
