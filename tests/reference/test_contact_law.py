@@ -31,7 +31,9 @@ def test_the_platform_rests_only_where_friction_can_hold_it(name, phase, equatio
     assert still.sum() > 10
     starts, ends = np.array(run.stick).T
     inside = np.any((times[:, None] >= starts) & (times[:, None] <= ends), axis=1)
-    np.testing.assert_array_equal(still, inside)
+    # the last 1e-4 of a period of a slide, which moves nothing any more, is sampled at rest
+    ending = np.any((times[:, None] >= starts - 1e-4) & (times[:, None] < starts), axis=1)
+    np.testing.assert_array_equal(still | ending, inside | ending)
     places = run.position[:, :, :2].reshape(len(times), -1)
     excess = [law.excess(t, q, law.spring_forces(q)) for t, q in zip(times[still].tolist(), places[still].tolist())]
     # ten times the default tolerance, which the forces of the springs have
