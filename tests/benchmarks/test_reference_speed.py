@@ -83,10 +83,8 @@ def test_the_reference_is_faster_than_lsoda_at_better_accuracy():
     truth = reference.amplification(scene, some, regularization=V_REG, tolerance=1e-9).mu
     error = np.abs(reference.amplification(scene, some, regularization=V_REG).mu / truth - 1.0)
     their_error = np.abs(theirs_mu / truth - 1.0)
-    print(f"\nreference {1e3 * ours:.2f} ms a point, error {np.median(error):.1e} median, {error.max():.1e} largest")
-    print(
-        f"LSODA {1e3 * theirs:.0f} ms a point, error {np.median(their_error):.1e} median, {their_error.max():.1e} largest"
-    )
+    for name, seconds, gap in (("reference", ours, error), ("LSODA", theirs, their_error)):
+        print(f"\n{name}: {1e3 * seconds:.2f} ms a point, error {np.median(gap):.1e} median, {gap.max():.1e} largest")
     print(f"ratio of processor time {theirs / ours:.0f}")
     assert (found.status == "ok").all()
     assert error.max() <= their_error.max()
