@@ -26,6 +26,22 @@ def test_every_factor_lies_within_its_error_of_the_exact_equations(scene: str, r
     assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
 
 
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("scene", "tolerance", "count", "largest"),
+    [("fig3-I", 1e-3, 256, 2e-3), ("fig3-II", 1e-3, 256, 2e-3), ("fig3-I", 1e-5, 16, 2e-5)],
+)
+def test_a_whole_surface_lies_within_its_errors(scene: str, tolerance: float, count: int, largest: float) -> None:
+    phases = np.random.default_rng(11).uniform(0.0, 2.0 * np.pi, (count, 2))
+    engine = multibody.amplification(load_scene(scene), phases, regularization=V_REG, tolerance=tolerance)
+    equations = reference.amplification(load_scene(scene), phases, equations="exact", regularization=V_REG)
+    gap = np.abs(engine.mu - equations.mu)
+    assert (engine.status == Outcome.OK).all()
+    assert (gap <= engine.error + equations.error).all()
+    assert (gap <= largest * equations.mu).all()
+    assert (np.median(gap / equations.mu, axis=0) <= 1e-4).all()
+
+
 def test_a_smaller_tolerance_is_met_by_refinement() -> None:
     scene = changed(load_scene("fig3-I"), duration=4.0)
     equations = reference.amplification(scene, PHASES[:1], equations="exact", regularization=V_REG)
