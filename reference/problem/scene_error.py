@@ -33,7 +33,9 @@ def shortened(value: Any, longest: int = 80) -> str:
 
 def first_fault(file: str, fault: ValidationError) -> SceneError:
     """The first thing pydantic found wrong, said in the words of the scene file."""
-    error = fault.errors(include_url=False)[0]
+    errors = fault.errors(include_url=False)
+    # a misspelt key is unknown and its right name is missing: the first says more
+    error = next((error for error in errors if error["type"] == "extra_forbidden"), errors[0])
     misfit = error.get("ctx", {}).get("error")
     if isinstance(misfit, MisfitError):
         return SceneError(file, misfit.key, misfit.value, misfit.rule)
