@@ -12,7 +12,7 @@ class SceneError(ValueError):
 
     def __init__(self, file: str, key: str, value: Any, rule: str) -> None:
         self.file, self.key, self.value, self.rule = file, key, value, rule
-        super().__init__(f"{file}: {key} = {shortened(value)}: {rule}")
+        super().__init__(f"{one_line(file)}: {one_line(key)} = {shortened(value)}: {rule}")
 
     def __reduce__(self) -> tuple[type[SceneError], tuple[str, str, Any, str]]:
         return SceneError, (self.file, self.key, self.value, self.rule)  # worker processes send it home
@@ -24,6 +24,11 @@ class MisfitError(ValueError):
     def __init__(self, key: str, value: Any, rule: str) -> None:
         self.key, self.value, self.rule = key, value, rule
         super().__init__(f"{key}: {rule}")
+
+
+def one_line(text: str) -> str:
+    """The text, or its Python literal if it would break the line."""
+    return text if text.isprintable() else repr(text)
 
 
 def shortened(value: Any, longest: int = 80) -> str:

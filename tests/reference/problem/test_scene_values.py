@@ -125,6 +125,7 @@ PLACES = [
 ]
 
 
+@example(place=["bodies", 0], value={"\n": False})
 @given(place=st.sampled_from(PLACES), value=anything)
 @settings(max_examples=300, deadline=None)
 @example(place=["isolator", "period"], value=1e200)
