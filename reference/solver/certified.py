@@ -13,10 +13,10 @@ RATIO = 30.0  # between the tolerances of the two runs
 SHARE = 0.7  # of their difference that may be left in the finer run; its error is expected to be 1 / RATIO of it
 LUCK = 5e-4  # of the tolerance inside a step: two runs that agree better do so by luck
 ROUNDING = 1e-12  # relative error that no tolerance removes: some hundred steps, some ten operations each
-LOOSEST = 1e-4  # tolerance of accelerations inside a step, of the first finer run
+LOOSEST = 1e-5  # tolerance of accelerations inside a step, of the first finer run: looser ones save few steps
 TIGHTEST = 1e-11
 # accelerations inside a step are resolved to so much less than the peaks made of all steps: their errors are local
-EASE = 30.0
+EASE = 10.0
 
 NOT_MET = 100  # code of a run whose error stays above what was asked; the others are those of system.py
 

@@ -12,7 +12,14 @@ import reference
 from reference.problem import Outcome, Scene
 
 TOLERANCE = 1e-4
-NAMED = {Outcome.RIM_REACHED, Outcome.CONTACT_LOST, Outcome.PAINLEVE, Outcome.TOLERANCE_NOT_MET, Outcome.STEP_LIMIT}
+NAMED = {
+    Outcome.RIM_REACHED,
+    Outcome.CONTACT_LOST,
+    Outcome.PAINLEVE,
+    Outcome.TOLERANCE_NOT_MET,
+    Outcome.STEP_LIMIT,
+    Outcome.NO_GROUND_MOTION,  # two harmonics of one period may cancel
+}
 LONGEST = 60.0  # s of compute for one point: a hang, on any machine
 
 
@@ -67,6 +74,12 @@ def hold(scene: Scene, phase: tuple[float, float], equations: str, v_reg: float 
         assert fine.status[0] in (Outcome.OK, Outcome.TOLERANCE_NOT_MET, Outcome.STEP_LIMIT)
         if fine.status[0] == Outcome.OK:
             assert np.all(np.abs(coarse.mu - fine.mu) <= TOLERANCE * fine.mu)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def compiled():
+    """The first call compiles, which is not part of any point's cost."""
+    reference.amplification(reference.load_scene("fig3-I"), [(0.0, 0.0)], tolerance=1e-3)
 
 
 arguments = {
