@@ -66,7 +66,7 @@ def amplification(
     instant = np.full(count, np.nan)
     status = np.full(count, Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")
     if not loads_are_finite(system):
-        return Amplification(mu, error, status, np.where(np.isnan(instant), 0.0, instant), 0.0)
+        return Amplification(mu, error, status, np.zeros(count), 0.0)
 
     def solve(part: slice) -> float:
         begin = time.thread_time()
