@@ -21,7 +21,8 @@ class Findings:
     """
     surfaces: see `labelled_surfaces`. rows: differences of pairs of models. budget: what every rung adds. effective:
     values read back from each model. effects: what slips of the print do to mu. broken: acceptance limits, one line
-    each. faults: what solvers complained about. run: command, times, provenance.
+    each. faults: what solvers complained about. run: command, times, provenance. Fields that may be None are what only
+    some commands compute.
     """
 
     study: Study
@@ -42,8 +43,9 @@ def findings(
     effects: Sequence[Effect],
     faults: Sequence[str],
     run: Mapping[str, Any],
+    **more: Any,
 ) -> Findings:
-    """What the surfaces say once they are complete."""
+    """What the surfaces say once they are complete; `more`: the fields that may be None."""
     rows = differences(study, surfaces)
     broken = broken_limits(study, surfaces, rows)
-    return Findings(study, surfaces, rows, budget(study, surfaces), effective, effects, broken, faults, run)
+    return Findings(study, surfaces, rows, budget(study, surfaces), effective, effects, broken, faults, run, **more)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import base64
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,40 @@ from comparison.wording import degrees, percent, scientific, significant, symbol
 from reference.problem import ADVICE, Outcome, Scene
 
 
+@dataclass(frozen=True)
+class Section:
+    """
+    One section of the page: templates/sections/<name>.html.j2 below its heading, in the order of SECTIONS.
+
+    finding: the field of `Findings` it shows, at hand in the template as `section_data`; where that is None the section
+    is left out and `absent` says which command makes it. draw: writes its pictures into the folder of the figures; the
+    template shows one by {{ picture("file name") }}.
+    """
+
+    name: str
+    title: str
+    finding: str = ""
+    absent: str = ""
+    draw: Callable[[Path, Findings], None] | None = None
+
+    def present(self, found: Findings) -> bool:
+        """Whether the findings hold what the section shows."""
+        return not self.finding or getattr(found, self.finding) is not None
+
+
+SECTIONS = (
+    Section("differences", "Differences"),
+    Section("budget", "What makes the difference"),
+    Section("surfaces", "Surfaces"),
+    Section("outcomes", "Outcomes and cost"),
+    Section("models", "What was compared"),
+    Section("slips", "Slips in the print"),
+    Section("effective", "Effective values"),
+    Section("verification", "What checks each side alone"),
+    Section("provenance", "Provenance"),
+)
+
+
 def write_report(folder: Path, found: Findings) -> None:
     """Write every file of the report into `folder`, which exists and is empty."""
     study, run = found.study, found.run
@@ -43,19 +78,27 @@ def write_report(folder: Path, found: Findings) -> None:
             for pair in pairs_of(scene, study.ladder):
                 draw_pair(figures / figure_name(scene, body, pair), found.surfaces, scene, body, pair)
             draw_budget(figures / budget_figure_name(scene, body), study, found.surfaces, scene, body)
+    for section in SECTIONS:
+        if section.draw and section.present(found):
+            section.draw(figures, found)
     (folder / "index.html").write_text(_page(figures, found), encoding="utf-8")
 
 
 def _page(figures: Path, found: Findings) -> str:
     study = found.study
     templates = resources.files("comparison") / "templates"
-    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
+    loader = jinja2.PackageLoader("comparison", "templates")
+    environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
     environment.filters.update(
         percent=percent, scientific=scientific, degrees=degrees, significant=significant, symbols=symbols
     )
-    page = environment.from_string((templates / "report.html.j2").read_text(encoding="utf-8"))
+    page = environment.get_template("report.html.j2")
     ladder = [rung for rung in study.ladder if any(rung.applies(scene) for scene in study.scenes)]
     return page.render(
+        sections=[section for section in SECTIONS if section.present(found)],
+        absent=[section for section in SECTIONS if not section.present(found)],
+        found=found,
+        picture=lambda name: _inlined(figures / name),
         study=study,
         run=found.run,
         scenes=[_scene(figures, found, scene) for scene in study.scenes],
