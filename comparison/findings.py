@@ -14,6 +14,7 @@ from comparison.differences import Difference, differences
 from comparison.effective import Effective
 from comparison.slips import Effect
 from comparison.study import Study
+from comparison.trajectories import StoredMotion
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,7 @@ class Findings:
     surfaces: see `labelled_surfaces`. rows: differences of pairs of models. budget: what every rung adds. effective:
     values read back from each model. effects: what slips of the print do to mu. broken: acceptance limits, one line
     each. faults: what solvers complained about. run: command, times, provenance. Fields that may be None are what only
-    some commands compute.
+    some commands compute. motions: see `stored_motions`.
     """
 
     study: Study
@@ -34,6 +35,7 @@ class Findings:
     broken: Sequence[str]
     faults: Sequence[str]
     run: Mapping[str, Any]
+    motions: Sequence[StoredMotion] | None = None
 
 
 def findings(

@@ -29,6 +29,7 @@ from comparison.surfaces import labelled_surfaces
 from comparison.sweep import process_pool, sweep
 from comparison.terminal import START_UP, print_differences, print_plan
 from comparison.tiles import Answer, Tile, solve_tile, unanswered
+from comparison.trajectories import stored_motions
 from comparison.warm_up import WARM_UP, warm_up
 from reference.problem import SceneError
 
@@ -93,6 +94,8 @@ def _run(study: Study, options: Options, console: Console, command: str, executo
     effective = effective_values(study, options.jobs, executor)
     console.print("Measuring what the slips of the print do to the surfaces.")
     effects = slip_effects(study, options.jobs, executor)
+    console.print("Keeping a few motions of every scene for the report.")
+    motions = stored_motions(study, surfaces, options.jobs, executor)
     faults = sorted(
         {f"{tile.scene.name}, {titles[tile.rung]}: {a.fault}" for tile, a in zip(tiles, answers) if a.fault}
     )
@@ -105,7 +108,7 @@ def _run(study: Study, options: Options, console: Console, command: str, executo
         "jobs": options.jobs,
         "provenance": provenance(),
     }
-    found = findings(study, surfaces, effective, effects, faults, run)
+    found = findings(study, surfaces, effective, effects, faults, run, motions=motions)
     console.print("Drawing the figures and writing the report.")
     with replaced_when_complete(options.out) as folder:
         write_report(folder, found)

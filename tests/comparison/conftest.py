@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from fake_models import fake_ladder
+from fake_models import fake_ladder, known_motions
 
 import comparison.run
 from comparison import report
@@ -33,6 +33,7 @@ def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pyte
     for name in ("draw_pair", "draw_budget"):
         monkeypatch.setattr(report, name, lambda path, *rest: path.write_bytes(b"a quick figure"))
     monkeypatch.setattr(comparison.run, "slip_effects", lambda *rest: [])  # it asks no model of the ladder
+    monkeypatch.setattr(comparison.run, "stored_motions", lambda *rest: [])
 
     def run(
         *words: str, ladder: Sequence[Rung] | None = None, executor: Callable[[int], Executor] = ThreadPoolExecutor
@@ -53,5 +54,6 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     words = ["fig3-I", "fig4-viscous", "--grid", "4", "--jobs", "2", "--out", str(place)]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(comparison.run, "slip_effects", lambda *rest: effects)
+        patch.setattr(comparison.run, "stored_motions", known_motions)
         assert main(words, fake_ladder(), ThreadPoolExecutor) == 0
     return place

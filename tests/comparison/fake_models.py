@@ -9,9 +9,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from comparison.ladder import LADDER, Rung
+from comparison.study import Study
+from comparison.trajectories import StoredMotion, chosen_places, shown_rungs
 from reference.problem import GRAVITY, Amplification, Outcome, Scene, Trajectory
 
 DEADLY = 2.0 * np.pi * 3 / 4  # alpha1, alpha2 of the one point of a 4 x 4 grid that a failing model fails at
@@ -109,6 +112,19 @@ def sliding(
     bodies = len(scene.bodies)
     spread = [np.repeat(part[:, None, :], bodies, axis=1) for part in (place, velocity, total)]
     return Trajectory(time, *spread, contact_force=force, stick=[], status=status, instant=np.nan)
+
+
+def known_motions(study: Study, surfaces: xr.Dataset, *rest: object) -> list[StoredMotion]:
+    """Circles, (1 + number of the model) cm wide, at every place and by every model the page shows."""
+    time = np.linspace(0.0, 20.0, 201)
+    found = []
+    for scene in study.scenes:
+        circle = np.stack([np.cos(time), np.sin(time)], axis=1)[:, None, :].repeat(len(scene.bodies), axis=1)
+        for place in chosen_places(study, surfaces, scene):
+            for number, rung in enumerate(shown_rungs(scene, study.ladder)):
+                at = 0.01 * (1 + number) * circle
+                found.append(StoredMotion(place, rung.key, time, at, -at, ((2.0, 3.0),)))
+    return found
 
 
 def planted(
