@@ -17,6 +17,7 @@ from datetime import UTC, datetime
 from rich.console import Console
 
 from comparison.effective import effective_values
+from comparison.executors import process_pool
 from comparison.findings import findings
 from comparison.ladder import LADDER, Rung
 from comparison.options import Options, UsageError, parsed
@@ -26,7 +27,7 @@ from comparison.slips import slip_effects
 from comparison.store import replaced_when_complete
 from comparison.study import Study
 from comparison.surfaces import labelled_surfaces
-from comparison.sweep import process_pool, sweep
+from comparison.sweep import sweep
 from comparison.terminal import START_UP, print_differences, print_plan
 from comparison.tiles import Answer, Tile, solve_tile, unanswered
 from comparison.trajectories import stored_motions

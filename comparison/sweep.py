@@ -6,37 +6,40 @@ Results come back in the order of the tasks, whatever the scheduling was.
 
 from __future__ import annotations
 
-import multiprocessing
-import os
-import signal
 from collections import deque
 from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
-from typing import TypeVar
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
 
-import numba
-
+from comparison.executors import ExecutorLostError, Pool, WorkerDiedError, abandon, factory, process_pool, width
 from reference.problem import Outcome
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 
-
-def process_pool(jobs: int) -> Executor:
-    """`jobs` fresh processes, each with one thread: the tasks are the parallelism."""
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(name, "1")  # read by the libraries of the worker when it starts
-    context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(jobs, mp_context=context, initializer=_begin_worker)
-
-
-def _begin_worker() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to the whole group; the parent alone decides
-    numba.set_num_threads(1)
+LOOK = 1.0  # s: how often an executor is asked for its width while no result arrives
 
 
 def at_once(task: object) -> bool:
     return True
+
+
+def whole(task: object) -> Sequence[object]:
+    return ()
+
+
+@dataclass
+class _Work(Generic[Task, Result]):
+    """A task or a part of one. `place`: its index among the tasks, or among the parts of `parent`."""
+
+    task: Task
+    place: int
+    parent: _Work[Task, Result] | None = None
+    deaths: int = 0
+    alone: bool = False  # suspected of having ended a pool: nothing else may run beside it
+    parts: dict[int, Result] = field(default_factory=dict)
+    count: int = 0  # of its parts
 
 
 def sweep(
@@ -45,77 +48,128 @@ def sweep(
     lost: Callable[[Task, Outcome, str], Result],
     done: Callable[[Task, Result], None],
     jobs: int,
-    executor: Callable[[int], Executor] = process_pool,
+    executor: Pool = process_pool,
     ready: Callable[[Task], bool] = at_once,
+    split: Callable[[Task], Sequence[Task]] = whole,  # type: ignore[assignment]
+    join: Callable[[Task, Sequence[Result]], Result] | None = None,
 ) -> list[Result]:
     """
-    `solve` every task on `executor(jobs)`; `done` is called as results arrive, in any order.
+    `solve` every task on `executor`, an Executor or what makes one for `jobs` workers; `done` is called here as results
+    arrive, in any order.
 
     A task that is not `ready` lets others pass; it is asked again whenever a result has arrived, and starts in any
     case when nothing else is left to wait for.
 
-    When a worker dies, the tasks then in flight run once more, each alone in a fresh process; one that dies again is
-    answered by `lost(task, Outcome.WORKER_DIED, message)`, so that only the culprit is given up.
+    A task that raises is answered by `lost(task, Outcome.SOLVER_FAILED, message)`. One whose worker dies is tried once
+    more, then `split` into parts, until a part that cannot be split has killed two workers: that one alone is answered
+    by `lost(part, Outcome.WORKER_DIED, message)`, and `join(task, results of its parts)` puts the task together again.
+    Raises ExecutorLostError when the executor cannot go on; results that `done` has seen are the caller's to keep.
     """
-    results: dict[int, Result] = {}
-
-    def keep(index: int, result: Result) -> None:
-        results[index] = result
-        done(tasks[index], result)
-
-    queue = deque(range(len(tasks)))
-    while queue:
-        for index in _drain(tasks, queue, solve, lost, keep, executor, jobs, ready):
-            if _drain(tasks, deque([index]), solve, lost, keep, executor, 1, at_once):
-                keep(index, lost(tasks[index], Outcome.WORKER_DIED, "the worker process died, twice"))
-    return [results[index] for index in range(len(tasks))]
+    return _Sweep(tasks, solve, lost, done, ready, split, join).run(factory(executor), jobs)
 
 
-def _drain(
-    tasks: Sequence[Task],
-    queue: deque[int],
-    solve: Callable[[Task], Result],
-    lost: Callable[[Task, Outcome, str], Result],
-    keep: Callable[[int, Result], None],
-    executor: Callable[[int], Executor],
-    jobs: int,
-    ready: Callable[[Task], bool],
-) -> list[int]:
-    """Work through the queue until it is empty or a worker dies; the tasks in flight at that moment."""
-    flying: dict[Future[Result], int] = {}
-    pool = executor(min(jobs, len(queue)))
-    try:
-        while queue or flying:
-            while queue and len(flying) < jobs:  # no more in flight than workers: few suspects when one dies
-                index = next((index for index in queue if ready(tasks[index])), None if flying else queue[0])
-                if index is None:
-                    break
-                queue.remove(index)
+class _Sweep(Generic[Task, Result]):
+    def __init__(
+        self,
+        tasks: Sequence[Task],
+        solve: Callable[[Task], Result],
+        lost: Callable[[Task, Outcome, str], Result],
+        done: Callable[[Task, Result], None],
+        ready: Callable[[Task], bool],
+        split: Callable[[Task], Sequence[Task]],
+        join: Callable[[Task, Sequence[Result]], Result] | None,
+    ) -> None:
+        self._solve, self._lost, self._done = solve, lost, done
+        self._ready, self._split, self._join = ready, split, join
+        self._queue: deque[_Work[Task, Result]] = deque(_Work(task, place) for place, task in enumerate(tasks))
+        self._flying: dict[Future[Result], _Work[Task, Result]] = {}
+        self._results: dict[int, Result] = {}
+
+    def run(self, make: Callable[[int], Executor], jobs: int) -> list[Result]:
+        while self._queue:  # once, unless a pool breaks
+            pool = make(min(jobs, len(self._queue)))
+            try:
+                self._drain(pool, jobs)
+            except BaseException:
+                abandon(pool)
+                raise
+            self._flying.clear()
+            pool.shutdown(cancel_futures=True)
+        return [self._results[place] for place in range(len(self._results))]
+
+    def _drain(self, pool: Executor, jobs: int) -> None:
+        """Work until nothing is left, or until the pool breaks, with its tasks queued again."""
+        while self._queue or self._flying:
+            while len(self._flying) < width(pool, jobs) and (work := self._next()) is not None:
                 try:
-                    flying[pool.submit(solve, tasks[index])] = index
+                    self._flying[pool.submit(self._solve, work.task)] = work
                 except BrokenExecutor:
-                    if flying:
-                        queue.appendleft(index)
-                    return sorted(flying.values()) or [index]
-            for future in wait(flying, return_when=FIRST_COMPLETED).done:
+                    self._broken(work)
+                    return
+            for future in wait(self._flying, LOOK, return_when=FIRST_COMPLETED).done:
                 try:
                     result = future.result()
+                except WorkerDiedError:
+                    self._died(self._flying.pop(future))
                 except BrokenExecutor:
-                    return sorted(flying.values())
+                    self._broken()
+                    return
+                except ExecutorLostError:
+                    raise
                 except Exception as fault:
-                    index = flying.pop(future)
-                    keep(index, lost(tasks[index], Outcome.SOLVER_FAILED, f"{type(fault).__name__}: {fault}"))
+                    work = self._flying.pop(future)
+                    self._keep(work, self._lost(work.task, Outcome.SOLVER_FAILED, f"{type(fault).__name__}: {fault}"))
                 else:
-                    keep(flying.pop(future), result)
-        return []
-    except BaseException:
-        _end_workers()
-        raise
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
+                    self._keep(self._flying.pop(future), result)
 
+    def _next(self) -> _Work[Task, Result] | None:
+        """What to submit now, taken from the queue; a suspect flies alone."""
+        flying = list(self._flying.values())
+        if any(work.alone for work in flying):
+            return None
+        for work in self._queue:
+            if not (work.alone and flying) and self._ready(work.task):
+                break
+        else:
+            if flying or not self._queue:
+                return None
+            work = self._queue[0]
+        self._queue.remove(work)
+        return work
 
-def _end_workers() -> None:
-    """Stop the processes started here, so that Ctrl-C does not wait for the tasks they are in."""
-    for process in multiprocessing.active_children():
-        process.terminate()
+    def _broken(self, refused: _Work[Task, Result] | None = None) -> None:
+        """Any task in flight may have done it. The only one there was did; of several each is tried alone."""
+        suspects = sorted(self._flying.values(), key=lambda work: work.place)
+        if refused is not None and suspects:
+            self._queue.appendleft(refused)
+        elif refused is not None:  # the pool broke before it had anything to do
+            suspects = [refused]
+        if len(suspects) == 1:
+            self._died(suspects[0])
+        else:
+            for work in reversed(suspects):
+                work.alone = True
+                self._queue.appendleft(work)
+
+    def _died(self, work: _Work[Task, Result]) -> None:
+        work.deaths += 1
+        parts = self._split(work.task)
+        if work.deaths < 2 and (work.parent is None or not parts):
+            self._queue.appendleft(work)
+        elif parts:
+            work.count = len(parts)
+            children = [_Work(part, place, work, alone=work.alone) for place, part in enumerate(parts)]
+            self._queue.extendleft(reversed(children))
+        else:
+            self._keep(work, self._lost(work.task, Outcome.WORKER_DIED, "the worker process died, twice"))
+
+    def _keep(self, work: _Work[Task, Result], result: Result) -> None:
+        parent = work.parent
+        if parent is None:
+            self._results[work.place] = result
+            self._done(work.task, result)
+            return
+        parent.parts[work.place] = result
+        if len(parent.parts) == parent.count:
+            assert self._join is not None, "what can be split can be joined"
+            self._keep(parent, self._join(parent.task, [parent.parts[place] for place in range(parent.count)]))
