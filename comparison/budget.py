@@ -9,14 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.ladder import Rung, rungs_of
+from comparison.ladder import rungs_of
+from comparison.steps import Step, step
 from comparison.study import Study
+from comparison.surfaces import common_phases
 
 Array = NDArray[np.float64]
 
@@ -24,37 +27,16 @@ TOTAL = "total"
 
 
 @dataclass(frozen=True)
-class Step:
-    """
-    One step of the budget on the grid, (alpha1, alpha2): NaN where any rung of the ladder has no value.
-
-    size: (mu of `second` - mu of `first`) / mu of the ladder's first rung, signed. uncertainty: u_D = sqrt(u_A^2 +
-    u_B^2) of the two error estimates in the same unit. For the total, `key` is "total", else that of the second rung.
-    """
-
-    key: str
-    first: Rung
-    second: Rung
-    body: int
-    size: Array
-    uncertainty: Array
-
-    @property
-    def real(self) -> NDArray[np.bool_]:
-        """Where the step is larger than its uncertainty: only there it is a difference between models."""
-        return np.abs(self.size) > self.uncertainty
-
-
-@dataclass(frozen=True)
 class Entry:
     """
-    One step in numbers. median, rms, percentile95, maximum: of the absolute size, NaN without a point.
+    One step in numbers. mean, median, rms, percentile95, maximum: of the absolute size but for the mean, which is of
+    the signed one, so that a step which only raises is told from one that scatters; NaN without a point.
 
-    phases: (alpha1, alpha2) of the maximum, rad. real: share of the points where |D| > u_D. uncertain: median of
-    u_D. mean: of the signed size, so that a step which only raises is told from one that scatters. peak_moves: rad on
-    the periodic square, how far the highest point of the surface moves at least; points whose error estimates let them
-    be the highest count alike, because symmetric surfaces have several. correlation: of the two surfaces. points: how
-    many phase pairs have a value on every rung.
+    phases: (alpha1, alpha2) of the maximum, rad. real: share of the points where the step is known to a fifth of itself
+    or better, |D| > 5 u_D; unresolved: where u_D < |D| <= 5 u_D, not counted as real. uncertain: median of u_D.
+    peak_moves: rad on the periodic square, how far the highest point of the surface moves at least; points whose error
+    estimates let them be the highest count alike, because symmetric surfaces have several. correlation: of the two
+    surfaces. points: how many phase pairs have a value on both rungs, of the `asked`.
     """
 
     scene: str
@@ -69,28 +51,22 @@ class Entry:
     maximum: float
     phases: tuple[float, float]
     real: float
+    unresolved: float
     uncertain: float
     peak_moves: float
     correlation: float
     points: int
+    asked: int
 
 
 def steps(study: Study, surfaces: xr.Dataset, scene: str, body: int) -> list[Step]:
-    """Every step of one body's surface in the order of the ladder, and the total at the end."""
+    """Every step of one body's surface in the order of the ladder, named after its second rung, then the total."""
     rungs = rungs_of(next(one for one in study.scenes if one.name == scene), study.ladder)
-    mu, error = (
-        [np.asarray(surfaces[name].sel(scene=scene, model=rung.key, body=body), float) for rung in rungs]
-        for name in ("mu", "error")
-    )
-    known = np.isfinite([*mu, *error]).all(axis=0) & (mu[0] > 0.0)
-    scale = np.where(known, mu[0], np.nan)
-
-    def step(key: str, first: int, second: int) -> Step:
-        uncertainty = np.hypot(error[first], error[second]) / scale
-        return Step(key, rungs[first], rungs[second], body, (mu[second] - mu[first]) / scale, uncertainty)
-
-    last = len(rungs) - 1
-    return [step(rungs[i + 1].key, i, i + 1) for i in range(last)] + [step(TOTAL, 0, last)]
+    pairs = [(second.key, first, second) for first, second in pairwise(rungs)]
+    return [
+        step(surfaces, scene, key, first, second, body, per=rungs[0])
+        for key, first, second in [*pairs, (TOTAL, rungs[0], rungs[-1])]
+    ]
 
 
 def budget(study: Study, surfaces: xr.Dataset) -> list[Entry]:
@@ -104,9 +80,14 @@ def budget(study: Study, surfaces: xr.Dataset) -> list[Entry]:
 
 
 def closure(steps: Sequence[Step]) -> float:
-    """Largest |sum of the steps - total| over the points, relative to mu: rounding if the budget is sound."""
-    gap = np.abs(np.sum([step.size for step in steps[:-1]], axis=0) - steps[-1].size)
-    return float(np.nanmax(gap)) if np.isfinite(gap).any() else 0.0
+    """
+    Largest |sum of the steps - total| over the points where every rung has a value, relative to mu of the first.
+
+    Rounding if the budget is sound; NaN without such a point.
+    """
+    coarsest = max(step.stride for step in steps)
+    gap = np.abs(np.sum([step.every(coarsest) for step in steps[:-1]], axis=0) - steps[-1].every(coarsest))
+    return float(np.nanmax(gap)) if np.isfinite(gap).any() else float("nan")
 
 
 def torus_distance(one: Sequence[float], other: Sequence[float]) -> float:
@@ -116,7 +97,7 @@ def torus_distance(one: Sequence[float], other: Sequence[float]) -> float:
 
 
 def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> Entry:
-    size, known = np.abs(step.size), np.isfinite(step.size)
+    known = step.known
     names: dict[str, Any] = {
         "scene": scene,
         "body": step.body,
@@ -124,39 +105,38 @@ def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> Entry:
         "first": step.first.key,
         "second": step.second.key,
         "points": int(known.sum()),
+        "asked": known.size,
+        "phases": step.phases,
     }
     if not known.any():
-        nothing: dict[str, Any] = dict.fromkeys(
-            ("mean", "median", "rms", "percentile95", "maximum", "real", "uncertain", "peak_moves", "correlation"),
-            float("nan"),
-        )
-        return Entry(**names, **nothing, phases=(float("nan"), float("nan")))
+        sizes = ("mean", "median", "rms", "percentile95", "maximum")
+        shares = ("real", "unresolved", "uncertain", "peak_moves", "correlation")
+        nothing: dict[str, Any] = dict.fromkeys((*sizes, *shares), float("nan"))
+        return Entry(**names, **nothing)
+    data = common_phases(surfaces, scene, [step.first.key, step.second.key]).sel(body=step.body)
     both, errors = (
-        [
-            np.where(known, surfaces[name].sel(scene=scene, model=rung.key, body=step.body), np.nan)
-            for rung in (step.first, step.second)
-        ]
+        [np.where(known, data[name].sel(model=rung.key), np.nan) for rung in (step.first, step.second)]
         for name in ("mu", "error")
     )
-    highest = [_phases_at(surfaces, mu + error >= np.nanmax(mu - error)) for mu, error in zip(both, errors)]
+    highest = [_phases_at(step, mu + error >= np.nanmax(mu - error)) for mu, error in zip(both, errors)]
+    size = np.abs(step.size[known])
     return Entry(
         **names,
         mean=float(step.size[known].mean()),
-        median=float(np.median(size[known])),
-        rms=float(np.sqrt((size[known] ** 2).mean())),
-        percentile95=float(np.percentile(size[known], 95.0)),
-        maximum=float(size[known].max()),
-        phases=_phases_at(surfaces, size == np.nanmax(size))[0],
+        median=float(np.median(size)),
+        rms=float(np.sqrt((size**2).mean())),
+        percentile95=float(np.percentile(size, 95.0)),
+        maximum=float(size.max()),
         real=float(step.real[known].mean()),
+        unresolved=float(step.unresolved[known].mean()),
         uncertain=float(np.median(step.uncertainty[known])),
         peak_moves=min(torus_distance(one, other) for one in highest[0] for other in highest[1]),
         correlation=_correlation(both[0][known], both[1][known]),
     )
 
 
-def _phases_at(surfaces: xr.Dataset, where: NDArray[np.bool_]) -> list[tuple[float, float]]:
-    alpha1, alpha2 = surfaces["alpha1"].values, surfaces["alpha2"].values
-    return [(float(alpha1[row]), float(alpha2[column])) for row, column in np.argwhere(where)]
+def _phases_at(step: Step, where: NDArray[np.bool_]) -> list[tuple[float, float]]:
+    return [(float(step.alpha1[row]), float(step.alpha2[column])) for row, column in np.argwhere(where)]
 
 
 def _correlation(one: Array, other: Array) -> float:

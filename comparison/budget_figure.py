@@ -12,8 +12,9 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colors import SymLogNorm
 from matplotlib.figure import Figure
 
-from comparison.budget import TOTAL, Step, steps
+from comparison.budget import TOTAL, steps
 from comparison.figures import QUARTER_NAMES, QUARTERS, SIGN_COLOURS, closed
+from comparison.steps import Step
 from comparison.study import Study
 from reference.problem import Scene
 
@@ -30,7 +31,7 @@ def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, bo
     found = steps(study, surfaces, scene.name, body)
     figure = Figure(figsize=(13.0, 3.4), dpi=110)
     FigureCanvasAgg(figure)
-    heading = f"{scene.title} ({scene.name}), body {body}: what each model adds (dots: within its uncertainty)"
+    heading = f"{scene.title} ({scene.name}), body {body}: what each model adds (dots: not resolved)"
     figure.suptitle(heading, fontsize=12, y=0.98)
     sizes = np.abs(np.concatenate([step.size[np.isfinite(step.size)] for step in found] or [np.zeros(0)]))
     largest = max(float(sizes.max()) if sizes.size else 0.0, 10.0 * LINEAR)
@@ -48,17 +49,17 @@ def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, bo
 
 
 def _map(axes: Axes, step: Step, norm: SymLogNorm) -> QuadMesh:
-    phase, size = closed(100.0 * step.size)
+    phase, size = closed(step.alpha1, 100.0 * step.size)
     axes.set_facecolor("0.75")
     image = axes.pcolormesh(phase, phase, size.T, cmap=SIGN_COLOURS, norm=norm, shading="nearest")
-    row, column = np.nonzero(np.isfinite(step.size) & ~step.real)
+    row, column = np.nonzero(step.known & ~step.real)
     axes.plot(phase[row], phase[column], ".", color="0.35", markersize=160.0 / len(phase) / 4.0, markeredgewidth=0.0)
     axes.set_xlim(0.0, 2.0 * np.pi)
     axes.set_ylim(0.0, 2.0 * np.pi)
     axes.set_aspect("equal")
     axes.set_xticks(QUARTERS, QUARTER_NAMES, fontsize=8)
     axes.set_yticks(QUARTERS, QUARTER_NAMES, fontsize=8)
-    known = np.isfinite(step.size)
-    share = f"real at {100.0 * step.real[known].mean():.0f} %" if known.any() else "no common point"
-    axes.set_title(f"{'total' if step.key == TOTAL else step.second.title}\n{share}", fontsize=9)
+    known = step.known
+    share = f"real at {100.0 * step.real[known].mean():.0f} % of {known.sum()}" if known.any() else "no common point"
+    axes.set_title(f"{'total' if step.key == TOTAL else step.second.title}\n{share}", fontsize=8)
     return image

@@ -9,7 +9,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from comparison.ladder import Pair, pairs_of
+from comparison.steps import Step, step
 from comparison.study import Study
+from comparison.surfaces import common_phases
 from reference.problem import Outcome
 
 Array = NDArray[np.float64]
@@ -22,7 +24,8 @@ class Difference:
 
     median, percentile95, maximum: of its absolute value, NaN without any such phase. phases: (alpha1, alpha2) of the
     maximum, rad. beyond_error: share of these phases where it exceeds u_D = sqrt(u_A^2 + u_B^2), the two error
-    estimates together. not_ok: phases where either outcome is not ok. unanswered: phases where either has no value.
+    estimates together. ratio: largest |D| / u_D. asked: phases that both models were asked for; not_ok: those of them
+    where either outcome is not ok; unanswered: where either has no value.
     """
 
     scene: str
@@ -35,16 +38,15 @@ class Difference:
     maximum: float
     phases: tuple[float, float]
     beyond_error: float
+    ratio: float
+    asked: int
     not_ok: int
     unanswered: int
 
 
-def relative_difference(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> Array:
-    """Signed relative difference over the grid, (alpha1, alpha2), NaN where either model has no value."""
-    first, second = (_of(surfaces, "mu", scene, rung.key, body) for rung in (pair.first, pair.second))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        relative: Array = np.where(first > 0.0, (second - first) / first, np.nan)
-    return relative
+def pair_step(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> Step:
+    """The pair's difference, signed and relative to its first model, at the phases both were asked for."""
+    return step(surfaces, scene, pair.key, pair.first, pair.second, body, per=pair.first)
 
 
 def differences(study: Study, surfaces: xr.Dataset) -> list[Difference]:
@@ -57,32 +59,26 @@ def differences(study: Study, surfaces: xr.Dataset) -> list[Difference]:
     ]
 
 
-def _of(surfaces: xr.Dataset, name: str, scene: str, model: str, body: int) -> Array:
-    return np.asarray(surfaces[name].sel(scene=scene, model=model, body=body))
-
-
 def _difference(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> Difference:
-    signed = relative_difference(surfaces, scene, pair, body)
-    first, second = pair.first.key, pair.second.key
-    uncertainty = np.hypot(_of(surfaces, "error", scene, first, body), _of(surfaces, "error", scene, second, body))
-    uncertainty = uncertainty / _of(surfaces, "mu", scene, first, body)
-    status = surfaces["status"].sel(scene=scene)
-    not_ok = (status.sel(model=[first, second]) != Outcome.OK.value).any("model")
-    size = np.abs(signed)
-    valid = np.isfinite(size)
-    median, percentile95, maximum = np.percentile(size[valid], [50, 95, 100]) if valid.any() else [np.nan] * 3
-    row, column = np.unravel_index(np.nanargmax(size), size.shape) if valid.any() else (0, 0)
+    signed = pair_step(surfaces, scene, pair, body)
+    status = common_phases(surfaces, scene, [pair.first.key, pair.second.key])["status"]
+    not_ok = (status.sel(model=[pair.first.key, pair.second.key]) != Outcome.OK.value).any("model")
+    valid = signed.known
+    size = np.abs(signed.size[valid])
+    median, percentile95, maximum = np.percentile(size, [50, 95, 100]) if size.size else [np.nan] * 3
     return Difference(
         scene=scene,
         pair=pair.key,
-        first=first,
-        second=second,
+        first=pair.first.key,
+        second=pair.second.key,
         body=body,
         median=float(median),
         percentile95=float(percentile95),
         maximum=float(maximum),
-        phases=(float(surfaces["alpha1"][row]), float(surfaces["alpha2"][column])),
-        beyond_error=float((size[valid] > uncertainty[valid]).mean()) if valid.any() else float("nan"),
+        phases=signed.phases,
+        beyond_error=float((size > signed.uncertainty[valid]).mean()) if size.size else float("nan"),
+        ratio=float(signed.ratio[valid].max()) if size.size else float("nan"),
+        asked=valid.size,
         not_ok=int(not_ok.sum()),
         unanswered=int((~valid).sum()),
     )

@@ -12,8 +12,10 @@ from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
-from comparison.differences import relative_difference
+from comparison.differences import pair_step
 from comparison.ladder import Pair
+from comparison.steps import Step
+from comparison.surfaces import common_phases
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
@@ -31,32 +33,29 @@ def figure_name(scene: Scene, body: int, pair: Pair) -> str:
 
 def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: Pair) -> None:
     """Write the two surfaces on one height scale and the map of their relative difference to `path`, PNG."""
-    both = [np.asarray(surfaces["mu"].sel(scene=scene.name, model=r.key, body=body)) for r in (pair.first, pair.second)]
+    both = [common_phases(surfaces, scene.name, [r.key]).sel(model=r.key, body=body) for r in (pair.first, pair.second)]
     figure = Figure(figsize=(13.0, 4.6), dpi=110)
     FigureCanvasAgg(figure)
     figure.suptitle(f"{scene.title} ({scene.name}), body {body}: {pair.title} difference", fontsize=12, y=0.98)
-    finite = np.concatenate([mu[np.isfinite(mu)] for mu in both])
+    finite = np.concatenate([data["mu"].values[np.isfinite(data["mu"].values)] for data in both])
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
     if low == high:
         low, high = 0.9 * low - 0.1, 1.1 * high + 0.1
-    for place, mu, rung in zip(((0.0, 0.0, 0.31, 0.86), (0.315, 0.0, 0.31, 0.86)), both, (pair.first, pair.second)):
+    for place, data, rung in zip(((0.0, 0.0, 0.31, 0.86), (0.315, 0.0, 0.31, 0.86)), both, (pair.first, pair.second)):
         axes = figure.add_axes(place, projection="3d")
         assert isinstance(axes, Axes3D)
-        _surface(axes, mu, low, high)
+        _surface(axes, *closed(data["alpha1"].values, data["mu"].values), low, high)
         axes.set_title(f"$\\mu_{{{body}}}$, {rung.title}", fontsize=11, pad=0)
-    _map(
-        figure, figure.add_axes((0.70, 0.14, 0.22, 0.65)), 100.0 * relative_difference(surfaces, scene.name, pair, body)
-    )
+    _map(figure, figure.add_axes((0.70, 0.14, 0.22, 0.65)), pair_step(surfaces, scene.name, pair, body))
     figure.savefig(path)
 
 
-def closed(mu: Array) -> tuple[Array, Array]:
-    """The phases 0 ... 2 pi and the surface on them: its first row and column repeated where the period closes."""
-    return np.linspace(0.0, 2.0 * np.pi, len(mu) + 1), np.pad(mu, ((0, 1), (0, 1)), mode="wrap")
+def closed(phase: Array, mu: Array) -> tuple[Array, Array]:
+    """The phases up to 2 pi and the surface on them: its first row and column repeated where the period closes."""
+    return np.append(phase, 2.0 * np.pi), np.pad(mu, ((0, 1), (0, 1)), mode="wrap")
 
 
-def _surface(axes: Axes3D, mu: Array, low: float, high: float) -> None:
-    phase, height = closed(mu)
+def _surface(axes: Axes3D, phase: Array, height: Array, low: float, high: float) -> None:
     alpha1, alpha2 = np.meshgrid(phase, phase, indexing="ij")
     colours = {"cmap": HEIGHT_COLOURS, "vmin": low, "vmax": high, "linewidth": 0.2, "edgecolor": (0, 0, 0, 0.35)}
     axes.plot_surface(alpha1, alpha2, height, rcount=200, ccount=200, antialiased=True, **colours)
@@ -70,8 +69,9 @@ def _surface(axes: Axes3D, mu: Array, low: float, high: float) -> None:
     axes.set_ylabel(r"$\alpha_2$, rad", labelpad=2)
 
 
-def _map(figure: Figure, axes: Axes, percent: Array) -> None:
-    phase, height = closed(percent)
+def _map(figure: Figure, axes: Axes, step: Step) -> None:
+    percent = 100.0 * step.size
+    phase, height = closed(step.alpha1, percent)
     size = np.abs(percent[np.isfinite(percent)])
     largest = float(size.max()) if size.size else 0.0
     limit = float(np.percentile(size, 98.0)) if largest > 0.0 else 1.0

@@ -8,8 +8,8 @@ A rung names the function that answers for it ("package:function", the contract 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Literal
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
 
 from reference.problem import Scene
 
@@ -28,12 +28,20 @@ def any_scene(scene: Scene) -> bool:
     return True
 
 
+def has_spatial_data(scene: Scene) -> bool:
+    """Whether the scene says where its supports are and how high and large its bodies."""
+    isolator = scene.isolator
+    stated = [isolator.supports, isolator.ring, isolator.sphere_radius]
+    return None not in stated and all(body.height is not None and body.size is not None for body in scene.bodies)
+
+
 @dataclass(frozen=True)
 class Rung:
     """
     One model. `adds`: the sentence the report prints. `settings`: keyword arguments of its functions.
     `assumptions`: its row in the report's table of equations. `seconds_per_point`: recorded cost of one phase pair of
-    a built-in scene with 20 s of motion, on RECORDED_ON. `applies`: whether the scene gives it anything to add.
+    a built-in scene with 20 s of motion, on RECORDED_ON. `applies`: whether the scene gives it anything to add. `most`:
+    phases per axis that its cost allows, or None; of a finer study it computes every k-th phase.
     """
 
     key: str
@@ -46,6 +54,7 @@ class Rung:
     assumptions: Mapping[str, str]
     seconds_per_point: float
     tile: int  # phase pairs solved in one call: about a second of work
+    most: int | None = None
     applies: Callable[[Scene], bool] = field(default=any_scene)
 
     def tolerance(self, asked: float) -> float:
@@ -74,13 +83,20 @@ def rungs_of(scene: Scene, ladder: Sequence[Rung]) -> list[Rung]:
 
 
 def pairs_of(scene: Scene, ladder: Sequence[Rung]) -> list[Pair]:
-    """The total difference and the like-for-like one, between the rungs that apply to this scene."""
+    """The total difference, that within the paper's assumptions, and the like-for-like one: what the scene allows."""
     rungs = rungs_of(scene, ladder)
     first, last = rungs[0], rungs[-1]
     reference = [rung for rung in rungs if rung.side == "reference"][-1]
     engine = next(rung for rung in rungs if rung.side == "engine")
-    return [
-        Pair("total", "total", "the paper's printed equations against the engine", first, last),
+    pairs = [
+        Pair("total", "total", "the paper's printed equations against the most complete engine model", first, last),
+        Pair(
+            "translational",
+            "translational",
+            "the paper's printed equations against the engine under the paper's own assumption that no body turns",
+            first,
+            engine,
+        ),
         Pair(
             "like-for-like",
             "like for like",
@@ -89,109 +105,105 @@ def pairs_of(scene: Scene, ladder: Sequence[Rung]) -> list[Pair]:
             engine,
         ),
     ]
+    return [pair for pair in pairs if pair.key != "translational" or engine is not last]
 
 
-_HORIZONTAL = "2 N horizontal displacements; the vertical one follows from the sphere (2.1)"
-_ARC = "supremum of (5.1) with one-sided limits at stops, in closed form"
 _PEAK = "largest value the computed motion reaches"
 
-LADDER: tuple[Rung, ...] = (
-    Rung(
-        key="small",
-        title="small equations",
-        adds="The paper's small-vibration equations (4.3)-(4.4) as printed, with dry friction that really sticks.",
-        side="reference",
-        amplification="reference:amplification",
-        trajectory="reference:trajectory",
-        settings={"equations": "small", "regularization": None},
-        assumptions={
-            "equations": "(4.3)-(4.4), as printed",
-            "geometry": "small: the sphere enters through g x/rho and the kept friction terms only",
-            "friction": "set-valued Coulomb, or mu = f_c |v| in a lubricated scene",
-            "normal contact": "rigid, m_sum (g + zeta'') to the kept order",
-            "unknowns": _HORIZONTAL,
-            "mu_i": _ARC,
-        },
-        seconds_per_point=0.012,
-        tile=64,
-    ),
-    Rung(
-        key="exact",
-        title="exact equations",
-        adds="The whole sphere: equations (3.9)-(3.13) with the slips of the print mended, same friction law.",
-        side="reference",
-        amplification="reference:amplification",
-        trajectory="reference:trajectory",
-        settings={"equations": "exact", "regularization": None},
-        assumptions={
-            "equations": "(3.9)-(3.13), slips mended",
-            "geometry": "exact sphere of radius rho",
-            "friction": "set-valued Coulomb, or mu = f_c |v| in a lubricated scene",
-            "normal contact": "rigid, from the constraint with its centripetal part",
-            "unknowns": _HORIZONTAL,
-            "mu_i": _ARC,
-        },
-        seconds_per_point=0.012,
-        tile=64,
-    ),
-    Rung(
-        key="resolved",
-        title="exact equations, resolved peak",
-        adds="The same motion, read only at rest and while sliding faster than v_c = 1e-3 m/s: what the one-sided "
-        "limits at stops, which no sampling reaches, are worth.",
-        side="reference",
-        amplification="reference:amplification",
-        trajectory="reference:trajectory",
-        settings={"equations": "exact", "regularization": None, "cutoff": V_REG},
-        assumptions={
-            "equations": "(3.9)-(3.13), slips mended",
-            "geometry": "exact sphere of radius rho",
-            "friction": "set-valued Coulomb, or mu = f_c |v| in a lubricated scene",
-            "normal contact": "rigid, from the constraint with its centripetal part",
-            "unknowns": _HORIZONTAL,
-            "mu_i": "largest value at rest or sliding faster than v_c = 1e-3 m/s",
-        },
-        seconds_per_point=0.015,
-        tile=64,
-        applies=dry,
-    ),
-    Rung(
-        key="regularised",
-        title="exact equations, v_reg",
-        adds="Friction linear below v_reg = 1e-3 m/s, as an engine has it: no true rest, no jump at a stop.",
-        side="reference",
-        amplification="reference:amplification",
-        trajectory="reference:trajectory",
-        settings={"equations": "exact", "regularization": V_REG},
-        assumptions={
-            "equations": "(3.9)-(3.13), slips mended",
-            "geometry": "exact sphere of radius rho",
-            "friction": "Coulomb, linear below v_reg = 1e-3 m/s",
-            "normal contact": "rigid, from the constraint with its centripetal part",
-            "unknowns": _HORIZONTAL,
-            "mu_i": _PEAK,
-        },
-        seconds_per_point=0.012,
-        tile=64,
-        applies=dry,
-    ),
-    Rung(
-        key="translational",
-        title="translational engine",
-        adds="Exudyn: spheres in hollow spheres with an elastic contact, every body free to translate only.",
-        side="engine",
-        amplification="multibody:amplification",
-        trajectory="multibody:trajectory",
-        settings={"model": "translational", "regularization": V_REG},
-        assumptions={
-            "equations": "Newton-Euler of the bodies, assembled by Exudyn",
-            "geometry": "exact spheres: support of radius r in a depression of radius R",
-            "friction": "Coulomb, linear below v_reg = 1e-3 m/s, or mu = f_c |v| in a lubricated scene",
-            "normal contact": "elastic: spring and damper, so the platform sinks by N/k_c",
-            "unknowns": "translations of every body, the platform's vertical one free",
-            "mu_i": _PEAK,
-        },
-        seconds_per_point=0.7,
-        tile=2,
-    ),
+
+def _next(before: Rung, departs: Mapping[str, str], **changes: Any) -> Rung:
+    """The rung after `before`: the same but for `changes`, and for the assumptions in which it `departs`."""
+    return replace(before, assumptions={**before.assumptions, **departs}, **changes)
+
+
+SMALL = Rung(
+    key="small",
+    title="small equations",
+    adds="The paper's small-vibration equations (4.3)-(4.4) as printed, with dry friction that really sticks.",
+    side="reference",
+    amplification="reference:amplification",
+    trajectory="reference:trajectory",
+    settings={"equations": "small", "regularization": None},
+    assumptions={
+        "equations": "(4.3)-(4.4), as printed",
+        "geometry": "small: the sphere enters through g x/rho and the kept friction terms only",
+        "friction": "set-valued Coulomb, or mu = f_c |v| in a lubricated scene",
+        "normal contact": "rigid, m_sum (g + zeta'') to the kept order",
+        "unknowns": "2 N horizontal displacements; the vertical one follows from the sphere (2.1)",
+        "mu_i": "supremum of (5.1) with one-sided limits at stops, in closed form",
+    },
+    seconds_per_point=0.012,
+    tile=64,
 )
+EXACT = _next(
+    SMALL,
+    {
+        "equations": "(3.9)-(3.13), slips mended",
+        "geometry": "exact sphere of radius rho",
+        "normal contact": "rigid, from the constraint with its centripetal part",
+    },
+    key="exact",
+    title="exact equations",
+    adds="The whole sphere: equations (3.9)-(3.13) with the slips of the print mended, same friction law.",
+    settings={"equations": "exact", "regularization": None},
+)
+RESOLVED = _next(
+    EXACT,
+    {"mu_i": "largest value at rest or sliding faster than v_c = 1e-3 m/s"},
+    key="resolved",
+    title="exact equations, resolved peak",
+    adds="The same motion, read only at rest and while sliding faster than v_c = 1e-3 m/s: what the one-sided "
+    "limits at stops, which no sampling reaches, are worth.",
+    settings={**EXACT.settings, "cutoff": V_REG},
+    seconds_per_point=0.015,
+    applies=dry,
+)
+REGULARISED = _next(
+    EXACT,
+    {"friction": "Coulomb, linear below v_reg = 1e-3 m/s", "mu_i": _PEAK},
+    key="regularised",
+    title="exact equations, v_reg",
+    adds="Friction linear below v_reg = 1e-3 m/s, as an engine has it: no true rest, no jump at a stop.",
+    settings={"equations": "exact", "regularization": V_REG},
+    applies=dry,
+)
+TRANSLATIONAL = _next(
+    REGULARISED,
+    {
+        "equations": "Newton-Euler of the bodies, assembled by Exudyn",
+        "geometry": "exact spheres: support of radius r in a depression of radius R",
+        "friction": "Coulomb, linear below v_reg = 1e-3 m/s, or mu = f_c |v| in a lubricated scene",
+        "normal contact": "elastic: spring and damper, so the platform sinks by N/k_c",
+        "unknowns": "translations of every body, the platform's vertical one free",
+    },
+    key="translational",
+    title="translational engine",
+    adds="Exudyn: spheres in hollow spheres with an elastic contact, every body free to translate only.",
+    side="engine",
+    amplification="multibody:amplification",
+    trajectory="multibody:trajectory",
+    settings={"model": "translational", "regularization": V_REG},
+    seconds_per_point=0.7,
+    tile=2,
+    applies=any_scene,
+    most=16,
+)
+SPATIAL = _next(
+    TRANSLATIONAL,
+    {
+        "geometry": "exact spheres on a ring of supports, bodies as boxes at their heights",
+        "normal contact": "elastic and one-sided at every support: loads differ, a support may lift off",
+        "unknowns": "six of every body: translations and rotations",
+    },
+    key="spatial",
+    title="spatial engine",
+    adds="Every body free to turn, at its height, on a ring of supports: overturning shares the load unequally, "
+    "friction twists the platform, supports may lift off.",
+    settings={"model": "spatial", "regularization": V_REG},
+    seconds_per_point=3.0,
+    tile=1,
+    applies=has_spatial_data,
+    most=4,
+)
+
+LADDER: tuple[Rung, ...] = (SMALL, EXACT, RESOLVED, REGULARISED, TRANSLATIONAL, SPATIAL)

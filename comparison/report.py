@@ -22,9 +22,11 @@ from comparison.effective import PHASES
 from comparison.figures import draw_pair, figure_name
 from comparison.findings import Findings
 from comparison.ladder import Pair, pairs_of, rungs_of
+from comparison.page_data import packed, packed_motions, page_data
 from comparison.slips import SLIPS, Effect
 from comparison.study import Study
 from comparison.summary import outcome_counts, summary
+from comparison.verdicts import bar, verdict
 from comparison.verification import CHECKS
 from comparison.wording import degrees, percent, scientific, significant, symbols
 from reference.problem import ADVICE, Outcome, Scene
@@ -52,6 +54,7 @@ class Section:
 
 
 SECTIONS = (
+    Section("overview", "Verdicts"),
     Section("differences", "Differences"),
     Section("budget", "What makes the difference"),
     Section("surfaces", "Surfaces"),
@@ -62,6 +65,7 @@ SECTIONS = (
     Section("verification", "What checks each side alone"),
     Section("provenance", "Provenance"),
 )
+SCRIPTS = ("motions.js", "report.js")
 
 
 def write_report(folder: Path, found: Findings) -> None:
@@ -104,6 +108,7 @@ def _page(figures: Path, found: Findings) -> str:
         scenes=[_scene(figures, found, scene) for scene in study.scenes],
         pairs=pairs_of(study.scenes[0], study.ladder),
         ladder=ladder,
+        step_numbers={rung.key: number for number, rung in enumerate(ladder)},
         titles={"scene": "as stated", **{rung.key: rung.title for rung in study.ladder}},
         properties=_properties(ladder),
         rows=found.rows,
@@ -117,9 +122,10 @@ def _page(figures: Path, found: Findings) -> str:
         broken=found.broken,
         faults=found.faults,
         style=(templates / "report.css").read_text(encoding="utf-8"),
-        script=(templates / "report.js").read_text(encoding="utf-8"),
-        plotly=get_plotlyjs(),
-        data=_embedded(study, found.surfaces),
+        scripts=[(templates / name).read_text(encoding="utf-8") for name in SCRIPTS],
+        plotly=packed(get_plotlyjs().encode()),
+        motions=packed_motions(found),
+        data=page_data(found),
     )
 
 
@@ -129,10 +135,12 @@ def _scene(figures: Path, found: Findings, scene: Scene) -> dict[str, Any]:
     return {
         "scene": scene,
         "digest": scene.digest(),
+        "verdict": verdict(found.study, found.surfaces, scene),
         "verdicts": [_verdict(pair, [row for row in own if row.pair == pair.key]) for pair in pairs],
         "bodies": [
             {
                 "number": body,
+                "bar": bar(found.study, found.surfaces, scene, body),
                 "pictures": [
                     {"pair": pair, "png": _inlined(figures / figure_name(scene, body, pair))} for pair in pairs
                 ],
@@ -153,7 +161,7 @@ def _verdict(pair: Pair, rows: Sequence[Difference]) -> str:
     return (
         f"{pair.title.capitalize()} ({pair.first.title} against {pair.second.title}): median {medians}; "
         f"largest {percent(worst.maximum)}, body {worst.body}, at ({degrees(worst.phases[0])}, "
-        f"{degrees(worst.phases[1])}); {rows[0].not_ok} of the points not ok."
+        f"{degrees(worst.phases[1])}); {rows[0].not_ok} of {rows[0].asked} points not ok."
     )
 
 
@@ -201,33 +209,10 @@ def _outcomes(study: Study, surfaces: xr.Dataset) -> list[dict[str, Any]]:
             "scene": scene.name,
             "model": rung.title,
             "counts": outcome_counts(surfaces, scene.name, rung.key),
+            "points": study.points(rung),
             "cost": float(surfaces["cost"].sel(scene=scene.name, model=rung.key)),
             "ok": outcome_counts(surfaces, scene.name, rung.key).get(Outcome.OK.value, 0),
         }
         for scene in study.scenes
         for rung in rungs_of(scene, study.ladder)
     ]
-
-
-def _embedded(study: Study, surfaces: xr.Dataset) -> str:
-    """The surfaces for the page's script, JSON that is safe inside a script element. NaN is null."""
-
-    def listed(scene: Scene, model: str, body: int) -> list[list[float | None]]:
-        mu = np.asarray(surfaces["mu"].sel(scene=scene.name, model=model, body=body))
-        return [[float(f"{value:.7g}") if np.isfinite(value) else None for value in row] for row in mu]
-
-    data = {
-        "grid": study.grid,
-        "titles": {rung.key: rung.title for rung in study.ladder},
-        "scenes": [
-            {
-                "pairs": {pair.key: [pair.first.key, pair.second.key] for pair in pairs_of(scene, study.ladder)},
-                "mu": {
-                    rung.key: [listed(scene, rung.key, body) for body in range(1, len(scene.bodies) + 1)]
-                    for rung in rungs_of(scene, study.ladder)
-                },
-            }
-            for scene in study.scenes
-        ],
-    }
-    return json.dumps(data, allow_nan=False).replace("<", "\\u003c")

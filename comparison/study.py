@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
 
 from comparison.ladder import LADDER, Rung
 from comparison.tiles import Tile
@@ -12,17 +16,40 @@ from reference.problem import Scene, phase_grid
 
 @dataclass(frozen=True)
 class Study:
-    """Scenes x models x a grid of `grid` by `grid` phase pairs, each mu to the relative error `tolerance`."""
+    """
+    Scenes x models x a grid of `grid` by `grid` phase pairs, each mu to the relative error `tolerance`.
+
+    A model that is too expensive for all of them computes every k-th phase of either axis, k being its stride. Strides
+    are multiples of one another, so that of any two models the coarser grid is part of the finer.
+    """
 
     scenes: tuple[Scene, ...]
     grid: int
     tolerance: float
     ladder: Sequence[Rung] = LADDER
 
-    @property
-    def points(self) -> int:
-        """Phase pairs of one surface."""
-        return self.grid**2
+    @cached_property
+    def strides(self) -> dict[str, int]:
+        """The stride of every model by its key: the smallest that leaves it no more phases than its `most`."""
+        strides, stride = {}, 1
+        for rung in sorted(self.ladder, key=lambda rung: -(rung.most or self.grid)):
+            most = min(rung.most or self.grid, self.grid)
+            stride *= -(-self.grid // (most * stride))
+            strides[rung.key] = stride
+        return strides
+
+    def axis(self, rung: Rung) -> NDArray[np.intp]:
+        """Which of the `grid` phases of either axis a model computes."""
+        return np.arange(0, self.grid, self.strides[rung.key])
+
+    def points(self, rung: Rung) -> int:
+        """Phase pairs of one surface of this model."""
+        return len(self.axis(rung)) ** 2
+
+    def places(self, rung: Rung) -> NDArray[np.intp]:
+        """The model's phase pairs as places on the whole grid, alpha2 running fastest."""
+        axis = self.axis(rung)
+        return (self.grid * axis[:, None] + axis).ravel()
 
     def tiles(self) -> list[Tile]:
         """
@@ -38,14 +65,14 @@ class Study:
                 amplification=rung.amplification,
                 settings={**rung.settings, "tolerance": rung.tolerance(self.tolerance)},
                 first=first,
-                phases=phases[first : first + rung.tile],
+                phases=phases[self.places(rung)[first : first + rung.tile]],
             )
             for rung in self.ladder
             for scene in self.scenes
             if rung.applies(scene)
-            for first in range(0, self.points, rung.tile)
+            for first in range(0, self.points(rung), rung.tile)
         ]
 
     def seconds(self, rung: Rung) -> float:
         """Predicted cost of one model on every scene it applies to, s on one core."""
-        return sum(rung.seconds(scene, self.points) for scene in self.scenes if rung.applies(scene))
+        return sum(rung.seconds(scene, self.points(rung)) for scene in self.scenes if rung.applies(scene))

@@ -13,6 +13,7 @@ import xarray as xr
 from comparison.findings import Findings
 from comparison.ladder import rungs_of
 from comparison.slips import SLIPS
+from comparison.surfaces import common_phases
 from reference.problem import Scene
 
 SCHEMA = "phase-resonance/summary"
@@ -20,8 +21,9 @@ VERSION = 1
 
 
 def outcome_counts(surfaces: xr.Dataset, scene: str, model: str) -> dict[str, int]:
-    """How many phase pairs ended in each outcome, most frequent first."""
-    return dict(Counter(np.asarray(surfaces["status"].sel(scene=scene, model=model)).ravel().tolist()).most_common())
+    """How many of the phase pairs asked of the model ended in each outcome, most frequent first."""
+    status = common_phases(surfaces, scene, [model])["status"].sel(model=model)
+    return dict(Counter(np.asarray(status).ravel().tolist()).most_common())
 
 
 def summary(found: Findings) -> dict[str, Any]:
@@ -74,6 +76,7 @@ def _scene(found: Findings, scene: Scene) -> dict[str, Any]:
         "acceptance": scene.acceptance.model_dump(),
         "models": {
             rung.key: {
+                "phases_per_axis": len(found.study.axis(rung)),
                 "outcomes": outcome_counts(found.surfaces, scene.name, rung.key),
                 "cost": float(found.surfaces["cost"].sel(scene=scene.name, model=rung.key)),
             }

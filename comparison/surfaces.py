@@ -7,10 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from comparison.ladder import rungs_of
 from comparison.study import Study
 from comparison.tiles import Answer, Tile
 
-NOT_RUN = "not applicable"  # status of a model that the scene gives nothing to add
+NOT_APPLICABLE = "not applicable"  # status of a model that the scene gives nothing to add
+NOT_ASKED = "not asked"  # status of the phases between those of a model that computes every k-th
 
 
 def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Answer]) -> xr.Dataset:
@@ -18,21 +20,24 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
     The answers on dimensions scene, model, body, alpha1, alpha2 (rad).
 
     `mu` and `error` (absolute, estimated) are NaN where a point has no answer, where a model does not apply to the
-    scene, and in bodies a scene does not have (`bodies` counts them). `status` names each point's outcome, `instant`
-    (s) when it arose. `cost` (scene, model) is s of compute.
+    scene, between the phases of a model with a `stride` above 1, and in bodies a scene does not have (`bodies` counts
+    them). `status` names each point's outcome, `instant` (s) when it arose. `cost` (scene, model) is s of compute.
     """
     names = [scene.name for scene in study.scenes]
     models = [rung.key for rung in study.ladder]
     bodies = max(len(scene.bodies) for scene in study.scenes)
-    plane = (len(names), len(models), study.points)
+    plane = (len(names), len(models), study.grid**2)
     mu = np.full((*plane, bodies), np.nan)
     error = np.full((*plane, bodies), np.nan)
     instant = np.full(plane, np.nan)
-    status = np.full(plane, NOT_RUN, dtype=object)
+    status = np.full(plane, NOT_APPLICABLE, dtype=object)
+    for index, scene in enumerate(study.scenes):
+        status[index, [models.index(rung.key) for rung in rungs_of(scene, study.ladder)]] = NOT_ASKED
+    places = {rung.key: study.places(rung) for rung in study.ladder}
     cost = np.zeros(plane[:2])
     for tile, answer in zip(tiles, answers, strict=True):
         where = names.index(tile.scene.name), models.index(tile.rung)
-        span = slice(tile.first, tile.first + len(tile.phases))
+        span = places[tile.rung][tile.first : tile.first + len(tile.phases)]
         count = len(tile.scene.bodies)
         mu[where][span, :count] = answer.mu
         error[where][span, :count] = answer.error
@@ -53,6 +58,11 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
             "status": (point, status.reshape(square), {"long_name": "named outcome of the point"}),
             "instant": (point, instant.reshape(square), {"units": "s", "long_name": "time when the outcome arose"}),
             "cost": (("scene", "model"), cost, {"units": "s", "long_name": "compute time of the surface"}),
+            "stride": (
+                "model",
+                [study.strides[key] for key in models],
+                {"long_name": "the model has every k-th phase"},
+            ),
             "bodies": ("scene", [len(scene.bodies) for scene in study.scenes], {"long_name": "bodies of the scene"}),
             "digest": ("scene", [scene.digest() for scene in study.scenes], {"long_name": "hash of the scene"}),
         },
@@ -65,3 +75,9 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
         },
         attrs={"title": "phase-resonance surfaces", "tolerance": study.tolerance},
     )
+
+
+def common_phases(surfaces: xr.Dataset, scene: str, models: Sequence[str]) -> xr.Dataset:
+    """The part of one scene's surfaces at the phases that each of these models was asked for."""
+    every = slice(None, None, int(surfaces["stride"].sel(model=list(models)).max()))
+    return surfaces.sel(scene=scene).isel(alpha1=every, alpha2=every)

@@ -24,9 +24,9 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
         for rung in study.ladder:
             if not rung.applies(scene):
                 continue
-            seconds = rung.seconds(scene, study.points)
+            seconds = rung.seconds(scene, study.points(rung))
             total += seconds
-            cells = str(study.points), f"{rung.tolerance(study.tolerance):.0e}", f"{seconds:.1f}"
+            cells = str(study.points(rung)), f"{rung.tolerance(study.tolerance):.0e}", f"{seconds:.1f}"
             table.add_row(scene.name, rung.title, *cells)
     console.print(table)
     wall = START_UP + total / options.jobs

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Tile:
-    """Phases `first` ... `first` + len(phases) - 1 of the study's grid, phases (M, 2), rad."""
+    """Phase pairs number `first` ... `first` + len(phases) - 1 of the model's grid, phases (M, 2), rad."""
 
     scene: Scene
     rung: str

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.differences import relative_difference
+from comparison.differences import pair_step
 from comparison.ladder import Rung, pairs_of
 from comparison.study import Study
 from comparison.sweep import sweep
@@ -60,10 +60,8 @@ def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Plac
     places: dict[tuple[int, int], str] = {}
     total = pairs_of(scene, study.ladder)[0]
     for body in range(1, len(scene.bodies) + 1):
-        size = np.abs(relative_difference(surfaces, scene.name, total, body))
-        if np.isfinite(size).any():
-            row, column = np.unravel_index(np.nanargmax(size), size.shape)
-            places.setdefault((int(row), int(column)), f"largest difference of body {body}")
+        if place := pair_step(surfaces, scene.name, total, body).place:
+            places.setdefault(place, f"largest difference of body {body}")
     for k in range(SPREAD):
         row, column = (round(study.grid * (factor * k % SPREAD) / SPREAD) % study.grid for factor in (1, 2))
         places.setdefault((row, column), "spread")

@@ -1,6 +1,8 @@
 "use strict";
 const data = JSON.parse(document.getElementById("data").textContent);
-const phase = Array.from({ length: data.grid + 1 }, (_, i) => 2 * Math.PI * i / data.grid);
+const every = (rows, k) => rows.filter((_, i) => i % k === 0);
+const pick = (mu, k) => every(mu, k).map(row => every(row, k));  // every k-th phase of both axes
+const phases = (mu, stride) => [...mu.map((_, i) => 2 * Math.PI * i * stride / data.grid), 2 * Math.PI];
 const wrapped = mu => { const rows = mu.map(row => [...row, row[0]]); return [...rows, rows[0]]; };
 const turned = rows => rows[0].map((_, j) => rows.map(row => row[j]));  // plotly wants z[alpha2][alpha1]
 const axis = text => ({ title: { text }, tickvals: [0, Math.PI, 2 * Math.PI], ticktext: ["0", "π", "2π"] });
@@ -17,12 +19,14 @@ function draw(box) {
   const scene = data.scenes[box.dataset.scene], body = Number(box.dataset.body);
   const [first, second] = scene.pairs[pair];
   const a = scene.mu[first][body - 1], b = scene.mu[second][body - 1];
-  const percent = a.map((row, i) => row.map((v, j) => v > 0 && b[i][j] !== null ? 100 * (b[i][j] - v) / v : null));
+  const strides = [first, second].map(model => data.strides[model]), common = Math.max(...strides);
+  const [one, other] = [pick(a, common / strides[0]), pick(b, common / strides[1])];
+  const percent = one.map((row, i) => row.map((v, j) => v > 0 && other[i][j] !== null ? 100 * (other[i][j] - v) / v : null));
   const [low, high] = extent([a, b].flat());
   const reach = Math.max(...extent(percent).map(Math.abs)) || 1;
   const hover = unit => `α₁ %{x:.3f}<br>α₂ %{y:.3f}<br>%{z:.5g}${unit}<extra></extra>`;
-  const surface = (mu, scene, colours, range, x, unit) => ({
-    type: "surface", x: phase, y: phase, z: turned(wrapped(mu)), scene, colorscale: colours, cmin: range[0], cmax: range[1],
+  const surface = (mu, stride, scene, colours, range, x, unit) => ({
+    type: "surface", x: phases(mu, stride), y: phases(mu, stride), z: turned(wrapped(mu)), scene, colorscale: colours, cmin: range[0], cmax: range[1],
     colorbar: { x, len: 0.7, thickness: 10, tickfont: { size: 10 } }, showscale: x !== null, hovertemplate: hover(unit),
   });
   const camera = box.camera || { eye: { x: -1.25, y: -1.63, z: 0.98 }, center: { x: 0, y: 0, z: -0.1 } };
@@ -31,9 +35,9 @@ function draw(box) {
   const heading = (x, text) => ({ x, y: 1, xref: "paper", yref: "paper", showarrow: false, text: `<b>${text}</b>`, font: { size: 13 } });
   const mu = `μ<sub>${body}</sub>`;
   Plotly.react(box, [
-    surface(a, "scene", "Cividis", [low, high], null, ""),
-    surface(b, "scene2", "Cividis", [low, high], 0.625, ""),
-    surface(percent, "scene3", [[0, "#2166ac"], [0.5, "#f7f7f7"], [1, "#b2182b"]], [-reach, reach], 1, " %"),
+    surface(a, strides[0], "scene", "Cividis", [low, high], null, ""),
+    surface(b, strides[1], "scene2", "Cividis", [low, high], 0.625, ""),
+    surface(percent, common, "scene3", [[0, "#2166ac"], [0.5, "#f7f7f7"], [1, "#b2182b"]], [-reach, reach], 1, " %"),
   ], {
     margin: { l: 0, r: 10, t: 6, b: 0 }, font: { size: 11 },
     scene: space(0, 0.3, [low, high]), scene2: space(0.31, 0.62, [low, high]),

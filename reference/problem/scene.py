@@ -77,6 +77,8 @@ class Acceptance(Table):
 
     median: Positive | None = None  # relative difference of mu_i over the phases, per body
     maximum: Positive | None = None
+    ratio: Positive | None = None  # largest difference in units of the two error estimates together, per body
+    closure: Positive | None = None  # largest |sum of the ladder's steps - total| relative to mu_i, per body
     failed: Annotated[int, Field(ge=0)] = 0  # points without an answer, on both sides together
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -40,7 +40,7 @@ def test_the_steps_add_up_to_the_total_at_every_point(scene: str) -> None:
         assert closure(found) < 1e-14  # rounding of a handful of numbers near 1
 
 
-@pytest.mark.parametrize("culprit", ["exact", "resolved", "regularised", "translational"])
+@pytest.mark.parametrize("culprit", ["exact", "resolved", "regularised", "translational", "spatial"])
 def test_an_error_planted_from_one_rung_on_is_blamed_on_that_rung(culprit: str) -> None:
     """A wrong stiffness, sign or mass stays in every model above the one that introduced it."""
     keys = [rung.key for rung in fake_ladder()]
@@ -57,7 +57,7 @@ def test_an_error_planted_from_one_rung_on_is_blamed_on_that_rung(culprit: str) 
         assert table[TOTAL].rms == pytest.approx(0.02, rel=1e-9)
 
 
-@pytest.mark.parametrize("culprit", ["exact", "resolved", "regularised"])
+@pytest.mark.parametrize("culprit", ["exact", "resolved", "regularised", "translational"])
 def test_an_error_in_one_rung_alone_shows_in_both_its_steps_and_cancels_in_the_total(culprit: str) -> None:
     study, surfaces = _solved(errors_in({culprit: 0.02}))
     table = _table(study, surfaces)
@@ -75,6 +75,13 @@ def test_a_coarse_step_with_an_honest_error_is_not_called_a_difference() -> None
     assert table["translational"].uncertain == pytest.approx(0.03 * 1.02, rel=1e-3)  # u_A = 1e-5 adds 5e-8
 
 
+def test_a_step_known_to_less_than_a_fifth_is_counted_apart_and_not_as_real() -> None:
+    for gap, expected in ((0.9, (0.0, 0.0)), (1.1, (0.0, 1.0)), (4.9, (0.0, 1.0)), (5.1, (1.0, 0.0))):
+        study, surfaces = _solved(errors_in({"exact": gap * 1e-3}, claimed={"small": 6e-4, "exact": 8e-4}))
+        entry = _table(study, surfaces)["exact"]
+        assert (entry.real, entry.unresolved) == expected, "u_D is 1e-3, up to the 0.5 % that the step itself adds"
+
+
 def test_a_coarse_step_with_a_false_error_is_blamed_on_the_engine_rung_like_for_like() -> None:
     """The like-for-like step must vanish: one far above its u_D is an error claimed too small, not physics."""
     study, surfaces = _solved(errors_in({"translational": 0.02}, claimed={"translational": 1e-6}))
@@ -88,19 +95,43 @@ def test_uncertainties_of_the_two_rungs_add_in_quadrature() -> None:
     np.testing.assert_allclose(steps(study, surfaces, "fig3-I", 1)[0].uncertainty, 5e-3, rtol=1e-12)
 
 
-def test_a_point_without_a_value_on_any_rung_is_left_out_of_every_step() -> None:
+def test_a_point_without_a_value_is_left_out_of_the_steps_to_and_from_it_and_of_the_sum() -> None:
     study, surfaces = _solved(errors_in({"translational": 0.02}))
-    surfaces["mu"].loc[{"model": "exact", "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][5]}] = np.nan
-    for entry in budget(study, surfaces):
-        assert entry.points == GRID**2 - 1
+    surfaces["mu"].loc[{"model": "exact", "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][6]}] = np.nan
+    for key, entry in _table(study, surfaces).items():
+        assert entry.points == entry.asked - (key in ("exact", "resolved"))
         assert np.isfinite(entry.rms)
+    assert closure(steps(study, surfaces, "fig3-I", 1)) < 1e-14
+
+
+def test_a_model_too_expensive_for_every_phase_is_compared_where_it_was_asked() -> None:
+    study, surfaces = _solved(errors_in({"spatial": 0.02}))
+    assert study.strides == {**dict.fromkeys(study.strides, 1), "spatial": 2}
+    assert (surfaces["status"].sel(model="spatial")[0, ::2, ::2] == "ok").all()
+    assert (surfaces["status"].sel(model="spatial")[0, 1::2] == "not asked").all()
+    table = _table(study, surfaces)
+    assert {key: entry.asked for key, entry in table.items() if entry.asked < GRID**2} == {"spatial": 16, TOTAL: 16}
+    assert table["spatial"].mean == pytest.approx(0.02, rel=1e-9)
+    assert (table["spatial"].real, table["translational"].real) == (1.0, 0.0)
+
+
+@pytest.mark.parametrize("grid", range(2, 65))
+def test_of_two_models_the_coarser_grid_is_part_of_the_finer(grid: int) -> None:
+    study = Study((), grid, 1e-3)
+    axes = [set(study.axis(rung)) for rung in sorted(study.ladder, key=lambda rung: rung.most or 1000)]
+    assert all(coarse <= fine for coarse, fine in pairwise(axes))
+    for rung in study.ladder:
+        assert min(rung.most or grid, grid) / 3 < len(study.axis(rung)) <= (rung.most or grid)
 
 
 def test_a_scene_without_any_common_point_gives_nan_and_no_exception() -> None:
     study, surfaces = _solved(errors_in({}))
     surfaces["mu"].loc[{"model": "exact"}] = np.nan
-    assert {entry.points for entry in budget(study, surfaces)} == {0}
-    assert all(np.isnan(entry.median) for entry in budget(study, surfaces))
+    table = _table(study, surfaces)
+    for key in ("exact", "resolved"):
+        assert table[key].points == 0
+        assert np.isnan(table[key].median)
+    assert np.isnan(closure(steps(study, surfaces, "fig3-I", 1)))
 
 
 def _with_peak_at(surfaces: xr.Dataset, model: str, row: int, column: int) -> None:
@@ -134,8 +165,7 @@ def test_distances_on_the_square_are_those_of_a_torus() -> None:
 
 
 def test_a_rung_more_is_a_step_more_and_nothing_else() -> None:
-    ladder = errors_in({"translational": 0.02})
-    longer = (*ladder, replace(ladder[-1], key="spatial", title="spatial engine"))
-    short, long = (_table(*_solved(one)) for one in (ladder, longer))
+    longer = errors_in({"translational": 0.02, "spatial": 0.02})
+    short, long = (_table(*_solved(one)) for one in (longer[:-1], longer))
     assert long[TOTAL].mean == pytest.approx(short[TOTAL].mean)
     assert (list(long), long["spatial"].real) == ([*list(short)[:-1], "spatial", TOTAL], 0.0)

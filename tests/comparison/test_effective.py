@@ -69,9 +69,9 @@ def test_a_platform_that_never_moves_has_no_radius_and_no_friction() -> None:
 def test_every_scene_has_its_own_statement_and_its_models_below_it() -> None:
     study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), 2, 1e-3, fake_ladder())
     found = effective_values(study, 2, ThreadPoolExecutor)
-    dry = ["scene", "small", "exact", "resolved", "regularised", "translational"]
+    dry = ["scene", "small", "exact", "resolved", "regularised", "translational", "spatial"]
     assert [one.model for one in found if one.scene == "fig3-I"] == dry
-    assert [one.model for one in found if one.scene == "fig4-viscous"] == ["scene", "small", "exact", "translational"]
+    assert [one.model for one in found if one.scene == "fig4-viscous"] == ["scene", "small", "exact", *dry[-2:]]
 
 
 def test_the_summary_carries_them_with_null_for_what_is_not_known(command: Callable[..., Run]) -> None:

@@ -35,4 +35,4 @@ def test_the_cut_into_tiles_covers_every_phase_once() -> None:
         for scene in study.scenes:
             tiles = [tile for tile in study.tiles() if tile.rung == rung.key and tile.scene.name == scene.name]
             covered = [tile.first + i for tile in tiles for i in range(len(tile.phases))]
-            assert covered == (list(range(25)) if rung.applies(scene) else [])
+            assert covered == (list(range(study.points(rung))) if rung.applies(scene) else [])

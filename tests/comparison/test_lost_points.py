@@ -54,7 +54,9 @@ def test_a_tile_that_raises_loses_its_own_points_only(command: Callable[..., Run
     assert (status[:3] == "ok").all()
     assert "RuntimeError: the matrix is singular" in run.err
     summary = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))
-    assert summary["faults"] == ["fig3-I, translational engine: RuntimeError: the matrix is singular"]
+    assert summary["faults"] == [
+        f"fig3-I, {model} engine: RuntimeError: the matrix is singular" for model in ("spatial", "translational")
+    ]
 
 
 def test_a_worker_that_dies_loses_its_own_tile_only(command: Callable[..., Run]) -> None:

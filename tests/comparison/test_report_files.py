@@ -102,7 +102,7 @@ def test_summary_has_its_schema_and_no_nan(finished: Path) -> None:
 def test_differences_are_the_planted_one_percent(finished: Path) -> None:
     summary = json.loads((finished / "summary.json").read_text(encoding="utf-8"))
     rows = [row for scene in summary["scenes"] for row in scene["differences"]]
-    assert len(rows) == 2 * 2 * 2, "scenes x bodies x pairs"
+    assert len(rows) == 2 * 2 * 3, "scenes x bodies x pairs"
     for row in rows:
         for key in ("median", "percentile95", "maximum"):
             assert row[key] == pytest.approx(0.01, rel=1e-12)  # rounding of a quotient near 1
@@ -110,8 +110,9 @@ def test_differences_are_the_planted_one_percent(finished: Path) -> None:
         assert (row["not_ok"], row["unanswered"]) == (0, 0)
     dry = {row["pair"]: (row["first"], row["second"]) for row in summary["scenes"][0]["differences"]}
     wet = {row["pair"]: (row["first"], row["second"]) for row in summary["scenes"][1]["differences"]}
-    assert dry == {"total": ("small", "translational"), "like-for-like": ("regularised", "translational")}
-    assert wet == {"total": ("small", "translational"), "like-for-like": ("exact", "translational")}
+    both = {"total": ("small", "spatial"), "translational": ("small", "translational")}
+    assert dry == {**both, "like-for-like": ("regularised", "translational")}
+    assert wet == {**both, "like-for-like": ("exact", "translational")}
 
 
 def test_every_body_of_every_scene_has_its_figures(finished: Path) -> None:
@@ -119,7 +120,7 @@ def test_every_body_of_every_scene_has_its_figures(finished: Path) -> None:
         f"{scene}-body{body}-{pair}.png"
         for scene in ("fig3-I", "fig4-viscous")
         for body in (1, 2)
-        for pair in ("total", "like-for-like", "budget")
+        for pair in ("total", "translational", "like-for-like", "budget")
     }
     assert {entry.name for entry in (finished / "figures").iterdir()} == expected
     for name in expected:
