@@ -13,6 +13,7 @@ from typing import NoReturn
 from pydantic import ValidationError
 
 from comparison.store import refuse_foreign
+from comparison.tile_store import refuse_foreign_store
 from reference.problem import Scene, SceneError, builtin_scenes, load_scene
 from reference.problem.scene_error import first_fault
 
@@ -31,6 +32,8 @@ class Options:
     tolerance: float
     check: bool
     plan: bool
+    fresh: bool = False
+    scheduler: str | None = None
 
 
 class UsageError(ValueError):
@@ -51,10 +54,12 @@ def parsed(argv: Sequence[str] | None) -> Options:
         scenes=tuple(_scene(name, amplitude) for name in names),
         grid=_whole("--grid", given.grid, 2, 512),
         out=given.out,
-        jobs=_whole("--jobs", given.jobs, 1, 1024),
+        jobs=_cores() if given.jobs is None else _whole("--jobs", given.jobs, 1, 1024),
         tolerance=_number("--tolerance", given.tolerance, 1e-12, 0.1, "relative error of mu"),
         check=given.check,
         plan=given.plan,
+        fresh=given.fresh,
+        scheduler=given.scheduler,
     )
     seen: dict[str, str] = {}
     for name, scene in zip(names, options.scenes):
@@ -62,8 +67,12 @@ def parsed(argv: Sequence[str] | None) -> Options:
             rule = f"same name as {seen[scene.name]}, which names its surfaces: give each scene once, rename a file"
             raise SceneError(name, "scene", scene.name, rule)
         seen[scene.name] = name
+    if given.scheduler is not None and given.jobs is not None:
+        rule = "counts processes of this machine, --scheduler takes all workers of a cluster: give one of the two"
+        raise SceneError("command line", "--jobs", given.jobs, rule)
     if not options.plan:
         refuse_foreign(options.out)
+        refuse_foreign_store(options.out)
     return options
 
 
@@ -81,7 +90,13 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--grid", default=str(DEFAULT_GRID), metavar="N", help="phases per axis (default %(default)s)")
     parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help="report (default %(default)s)")
-    parser.add_argument("--jobs", default=str(_cores()), metavar="N", help="worker processes (default %(default)s)")
+    parser.add_argument("--jobs", metavar="N", help=f"worker processes of this machine (default {_cores()})")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="compute on the Dask cluster with this scheduler")
+    parser.add_argument(
+        "--fresh",
+        action="store_true",
+        help="compute everything anew; without it what an earlier run left in DIR.tiles, finished or not, is reused",
+    )
     parser.add_argument(
         "--tolerance",
         default=str(DEFAULT_TOLERANCE),

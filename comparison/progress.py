@@ -16,10 +16,11 @@ EVERY = 15.0  # s between plain lines
 
 @dataclass(frozen=True)
 class Stage:
-    """A part of the work: how many points, and the compute time predicted for all of them, s."""
+    """A part of the work: how many points, the compute time predicted for all of them, s, and how many are there."""
 
     points: int
     seconds: float
+    before: int = 0  # points that need no computing: an earlier run stored them
 
 
 class Display(Protocol):
@@ -44,18 +45,24 @@ class Bars:
 
     def __init__(self, bars: Progress, stages: Mapping[str, Stage]) -> None:
         self._bars, self._stages = bars, stages
-        self._done = dict.fromkeys(stages, 0)
+        self._done = {name: stage.before for name, stage in stages.items()}
         width = max(map(len, (*stages, "all")))
         self._tasks = {
-            name: bars.add_task(name.ljust(width), total=stage.points, start=False, count=f"0/{stage.points}")
+            name: bars.add_task(
+                name.ljust(width),
+                total=stage.points,
+                completed=stage.before,
+                start=False,
+                count=f"{stage.before}/{stage.points}",
+            )
             for name, stage in stages.items()
         }
-        total = sum(stage.seconds for stage in stages.values())
+        total = _seconds_left(stages, self._done)
         self._whole = bars.add_task("all".ljust(width), total=total, count="")
 
     def advance(self, stage: str, points: int) -> None:
         task, whole = self._tasks[stage], self._stages[stage]
-        if not self._done[stage]:
+        if self._done[stage] == whole.before:
             self._bars.start_task(task)
         self._done[stage] += points
         self._bars.update(task, advance=points, count=f"{self._done[stage]}/{whole.points}")
@@ -67,7 +74,8 @@ class Lines:
 
     def __init__(self, console: Console, stages: Mapping[str, Stage], jobs: int) -> None:
         self._console, self._stages, self._jobs = console, stages, jobs
-        self._done = dict.fromkeys(stages, 0)
+        self._done = {name: stage.before for name, stage in stages.items()}
+        self._total = _seconds_left(stages, self._done)
         self._begin = self._last = time.monotonic()
 
     def advance(self, stage: str, points: int) -> None:
@@ -81,6 +89,11 @@ class Lines:
 
     def _left(self, now: float) -> float:
         """Predicted time left, corrected by how the prediction has fared so far."""
-        done = {name: stage.seconds * self._done[name] / stage.points for name, stage in self._stages.items()}
-        spent, total = sum(done.values()), sum(stage.seconds for stage in self._stages.values())
-        return (total - spent) * (now - self._begin) / spent if spent > 0.0 else total / self._jobs
+        left = _seconds_left(self._stages, self._done)
+        spent = self._total - left
+        return left * (now - self._begin) / spent if spent > 0.0 else self._total / self._jobs
+
+
+def _seconds_left(stages: Mapping[str, Stage], done: Mapping[str, int]) -> float:
+    """Compute time predicted for the points that are not there yet, s."""
+    return sum(stage.seconds * (stage.points - done[name]) / stage.points for name, stage in stages.items())

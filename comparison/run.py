@@ -2,36 +2,39 @@
 The study on the command line: `python -m comparison.run [SCENE ...]`.
 
 Exit codes: 0 done; 1 a limit of --check is broken; 2 a wrong scene or option, before anything is computed;
-3 the report could not be written; 130 interrupted.
+3 the report or a finished tile could not be written; 4 the cluster was lost; 128 + number of the signal, 130 for
+Ctrl-C: stopped. After 3, 4 and a signal the same command goes on where it stopped.
 """
 
 from __future__ import annotations
 
-import shlex
+import signal
 import sys
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
+from dataclasses import replace
 from datetime import UTC, datetime
 
 from rich.console import Console
 
+from comparison.cluster import cluster
+from comparison.compute import computed
 from comparison.effective import effective_values
-from comparison.executors import process_pool
+from comparison.executors import ExecutorLostError, Pool, factory, process_pool
 from comparison.findings import findings
+from comparison.going_on import command_line, going_on, here
 from comparison.ladder import LADDER, Rung
 from comparison.options import Options, UsageError, parsed
-from comparison.progress import Stage, progress
 from comparison.provenance import provenance
 from comparison.slips import slip_effects
+from comparison.stopping import stoppable
 from comparison.store import replaced_when_complete
 from comparison.study import Study
 from comparison.surfaces import labelled_surfaces
-from comparison.sweep import sweep
-from comparison.terminal import START_UP, print_differences, print_plan
-from comparison.tiles import Answer, Tile, solve_tile, unanswered
+from comparison.terminal import print_differences, print_plan
+from comparison.tile_store import StoreError, TileStore, store_beside
 from comparison.trajectories import stored_motions
-from comparison.warm_up import WARM_UP, warm_up
 from reference.problem import SceneError
 
 PLAIN_WIDTH = 120  # columns of a table that goes to a file or a pipe
@@ -40,56 +43,74 @@ PLAIN_WIDTH = 120  # columns of a table that goes to a file or a pipe
 def main(
     argv: Sequence[str] | None = None,
     ladder: Sequence[Rung] = LADDER,
-    executor: Callable[[int], Executor] = process_pool,
+    executor: Pool = process_pool,
 ) -> int:
-    """Run the study the command line asks for, with the models of `ladder` on `executor(jobs)`; the exit code."""
+    """
+    Run the study the command line asks for, with the models of `ladder`; the exit code.
+
+    executor: what makes an executor for a number of workers, or any Executor, which is left open.
+    """
+    words = sys.argv[1:] if argv is None else list(argv)
+    with stoppable():
+        try:
+            options = parsed(argv)
+            console = Console(highlight=False, width=None if sys.stdout.isatty() else PLAIN_WIDTH)
+            study = Study(options.scenes, options.grid, options.tolerance, ladder)
+            if options.plan:
+                print_plan(console, study, options)
+                return 0
+            store = TileStore(store_beside(options.out))
+            return _ended(study, options, console, words, executor, store)
+        except (SceneError, UsageError) as fault:
+            print(fault, file=sys.stderr)
+            return 2
+        except KeyboardInterrupt:
+            print("interrupted before anything was computed", file=sys.stderr)
+            return 130
+
+
+def _ended(
+    study: Study, options: Options, console: Console, words: Sequence[str], executor: Pool, store: TileStore
+) -> int:
+    """The exit code; whatever ends the run early, what is finished is kept, and the line printed says how to go on."""
     try:
-        options = parsed(argv)
-        console = Console(highlight=False, width=None if sys.stdout.isatty() else PLAIN_WIDTH)
-        study = Study(options.scenes, options.grid, options.tolerance, ladder)
-        if options.plan:
-            print_plan(console, study, options)
-            return 0
-        words = sys.argv[1:] if argv is None else argv
-        return _run(study, options, console, shlex.join(["python", "-m", "comparison.run", *words]), executor)
-    except (SceneError, UsageError) as fault:
-        print(fault, file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        print("interrupted: nothing was written; the same command starts again", file=sys.stderr)
-        return 130
+        if options.scheduler is None:
+            return _run(study, options, console, command_line(words), factory(executor), store)
+        with cluster(options.scheduler, {rung.amplification for rung in study.ladder}) as workers:
+            there = replace(options, jobs=workers.width)
+            return _run(study, there, console, command_line(words), factory(workers), store)
+    except KeyboardInterrupt as stop:
+        print(f"interrupted: {going_on(store, study, words)}", file=sys.stderr)
+        return 128 + getattr(stop, "number", signal.SIGINT)
+    except ExecutorLostError as fault:
+        where = "" if options.scheduler is None else f"--scheduler {options.scheduler}: "
+        print(f"{where}{fault}: {going_on(store, study, here(words))}", file=sys.stderr)
+        return 4
+    except StoreError as fault:
+        print(f"{fault}; {going_on(store, study, words)}", file=sys.stderr)
+        return 3
     except OSError as fault:
         print(f"command line: --out = {str(options.out)!r}: the report could not be written: {fault}", file=sys.stderr)
         return 3
 
 
-def _run(study: Study, options: Options, console: Console, command: str, executor: Callable[[int], Executor]) -> int:
+def _run(
+    study: Study,
+    options: Options,
+    console: Console,
+    command: str,
+    executor: Callable[[int], Executor],
+    store: TileStore,
+) -> int:
     from comparison.report import write_report  # plotting libraries: not needed to refuse a command or to plan
 
     begin, began = time.monotonic(), datetime.now(UTC)
-    tiles = [warm_up(study), *study.tiles()]
-    titles = {WARM_UP: "compiling the reference", **{rung.key: rung.title for rung in study.ladder}}
-    compiled = {rung.key for rung in study.ladder if rung.side == "reference"}
-    pending = {WARM_UP}
-    stages = {
-        rung.title: Stage(sum(len(tile.phases) for tile in tiles if tile.rung == rung.key), study.seconds(rung))
-        for rung in study.ladder
-    }
-    stages = {title: stage for title, stage in stages.items() if stage.points}
-    stages = {titles[WARM_UP]: Stage(1, START_UP), **stages}
-    console.print("On a new installation the reference is compiled first, once: that takes minutes.")
-    with progress(console, stages, options.jobs) as display:
-
-        def done(tile: Tile, answer: Answer) -> None:
-            pending.discard(tile.rung)
-            display.advance(titles[tile.rung], len(tile.phases))
-
-        def ready(tile: Tile) -> bool:
-            return not pending or tile.rung not in compiled
-
-        answers = sweep(tiles, solve_tile, unanswered, done, options.jobs, executor, ready)
-    tiles, answers = tiles[1:], answers[1:]
-    computed = time.monotonic() - begin
+    tiles = study.tiles()
+    store.trim(tiles)
+    if options.fresh:
+        store.forget(tiles)
+    done = computed(study, store, console, options.jobs, executor)
+    seconds, answers = time.monotonic() - begin, done.answers
     surfaces = labelled_surfaces(study, tiles, answers)
     console.print("Reading the effective values back from one motion of every model.")
     effective = effective_values(study, options.jobs, executor)
@@ -97,15 +118,18 @@ def _run(study: Study, options: Options, console: Console, command: str, executo
     effects = slip_effects(study, options.jobs, executor)
     console.print("Keeping a few motions of every scene for the report.")
     motions = stored_motions(study, surfaces, options.jobs, executor)
+    titles = {rung.key: rung.title for rung in study.ladder}
     faults = sorted(
         {f"{tile.scene.name}, {titles[tile.rung]}: {a.fault}" for tile, a in zip(tiles, answers) if a.fault}
     )
     run = {
         "command": command,
         "began": began.isoformat(timespec="seconds"),
-        "seconds": round(computed, 1),
+        "seconds": round(seconds, 1),
         "compute_seconds": round(float(surfaces["cost"].sum()), 1),
-        "predicted_compute_seconds": round(sum(stage.seconds for stage in stages.values()), 1),
+        "predicted_compute_seconds": round(sum(study.seconds(rung) for rung in study.ladder), 1),
+        "tiles": len(tiles),
+        "tiles_stored_before": done.stored,
         "jobs": options.jobs,
         "provenance": provenance(),
     }

@@ -1,8 +1,9 @@
-"""Ctrl-C: exit code 130, one line, the report that was there untouched, no process and no file left behind."""
+"""Ctrl-C and kill: within 2 s, one line with the command that goes on, the old report untouched, no process left."""
 
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -10,6 +11,8 @@ import time
 from pathlib import Path
 
 import pytest
+
+from comparison.ladder import LADDER
 
 HERE = Path(__file__).parent
 SCRIPT = """
@@ -35,7 +38,8 @@ def _runs(pid: int) -> bool:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of a process group")
-def test_ctrl_c_loses_nothing_and_leaves_nothing(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["Ctrl-C", "SIGTERM"])
+def test_a_stopped_run_keeps_what_is_finished_and_says_how_to_go_on(tmp_path: Path, number: int, code: int) -> None:
     old = tmp_path / "report"
     old.mkdir()
     (old / "summary.json").write_text('{"schema": "phase-resonance/summary"}', encoding="utf-8")
@@ -56,14 +60,41 @@ def test_ctrl_c_loses_nothing_and_leaves_nothing(tmp_path: Path) -> None:
     workers = _children(process.pid)
     assert workers
     begin = time.monotonic()
-    os.killpg(process.pid, signal.SIGINT)
+    os.killpg(process.pid, number) if number == signal.SIGINT else os.kill(process.pid, number)
     _, err = process.communicate(timeout=30)
-    assert process.returncode == 130
-    assert time.monotonic() - begin < 10.0, "does not wait for the points under way"
-    assert err == "interrupted: nothing was written; the same command starts again\n"
-    assert [entry.name for entry in tmp_path.iterdir()] == ["report"]
+    assert process.returncode == code
+    assert time.monotonic() - begin < 2.0, "does not wait for the points under way"
+    stopped = re.fullmatch(
+        r"interrupted: (\d+) of (\d+) tiles are kept in 'report.tiles'; "
+        r"go on with: python -m comparison.run fig3-I --grid 16 --jobs 2 --out report\n",
+        err,
+    )
+    assert stopped, err
+    assert int(stopped[1]) == 256 * sum(rung.side == "reference" for rung in LADDER) < int(stopped[2])
+    assert len(list(tmp_path.glob("report.tiles/*/*.tile"))) == 256, "one model under several names is stored once"
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["report", "report.tiles"]
     assert [entry.name for entry in old.iterdir()] == ["summary.json"]
     deadline = time.monotonic() + 5.0
+    while (left := [worker for worker in workers if _runs(worker)]) and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert left == []
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL")
+def test_the_workers_of_a_killed_run_end_with_it(tmp_path: Path) -> None:
+    script = SCRIPT.format(here=str(HERE), root=str(HERE.parents[1]))
+    process = subprocess.Popen(
+        [sys.executable, "-c", script], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    )
+    assert process.stdout is not None
+    for line in process.stdout:
+        if "256 of 256" in line:
+            break
+    workers = _children(process.pid)
+    assert workers
+    process.kill()
+    process.communicate(timeout=30)
+    deadline = time.monotonic() + 10.0
     while (left := [worker for worker in workers if _runs(worker)]) and time.monotonic() < deadline:
         time.sleep(0.1)
     assert left == []
