@@ -1,0 +1,327 @@
+"""
+What section 5 of the paper says about its Figures 3 and 4, as checks that compute their own answer.
+
+A check sees the evidence of one reading and says whether the statement holds there, and what it found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparison.budget import torus_distance
+from comparison.evidence import Evidence
+from comparison.humps import LEAST_SHARE, MOST_SHARE, SHARE, Counts, drawn, periodic, relief
+from reference import modes
+from reference.problem import load_scene
+
+Array = NDArray[np.float64]
+
+CORNER = np.pi / 4.0  # rad: "near" a corner
+SIMILAR = 0.7  # correlation of two surfaces: half of what one does is in the other
+PLANE = 1e-6  # |x - y| relative to the largest displacement: the same to the solver's tolerance
+APART = 0.1  # the same, above which two motions differ for good
+SMALL = 0.1  # (x^2 + y^2) / rho^2 that is still much less than 1
+CLOSE = 0.1  # relative distance of two periods that are close: the paper's epsilon
+
+
+class Finding(StrEnum):
+    REPRODUCED = "reproduced"
+    AS_DRAWN = "as drawn"  # only when counted on the square as drawn, cut open at its edges
+    NOT = "not reproduced"
+    OPEN = "no answer"
+
+    @property
+    def holds(self) -> bool:
+        return self in (Finding.REPRODUCED, Finding.AS_DRAWN)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a check found under one reading, and the measured answer in words."""
+
+    finding: Finding
+    found: str
+
+
+Check = Callable[[Mapping[str, Evidence]], Verdict]
+
+
+@dataclass(frozen=True)
+class Claim:
+    """
+    One statement. figure: what it is about. says: the statement, close to its words. rule: when it counts as
+    reproduced. cases: whose evidence the check needs.
+    """
+
+    figure: str
+    says: str
+    rule: str
+    cases: tuple[str, ...]
+    check: Check
+    weaker: bool = False  # not what the paper says but what is left of it: it does not count for a reading
+
+    def verdict(self, evidence: Mapping[str, Evidence]) -> Verdict:
+        """The check's answer; none where a case has points without a value."""
+        for case in self.cases:
+            if not evidence[case].complete:
+                why = evidence[case].fault or ", ".join(evidence[case].statuses)
+                return Verdict(Finding.OPEN, f"{case}: {why}")
+        return self.check(evidence)
+
+
+def judged(holds: bool, found: str) -> Verdict:
+    return Verdict(Finding.REPRODUCED if holds else Finding.NOT, found)
+
+
+def counted(case: str, body: int, humps: int, valleys: int) -> Check:
+    """As many humps and valleys as the paper counts, both on the periodic square or both as drawn."""
+
+    def check(evidence: Mapping[str, Evidence]) -> Verdict:
+        mu, error = evidence[case].mu[..., body - 1], evidence[case].error
+        if evidence[case].flat(body):
+            return judged(False, "flat")
+        shares = SHARE, LEAST_SHARE, MOST_SHARE
+        views = {"periodic": [periodic(mu, error, s) for s in shares], "drawn": [drawn(mu, error, s) for s in shares]}
+        holds = {name: counts[0] == Counts(humps, valleys) for name, counts in views.items()}
+        finding = Finding.NOT
+        if holds["drawn"]:
+            finding = Finding.AS_DRAWN
+        if holds["periodic"]:
+            finding = Finding.REPRODUCED
+        return Verdict(finding, "; ".join(f"{name} {_told(counts)}" for name, counts in views.items()))
+
+    return check
+
+
+def _told(counts: list[Counts]) -> str:
+    humps, valleys = [count.humps for count in counts], [count.valleys for count in counts]
+    return f"{_span(humps)} and {_span(valleys)}"
+
+
+def _span(counts: list[int]) -> str:
+    """The count at SHARE, and between which it lies at other shares."""
+    return f"{counts[0]}" if min(counts) == max(counts) else f"{counts[0]} ({min(counts)} to {max(counts)})"
+
+
+def more_intense(case: str) -> Check:
+    """The first mass above the second at more than half of the phases."""
+
+    def check(evidence: Mapping[str, Evidence]) -> Verdict:
+        first, second = evidence[case].mu[..., 0], evidence[case].mu[..., 1]
+        share = float((first > second).mean())
+        return judged(share > 0.5, f"mu_1 > mu_2 at {100.0 * share:.0f} % of the phases")
+
+    return check
+
+
+def more_complex(case: str) -> Check:
+    def check(evidence: Mapping[str, Evidence]) -> Verdict:
+        first, second = (periodic(evidence[case].mu[..., body], evidence[case].error, LEAST_SHARE) for body in (0, 1))
+        several = second.humps > 1 and second.valleys > 1
+        more = second.humps + second.valleys > first.humps + first.valleys
+        words = f"mu_2 {second.humps} and {second.valleys}, mu_1 {first.humps} and {first.valleys}"
+        return judged(several and more, words)
+
+    return check
+
+
+def near_corners(case: str, body: int) -> Check:
+    """Every hump's top near a corner of the square: on the square that closes, its four corners are one point."""
+
+    def check(evidence: Mapping[str, Evidence]) -> Verdict:
+        mu = evidence[case].mu[..., body - 1]
+        if evidence[case].flat(body):
+            return judged(False, "flat")
+        step = 2.0 * np.pi / len(mu)
+        tops = [(step * row, step * column) for row, column in relief(mu, evidence[case].error).tops]
+        places = ", ".join(f"({np.degrees(top[0]):.0f}°, {np.degrees(top[1]):.0f}°)" for top in tops)
+        return judged(all(torus_distance(top, (0.0, 0.0)) <= CORNER for top in tops), f"humps at {places}")
+
+    return check
+
+
+def similar(case: str, body: int, other: str, other_body: int) -> Check:
+    """Correlation over the phases that both surfaces have."""
+
+    def check(evidence: Mapping[str, Evidence]) -> Verdict:
+        one, two = evidence[case], evidence[other]
+        if one.flat(body) or two.flat(other_body):
+            return judged(False, "one of them is flat")
+        points = min(len(one.mu), len(two.mu))
+        pair = [
+            item.mu[:: len(item.mu) // points, :: len(item.mu) // points, number - 1].ravel()
+            for item, number in ((one, body), (two, other_body))
+        ]
+        correlation = float(np.corrcoef(pair[0], pair[1])[0, 1])
+        return judged(correlation >= SIMILAR, f"correlation {correlation:.2f}")
+
+    return check
+
+
+def smooth(case: str, *others: str) -> Check:
+    """Neither a fold nor a jump where the surfaces bend most, in any of the cases."""
+    return _all_bodies((case, *others), True)
+
+
+def not_smooth(case: str, *others: str) -> Check:
+    """A fold or a jump in every surface of the cases."""
+    return _all_bodies((case, *others), False)
+
+
+def _all_bodies(cases: tuple[str, ...], wanted: bool) -> Check:
+    def check(evidence: Mapping[str, Evidence]) -> Verdict:
+        holds, words = True, []
+        for case in cases:
+            for body, bend in enumerate(evidence[case].bends, start=1):
+                flat = evidence[case].flat(body)
+                holds &= (flat or bend.smooth) == wanted
+                at = ", ".join(f"{np.degrees(phase):.0f}°" for phase in bend.phases)
+                words.append(f"{case} mu_{body} " + ("flat" if flat else f"{bend.kind} ({at}: {bend.exponent:.1f})"))
+        return judged(holds, "; ".join(words))
+
+    return check
+
+
+def smoother(case: str, other: str) -> Check:
+    """A weaker form of smooth: every surface bends less than that of another case, each in parts of its own range."""
+
+    def check(evidence: Mapping[str, Evidence]) -> Verdict:
+        one, two = ([_bend(mu) for mu in np.moveaxis(evidence[name].mu, -1, 0)] for name in (case, other))
+        words = [f"mu_{body} {mine:.2f}, dry {dry:.2f}" for body, (mine, dry) in enumerate(zip(one, two), start=1)]
+        return judged(all(mine < dry for mine, dry in zip(one, two)), "; ".join(words))
+
+    return check
+
+
+def _bend(mu: Array) -> float:
+    """Largest second difference between neighbours along either phase, over the range; 0 for a flat surface."""
+    size = max(float(np.abs(np.roll(mu, 1, axis) - 2.0 * mu + np.roll(mu, -1, axis)).max()) for axis in (0, 1))
+    return size / float(np.ptp(mu)) if np.ptp(mu) > 0.0 else 0.0
+
+
+def unequal(case: str, body: int) -> Check:
+    def check(evidence: Mapping[str, Evidence]) -> Verdict:
+        apart = evidence[case].apart[body - 1]
+        return judged(apart > APART, f"|x_{body} - y_{body}| up to {apart:.2g} of the largest")
+
+    return check
+
+
+def plane(case: str) -> Check:
+    def check(evidence: Mapping[str, Evidence]) -> Verdict:
+        apart = max(evidence[case].apart)
+        return judged(apart < PLANE, f"|x_i - y_i| up to {apart:.1g} of the largest")
+
+    return check
+
+
+def small(*cases: str) -> Check:
+    def check(evidence: Mapping[str, Evidence]) -> Verdict:
+        swing = max(evidence[case].swing for case in cases)
+        return judged(swing <= SMALL, f"up to {swing:.2g} rho^2")
+
+    return check
+
+
+def near_resonance(case: str) -> Check:
+    """Both loading periods close to a natural period; the same under every reading."""
+
+    def check(evidence: Mapping[str, Evidence]) -> Verdict:
+        scene = load_scene(case)
+        natural = modes(scene).period.ravel()
+        gaps = [float(np.abs(natural / period - 1.0).min()) for period in scene.excitation.periods]
+        return judged(max(gaps) <= CLOSE, f"nearest natural period off by {' and '.join(f'{g:.0%}' for g in gaps)}")
+
+    return check
+
+
+_HUMPS = f"prominence of {100 * SHARE:.0f} % of the range or more, both numbers on the periodic square or both as drawn"
+_SIMILAR = f"correlation over the phases at least {SIMILAR:g}"
+_ZOOM = "where it bends most on the grid, in a zoom of 32 times, the second difference falls like"
+_I, _II, _DRY, _WET = "fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"
+
+CLAIMS: tuple[Claim, ...] = (
+    Claim(
+        "Fig. 3",
+        "the vibrations are small, (4.2)",
+        f"x_1^2 + y_1^2 at most {SMALL:g} rho^2 in both cases",
+        (_I, _II),
+        small(_I, _II),
+    ),
+    Claim(
+        "Fig. 3",
+        "the harmonics are close to resonance",
+        f"a natural period of (4.8) within {100 * CLOSE:.0f} % of the period of each",
+        (),
+        near_resonance(_I),
+    ),
+    Claim(
+        "Fig. 3a, b",
+        "the first mass vibrates more intensively than the second",
+        "mu_1 > mu_2 at more than half of the phases",
+        (_I,),
+        more_intense(_I),
+    ),
+    Claim("Fig. 3a", "mu_1 has four humps separated by three valleys", _HUMPS, (_I,), counted(_I, 1, 4, 3)),
+    Claim(
+        "Fig. 3a",
+        "mu_1 is similar to the surface of a one-mass system",
+        f"the platform alone: {_SIMILAR}",
+        (_I, f"{_I} alone"),
+        similar(_I, 1, f"{_I} alone", 1),
+    ),
+    Claim(
+        "Fig. 3b",
+        "mu_2 has several humps and valleys, more complex than those of mu_1",
+        f"at least two of each and together more, at a prominence of {100 * LEAST_SHARE:.0f} % of the range",
+        (_I,),
+        more_complex(_I),
+    ),
+    Claim("Fig. 3b", "x_2(t) differs from y_2(t)", f"by more than {APART:g} of the largest", (_I,), unequal(_I, 2)),
+    Claim("Fig. 3c", "mu_1 has two humps separated by a valley", _HUMPS, (_II,), counted(_II, 1, 2, 1)),
+    Claim(
+        "Fig. 3c",
+        "mu_1 is typical of one degree of freedom",
+        f"the platform alone, which moves along one line: {_SIMILAR}",
+        (_II, f"{_II} alone"),
+        similar(_II, 1, f"{_II} alone", 1),
+    ),
+    Claim(
+        "Fig. 3d",
+        "mu_2 has peaks near the corners",
+        f"the top of every hump within {np.degrees(CORNER):.0f}° of a corner",
+        (_II,),
+        near_corners(_II, 2),
+    ),
+    Claim(
+        "Fig. 3d",
+        "mu_2 is similar to one degree of freedom under nonresonant perturbation",
+        f"an oscillator without friction, of period T_3x: {_SIMILAR}",
+        (_II, f"{_II} oscillator"),
+        similar(_II, 2, f"{_II} oscillator", 1),
+    ),
+    Claim("Fig. 3", "all surfaces are not smooth", f"{_ZOOM} h or slower", (_I, _II), not_smooth(_I, _II)),
+    Claim(
+        "Fig. 4a, b",
+        "x_i = y_i: the solution (4.7) stays in its plane",
+        f"to {PLANE:g} of the largest displacement, by the printed equations",
+        (_DRY,),
+        plane(_DRY),
+    ),
+    Claim("Fig. 4a", "mu_1 is similar to case II", _SIMILAR, (_DRY, _II), similar(_DRY, 1, _II, 1)),
+    Claim("Fig. 4b", "mu_2 is similar to case II", _SIMILAR, (_DRY, _II), similar(_DRY, 2, _II, 2)),
+    Claim("Fig. 4c, d", "viscous friction makes the surfaces smooth", f"{_ZOOM} h^2", (_WET,), smooth(_WET)),
+    Claim(
+        "Fig. 4c, d",
+        "weaker: viscous friction makes the surfaces smoother",
+        "sharpest bend on the grid, in parts of the range, below that with dry friction",
+        (_WET, _DRY),
+        smoother(_WET, _DRY),
+        weaker=True,
+    ),
+)
