@@ -54,7 +54,6 @@ class Section:
 
 
 SECTIONS = (
-    Section("overview", "Verdicts"),
     Section("differences", "Differences"),
     Section("budget", "What makes the difference"),
     Section("surfaces", "Surfaces"),
@@ -65,7 +64,7 @@ SECTIONS = (
     Section("verification", "What checks each side alone"),
     Section("provenance", "Provenance"),
 )
-SCRIPTS = ("motions.js", "report.js")
+SCRIPTS = ("motions.js", "surfaces.js", "report.js")
 
 
 def write_report(folder: Path, found: Findings) -> None:
@@ -106,7 +105,7 @@ def _page(figures: Path, found: Findings) -> str:
         study=study,
         run=found.run,
         scenes=[_scene(figures, found, scene) for scene in study.scenes],
-        pairs=pairs_of(study.scenes[0], study.ladder),
+        pairs=list({pair.key: pair for scene in study.scenes for pair in pairs_of(scene, study.ladder)}.values()),
         ladder=ladder,
         step_numbers={rung.key: number for number, rung in enumerate(ladder)},
         titles={"scene": "as stated", **{rung.key: rung.title for rung in study.ladder}},

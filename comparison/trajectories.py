@@ -71,13 +71,18 @@ def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Plac
 def stored_motions(
     study: Study, surfaces: xr.Dataset, jobs: int, executor: Callable[[int], Executor]
 ) -> list[StoredMotion]:
-    """The motions of every scene, computed on `executor(jobs)`, in the order scene, place, model."""
+    """
+    The motions of every scene, computed on `executor(jobs)`, in the order scene, place, model.
+
+    A model too expensive for every phase of the study moves at its own phases only.
+    """
     axes = np.asarray(surfaces["alpha1"]), np.asarray(surfaces["alpha2"])
     asked = [
         (scene, rung, rung.tolerance(study.tolerance), place, (axes[0][place.row], axes[1][place.column]))
         for scene in study.scenes
         for place in chosen_places(study, surfaces, scene)
         for rung in shown_rungs(scene, study.ladder)
+        if place.row % study.strides[rung.key] == place.column % study.strides[rung.key] == 0
     ]
     return sweep(asked, moved, _lost, lambda task, motion: None, jobs, executor)
 

@@ -20,6 +20,15 @@ def percent(value: float) -> str:
     return f"{100.0 * value:.0f} %" if abs(value) >= 0.1 else f"{100.0 * value:.2g} %"
 
 
+def signed(value: float) -> str:
+    """A share with its sign: what a difference is worth."""
+    return (
+        percent(value)
+        if not value or not math.isfinite(value)
+        else f"{'+' if value > 0.0 else '−'}{percent(abs(value))}"
+    )
+
+
 def scientific(value: float) -> str:
     return "none" if not math.isfinite(value) else f"{value:.1e}"
 
