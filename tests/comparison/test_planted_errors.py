@@ -1,0 +1,163 @@
+"""
+A mistake planted in the real programs moves the steps to and from the rung that has it, by its size, and no other.
+
+What a step was before the mistake is known from the sound ladder, solved once. A mistake in one rung alone enters with
+the step to it and leaves, with the opposite sign, with the step to the next; one in a program that several rungs run
+enters with the first of them and leaves with the first that does not run it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from comparison.acceptance import broken_limits
+from comparison.budget import TOTAL, closure, steps
+from comparison.differences import differences
+from comparison.ladder import LADDER, Rung
+from comparison.steps import RESOLVED
+from comparison.study import Study
+from comparison.surfaces import labelled_surfaces
+from comparison.tiles import solve_tile
+from reference.problem import load_scene
+
+GRID = 2
+DURATION = 3.0  # s: the loading is strongest then, and interpreted code is slow
+SCENE = "fig3-II"  # of the paper's dry scenes the one whose four phase pairs are not all mirror images
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """What is wrong, in which rungs, and the body whose mu tells best."""
+
+    what: str
+    rungs: tuple[str, ...]
+    function: str
+    settings: Mapping[str, Any]
+    body: int = 2
+
+
+def _misspelt(what: str, rungs: str, file: str, right: str, wrong: str, body: int = 2) -> Mistake:
+    settings = {"file": file, "right": right, "wrong": wrong}
+    return Mistake(what, tuple(rungs.split()), "mistakes:misspelt", settings, body)
+
+
+EQUATIONS, SYSTEM = "solver/equations.py", "solver/system.py"
+SIGN_SMALL = _misspelt(
+    "sign of the friction term xi'' x1 / rho of (4.3)", "small", EQUATIONS, "+ ux * lever", "- ux * lever", body=1
+)
+M_SUM = _misspelt("m_sum 5 % too large", "exact", SYSTEM, "float(scene.total_mass", "float(1.05 * scene.total_mass")
+SIGN_EXACT = _misspelt(
+    "sign of friction in (3.10)", "resolved", EQUATIONS, "(tilt - nx * sx - ny * sy)", "(tilt + nx * sx + ny * sy)"
+)
+STIFFNESS = _misspelt(
+    "k_21 on the platform 10 % too soft", "regularised", SYSTEM, "above[:-1] = links", "above[:-1] = 0.9 * links"
+)
+MASS = Mistake("mass of body 2 5 % too large", ("translational",), "mistakes:misread", {"mass": 1.05})
+COARSE = Mistake(
+    "step of 0.05 s, errors claimed as asked", ("translational",), "mistakes:coarse", {"step": 0.05}, body=1
+)
+SOFT = Mistake("links 10 % too soft", ("spatial",), "mistakes:misread", {"stiffness": 0.9})
+IN_ALL = replace(M_SUM, rungs=("exact", "resolved", "regularised"))
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A ladder and its surfaces."""
+
+    study: Study
+    surfaces: xr.Dataset
+
+    @staticmethod
+    def by(ladder: tuple[Rung, ...]) -> Solved:
+        scene = load_scene(SCENE).model_copy(update={"duration": DURATION})
+        study = Study((scene,), GRID, 1e-3, ladder)
+        tiles = study.tiles()
+        answers = [solve_tile(tile) for tile in tiles]
+        assert [answer.fault for answer in answers if answer.fault] == []
+        return Solved(study, labelled_surfaces(study, tiles, answers))
+
+
+@pytest.fixture(scope="module")
+def sound() -> Solved:
+    return Solved.by(LADDER)
+
+
+def _with(sound: Solved, mistake: Mistake) -> Solved:
+    """The sound surfaces with those of the rungs that have the mistake in place of their own."""
+    wrong = tuple(
+        replace(rung, amplification=mistake.function, settings={**rung.settings, **mistake.settings})
+        for rung in LADDER
+        if rung.key in mistake.rungs
+    )
+    found = Solved.by(wrong).surfaces
+    surfaces = sound.surfaces.copy(deep=True)
+    for name in ("mu", "error"):
+        surfaces[name].loc[{"model": list(mistake.rungs)}] = found[name].sel(model=list(mistake.rungs))
+    return Solved(sound.study, surfaces)
+
+
+def _moved(sound: Solved, wrong: Solved, body: int) -> dict[str, float]:
+    """Mean change of every step that changed by more than its uncertainties allow at any phase, by the step's key."""
+    pairs = zip(*(steps(one.study, one.surfaces, SCENE, body) for one in (sound, wrong)))
+    moved = {}
+    for before, after in pairs:
+        change = after.size - before.size
+        if (np.abs(change) > RESOLVED * np.hypot(before.uncertainty, after.uncertainty)).any():
+            moved[before.key] = float(change[np.unravel_index(np.argmax(np.abs(change)), change.shape)])
+    return moved
+
+
+ALONE = {
+    "first rung": (SIGN_SMALL, ["exact", TOTAL]),  # wrong from the start: it shows where it leaves, and in the total
+    "exact": (M_SUM, ["exact", "resolved"]),
+    "resolved": (SIGN_EXACT, ["resolved", "regularised"]),
+    "regularised": (STIFFNESS, ["regularised", "translational"]),
+    "engine": (MASS, ["translational", "spatial"]),
+    "coarse step": (COARSE, ["translational", "spatial"]),
+    "last rung": (SOFT, ["spatial", TOTAL]),  # it never leaves
+}
+
+
+@pytest.mark.parametrize(("mistake", "blamed"), ALONE.values(), ids=ALONE.keys())
+def test_a_mistake_moves_the_steps_to_and_from_its_rung_and_no_other(
+    sound: Solved, mistake: Mistake, blamed: list[str]
+) -> None:
+    wrong = _with(sound, mistake)
+    moved = _moved(sound, wrong, mistake.body)
+    if mistake.rungs[0] == "small":  # the scale of every step moves with it, by less than a hundredth of each
+        moved = {key: change for key, change in moved.items() if abs(change) > 1e-3}
+    assert list(moved) == blamed, f"{mistake.what}: {moved}"
+    assert closure(steps(wrong.study, wrong.surfaces, SCENE, mistake.body)) < 1e-14
+    if TOTAL not in blamed:
+        entered, left = moved.values()
+        assert left == pytest.approx(-entered, rel=1e-9), "it cancels in the total"
+    assert min(map(abs, moved.values())) > 1e-3, "a change one would see in the table"
+
+
+@pytest.mark.parametrize("mistake", [STIFFNESS, MASS, COARSE], ids=lambda mistake: mistake.what)
+def test_a_mistake_on_either_side_of_the_like_for_like_step_breaks_the_limit_of_twice_its_uncertainty(
+    sound: Solved, mistake: Mistake
+) -> None:
+    rows = differences(sound.study, sound.surfaces)
+    assert broken_limits(sound.study, sound.surfaces, rows) == []
+    wrong = _with(sound, mistake)
+    lines = broken_limits(wrong.study, wrong.surfaces, differences(wrong.study, wrong.surfaces))
+    assert any(f"body {mistake.body}: acceptance.ratio" in line for line in lines), lines
+
+
+@pytest.mark.long
+def test_a_mistake_in_a_program_that_three_rungs_run_enters_with_the_first_and_leaves_with_the_engine(
+    sound: Solved,
+) -> None:
+    wrong = _with(sound, IN_ALL)
+    moved = _moved(sound, wrong, body=2)
+    moved.pop(TOTAL, None)
+    first, second, *others = sorted(moved, key=lambda key: -abs(moved[key]))
+    assert {first, second} == {"exact", "translational"}, moved
+    assert all(abs(moved[key]) < 0.2 * abs(moved[second]) for key in others), moved
