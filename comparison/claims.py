@@ -16,7 +16,8 @@ from dataclasses import dataclass
 from rich.console import Console
 from rich.table import Table
 
-from comparison.claim_checks import CLAIMS, Claim, Finding, Verdict
+from comparison.claim_checks import Finding, Verdict
+from comparison.claim_list import CLAIMS, Claim
 from comparison.evidence import Evidence, Question, gathered, lost
 from comparison.executors import Pool, process_pool
 from comparison.progress import Stage, progress

@@ -1,0 +1,195 @@
+"""Every claim is computed: it holds on a surface that was built to show it and fails on one that violates it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from comparison import claims, evidence
+from comparison.claim_checks import Finding, Verdict, judged, similar
+from comparison.claim_list import CLAIMS, Claim
+from comparison.claims import claims_tested, main, questions, tabulated
+from comparison.evidence import Evidence, Question
+from comparison.readings import CASES, EVERY_READING, READINGS, Reading, without_effect
+from comparison.smoothness import Bend
+
+Array = NDArray[np.float64]
+N = 16
+A1, A2 = np.meshgrid(*[2.0 * np.pi * np.arange(N) / N] * 2, indexing="ij")
+SMOOTH, FOLD = Bend(2.0, (0.0, 0.0)), Bend(1.0, (0.5, 1.0))
+
+
+def _seen(mu_1: Array, mu_2: Array, bend: Bend = FOLD, apart: float = 1.0, swing: float = 0.01) -> Evidence:
+    return Evidence(np.stack([mu_1, mu_2], axis=-1), 1e-4, ("ok",), (bend, bend), (apart, apart), swing)
+
+
+FOUR = 2.5 - np.cos(2.0 * (A1 - A2))  # drawn: four ridges along the diagonal and three valleys between them
+TWO = 2.5 - np.cos(A1 - A2)
+CORNERS = 1.5 + 0.5 * (np.cos(A1) + np.cos(A2))
+HUMPS = 1.5 + 0.25 * np.cos(2.0 * A1) + 0.25 * np.cos(2.0 * A2)
+
+PAPER: Mapping[str, Evidence] = {  # surfaces as the paper describes them
+    "fig3-I": _seen(FOUR, HUMPS),
+    "fig3-I alone": Evidence(FOUR[..., None], 1e-4, ("ok",)),
+    "fig3-II": _seen(TWO, CORNERS, apart=0.0),
+    "fig3-II alone": Evidence(TWO[..., None], 1e-4, ("ok",)),
+    "fig3-II oscillator": Evidence(CORNERS[::2, ::2, None], 1e-4, ("ok",)),
+    "fig4-dry": _seen(np.round(TWO, 1), np.round(CORNERS, 1), apart=0.0),
+    "fig4-viscous": _seen(TWO, CORNERS, SMOOTH, apart=0.0),
+}
+RESONANT = "the harmonics are close to resonance"  # a matter of the scene, not of any evidence
+
+
+def _claim(about: str, words: str) -> Claim:
+    return next(claim for claim in CLAIMS if claim.figure == about and words in claim.says)
+
+
+@pytest.mark.parametrize("claim", [c for c in CLAIMS if c.says != RESONANT], ids=lambda c: f"{c.figure}: {c.says}")
+def test_every_claim_holds_on_surfaces_as_the_paper_describes_them(claim: Claim) -> None:
+    assert claim.verdict(PAPER).finding.holds, claim.verdict(PAPER).found
+
+
+ONE_AXIS, BOTH_AXES, DRY, WET = (PAPER[name] for name in ("fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"))
+ROUGH = np.where(np.random.default_rng(2).uniform(size=(N, N)) > 0.5, 1.0, 3.0)
+VIOLATIONS: list[tuple[str, str, Mapping[str, Evidence]]] = [
+    ("Fig. 3", "small", {"fig3-II": replace(BOTH_AXES, swing=0.2)}),
+    ("Fig. 3a, b", "more intensively", {"fig3-I": _seen(HUMPS, FOUR)}),
+    ("Fig. 3a", "four humps", {"fig3-I": _seen(TWO, HUMPS)}),
+    ("Fig. 3a", "four humps", {"fig3-I": _seen(2.5 + np.cos(3.0 * (A1 - A2)), HUMPS)}),
+    ("Fig. 3a", "four humps", {"fig3-I": _seen(1.0 + 1e-3 * FOUR, HUMPS)}),  # no resonance
+    ("Fig. 3a", "one-mass", {"fig3-I alone": Evidence(-FOUR[..., None] + 5.0, 1e-4, ("ok",))}),
+    ("Fig. 3b", "more complex", {"fig3-I": _seen(HUMPS, TWO)}),
+    ("Fig. 3b", "x_2(t) differs", {"fig3-I": replace(ONE_AXIS, apart=(1.0, 0.01))}),
+    ("Fig. 3c", "two humps", {"fig3-II": _seen(FOUR, CORNERS)}),
+    ("Fig. 3c", "one degree", {"fig3-II alone": Evidence(np.roll(TWO, N // 4, axis=0)[..., None], 1e-4, ("ok",))}),
+    ("Fig. 3d", "corners", {"fig3-II": _seen(TWO, np.roll(CORNERS, N // 2, axis=1))}),
+    ("Fig. 3d", "nonresonant", {"fig3-II oscillator": Evidence(HUMPS[..., None], 1e-4, ("ok",))}),
+    ("Fig. 3", "not smooth", {"fig3-I": replace(ONE_AXIS, bends=(FOLD, SMOOTH))}),
+    ("Fig. 4a, b", "plane", {"fig4-dry": replace(DRY, apart=(0.0, 1e-3))}),
+    ("Fig. 4a", "similar", {"fig4-dry": _seen(FOUR, CORNERS)}),
+    ("Fig. 4b", "similar", {"fig4-dry": _seen(TWO, HUMPS)}),
+    ("Fig. 4c, d", "makes the surfaces smooth", {"fig4-viscous": replace(WET, bends=(SMOOTH, FOLD))}),
+    ("Fig. 4c, d", "smoother", {"fig4-viscous": _seen(ROUGH, CORNERS)}),
+]
+
+
+@pytest.mark.parametrize(("about", "words", "changed"), VIOLATIONS, ids=lambda part: str(part)[:40])
+def test_a_claim_fails_on_what_violates_it(about: str, words: str, changed: Mapping[str, Evidence]) -> None:
+    assert _claim(about, words).verdict({**PAPER, **changed}).finding is Finding.NOT
+
+
+def test_every_claim_has_its_violation() -> None:
+    broken = {(claim.figure, claim.says) for about, words, _ in VIOLATIONS for claim in [_claim(about, words)]}
+    assert broken == {(claim.figure, claim.says) for claim in CLAIMS if claim.says != RESONANT}
+
+
+def test_the_loading_is_near_no_natural_period_of_the_paper() -> None:
+    """The chain has 0.63 and 1.69 s in x: 0.9 and 1.1 s are a third away from either."""
+    verdict = _claim("Fig. 3", "resonance").verdict({})
+    assert verdict == Verdict(Finding.NOT, "nearest natural period off by 30% and 32%")
+
+
+def test_counts_that_only_the_drawn_square_shows_are_told_apart() -> None:
+    verdict = _claim("Fig. 3a", "four humps").verdict(PAPER)
+    assert verdict == Verdict(Finding.AS_DRAWN, "periodic 2 and 2; drawn 4 and 3")
+
+
+def test_a_case_without_an_answer_leaves_its_claims_open() -> None:
+    mu = ONE_AXIS.mu.copy()
+    mu[3, 3] = np.nan
+    changed = {
+        **PAPER,
+        "fig3-I": replace(ONE_AXIS, mu=mu, statuses=("ok", "rim reached")),
+        "fig4-dry": Evidence(fault="broke"),
+    }
+    assert _claim("Fig. 3a", "four").verdict(changed) == Verdict(Finding.OPEN, "fig3-I: ok, rim reached")
+    assert _claim("Fig. 4a", "similar").verdict(changed) == Verdict(Finding.OPEN, "fig4-dry: broke")
+    assert _claim("Fig. 3c", "two humps").verdict(changed).finding.holds
+
+
+def test_similarity_compares_the_same_phases_of_a_coarser_surface() -> None:
+    coarse = {"one": Evidence(FOUR[..., None], 0.0), "two": Evidence(FOUR[::2, ::2, None], 0.0)}
+    assert similar("one", 1, "two", 1)(coarse).found == "correlation 1.00"
+
+
+def _planted(names: str) -> Claim:
+    """Holds for the amplitudes named, which its evidence carries."""
+    return Claim("Fig. 0", names, "r", ("fig3-I",), lambda e: judged(f"{e['fig3-I'].swing:g}" in names.split(), "f"))
+
+
+def test_the_table_names_the_best_reading_and_what_none_reproduces() -> None:
+    readings = [Reading(amplitude) for amplitude in (1.0, 2.0, 3.0)]
+    columns = [{"fig3-I": replace(ONE_AXIS, swing=reading.amplitude)} for reading in readings]
+    wanted = [_planted("1 2"), _planted("2"), _planted("none"), replace(_planted("3"), weaker=True)]
+    table = tabulated(wanted, readings, N, columns)
+    assert [table.held(column) for column in range(3)] == [1, 2, 0], "the weaker one does not count"
+    assert table.best == [readings[1]]
+    assert [claim.says for claim in table.never] == ["none"]
+    assert table.where(0) == "1 m/s², resolved; 2 m/s², resolved"
+    assert table.where(2) == "no reading"
+
+
+def test_readings_share_every_surface_they_can() -> None:
+    wet = CASES["fig4-viscous"](Reading())
+    assert without_effect(Reading(peak="regularised"), wet) == without_effect(Reading(peak="supremum"), wet)
+    asked = questions(READINGS, CLAIMS, N)
+    assert len(asked) == len({(question.scene.digest(), question.reading.peak, question.grid) for question in asked})
+    assert len(asked) < len(CASES) * len(READINGS)
+    assert {reading.peak for reading in EVERY_READING} >= {"supremum", "resolved", "regularised"}
+
+
+def test_a_case_that_fails_or_dies_is_named_and_the_others_answered(monkeypatch: pytest.MonkeyPatch) -> None:
+    def gathered(question: Question) -> Evidence:
+        if question.case == "fig4-dry":
+            raise RuntimeError("singular")
+        return PAPER[question.case]
+
+    monkeypatch.setattr(claims, "gathered", gathered)
+    table = claims_tested(2, ThreadPoolExecutor, N, READINGS[:2])
+    findings = {claim.says: row[0] for claim, row in zip(table.claims, table.verdicts)}
+    assert findings["mu_1 is similar to case II"].found == "fig4-dry: solver failed: RuntimeError: singular"
+    assert findings["mu_1 has two humps separated by a valley"].finding.holds
+
+
+def test_what_a_solver_complains_about_becomes_the_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*args: object, **kwargs: object) -> None:
+        raise ZeroDivisionError("no ground")
+
+    monkeypatch.setattr(evidence, "amplification", broken)
+    found = evidence.gathered(Question("fig3-I", Reading(), 4))
+    assert (found.fault, found.complete) == ("ZeroDivisionError: no ground", False)
+
+
+def test_the_command_prints_the_table(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(claims, "gathered", lambda question: PAPER[question.case])
+    assert main(["--jobs", "2", "--grid", "16", "--words"], ThreadPoolExecutor) == 0
+    printed = capsys.readouterr().out
+    assert "1 m/s², f_c 0.1 s/m, resolved: 15 of 16" in printed
+    assert "periodic 2 and 2; drawn 4 and 3" in printed
+    assert "Under no reading: Fig. 3: the harmonics are close to resonance." in printed
+    with pytest.raises(SystemExit) as stop:
+        main(["--grid", "7"], ThreadPoolExecutor)
+    assert stop.value.code == 2
+    assert "'7': must be a whole number, 8 or more" in capsys.readouterr().err
+
+
+def test_evidence_of_the_paper_is_what_the_equations_give() -> None:
+    """Short and coarse: the plane of (4.7) to rounding, two unequal axes apart, no fold without a grid to see one."""
+    dry = evidence.gathered(Question("fig4-dry", Reading(duration=1.5), 4))
+    assert dry.fault == ""
+    assert dry.mu.shape == (4, 4, 2)
+    assert max(dry.apart) < 1e-9
+    assert 0.0 < dry.swing < 0.1
+    assert min(evidence.gathered(Question("fig3-I", Reading(duration=1.5), 4)).apart) > 0.1
+
+
+@pytest.mark.long
+def test_four_humps_and_three_valleys_are_a_matter_of_the_drawing() -> None:
+    """1 m/s^2, resolved peak: two ridges on the square that closes; cut open they are the paper's four and three."""
+    table = claims_tested(1, ThreadPoolExecutor, 16, [Reading()], [_claim("Fig. 3a", "four"), _claim("Fig. 3c", "two")])
+    assert [row[0].finding for row in table.verdicts] == [Finding.AS_DRAWN] * 2
