@@ -7,6 +7,7 @@ unless the scheduler is told otherwise); then the task is taken for the culprit.
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import threading
 import time
@@ -45,11 +46,18 @@ def cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]:
 
     try:
         from distributed import Client
+        from distributed.comm import connect
     except ImportError:
         raise refusal("needs Dask: pip install 'phase-resonance[cluster]'") from None
-    for name in ("distributed", "tornado", "asyncio"):
-        logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is said here, in one line
+    for name in ("asyncio", *logging.root.manager.loggerDict):
+        if name.partition(".")[0] in ("asyncio", "distributed", "tornado"):
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)  # what goes wrong is said here, in one line
+
+    async def knock() -> None:
+        await (await connect(address, timeout=ANSWER)).close()
+
     try:
+        asyncio.run(knock())  # a client that reaches nobody leaves threads behind
         client = Client(address, timeout=ANSWER, set_as_default=False)
     except (OSError, ValueError) as fault:
         raise refusal(f"no scheduler answers there: {' '.join(str(fault).split())}") from None
@@ -112,7 +120,7 @@ def _arrived(found: Future[Any], answer: Future[Any]) -> None:
     except CancelledError:
         fault = ExecutorLostError(GONE)  # nobody else cancels
     if isinstance(fault, KilledWorker):
-        fault = WorkerDiedError(str(fault))
+        fault = WorkerDiedError(str(fault), fault.allowed_failures + 1)
     if fault is None:
         answer.set_result(found.result())
     else:
@@ -134,15 +142,17 @@ def _same_code(client: Client, models: set[str], refusal: Callable[[str], SceneE
     """Numbers from other code must not be taken for ours."""
     try:
         client.wait_for_workers(1, timeout=PATIENCE)
-        theirs = client.run(_all_surroundings, sorted(models))
+        theirs = client.run(_all_surroundings, sorted(models), on_error="return")
     except TimeoutError:
         raise refusal(f"the scheduler has had no worker for {PATIENCE:.0f} s: start some with `dask worker`") from None
-    except ImportError as fault:
-        raise refusal(f"its workers cannot import this project ({fault}): install it where they run") from None
     except OSError as fault:
         raise refusal(f"{GONE}: {' '.join(str(fault).split())}") from None
     ours = _all_surroundings(sorted(models))
     for worker, found in theirs.items():
+        if isinstance(found, OSError):
+            continue  # it died or left meanwhile
+        if isinstance(found, Exception):
+            raise refusal(f"worker {worker} cannot import this project ({found}): install it there")
         for name, value in ours.items():
             if found.get(name) != value:
                 raise refusal(f"worker {worker} has {name} {found.get(name)}, here it is {value}: install the same")

@@ -25,7 +25,11 @@ Pool = Executor | Callable[[int], Executor]  # an executor that somebody else en
 
 
 class WorkerDiedError(Exception):
-    """The process that ran this task died. The executor goes on, and no other task was harmed."""
+    """The process that ran this task died, `times` in a row. The executor goes on, and no other task was harmed."""
+
+    def __init__(self, message: str, times: int = 1) -> None:
+        super().__init__(message)
+        self.times = times
 
 
 class ExecutorLostError(RuntimeError):

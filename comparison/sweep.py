@@ -109,8 +109,8 @@ class _Sweep(Generic[Task, Result]):
             for future in wait(self._flying, LOOK, return_when=FIRST_COMPLETED).done:
                 try:
                     result = future.result()
-                except WorkerDiedError:
-                    self._died(self._flying.pop(future))
+                except WorkerDiedError as fault:
+                    self._died(self._flying.pop(future), fault.times)
                 except BrokenExecutor:
                     self._broken()
                     return
@@ -151,8 +151,8 @@ class _Sweep(Generic[Task, Result]):
                 work.alone = True
                 self._queue.appendleft(work)
 
-    def _died(self, work: _Work[Task, Result]) -> None:
-        work.deaths += 1
+    def _died(self, work: _Work[Task, Result], times: int = 1) -> None:
+        work.deaths += times
         parts = self._split(work.task)
         if work.deaths < 2 and (work.parent is None or not parts):
             self._queue.appendleft(work)
@@ -161,7 +161,7 @@ class _Sweep(Generic[Task, Result]):
             children = [_Work(part, place, work, alone=work.alone) for place, part in enumerate(parts)]
             self._queue.extendleft(reversed(children))
         else:
-            self._keep(work, self._lost(work.task, Outcome.WORKER_DIED, "the worker process died, twice"))
+            self._keep(work, self._lost(work.task, Outcome.WORKER_DIED, f"the worker process died {work.deaths} times"))
 
     def _keep(self, work: _Work[Task, Result], result: Result) -> None:
         parent = work.parent

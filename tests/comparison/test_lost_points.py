@@ -65,7 +65,7 @@ def test_a_worker_that_dies_loses_its_own_tile_only(command: Callable[..., Run])
     status, mu = _status(run)
     _only_the_last_point(status, "worker died")
     assert np.isnan(mu[:, 3, 3]).all()
-    assert "the worker process died, twice" in run.err
+    assert "the worker process died 2 times" in run.err
 
 
 def test_lost_points_are_counted_in_the_closing_table(command: Callable[..., Run]) -> None:

@@ -1,0 +1,66 @@
+"""A Dask scheduler and worker processes on the loopback address, as separate programs that can be killed."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from pathlib import Path
+
+from distributed import Client
+
+HERE = Path(__file__).parent
+DEADLINE = 60.0  # s for programs to start, on a busy machine
+
+
+class LocalCluster:
+    """A scheduler with `workers` single-threaded workers. `nanny`: a worker that dies is started anew."""
+
+    def __init__(self, folder: Path, workers: int = 2, nanny: bool = False) -> None:
+        self._log = (folder / "cluster.log").open("w")
+        self._folder = folder
+        file = folder / "scheduler.json"
+        self._scheduler = self._start(
+            ["scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file)]
+        )
+        deadline = time.monotonic() + DEADLINE
+        while not file.exists() and time.monotonic() < deadline:
+            time.sleep(0.05)
+        self.address: str = json.loads(file.read_text(encoding="utf-8"))["address"]
+        words = ["--nthreads", "1", "--no-dashboard", "--nanny" if nanny else "--no-nanny", "--host", "127.0.0.1"]
+        self._workers = [self._start(["worker", self.address, *words]) for _ in range(workers)]
+        with Client(self.address, timeout=DEADLINE, set_as_default=False) as client:
+            client.wait_for_workers(workers, timeout=DEADLINE)
+
+    def _start(self, words: list[str]) -> subprocess.Popen[bytes]:
+        paths = os.pathsep.join([str(HERE), str(HERE.parents[1])])
+        settings = {
+            "PYTHONPATH": paths,
+            "PYTHONWARNINGS": "ignore",
+            "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1",  # one retry, so that a test does not take minutes
+        }
+        return subprocess.Popen(
+            [sys.executable, "-m", "dask", *words],
+            cwd=self._folder,
+            env={**os.environ, **settings},
+            stdout=self._log,
+            stderr=self._log,
+            start_new_session=True,
+        )
+
+    def kill_a_worker(self) -> None:
+        self._workers[0].kill()
+
+    def kill_the_scheduler(self) -> None:
+        self._scheduler.kill()
+
+    def end(self) -> None:
+        for process in (*self._workers, self._scheduler):
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)  # a nanny's worker is in its group
+            process.wait()
+        self._log.close()

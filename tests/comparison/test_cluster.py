@@ -1,0 +1,126 @@
+"""A Dask cluster gives the numbers of this machine, loses none when a worker dies, and can be done without."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Run
+from fake_models import fake_ladder
+from local_cluster import LocalCluster
+
+from comparison.cluster import cluster
+from comparison.halves import halves, joined
+from comparison.study import Study
+from comparison.sweep import sweep
+from comparison.tile_store import TileStore
+from comparison.tiles import Answer, Tile, solve_tile, unanswered
+from reference.problem import load_scene
+
+
+def _answers(
+    model: str, tile: int, executor: object, done: Callable[[int], object] = lambda count: None
+) -> list[Answer]:
+    """The engine's surface; `done` is told how many tiles are."""
+    study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_ladder(model, tile=tile))
+    tiles = [one for one in study.tiles() if one.rung == "translational"]
+    count = iter(range(1, len(tiles) + 1))
+
+    def arrived(one: Tile, answer: Answer) -> None:
+        done(next(count))
+
+    return sweep(tiles, solve_tile, unanswered, arrived, 2, executor, split=halves, join=joined)  # type: ignore[arg-type]
+
+
+def _same(one: list[Answer], other: list[Answer]) -> None:
+    assert len(one) == len(other) > 0
+    for a, b in zip(one, other):
+        for name in ("mu", "error", "instant", "status"):
+            np.testing.assert_array_equal(getattr(a, name), getattr(b, name))  # to the last bit
+
+
+@pytest.fixture
+def workers(tmp_path: Path) -> Iterator[LocalCluster]:
+    started = LocalCluster(tmp_path)
+    yield started
+    started.end()
+
+
+def test_the_numbers_are_those_of_this_machine_even_when_a_worker_is_killed_in_the_middle(
+    workers: LocalCluster,
+) -> None:
+    here = _answers("uneven", 1, ThreadPoolExecutor)
+    with cluster(workers.address, {"fake_models:uneven"}) as there:
+        assert there.width == 2
+        _same(here, _answers("uneven", 1, there))
+        _same(here, _answers("uneven", 1, there, lambda count: workers.kill_a_worker() if count == 4 else None))
+        assert [answer.status for answer in here] == [["ok"]] * 16, "nothing is lost"
+
+
+def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on_in_process(
+    workers: LocalCluster, command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    put = TileStore.put
+    stored: list[Tile] = []
+
+    def put_and_kill(store: TileStore, tile: Tile, answer: Answer) -> None:
+        put(store, tile, answer)
+        stored.append(tile)
+        if len(stored) == 5:
+            workers.kill_the_scheduler()
+
+    monkeypatch.setattr(TileStore, "put", put_and_kill)
+    ladder = fake_ladder("uneven", tile=1)
+    study = Study((load_scene("fig3-I"),), 4, 1e-3, ladder)
+    run = command("fig3-I", "--grid", "4", "--scheduler", workers.address, ladder=ladder)
+    assert run.code == 4
+    start = f"--scheduler {workers.address}: the connection to the scheduler was lost: "
+    assert run.err.startswith(start)
+    assert run.err.count("\n") == 1
+    assert f"{len(stored)} of " in run.err
+    assert f"go on with: python -m comparison.run fig3-I --grid 4 --out {run.report}\n" in run.err, (
+        "without the cluster"
+    )
+    assert not run.report.exists()
+    before = len(stored)
+    again = command("fig3-I", "--grid", "4", "--jobs", "2", ladder=ladder)
+    assert again.code == 0
+    names = [str(TileStore(tmp_path)._place(tile)) for tile in stored]
+    assert 5 <= before < len(stored)
+    assert not set(names[:before]) & set(names[before:]), "only what was missing was computed"
+    assert set(names) == {str(TileStore(tmp_path)._place(tile)) for tile in study.tiles()}
+
+
+def test_no_scheduler_is_a_wrong_option(command: Callable[..., Run]) -> None:
+    run = command("fig3-I", "--scheduler", "nowhere", ladder=fake_ladder("forbidden"))
+    assert run.code == 2
+    assert run.err.startswith("command line: --scheduler = 'nowhere': no scheduler answers there: ")
+    assert run.err.count("\n") == 1
+    both = command("fig3-I", "--scheduler", "nowhere", "--jobs", "3")
+    assert both.code == 2
+    assert both.err.startswith("command line: --jobs = '3': counts processes of this machine")
+
+
+def test_workers_with_other_code_are_refused(
+    workers: LocalCluster, command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("comparison.surroundings._version", lambda name: "9.9")
+    run = command("fig3-I", "--scheduler", workers.address, ladder=fake_ladder("forbidden"))
+    assert run.code == 2
+    assert "here it is 9.9: install the same" in run.err
+    assert run.err.count("\n") == 1
+
+
+@pytest.mark.long
+def test_a_point_that_kills_every_worker_is_the_only_one_lost(tmp_path: Path) -> None:
+    """Every death costs the start of a worker."""
+    workers = LocalCluster(tmp_path, nanny=True)
+    try:
+        with cluster(workers.address, {"fake_models:killing"}) as there:
+            answers = _answers("killing", 8, there)
+    finally:
+        workers.end()
+    assert [outcome for answer in answers for outcome in answer.status] == ["ok"] * 15 + ["worker died"]
