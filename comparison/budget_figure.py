@@ -13,7 +13,7 @@ from matplotlib.colors import SymLogNorm
 from matplotlib.figure import Figure
 
 from comparison.budget import TOTAL, steps
-from comparison.figures import QUARTER_NAMES, QUARTERS, SIGN_COLOURS, closed
+from comparison.figures import QUARTER_NAMES, QUARTERS, SIGN_COLOURS, closed, save
 from comparison.steps import Step
 from comparison.study import Study
 from reference.problem import Scene
@@ -27,7 +27,7 @@ def budget_figure_name(scene: Scene, body: int) -> str:
 
 
 def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> None:
-    """Write one map per step, and of the total, to `path`, PNG: percent of the first model's mu_i on one scale."""
+    """Write one map per step, and of the total, to `path`, PNG, and PDF: % of the first model's mu_i."""
     found = steps(study, surfaces, scene.name, body)
     figure = Figure(figsize=(13.0, 3.4), dpi=110)
     FigureCanvasAgg(figure)
@@ -45,7 +45,7 @@ def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, bo
     bar = figure.colorbar(image, cax=figure.add_axes((0.915, 0.14, 0.01, 0.64)))
     bar.set_label("% of the first model's value", fontsize=8)
     bar.ax.tick_params(labelsize=8)
-    figure.savefig(path)
+    save(figure, path)
 
 
 def _map(axes: Axes, step: Step, norm: SymLogNorm) -> QuadMesh:

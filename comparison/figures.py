@@ -32,7 +32,7 @@ def figure_name(scene: Scene, body: int, pair: Pair) -> str:
 
 
 def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: Pair) -> None:
-    """Write the two surfaces on one height scale and the map of their relative difference to `path`, PNG."""
+    """Write the two surfaces on one height scale and the map of their relative difference to `path`, PNG, and PDF."""
     both = [common_phases(surfaces, scene.name, [r.key]).sel(model=r.key, body=body) for r in (pair.first, pair.second)]
     figure = Figure(figsize=(13.0, 4.6), dpi=110)
     FigureCanvasAgg(figure)
@@ -47,7 +47,13 @@ def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: P
         _surface(axes, *closed(data["alpha1"].values, data["mu"].values), low, high)
         axes.set_title(f"$\\mu_{{{body}}}$, {rung.title}", fontsize=11, pad=0)
     _map(figure, figure.add_axes((0.70, 0.14, 0.22, 0.65)), pair_step(surfaces, scene.name, pair, body))
+    save(figure, path)
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write the figure to `path`, PNG, and beside it as PDF."""
     figure.savefig(path)
+    figure.savefig(path.with_suffix(".pdf"), metadata={"CreationDate": None})  # the same figure gives the same file
 
 
 def closed(phase: Array, mu: Array) -> tuple[Array, Array]:

@@ -1,4 +1,7 @@
-"""Writes the report: surfaces.nc, summary.json, figures/*.png and index.html, which needs none of the others."""
+"""
+Writes the report: index.html, which needs none of the others; surfaces.nc; summary.json and summary.md; junit.xml;
+figures/.
+"""
 
 from __future__ import annotations
 
@@ -21,11 +24,14 @@ from comparison.differences import Difference
 from comparison.effective import PHASES
 from comparison.figures import draw_pair, figure_name
 from comparison.findings import Findings
+from comparison.junit import junit
 from comparison.ladder import Pair, pairs_of, rungs_of
 from comparison.page_data import packed, packed_motions, page_data
+from comparison.paper_figures import draw_paper_figure, paper_figure_name
 from comparison.slips import SLIPS, Effect
 from comparison.study import Study
 from comparison.summary import outcome_counts, summary
+from comparison.summary_text import summary_text
 from comparison.verdicts import bar, verdict
 from comparison.verification import CHECKS
 from comparison.wording import degrees, percent, scientific, significant, symbols
@@ -74,6 +80,8 @@ def write_report(folder: Path, found: Findings) -> None:
     stamped.to_netcdf(folder / "surfaces.nc", engine="h5netcdf")
     text = json.dumps(summary(found), indent=1, ensure_ascii=False, allow_nan=False)
     (folder / "summary.json").write_text(text, encoding="utf-8")
+    (folder / "summary.md").write_text(summary_text(found), encoding="utf-8")
+    (folder / "junit.xml").write_text(junit(found), encoding="utf-8")
     figures = folder / "figures"
     figures.mkdir()
     for scene in study.scenes:
@@ -81,6 +89,7 @@ def write_report(folder: Path, found: Findings) -> None:
             for pair in pairs_of(scene, study.ladder):
                 draw_pair(figures / figure_name(scene, body, pair), found.surfaces, scene, body, pair)
             draw_budget(figures / budget_figure_name(scene, body), study, found.surfaces, scene, body)
+        draw_paper_figure(figures / paper_figure_name(scene), study, found.surfaces, scene)
     for section in SECTIONS:
         if section.draw and section.present(found):
             section.draw(figures, found)

@@ -13,7 +13,7 @@ from pathlib import Path
 from comparison.summary import SCHEMA
 from reference.problem import SceneError
 
-PARTS = {"index.html", "surfaces.nc", "summary.json", "figures"}
+PARTS = {"index.html", "surfaces.nc", "summary.json", "summary.md", "junit.xml", "figures"}
 
 
 def refuse_foreign(out: Path) -> None:

@@ -13,6 +13,7 @@ import xarray as xr
 from matplotlib.image import imread
 
 from comparison.ladder import LADDER
+from comparison.store import PARTS
 from reference.problem import load_scene
 
 GRID = 4
@@ -24,9 +25,10 @@ def surfaces(finished: Path) -> xr.Dataset:
         return data.load()
 
 
-def test_a_report_is_exactly_its_four_parts(finished: Path) -> None:
-    assert {entry.name for entry in finished.iterdir()} == {"index.html", "surfaces.nc", "summary.json", "figures"}
-    assert [entry.name for entry in finished.parent.iterdir()] == ["report"], "no working directory left beside it"
+def test_a_report_is_exactly_its_parts(finished: Path) -> None:
+    assert {entry.name for entry in finished.iterdir()} == PARTS
+    beside = {entry.name for entry in finished.parent.iterdir()}
+    assert beside == {"report", "report.tiles"}, "the store, and no working directory left"
 
 
 def test_surfaces_are_labelled_by_scene_model_body_and_phases(surfaces: xr.Dataset) -> None:
@@ -117,13 +119,16 @@ def test_differences_are_the_planted_one_percent(finished: Path) -> None:
 
 def test_every_body_of_every_scene_has_its_figures(finished: Path) -> None:
     expected = {
-        f"{scene}-body{body}-{pair}.png"
+        f"{scene}-body{body}-{pair}"
         for scene in ("fig3-I", "fig4-viscous")
         for body in (1, 2)
         for pair in ("total", "translational", "like-for-like", "budget")
     }
-    assert {entry.name for entry in (finished / "figures").iterdir()} == expected
-    for name in expected:
+    paper = {"fig3-I-paper", "fig4-viscous-paper"}
+    files = {f"{name}.{kind}" for name in expected | paper for kind in ("png", "pdf")}
+    assert {entry.name for entry in (finished / "figures").iterdir()} == files
+    assert all((finished / "figures" / name).read_bytes().startswith(b"%PDF") for name in files if "pdf" in name)
+    for name in (f"{stem}.png" for stem in expected | paper):
         picture = imread(finished / "figures" / name)
         assert picture.shape[1] > 1000
         thirds = np.array_split(picture[60:, :, :3], 3, axis=1)

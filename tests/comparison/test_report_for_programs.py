@@ -1,0 +1,82 @@
+"""What a pull request and a CI server are shown: summary.md and junit.xml say what the run found, and nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import resources
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from fake_models import errors_in, fake_ladder
+
+from reference.problem import load_scene
+
+LIMITS = ("median", "maximum", "ratio", "closure", "failed")
+
+
+def _cells(line: str) -> list[str]:
+    return [cell.strip() for cell in line.strip("|").split("|")]
+
+
+def test_the_summary_names_every_broken_limit_and_every_verdict(finished: Path) -> None:
+    text = (finished / "summary.md").read_text(encoding="utf-8")
+    assert "12 acceptance limits broken" in text
+    assert r"- fig3-I: body 1: acceptance.median: 0.01 found, 0.0001 allowed" in text
+    assert "- **fig3-I** (Fig. 3a, b" in text
+    assert "step to the translational engine" in text, "the only model of the ladder that differs"
+    assert "cross-verified, not validated" in text
+
+
+def test_tables_of_the_summary_have_one_width_and_the_planted_size(finished: Path) -> None:
+    lines = (finished / "summary.md").read_text(encoding="utf-8").splitlines()
+    tables = [_cells(line) for line in lines if line.startswith("|")]
+    assert {len(row) for row in tables} == {9, 8}, "differences; budget with five steps and the total"
+    sizes = [row for row in tables if row[:3] == ["fig3-I", "1", "like for like"]]
+    assert [row[3:6] for row in sizes] == [["1 %", "1 %", "1 %"]]
+
+
+def test_a_sound_run_says_that_its_limits_hold(command: Callable[..., object]) -> None:
+    done = command("fig3-I", "--grid", "2", ladder=errors_in({"small": 0.02}))
+    text = (done.report / "summary.md").read_text(encoding="utf-8")  # type: ignore[attr-defined]
+    assert "**Every acceptance limit holds.**" in text
+    assert "broken" not in text
+    suites = ElementTree.parse(done.report / "junit.xml").getroot()  # type: ignore[attr-defined]
+    assert (suites.get("tests"), suites.get("failures")) == ("5", "0")
+
+
+def test_junit_has_one_case_per_limit_and_scene_and_fails_the_broken_ones(finished: Path) -> None:
+    suites = ElementTree.parse(finished / "junit.xml").getroot()
+    assert [suite.get("name") for suite in suites] == ["fig3-I", "fig4-viscous"]
+    for suite in suites:
+        acceptance = load_scene(str(suite.get("name"))).acceptance
+        assert [case.get("name") for case in suite] == [f"acceptance.{k} = {getattr(acceptance, k):g}" for k in LIMITS]
+        failed = [case for case in suite if case.find("failure") is not None]
+        assert [str(case.get("name")).split()[0] for case in failed] == [
+            "acceptance.median",
+            "acceptance.maximum",
+            "acceptance.ratio",
+        ]
+        assert suite.get("failures") == "3"
+        text = str(failed[0].findtext("failure"))
+        assert [line.split(": ")[1] for line in text.splitlines()] == ["body 1", "body 2"], "both bodies break it"
+
+
+def test_a_point_without_an_answer_is_in_the_summary(command: Callable[..., object]) -> None:
+    done = command("fig3-I", "--grid", "4", ladder=fake_ladder("failing_point"))
+    text = (done.report / "summary.md").read_text(encoding="utf-8")  # type: ignore[attr-defined]
+    assert "- fig3-I, translational engine: 1 × rim reached" in text
+
+
+@pytest.mark.parametrize("name", ["summary.md", "junit.xml"])
+def test_nothing_of_a_scene_is_read_as_markup(name: str, command: Callable[..., object], tmp_path: Path) -> None:
+    source = resources.files("reference.problem") / "scenes" / "fig3-I.toml"
+    lines = source.read_text(encoding="utf-8").splitlines()
+    lines = ['title = "a | b <c> *d* & `e`"' if line.startswith("title") else line for line in lines]
+    (tmp_path / "odd.toml").write_text("\n".join(lines), encoding="utf-8")
+    done = command(str(tmp_path / "odd.toml"), "--grid", "2")
+    text = (done.report / name).read_text(encoding="utf-8")  # type: ignore[attr-defined]
+    if name == "junit.xml":
+        assert ElementTree.fromstring(text).tag == "testsuites"
+    else:
+        assert r"a \| b \<c> \*d\* & \`e\`" in text
