@@ -1,0 +1,86 @@
+"""Regularisation to nothing and stiffness to infinity: planted laws are found, the real ones are of first order."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from comparison import convergence
+from comparison.convergence import LIMITS, PENETRATIONS, Limit, convergence_trends, limit_trends
+from comparison.study import Study
+from reference.problem import Amplification, Scene, load_scene
+
+Array = NDArray[np.float64]
+
+
+def _study(*names: str) -> Study:
+    return Study(tuple(load_scene(name) for name in names), 2, 1e-3)
+
+
+def test_every_limit_comes_in_order_and_a_lubricated_scene_has_only_the_contact(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def planted(scene: Scene) -> tuple[Array, Array]:
+        sizes = np.array(PENETRATIONS)[None, :, None] * np.array([1.0, -2.0])[None, None, :]
+        return sizes, 1e-3 * np.abs(sizes)
+
+    limits = [Limit(one.what, PENETRATIONS, 1.0, planted, one.dry_only) for one in LIMITS]
+    monkeypatch.setattr(convergence, "LIMITS", limits)
+    found = convergence_trends(_study("fig3-I", "fig4-viscous"), 2, ThreadPoolExecutor)
+    assert [(one.scene, one.body) for one in found] == [("fig3-I", 1), ("fig3-I", 2)] * 4 + [
+        ("fig4-viscous", 1),
+        ("fig4-viscous", 2),
+    ]
+    assert {one.verdict for one in found} == {"like the power 1"}
+
+
+def _regularised(power: float) -> object:
+    """mu = 3, or 3 + v^power under a regularised law."""
+
+    def amplification(scene: Scene, phases: Array, tolerance: float, **settings: float) -> Amplification:
+        v = settings.get("regularization")
+        mu = np.full((len(phases), len(scene.bodies)), 3.0 + (0.0 if v is None else v**power))
+        return Amplification(mu, 1e-9 * mu, np.full(len(mu), "ok"), np.full(len(mu), np.nan), 0.0)
+
+    return amplification
+
+
+@pytest.mark.parametrize(("power", "says"), [(1.0, "like the power 1"), (0.5, "not like the power 1")])
+def test_the_order_in_v_reg_is_that_of_the_law(monkeypatch: pytest.MonkeyPatch, power: float, says: str) -> None:
+    monkeypatch.setattr(convergence, "amplification", _regularised(power))
+    monkeypatch.setattr(convergence, "engine_amplification", _regularised(power))
+    for number in (0, 2):  # the equations and the engine, against the resolved peak
+        for found in limit_trends((load_scene("fig3-I"), number)):
+            assert found.verdict == says
+            assert found.slope.exponent == pytest.approx(power, abs=1e-6)
+
+
+def test_a_limit_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(scene: Scene) -> None:
+        raise RuntimeError("no engine")
+
+    monkeypatch.setattr(convergence, "LIMITS", [replace(LIMITS[3], measure=broken)])
+    assert [one.verdict for one in limit_trends((load_scene("fig3-I"), 0))] == [
+        "solver failed: RuntimeError: no engine"
+    ] * 2
+
+
+def test_a_contact_ten_times_stiffer_is_ten_times_closer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Second body of fig3-II over one second; the third part of it that is of higher order shows at 1e-2 of rho."""
+    monkeypatch.setattr(convergence, "BRIEFEST", 1.0)
+    found = limit_trends((load_scene("fig3-II"), 3))[1]
+    assert found.verdict == "like the power 1"
+    assert found.slope.exponent == pytest.approx(1.0, abs=0.2)
+
+
+@pytest.mark.long
+def test_regularisation_is_of_first_order_and_the_supremum_is_not_reached() -> None:
+    scene = load_scene("fig3-II")
+    resolved, supremum = (limit_trends((scene, number)) for number in (0, 1))
+    assert [one.verdict for one in resolved] == ["like the power 1"] * 2
+    assert supremum[0].verdict.startswith("hardly falls")
+    assert supremum[1].verdict == "falls"
