@@ -37,7 +37,7 @@ def draw_paper_figure(stem: Path, study: Study, surfaces: xr.Dataset, scene: Sce
     first, last = pairs[0].first, pairs[-1].second
     bodies = len(scene.bodies)
     with mpl.rc_context(PRINT):
-        figure = Figure(figsize=(WIDTH, 2.9 * bodies))
+        figure = Figure(figsize=(WIDTH, 2.7 * bodies))
         FigureCanvasAgg(figure)
         for row in range(bodies):
             data = [common_phases(surfaces, scene.name, [r.key]).sel(model=r.key, body=row + 1) for r in (first, last)]
@@ -45,7 +45,7 @@ def draw_paper_figure(stem: Path, study: Study, surfaces: xr.Dataset, scene: Sce
             finite = np.concatenate([height[np.isfinite(height)] for _, height in heights])
             low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
             for column, ((phase, height), rung) in enumerate(zip(heights, (first, last))):
-                place = (0.01 + 0.5 * column, 1.0 - (row + 1.0) / bodies, 0.46, 0.93 / bodies)
+                place = (0.02 + 0.5 * column, 1.0 - (row + 0.98) / bodies, 0.46, 0.88 / bodies)
                 axes = figure.add_axes(place, projection="3d")
                 letter = chr(ord("a") + 2 * row + column)
                 _surface(axes, phase, height, (low, high), rf"$\mu_{{{row + 1}}}$")
@@ -58,10 +58,10 @@ def _surface(axes: Axes, phase: np.ndarray, height: np.ndarray, limits: tuple[fl
     assert isinstance(axes, Axes3D)
     low, high = limits if limits[0] < limits[1] else (0.9 * limits[0] - 0.1, 1.1 * limits[1] + 0.1)
     alpha1, alpha2 = np.meshgrid(phase, phase, indexing="ij")
-    lines = {"color": "0.93", "edgecolor": "0.1", "linewidth": 0.35, "shade": True, "antialiased": True}
+    lines = {"color": "white", "edgecolor": "black", "linewidth": 0.4, "shade": False, "antialiased": True}
     axes.plot_surface(alpha1, alpha2, height, rcount=200, ccount=200, **lines)
     axes.set_zlim(low, high)
-    axes.set_box_aspect((1.0, 1.0, 0.66), zoom=0.86)
+    axes.set_box_aspect((1.0, 1.0, 0.66), zoom=1.02)
     axes.view_init(elev=28.0, azim=-125.0)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
         axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
@@ -71,4 +71,5 @@ def _surface(axes: Axes, phase: np.ndarray, height: np.ndarray, limits: tuple[fl
     axes.tick_params(pad=-2)
     axes.set_xlabel(r"$\alpha_1$", labelpad=-4)
     axes.set_ylabel(r"$\alpha_2$", labelpad=-4)
-    axes.set_zlabel(name, labelpad=-4)
+    axes.zaxis.set_rotate_label(False)
+    axes.set_zlabel(name, labelpad=-4, rotation=0.0)

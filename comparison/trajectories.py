@@ -30,7 +30,7 @@ STEP = 1e-3  # s, between the instants asked of the reference
 
 @dataclass(frozen=True)
 class Place:
-    """A phase pair of the grid, by its indices, and why it was chosen."""
+    """A phase pair of the grid, by its indices, and why it was chosen, "" for one of an even spread."""
 
     scene: str
     row: int
@@ -64,7 +64,7 @@ def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Plac
             places.setdefault(place, f"largest difference of body {body}")
     for k in range(SPREAD):
         row, column = (round(study.grid * (factor * k % SPREAD) / SPREAD) % study.grid for factor in (1, 2))
-        places.setdefault((row, column), "spread")
+        places.setdefault((row, column), "")
     return [Place(scene.name, row, column, why) for (row, column), why in places.items()]
 
 

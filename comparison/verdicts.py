@@ -39,7 +39,7 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Segment:
-    """One step in a bar: mean absolute `size`, its `share` of the bar, and the share of the points it is `real` at."""
+    """One step in a bar: mean absolute `size`, its `share` of the bar, and how much of that size is `real`."""
 
     model: str
     size: float
@@ -84,7 +84,7 @@ def verdict(study: Study, surfaces: xr.Dataset, scene: Scene) -> Verdict:
     sentence = (
         f"body {body} differs by {signed(found)} at ({degrees(phases[0])}, {degrees(phases[1])}), where mu_{body} is "
         f"{here:.3g} on a surface from {low:.3g} to {high:.3g}"
-        + (f"; {signed(part)} of it is the step to the {cause}" if cause else "")
+        + (f"; largest step there: {signed(part)}, to the {cause}" if cause else "")
         + f". Real at {percent(real)} of {int(total.known.sum())} phase pairs."
     )
     return Verdict(scene.name, found, body, phases, cause, part, real, sentence)
@@ -113,7 +113,14 @@ def bar(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> Bar:
     means = [float(size[known].mean()) for size in sizes]
     whole = sum(means[:-1])
     segments = tuple(
-        Segment(step.second.key, mean, mean / whole if whole > 0.0 else 0.0, float(step.real[step.known].mean()))
+        Segment(step.second.key, mean, mean / whole if whole > 0.0 else 0.0, _real_part(step))
         for step, mean in zip(ladder[:-1], means)
     )
     return Bar(scene.name, body, means[-1], int(known.sum()), segments)
+
+
+def _real_part(step: Step) -> float:
+    """Share of the summed absolute size that lies where the step is real; 0 for a step of nothing."""
+    size = np.abs(step.size)
+    whole = float(size[step.known].sum())
+    return float(size[step.real].sum()) / whole if whole > 0.0 else 0.0

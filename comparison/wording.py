@@ -17,16 +17,16 @@ LETTERS = re.compile(rf"(?<![a-zA-Z^])(d?)({'|'.join(GREEK)})(?![a-zA-Z])")
 def percent(value: float) -> str:
     if not math.isfinite(value):
         return "none"
+    if 0.0 < abs(value) < 1e-6:
+        return "< 0.0001 %"
     return f"{100.0 * value:.0f} %" if abs(value) >= 0.1 else f"{100.0 * value:.2g} %"
 
 
 def signed(value: float) -> str:
     """A share with its sign: what a difference is worth."""
-    return (
-        percent(value)
-        if not value or not math.isfinite(value)
-        else f"{'+' if value > 0.0 else '−'}{percent(abs(value))}"
-    )
+    if not math.isfinite(value) or abs(value) < 1e-6:
+        return percent(abs(value))
+    return ("+" if value > 0.0 else "−") + percent(abs(value))
 
 
 def scientific(value: float) -> str:

@@ -52,12 +52,12 @@ async function choose(box, index) {
   plot.hidden = false;
   await plotting();
   const notes = await drawMotions(plot, scene, Number(box.dataset.body), place, scene.pairs[pairOf(box)], data.titles);
-  own.querySelector(".notes").textContent = [`At ${named(place)}, ${place.why}.`, ...notes].join(" ");
+  own.querySelector(".notes").textContent = [...notes, place.why].filter(Boolean).join("; ");
   boxes.filter(other => other.dataset.scene === box.dataset.scene && visible.has(other)).forEach(show);
 }
 boxes.forEach(box => {
   const select = box.parentElement.querySelector("select");
-  data.scenes[box.dataset.scene].places.forEach((place, index) => select.add(new Option(`${named(place)} ${place.why}`, index)));
+  data.scenes[box.dataset.scene].places.forEach((place, index) => select.add(new Option([named(place), place.why].filter(Boolean).join(", "), index)));
   select.addEventListener("change", () => { if (select.value !== "") choose(box, Number(select.value)); });
 });
 

@@ -51,6 +51,13 @@ function drawSurfaces(box, data, pair, chosen) {
     marker: { symbol: "circle", size: scene.places.map((_, i) => i === chosen ? 7 : 3.5),
       color: scene.places.map((_, i) => i === chosen ? "#ff2d95" : "#1b1f24"), line: { color: "#fff", width: 1 } },
   });
+  const lone = (rows, scene3d, colours, [cmin, cmax]) => {  // what is left of a surface with gaps
+    const known = rows.flatMap((row, i) => row.flatMap((z, j) => z === null ? [] : [[turn * i / rows.length, turn * j / rows.length, z]]));
+    if (known.length === rows.length ** 2) return [];
+    const [x, y, z] = [0, 1, 2].map(k => known.map(point => point[k]));
+    return [{ type: "scatter3d", mode: "markers", scene: scene3d, showlegend: false, hoverinfo: "skip", x, y, z,
+      marker: { symbol: "square", size: 4, color: z, colorscale: colours, cmin, cmax } }];
+  };
   const line = {  // one trace: polylines parted by gaps
     type: "scatter3d", mode: "lines", scene: "scene3", showlegend: false, hoverinfo: "skip", line: { color: "#1b1f24", width: 4 },
     x: [], y: [], z: [],
@@ -68,6 +75,7 @@ function drawSurfaces(box, data, pair, chosen) {
     surface(a, "scene", "Cividis", range, null, ""), surface(b, "scene2", "Cividis", range, 0.625, ""),
     surface(percent, "scene3", SIGN, [-reach, reach], 1, " %"),
     marks(a, "scene", high - low), marks(b, "scene2", high - low), marks(percent, "scene3", 2 * reach), line,
+    ...lone(a, "scene", "Cividis", range), ...lone(b, "scene2", "Cividis", range), ...lone(percent, "scene3", SIGN, [-reach, reach]),
   ], {
     margin: { l: 0, r: 10, t: 6, b: 0 }, font: { size: 11 }, uirevision: pair,
     scene: space(0, 0.3, range), scene2: space(0.31, 0.62, range), scene3: space(0.69, 0.99, [-reach, reach]),
