@@ -10,6 +10,7 @@ constant step, and another of half its length for the error bar, so that nothing
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -32,14 +33,15 @@ Values = tuple[Array, Array]  # relative sizes and their errors, (P, S, N)
 
 PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad
 FEW = PHASES[[0, 3]]  # for the engine
-DURATION = 6.0  # s: the loading is strongest in its first seconds
-BRIEF = 3.0  # s, for the engine
-BRIEFEST = 2.0  # s, for the engine at constant step
+PERIODS = 6.0  # of the slower harmonic: the loading is strongest in the first of them
+FEW_PERIODS = 3.0  # for the engine
+FEWEST_PERIODS = 2.0  # for the engine at constant step
 REGULARISATIONS = (3e-3, 1e-3, 3e-4, 1e-4, 3e-5)  # m/s
 ENGINE_REGULARISATIONS = (1e-2, 3e-3, 1e-3)  # m/s
 PENETRATIONS = (1e-2, 3e-3, 1e-3)  # of rho, under the weight
 V_REG = 1e-2  # m/s, for the stiffness: a constant step resolves it
-STEP = 4e-4  # s, and half of it
+STEPS_PER_PERIOD = 2250  # of the faster harmonic, and twice as many
+MOST_STEPS = 20_000
 REFERENCE_TOLERANCE, ENGINE_TOLERANCE = 1e-7, 1e-3
 NEWTON, RESIDUAL = 1e-8, 1e-12  # of the engine's steps
 SAFETY = 1.5  # on the difference of two steps, which is half to once the error of the coarser one
@@ -59,8 +61,7 @@ def _by_engine(scene: Scene) -> Values:
         answer = engine_amplification(scene, phases, regularization=v, tolerance=ENGINE_TOLERANCE)
         return answer.mu, answer.error
 
-    brief = scene.model_copy(update={"duration": min(scene.duration, BRIEF)})
-    return _against(brief, FEW, ENGINE_REGULARISATIONS, solved, lambda v: v)
+    return _against(_short(scene, FEW_PERIODS), FEW, ENGINE_REGULARISATIONS, solved, lambda v: v)
 
 
 def _by_equations(scene: Scene, phases: Array, v: float) -> Values:
@@ -76,7 +77,7 @@ def _against(
     cutoff: Callable[[float], float | None],
 ) -> Values:
     """A regularised motion against the set-valued one."""
-    short = scene.model_copy(update={"duration": min(scene.duration, DURATION)})
+    short = _short(scene, PERIODS)
     sizes, errors = [], []
     for v in speeds:
         mu, error = solved(short, phases, v)
@@ -86,27 +87,31 @@ def _against(
     return np.stack(sizes, axis=1), np.stack(errors, axis=1)
 
 
+def _short(scene: Scene, periods: float) -> Scene:
+    return scene.model_copy(update={"duration": min(scene.duration, periods * max(scene.excitation.periods))})
+
+
 def _stiffened(scene: Scene) -> Values:
     """The engine with ever stiffer contacts against the rigid contact of the exact equations."""
-    short = scene.model_copy(update={"duration": min(scene.duration, BRIEFEST)})
+    short = _short(scene, FEWEST_PERIODS)
     v_reg = None if scene.lubricated else V_REG
     exact = amplification(short, FEW, tolerance=REFERENCE_TOLERANCE, regularization=v_reg)
     coarse, fine = (
-        np.stack([_at_constant_step(short, v_reg, penetration, step) for penetration in PENETRATIONS], axis=1)
-        for step in (STEP, STEP / 2.0)
+        np.stack([_at_constant_step(short, v_reg, penetration, factor) for penetration in PENETRATIONS], axis=1)
+        for factor in (1, 2)
     )
     scale = exact.mu[:, None]
     errors = np.hypot(SAFETY * np.abs(fine - coarse), exact.error[:, None]) / scale
     return fine / scale - 1.0, errors
 
 
-def _at_constant_step(scene: Scene, v_reg: float | None, penetration: float, step: float) -> Array:
-    """mu of the translational model at FEW, (P, N); NaN where the engine gives up."""
+def _at_constant_step(scene: Scene, v_reg: float | None, penetration: float, factor: int) -> Array:
+    """mu of the translational model at FEW, (P, N), with `factor` times the steps; NaN where the engine gives up."""
     mu = np.full((len(FEW), len(scene.bodies)), np.nan)
     with silence():
         model = assembled(scene, "translational", v_reg)
         model.stiffen(penetration)
-        count = max(1, round(scene.duration / step))
+        count = factor * min(MOST_STEPS, math.ceil(scene.duration / min(scene.excitation.periods) * STEPS_PER_PERIOD))
         for row, phase in enumerate(FEW):
             model.ground.set_phase(phase)
             start = model.start(None, ground_acceleration(scene, phase, [0.0])[0], penetration)

@@ -71,7 +71,7 @@ def test_a_limit_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_contact_ten_times_stiffer_is_ten_times_closer(monkeypatch: pytest.MonkeyPatch) -> None:
     """Second body of fig3-II over one second; the third part of it that is of higher order shows at 1e-2 of rho."""
-    monkeypatch.setattr(convergence, "BRIEFEST", 1.0)
+    monkeypatch.setattr(convergence, "FEWEST_PERIODS", 1.0)
     found = limit_trends((load_scene("fig3-II"), 3))[1]
     assert found.verdict == "like the power 1"
     assert found.slope.exponent == pytest.approx(1.0, abs=0.2)

@@ -1,0 +1,72 @@
+"""What a study finds beside its surfaces: the paper's claims, the scaling test, and what the steps tend to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from comparison.claims import ClaimTable, claims_tested
+from comparison.convergence import convergence_trends
+from comparison.executors import Pool
+from comparison.scaling import scaling_trends
+from comparison.study import Study
+from comparison.trends import Trend
+from reference.problem import builtin_scenes
+
+Trends = list[Trend]
+
+
+def further_findings(study: Study, jobs: int, executor: Pool, say: Callable[[str], None]) -> dict[str, Any]:
+    """Fields of `Findings`: claims (None unless the study has every scene of the paper), scaling, convergence."""
+    claims: ClaimTable | None = None
+    if {scene.name for scene in study.scenes} >= set(builtin_scenes()):
+        say("Testing the paper's claims under readings of what it leaves open.")
+        claims = claims_tested(jobs, executor)
+    say("Scaling loading and friction down, and letting regularisation and compliance vanish.")
+    scaling: Trends = scaling_trends(study, jobs, executor)
+    convergence: Trends = convergence_trends(study, jobs, executor)
+    return {"claims": claims, "scaling": scaling, "convergence": convergence}
+
+
+def claims_summary(table: ClaimTable | None) -> dict[str, Any] | None:
+    """The table of claims for summary.json: readings, verdicts in their order, the best of them, and what none holds."""
+    if table is None:
+        return None
+    return {
+        "grid": table.grid,
+        "readings": [reading.name for reading in table.readings],
+        "reproduced": [table.held(column) for column in range(len(table.readings))],
+        "best": [reading.name for reading in table.best],
+        "never": [f"{claim.figure}: {claim.says}" for claim in table.never],
+        "claims": [
+            {
+                "figure": claim.figure,
+                "says": claim.says,
+                "rule": claim.rule,
+                "weaker": claim.weaker,
+                "verdicts": [{"finding": str(verdict.finding), "found": verdict.found} for verdict in row],
+            }
+            for claim, row in zip(table.claims, table.verdicts)
+        ],
+    }
+
+
+def trends_summary(trends: Trends | None) -> list[dict[str, Any]] | None:
+    """Trends for summary.json; numbers that are NaN are for the caller to replace."""
+    if trends is None:
+        return None
+    return [
+        {
+            "scene": one.scene,
+            "body": one.body,
+            "what": one.what,
+            "parameter": list(one.parameter),
+            "medians": one.medians,
+            "exponent": one.slope.exponent,
+            "uncertainty": one.slope.uncertainty,
+            "points": one.slope.points,
+            "expected": one.expected,
+            "verdict": one.verdict,
+        }
+        for one in trends
+    ]
