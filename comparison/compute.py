@@ -36,7 +36,8 @@ def computed(study: Study, store: TileStore, console: Console, jobs: int, execut
     missing = [place for place in range(len(tiles)) if place not in found]
     stages = _stages(study, tiles, missing)
     if found:
-        console.print(f"{len(found)} of {len(tiles)} tiles are in {store.folder}: only the others are computed.")
+        stored = f"{len(found)} of {len(tiles)} tiles are in {store.folder}: only the others are computed."
+        console.print(stored, soft_wrap=True)  # a path is copied whole
     if missing:
         rest = [tiles[place] for place in missing]
         found |= zip(missing, _solved(study, rest, store, console, stages, jobs, executor))

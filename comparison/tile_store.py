@@ -3,8 +3,8 @@ Every finished tile of a study on disk, so that a run that was ended goes on whe
 
 One directory per surface, named by a hash of scene, model, settings, versions and the models' source
 (`surroundings`), with a `surface.json` that says so in words; in it one file per tile, named by a hash of its phases.
-A file is written aside and renamed, and begins with a hash of what follows: one that is torn or damaged is computed
-again, which also covers a power cut without waiting for the disk at every tile.
+A file is written aside and renamed, and begins with a hash of its name and what follows: one that is torn or damaged
+is computed again, which also covers a power cut without waiting for the disk at every tile.
 """
 
 from __future__ import annotations
@@ -47,8 +47,9 @@ class TileStore:
 
     def get(self, tile: Tile) -> Answer | None:
         """The stored answer to the last bit, or None if there is none or it is damaged."""
+        place = self._place(tile)
         try:
-            answer = _unpacked(self._place(tile).read_bytes(), tile)
+            answer = _unpacked(place.read_bytes(), _name(place), tile)
         except (OSError, ValueError, KeyError):
             return None
         self.kept += 1
@@ -67,7 +68,7 @@ class TileStore:
             if not (place.parent / DESCRIPTION).exists():
                 place.parent.mkdir(parents=True, exist_ok=True)
                 _write(place.parent / DESCRIPTION, _described(tile).encode())
-            _write(place, _packed(answer))
+            _write(place, _packed(answer, _name(place)))
         except OSError as fault:
             raise StoreError(f"{str(self.folder)!r}: a finished tile could not be stored: {fault.strerror}") from None
         self.kept += 1
@@ -131,7 +132,12 @@ def _described(tile: Tile) -> str:
     return json.dumps(content, indent=1, sort_keys=True)
 
 
-def _packed(answer: Answer) -> bytes:
+def _name(place: Path) -> bytes:
+    """What a tile's file is about: surface and phases, as its name has them."""
+    return f"{place.parent.name}/{place.name}".encode()
+
+
+def _packed(answer: Answer, name: bytes) -> bytes:
     content = io.BytesIO()
     np.savez(
         content,
@@ -141,18 +147,18 @@ def _packed(answer: Answer) -> bytes:
         status=np.array(answer.status, dtype=np.str_),
         cost=np.array(answer.cost),
     )
-    return hashlib.sha256(content.getvalue()).digest() + content.getvalue()
+    return hashlib.sha256(name + content.getvalue()).digest() + content.getvalue()
 
 
-def _unpacked(text: bytes, tile: Tile) -> Answer:
+def _unpacked(text: bytes, name: bytes, tile: Tile) -> Answer:
     """The answer written in a tile's file. Raises ValueError or KeyError if that is not what it holds."""
     digest, content = text[:32], text[32:]
-    if hashlib.sha256(content).digest() != digest:
-        raise ValueError("damaged")
+    if hashlib.sha256(name + content).digest() != digest:
+        raise ValueError("damaged, or of another tile")
     with np.load(io.BytesIO(content), allow_pickle=False) as parts:
-        mu, error, instant, status = (parts[name] for name in ("mu", "error", "instant", "status"))
+        mu, error, instant, status = (parts[part] for part in ("mu", "error", "instant", "status"))
         if mu.shape != (len(tile.phases), len(tile.scene.bodies)):
-            raise ValueError("of another tile")
+            raise ValueError("of another shape")
         return Answer(mu, error, status.tolist(), instant, float(parts["cost"]))
 
 

@@ -1,0 +1,142 @@
+"""Killed at any moment, or with a full disk, a run goes on from what is stored, and its numbers are the same bytes."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+from conftest import Run
+from fake_models import fake_ladder
+from rich.console import Console
+
+from comparison.compute import computed
+from comparison.study import Study
+from comparison.tile_store import TileStore, store_beside
+from comparison.tiles import Answer
+from reference.problem import load_scene
+
+HERE = Path(__file__).parent
+INSTANTS = 24
+
+# One process imports everything, then forks a run for every instant: a start of Python would take most of the time.
+# An instant is a random number of finished tiles and a random time after, so that all stages are met on any machine.
+SCRIPT = """
+import os, random, shutil, signal, sys, time
+sys.path[:0] = [{here!r}, {root!r}]
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from rich.console import Console
+from comparison.compute import computed
+from comparison.tile_store import TileStore
+
+from test_killed import study
+
+def run(place):
+    quiet = Console(file=open(os.devnull, "w"))
+    computed(study(), TileStore(place), quiet, 2, ThreadPoolExecutor)
+
+def killed(place, tiles, seconds):
+    child = os.fork()
+    if child == 0:
+        run(place)
+        os._exit(0)
+    while len(list(place.glob("*/*.tile"))) < tiles:
+        time.sleep(0.0005)
+    time.sleep(seconds)
+    os.kill(child, signal.SIGKILL)
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == -signal.SIGKILL
+
+run(Path("whole"))
+draw, count = random.Random(7), 0
+while count < {instants}:
+    place = Path(f"killed{{count}}")
+    if killed(place, draw.randrange(72), draw.uniform(0.0, 0.003)):
+        count += 1
+    else:  # it was done before its end
+        shutil.rmtree(place)
+"""
+
+
+def study() -> Study:
+    """Two models, a file for every point of them."""
+    ladder = [rung for rung in fake_ladder(tile=1) if rung.key in ("small", "translational")]
+    return Study((load_scene("fig3-I"),), 6, 1e-3, ladder)
+
+
+def _computed(study: Study, store: TileStore) -> tuple[list[Answer], int]:
+    """The answers, and how many tiles were there before."""
+    found = computed(study, store, Console(quiet=True), 2, ThreadPoolExecutor)
+    return list(found.answers), found.stored
+
+
+def _bytes(answers: list[Answer]) -> list[object]:
+    return [(a.mu.tobytes(), a.error.tobytes(), a.instant.tobytes(), a.status) for a in answers]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="fork")
+def test_a_run_killed_at_random_instants_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
+    script = SCRIPT.format(here=str(HERE), root=str(HERE.parents[1]), instants=INSTANTS)
+    subprocess.run([sys.executable, "-c", script], cwd=tmp_path, check=True)
+    whole, stored = _computed(study(), TileStore(tmp_path / "whole"))
+    assert stored == len(whole) == 72, "the run that was not killed"
+    anew, _ = _computed(study(), TileStore(tmp_path / "new"))
+    assert _bytes(anew) == _bytes(whole)
+    before = []
+    for count in range(INSTANTS):
+        resumed, stored = _computed(study(), TileStore(tmp_path / f"killed{count}"))
+        assert _bytes(resumed) == _bytes(whole)
+        before.append(stored)
+    assert len(set(before)) > 8, "killed at different stages"
+
+
+def test_the_same_command_computes_nothing_twice_and_fresh_computes_all(command: Callable[..., Run]) -> None:
+    words = ["fig3-I", "--grid", "4"]
+    first = command(*words)
+    assert first.code == 0
+    again = command(*words)
+    assert "only the others are computed" in again.out
+    assert "of 16 points" not in again.out, "no progress: nothing to do"
+    summary = json.loads((again.report / "summary.json").read_text(encoding="utf-8"))["run"]
+    assert summary["tiles_stored_before"] == summary["tiles"] > 0
+    fresh = command(*words, "--fresh")
+    assert "16 of 16 points" in fresh.out
+    summary = json.loads((fresh.report / "summary.json").read_text(encoding="utf-8"))["run"]
+    assert summary["tiles_stored_before"] == 0
+
+
+def test_a_full_disk_is_one_line_exit_3_and_the_run_goes_on_later(
+    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write = Path.write_bytes
+    written: list[Path] = []
+
+    def full(path: Path, content: bytes) -> int:
+        if path.name.endswith(".tile"):
+            written.append(path)
+            if len(written) > 3:
+                write(path, content[:100])  # as much as there was room for
+                raise OSError(errno.ENOSPC, "No space left on device")
+        return write(path, content)
+
+    words = ["fig3-I", "--grid", "4"]
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "write_bytes", full)
+        run = command(*words)
+    assert run.code == 3
+    assert run.err.count("\n") == 1
+    assert "a finished tile could not be stored: No space left on device; 3 of " in run.err
+    assert "go on with: python -m comparison.run fig3-I --grid 4 " in run.err
+    store = store_beside(run.report)
+    assert len(list(store.glob("*/*.tile"))) == 3
+    assert not list(store.glob("*/.aside*"))
+    assert not run.report.exists()
+    again = command(*words)
+    assert again.code == 0
+    assert "only the others are computed" in again.out

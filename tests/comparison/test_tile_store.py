@@ -1,0 +1,134 @@
+"""A stored tile comes back to the last bit, for the very question it answered and no other; the store stays bounded."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from conftest import Run
+from fake_models import fake_ladder
+from rich.console import Console
+
+from comparison.compute import computed
+from comparison.study import Study
+from comparison.surroundings import source_digest
+from comparison.tile_store import TileStore, surface_key
+from comparison.tiles import Answer, solve_tile, unanswered
+from reference.problem import Outcome, load_scene
+
+
+def _study(grid: int = 4) -> Study:
+    return Study((load_scene("fig3-I"),), grid, 1e-3, fake_ladder(tile=1))
+
+
+def _computed(study: Study, store: TileStore) -> tuple[list[Answer], int]:
+    """The answers, and how many tiles were there before."""
+    found = computed(study, store, Console(quiet=True), 2, ThreadPoolExecutor)
+    return list(found.answers), found.stored
+
+
+def _bytes(answers: list[Answer]) -> list[object]:
+    return [(a.mu.tobytes(), a.error.tobytes(), a.instant.tobytes(), a.status) for a in answers]
+
+
+def test_a_tile_belongs_to_scene_model_settings_versions_and_source(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tile = _study().tiles()[0]
+    store = TileStore(tmp_path)
+    store.put(tile, solve_tile(tile))
+    assert store.get(tile) is not None
+    others = {
+        "scene": replace(tile, scene=tile.scene.model_copy(update={"duration": 3.0})),
+        "model": replace(tile, amplification="fake_models:uneven"),
+        "settings": replace(tile, settings={**tile.settings, "tolerance": 2e-6}),
+        "phases": replace(tile, phases=tile.phases + 1e-15),
+    }
+    for name, other in others.items():
+        assert store.get(other) is None, name
+    renamed = tile.scene.model_copy(update={"name": "other", "title": "another title"})
+    assert store.get(replace(tile, scene=renamed)) is not None, "a name changes no number"
+    for name, value in (("_version", "9.9"), ("source_digest", "changed")):
+        with monkeypatch.context() as patch:
+            patch.setattr(f"comparison.surroundings.{name}", lambda package, value=value: value)
+            assert store.get(tile) is None, name
+
+
+def test_changed_source_is_another_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "some_model"
+    package.mkdir()
+    (package / "__init__.py").write_text("a = 1\n", encoding="utf-8")
+    (package / "inner.py").write_text("b = 1\n", encoding="utf-8")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    source_digest.cache_clear()
+    before = source_digest("some_model")
+    (package / "inner.py").write_text("b = 2\n", encoding="utf-8")
+    source_digest.cache_clear()
+    assert source_digest("some_model") != before != "absent"
+    assert source_digest("no_such_package") == "absent"
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [lambda text: b"", lambda text: text[: len(text) // 2], lambda text: text[:-1] + bytes([text[-1] ^ 1])],
+    ids=["empty", "truncated", "one bit"],
+)
+def test_a_damaged_tile_is_computed_again(tmp_path: Path, damage: Callable[[bytes], bytes]) -> None:
+    study, store = _study(), TileStore(tmp_path)
+    whole, _ = _computed(study, store)
+    files = sorted(tmp_path.glob("*/*.tile"))
+    files[0].write_bytes(damage(files[0].read_bytes()))
+    assert sum(TileStore(tmp_path).get(tile) is None for tile in study.tiles()) > 0
+    again, stored = _computed(study, TileStore(tmp_path))
+    assert stored < len(whole)
+    assert _bytes(again) == _bytes(whole)
+    assert all(TileStore(tmp_path).get(tile) is not None for tile in study.tiles()), "and mended"
+
+
+def test_the_file_of_another_tile_is_not_taken_for_this_one(tmp_path: Path) -> None:
+    one, other = _study().tiles()[:2]
+    store = TileStore(tmp_path)
+    store.put(one, solve_tile(one))
+    store._place(one).rename(store._place(other))
+    assert store.get(other) is None
+
+
+def test_what_raised_or_died_is_tried_again(tmp_path: Path) -> None:
+    tile = _study().tiles()[0]
+    store = TileStore(tmp_path)
+    store.put(tile, unanswered(tile, Outcome.WORKER_DIED, "the worker process died 2 times"))
+    assert store.get(tile) is None
+
+
+def test_the_store_is_bounded_and_keeps_what_the_study_needs(tmp_path: Path) -> None:
+    needed = _study().tiles()
+    old, new = (replace(needed[0], settings={"tolerance": tolerance}) for tolerance in (0.01, 0.02))
+    store = TileStore(tmp_path)
+    for age, tile in enumerate((needed[0], old, new)):
+        store.put(tile, solve_tile(tile))
+        os.utime(tmp_path / surface_key(tile), (1000.0 + age, 1000.0 + age))
+    aside = tmp_path / surface_key(new) / ".aside-1-x"
+    aside.write_bytes(b"torn")
+    os.utime(aside, (1000.0, 1000.0))
+    sizes = [sum(4096 for _ in (tmp_path / surface_key(tile)).iterdir()) for tile in (needed[0], old, new)]
+    store.trim(needed, limit=sum(sizes))
+    assert len(list(tmp_path.iterdir())) == 3, "within the limit nothing goes"
+    assert not aside.exists(), "except what a killed run left long ago"
+    store.trim(needed, limit=sizes[0] + sizes[2])
+    assert {entry.name for entry in tmp_path.iterdir()} == {surface_key(needed[0]), surface_key(new)}
+    store.trim(needed, limit=0)
+    assert {entry.name for entry in tmp_path.iterdir()} == {surface_key(needed[0])}
+
+
+def test_what_is_no_store_is_left_alone(command: Callable[..., Run], tmp_path: Path) -> None:
+    foreign = tmp_path / "report.tiles"
+    foreign.mkdir()
+    (foreign / "bathroom.txt").write_text("terracotta", encoding="utf-8")
+    run = command("fig3-I", ladder=fake_ladder("forbidden"))
+    assert run.code == 2
+    assert "'report.tiles' beside it is not a store of tiles of this study: move it away" in run.err
+    assert [entry.name for entry in foreign.iterdir()] == ["bathroom.txt"]
