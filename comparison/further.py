@@ -29,7 +29,7 @@ def further_findings(study: Study, jobs: int, executor: Pool, say: Callable[[str
 
 
 def claims_summary(table: ClaimTable | None) -> dict[str, Any] | None:
-    """The table of claims for summary.json: readings, verdicts in their order, the best of them, and what none holds."""
+    """The table of claims for summary.json: readings, verdicts in their order, the best, and what none reproduces."""
     if table is None:
         return None
     return {
