@@ -10,11 +10,13 @@ import xarray as xr
 
 from comparison.acceptance import broken_limits
 from comparison.budget import Entry, budget
+from comparison.claims import ClaimTable
 from comparison.differences import Difference, differences
 from comparison.effective import Effective
 from comparison.slips import Effect
 from comparison.study import Study
 from comparison.trajectories import StoredMotion
+from comparison.trends import Trend
 
 
 @dataclass(frozen=True)
@@ -23,7 +25,7 @@ class Findings:
     surfaces: see `labelled_surfaces`. rows: differences of pairs of models. budget: what every rung adds. effective:
     values read back from each model. effects: what slips of the print do to mu. broken: acceptance limits, one line
     each. faults: what solvers complained about. run: command, times, provenance. Fields that may be None are what only
-    some commands compute. motions: see `stored_motions`.
+    some commands compute. motions: see `stored_motions`. claims, scaling, convergence: see `further_findings`.
     """
 
     study: Study
@@ -36,6 +38,9 @@ class Findings:
     faults: Sequence[str]
     run: Mapping[str, Any]
     motions: Sequence[StoredMotion] | None = None
+    claims: ClaimTable | None = None
+    scaling: Sequence[Trend] | None = None
+    convergence: Sequence[Trend] | None = None
 
 
 def findings(

@@ -20,10 +20,12 @@ import xarray as xr
 from plotly.offline import get_plotlyjs
 
 from comparison.budget_figure import budget_figure_name, draw_budget
+from comparison.claims import SIGNS
 from comparison.differences import Difference
 from comparison.effective import PHASES
 from comparison.figures import draw_pair, figure_name
 from comparison.findings import Findings
+from comparison.humps import LEAST_SHARE, MOST_SHARE, SHARE
 from comparison.junit import junit
 from comparison.ladder import Pair, pairs_of, rungs_of
 from comparison.page_data import packed, packed_motions, page_data
@@ -62,9 +64,17 @@ class Section:
 SECTIONS = (
     Section("differences", "Differences"),
     Section("budget", "What makes the difference"),
+    Section("scaling", "Scaling test", "scaling", "python -m comparison.run makes it"),
+    Section("convergence", "What the steps tend to", "convergence", "python -m comparison.run makes it"),
     Section("surfaces", "Surfaces"),
     Section("outcomes", "Outcomes and cost"),
     Section("models", "What was compared"),
+    Section(
+        "claims",
+        "The paper's claims",
+        "claims",
+        "python -m comparison.run with every scene of the paper makes it, and python -m comparison.claims alone",
+    ),
     Section("slips", "Slips in the print"),
     Section("effective", "Effective values"),
     Section("verification", "What checks each side alone"),
@@ -125,6 +135,9 @@ def _page(figures: Path, found: Findings) -> str:
         phases=PHASES,
         slips=_slips(found),
         checks=CHECKS,
+        claim_signs=SIGNS,
+        hump_share=SHARE,
+        hump_shares=(LEAST_SHARE, MOST_SHARE),
         outcomes=_outcomes(study, found.surfaces),
         advice=ADVICE,
         broken=found.broken,

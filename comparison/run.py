@@ -23,6 +23,7 @@ from comparison.compute import computed
 from comparison.effective import effective_values
 from comparison.executors import ExecutorLostError, Pool, factory, process_pool
 from comparison.findings import findings
+from comparison.further import further_findings
 from comparison.going_on import command_line, going_on, here
 from comparison.ladder import LADDER, Rung
 from comparison.options import Options, UsageError, parsed
@@ -118,6 +119,7 @@ def _run(
     effects = slip_effects(study, options.jobs, executor)
     console.print("Keeping a few motions of every scene for the report.")
     motions = stored_motions(study, surfaces, options.jobs, executor)
+    further = further_findings(study, options.jobs, executor, console.print)
     titles = {rung.key: rung.title for rung in study.ladder}
     faults = sorted(
         {f"{tile.scene.name}, {titles[tile.rung]}: {a.fault}" for tile, a in zip(tiles, answers) if a.fault}
@@ -133,7 +135,7 @@ def _run(
         "jobs": options.jobs,
         "provenance": provenance(),
     }
-    found = findings(study, surfaces, effective, effects, faults, run, motions=motions)
+    found = findings(study, surfaces, effective, effects, faults, run, motions=motions, **further)
     console.print("Drawing the figures and writing the report.")
     with replaced_when_complete(options.out) as folder:
         write_report(folder, found)

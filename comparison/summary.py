@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from comparison.findings import Findings
+from comparison.further import claims_summary, trends_summary
 from comparison.ladder import rungs_of
 from comparison.slips import SLIPS
 from comparison.surfaces import common_phases
@@ -33,7 +34,8 @@ def summary(found: Findings) -> dict[str, Any]:
     schema, version; run (command, times, provenance); grid, tolerance; models (key, title, adds, settings); scenes
     (name, title, digest, models: outcomes and cost in s; differences: one entry per pair and body, see `Difference`;
     budget: one per body and step, see `Entry`; effective: one per model, see `Effective`); slips (see `Slip` and
-    `Effect`); broken (acceptance limits, one line each); faults (what solvers complained about).
+    `Effect`); claims (see `ClaimTable`; null without the paper's scenes), scaling and convergence (see `Trend`);
+    broken (acceptance limits, one line each); faults (what solvers complained about).
     """
     study = found.study
     return {
@@ -58,6 +60,9 @@ def summary(found: Findings) -> dict[str, Any]:
             }
             for number, slip in enumerate(SLIPS)
         ],
+        "claims": claims_summary(found.claims),
+        "scaling": _finite(trends_summary(found.scaling)),
+        "convergence": _finite(trends_summary(found.convergence)),
         "broken": list(found.broken),
         "faults": list(found.faults),
     }

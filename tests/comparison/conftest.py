@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from fake_models import fake_ladder, known_motions
+from known_further import known_further
 
 import comparison.run
 from comparison import report
@@ -34,6 +35,7 @@ def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pyte
         monkeypatch.setattr(report, name, lambda path, *rest: path.write_bytes(b"a quick figure"))
     monkeypatch.setattr(comparison.run, "slip_effects", lambda *rest: [])  # it asks no model of the ladder
     monkeypatch.setattr(comparison.run, "stored_motions", lambda *rest: [])
+    monkeypatch.setattr(comparison.run, "further_findings", lambda *rest: {})
 
     def run(
         *words: str, ladder: Sequence[Rung] | None = None, executor: Callable[[int], Executor] = ThreadPoolExecutor
@@ -55,5 +57,6 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(comparison.run, "slip_effects", lambda *rest: effects)
         patch.setattr(comparison.run, "stored_motions", known_motions)
+        patch.setattr(comparison.run, "further_findings", known_further)
         assert main(words, fake_ladder(), ThreadPoolExecutor) == 0
     return place
