@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,6 +24,14 @@ def contact_law(scene: Scene, regularization: float | None, units: Units) -> tup
     if regularization is None:
         return scene.friction_coefficient, 1.0
     return scene.friction_coefficient, regularization / units.velocity
+
+
+def corner_and_relaxation(scene: Scene, regularization: float | None, units: Units) -> tuple[float, float]:
+    """Slip speed below which the law is linear, and the time in which such a slip of the platform dies out."""
+    friction, threshold = contact_law(scene, regularization, units)
+    if scene.lubricated or friction == 0.0:
+        return math.inf, math.inf
+    return threshold, float(scene.masses[0]) / scene.total_mass * threshold / friction
 
 
 def pressed_in(offset: Array, speed: Array, ground: Array, penetration: float) -> tuple[Array, Array, float, float]:

@@ -18,31 +18,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.integrate import Engine, Motion
+from multibody.level import RATIO, Level
 from multibody.peak import Peaks
 from multibody.system import EngineState
 from reference.problem import Outcome
 
 Array = NDArray[np.float64]
 
-RATIO = 4  # between neighbouring step sizes
-DEEPEST = 7  # smallest step is RATIO**-DEEPEST of the largest
 SETTLING = 2  # depth of the first chunk: the contact settles
 LONG, SHORT = 256, 32  # steps in a chunk at the largest step at most, at smaller ones
 STEPS_OF_RATE = 4  # over which the rate of a gap is taken
 LATEST = 8  # rows at the end of a chunk that decide whether the step may grow
-ALLOWANCE = 100  # times the number of largest steps in the run, before it is given up
 
 
-@dataclass(frozen=True)
-class Control:
-    """
-    step: the largest, in units of time. turn: allowed change of the slip velocity in one step, as its fraction.
-    penetration: of the contact, for which the model was stiffened.
-    """
+@dataclass
+class Budget:
+    """Steps left to all runs of one point."""
 
-    step: float
-    turn: float
-    penetration: float
+    left: float
 
 
 @dataclass
@@ -62,33 +55,37 @@ def march(
     start: EngineState,
     end: float,
     ground: Callable[[Array], Array],
-    control: Control,
+    level: Level,
+    budget: Budget,
     *,
     keep: bool = False,
 ) -> March:
     """Run from `start` at time 0 to `end`; ground: plate's acceleration (T, 3) at times (T,), in units of the model."""
     model = engine.model
     result = March(Peaks(len(model.bodies), model.corner))
+    if budget.left * level.step < end:
+        return _ended(result, Outcome.STEP_LIMIT, 0.0)
     state, time, depth, ahead = start, 0.0, SETTLING, LONG
     while time < end * (1.0 - 1e-12):
-        step = control.step / RATIO**depth
+        step = level.step / RATIO**depth
         count = ahead if depth == 0 else SHORT
         count = min(count, math.ceil((end - time) / step * (1.0 - 1e-12)))
         step = min(step, (end - time) / count)
         motion = engine.run(state, time, step, count)
         result.runs += 1
         result.steps += count
-        if result.steps * control.step > ALLOWANCE * end:
+        budget.left -= count
+        if budget.left < 0.0:
             return _ended(result, Outcome.STEP_LIMIT, time)
         if motion is None or not np.isfinite(motion.accelerations).all():
-            if depth == DEEPEST:
+            if depth == level.deepest:
                 return _ended(result, Outcome.SOLVER_FAILED, time)
             depth += 1
             continue
-        excess = _excess(motion, engine, step / control.turn)
+        excess = _excess(motion, engine, step / level.turn)
         last = len(motion.time) - 1
         failing = np.flatnonzero(excess > 1.0)
-        refused = depth < DEEPEST and len(failing) > 0
+        refused = depth < level.deepest and len(failing) > 0
         if refused:
             last = max(int(failing[0]) - 1, 0)
         if last > 0:
@@ -101,12 +98,12 @@ def march(
             absolute = kept.accelerations[:, model.bodies] + ground(kept.time)[:, None, :]
             result.peaks.add(kept.time, absolute, kept.slip)
             state, time = kept.state(last), float(kept.time[last])
-            ahead = _steps_ahead(kept, engine, control)
+            ahead = _steps_ahead(kept, engine, level)
             if refused:
-                state = model.settle(state, _gap_rate(kept), control.penetration)
+                state = model.settle(state, _gap_rate(kept), level.penetration)
         if refused:
             depth += 1 if excess[failing[0]] < RATIO else 2
-            depth = min(depth, DEEPEST)
+            depth = min(depth, level.deepest)
         elif depth > 0 and excess[-LATEST:].max() * RATIO < 1.0:
             depth -= 1
     return result
@@ -139,7 +136,7 @@ def _gap_rate(motion: Motion) -> Array:
     return rate
 
 
-def _steps_ahead(motion: Motion, engine: Engine, control: Control) -> int:
+def _steps_ahead(motion: Motion, engine: Engine, level: Level) -> int:
     """How many of the largest steps to try: up to where the slip speed, going on as now, asks for smaller ones."""
     corner = engine.model.corner
     if len(motion.time) < 2 or not np.isfinite(corner):
@@ -149,10 +146,10 @@ def _steps_ahead(motion: Motion, engine: Engine, control: Control) -> int:
     target = corner
     if slip[1] > corner:
         size = float(np.linalg.norm(motion.accelerations[-1, engine.model.bodies[0]]))
-        target = max(corner, size * control.step / control.turn)
+        target = max(corner, size * level.step / level.turn)
     if (target - slip[1]) * rate <= 0.0:
         return LONG
-    return int(np.clip((target - slip[1]) / rate / control.step, SHORT, LONG))
+    return int(np.clip((target - slip[1]) / rate / level.step, SHORT, LONG))
 
 
 def _fate(motion: Motion, engine: Engine) -> tuple[Outcome, int]:

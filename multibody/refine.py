@@ -1,40 +1,31 @@
 """
 One phase pair to a tolerance: the whole run at successive levels of accuracy, and an error from their differences.
 
-From one level to the next everything the answer depends on becomes better at once: the step, the largest and that at
-stops, by two; the compliance of the contact and the tolerance of Newton's iteration by four. Peaks in smooth motion
-converge by four, those at stops by two to four (measured), so that the difference of two levels, at the factor seen or
-at two, is the error of the finer one from all these sources together.
+The difference of two levels, at the factor seen or at two, is the error of the finer one from step, contact and
+Newton's iteration together. Where rounding forbids a stiffer contact the levels share one, and what its compliance
+leaves is told by one more run with a softer contact.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from multibody.estimate import from_compliance, from_levels
 from multibody.integrate import Engine
-from multibody.march import Control, March, march
+from multibody.level import FALL, Level, levels
+from multibody.march import Budget, March, march
 from multibody.system import EngineModel
-from multibody.units import link_stiffness
 from reference.problem import Outcome, Scene, State, ground_acceleration
 
 Array = NDArray[np.float64]
 
-LEVELS = 8
-STEPS_PER_PERIOD = 150  # of the fastest motion that matters, at level 0
-STATIC = 0.02  # of the shortest period of loading and pendulum: faster links follow without swinging
-TURN = 0.14  # allowed change of the slip velocity in one step at level 0, as its fraction
-PENETRATION = 1e-6  # of rho, at level 0
-STIFFEST = 1e-8  # of rho: rounding of the position is then 2e-8 of the weight
-NEWTON = 1e-5  # relative tolerance of the forces, at level 0
-ROUNDING = 1e-15  # of the position, in units of rho; over the penetration: of the forces
-SAFETY_TWO, SAFETY_MORE = 1.5, 1.25  # on the error that two levels, and three or more, show (Roache)
-SLOWEST, FASTEST = 2.0, 4.0  # factor by which a level reduces the error: at stops, in smooth motion
-CHANCE = 4e-4  # relative: what level 0 typically gets wrong; two levels may agree by chance, so no estimate is smaller
-FLOOR = 1e-6  # relative: below this, rounding and the compliance that is left are not measured
+WORK = 4e7  # steps times coordinates of all runs of one point, before it is given up: minutes
+UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
+GROWTH = 2.0  # steps of a level over those of the one before, at most
 
 
 @dataclass(frozen=True)
@@ -53,21 +44,6 @@ class Refined:
     finest: March
 
 
-def largest_step(scene: Scene, model: EngineModel) -> float:
-    """Step of level 0 in units of the model, from the shortest period of the loading, the pendulum and the chain."""
-    slow = [period / model.units.time for period in scene.excitation.periods] + [2.0 * math.pi]
-    masses = scene.masses / model.units.mass
-    fastest = math.inf
-    for axis in range(2):
-        stiffness = np.zeros((len(masses), len(masses)))
-        stiffness[0, 0] = 1.0  # the pendulum carries all bodies
-        for link, k in enumerate(link_stiffness(scene, model.units)[:, axis]):
-            stiffness[link : link + 2, link : link + 2] += k * np.array([[1.0, -1.0], [-1.0, 1.0]])
-        scaled = stiffness / np.sqrt(np.outer(masses, masses))
-        fastest = min(fastest, 2.0 * math.pi / math.sqrt(float(np.linalg.eigvalsh(scaled)[-1])))
-    return min(max(fastest, STATIC * min(slow)), *slow) / STEPS_PER_PERIOD
-
-
 def refine(
     scene: Scene,
     model: EngineModel,
@@ -79,58 +55,56 @@ def refine(
 ) -> Refined:
     """Peaks of the absolute accelerations for one phase pair (2,), rad, with a relative error below `tolerance`."""
     units = model.units
-    step, end = largest_step(scene, model), scene.duration / units.time
+    end = scene.duration / units.time
     model.ground.set_phase(phase)
     first = ground_acceleration(scene, phase, [0.0])[0]
-    marches: list[March] = []
+    budget = Budget(WORK / model.coordinates)
+    plan = levels(scene, model, tolerance)
 
     def ground(time: Array) -> Array:
         return ground_acceleration(scene, phase, time * units.time) / units.acceleration
 
-    for level in range(LEVELS):
-        penetration = max(PENETRATION / 4.0**level, STIFFEST)
-        model.stiffen(penetration)
-        newton = NEWTON / 4.0**level
-        engine = Engine(model, newton, max(1e-3 * newton, ROUNDING / penetration))
-        control = Control(step / 2.0**level, TURN / 2.0**level, penetration)
-        marches.append(march(engine, model.start(initial, first, penetration), end, ground, control, keep=keep))
-        if level == 0:
+    def run(level: Level) -> March:
+        model.stiffen(level.penetration)
+        engine = Engine(model, level.newton, level.absolute)
+        return march(engine, model.start(initial, first, level.penetration), end, ground, level, budget, keep=keep)
+
+    marches: list[March] = []
+    best: tuple[March, Array] | None = None
+    for number, level in enumerate(plan):
+        if marches and budget.left < GROWTH * marches[-1].steps:
+            break
+        now = run(level)
+        marches.append(now)
+        if now.outcome in UNFINISHED:
+            if best is not None:
+                break
             continue
-        before, now = marches[-2:]
-        if before.outcome != now.outcome:
+        best = None
+        if number == 0 or marches[-2].outcome != now.outcome:
             continue
+        marches[-2].chunks.clear()
         if now.outcome != Outcome.OK:
-            return _refused(model, now, now.outcome, now.instant * units.time)
-        errors = _errors(marches)
+            break
+        finished = [past.peaks for past in marches[-3:] if past.outcome == Outcome.OK]
+        errors = from_levels(finished, plan[: number + 1], model)
+        if (errors <= tolerance * now.peaks.value).all() and level.penetration == plan[number - 1].penetration:
+            softer = replace(level, penetration=FALL * level.penetration)
+            errors = errors + from_compliance(now.peaks, run(softer), softer, model)
+        best = now, errors
         if (errors <= tolerance * now.peaks.value).all():
-            return Refined(now.peaks.value * units.acceleration, errors * units.acceleration, Outcome.OK, math.nan, now)
-    if before.outcome != Outcome.OK or now.outcome != Outcome.OK:
-        failed = now if now.outcome != Outcome.OK else before
-        return _refused(model, failed, failed.outcome, failed.instant * units.time)
-    return Refined(
-        now.peaks.value * units.acceleration,
-        errors * units.acceleration,
-        Outcome.TOLERANCE_NOT_MET,
-        float(now.peaks.instant[(errors / now.peaks.value).argmax()]) * units.time,
-        now,
-    )
-
-
-def _errors(marches: list[March]) -> Array:
-    """Estimated errors of the last march's peaks, in units of the model."""
-    now, before = marches[-1].peaks, marches[-2].peaks
-    change = np.abs(now.value - before.value)
-    safety, rate = SAFETY_TWO, np.full_like(change, SLOWEST)
-    if len(marches) > 2 and marches[-3].outcome == Outcome.OK:
-        earlier = np.abs(before.value - marches[-3].peaks.value)
-        change = np.maximum(change, earlier / FASTEST)  # guards against two levels that agree by chance
-        safety, rate = SAFETY_MORE, np.clip(earlier / np.maximum(change, np.finfo(float).tiny), SLOWEST, FASTEST)
-    level = len(marches) - 1
-    likely = np.maximum(safety * change / (rate - 1.0), CHANCE / 4.0**level * now.value)
-    errors: Array = likely + now.sampling + FLOOR * now.value
-    return errors
-
-
-def _refused(model: EngineModel, finest: March, outcome: Outcome, instant: float) -> Refined:
+            return _answer(model, now, errors, Outcome.OK)
+    if best is not None:
+        return _answer(model, *best, Outcome.TOLERANCE_NOT_MET)
+    # levels that do not agree, or end alike: by how the first of the last two that has no answer ends
+    failed = next(past for past in marches[:-3:-1] if past.outcome != Outcome.OK)
     nothing = np.full(len(model.bodies), np.nan)
-    return Refined(nothing, nothing, outcome, instant, finest)
+    return Refined(nothing, nothing, failed.outcome, failed.instant * units.time, failed)
+
+
+def _answer(model: EngineModel, finest: March, errors: Array, outcome: Outcome) -> Refined:
+    """Peaks with their errors, and where the largest of them is if they miss the tolerance."""
+    peaks = finest.peaks
+    worst = float(peaks.instant[(errors / peaks.value).argmax()]) * model.units.time
+    unit = model.units.acceleration
+    return Refined(peaks.value * unit, errors * unit, outcome, math.nan if outcome == Outcome.OK else worst, finest)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.contact import DAMPING, contact_law, pressed_in
+from multibody.contact import DAMPING, contact_law, corner_and_relaxation, pressed_in
 from multibody.engine import exudyn, items
 from multibody.loading import SymbolicGround, symbolic_load
 from multibody.recorders import recorded
@@ -104,9 +104,11 @@ def spatial(scene: Scene, regularization: float | None, *, contact_force: bool =
     def settle(state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
         return state
 
-    corner = np.inf if scene.lubricated or friction == 0.0 else threshold
+    corner, relaxation = corner_and_relaxation(scene, regularization, units)
     keep = (container, expressions)
-    return EngineModel(mbs, units, ground, recorders, index, stiffen, start, settle, 1.0, corner, True, keep)
+    return EngineModel(
+        mbs, units, ground, recorders, index, stiffen, start, settle, 1.0, corner, relaxation, True, keep
+    )
 
 
 def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:

@@ -45,8 +45,9 @@ class EngineModel:
     weight presses it in by a given fraction of rho. start: state from an initial state (None: at rest), the plate's
     acceleration then, m/s^2, and the same fraction. settle: state to go on from with a smaller step, from the last one,
     the rate of each gap (K,) and the same fraction. rim: largest rise of the platform, in units of length. corner: slip
-    speed in units of velocity under which the friction law is linear; inf if it has no such corner. liftoff: whether
-    the model goes on when every contact is open. keep_alive: what the engine only points to.
+    speed in units of velocity under which the friction law is linear; inf if it has no such corner. relaxation: time in
+    which a slip below it dies out, in units of time; inf likewise. liftoff: whether the model goes on when every
+    contact is open. keep_alive: what the engine only points to.
     """
 
     mbs: Any
@@ -59,5 +60,11 @@ class EngineModel:
     settle: Callable[[EngineState, Array, float], EngineState]
     rim: float
     corner: float
+    relaxation: float
     liftoff: bool
     keep_alive: tuple[Any, ...]
+
+    @property
+    def coordinates(self) -> int:
+        """Number of the system's coordinates."""
+        return int(self.mbs.systemData.ODE2Size())

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.contact import DAMPING, contact_law, pressed_in, settled
+from multibody.contact import DAMPING, contact_law, corner_and_relaxation, pressed_in, settled
 from multibody.engine import exudyn, items
 from multibody.loading import SymbolicGround, symbolic_load
 from multibody.recorders import recorded
@@ -91,9 +91,21 @@ def translational(scene: Scene, regularization: float | None, *, contact_force: 
     def settle(state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
         return settled(state, float(gap_rate[0]), penetration)
 
-    corner = np.inf if scene.lubricated or friction == 0.0 else threshold
+    corner, relaxation = corner_and_relaxation(scene, regularization, units)
     return EngineModel(
-        mbs, units, ground, recorders, bodies, stiffen, start, settle, 1.0, corner, False, (container, expressions)
+        mbs,
+        units,
+        ground,
+        recorders,
+        bodies,
+        stiffen,
+        start,
+        settle,
+        1.0,
+        corner,
+        relaxation,
+        False,
+        (container, expressions),
     )
 
 

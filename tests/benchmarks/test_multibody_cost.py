@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import multibody
-from multibody import refine
+from multibody import level
 from multibody.integrate import Engine
 from reference.problem import load_scene
 
@@ -88,7 +88,7 @@ def test_building_and_reading_back_take_at_most_a_tenth_of_the_solve(monkeypatch
 
 @pytest.mark.long
 def test_ten_thousand_short_runs_leave_no_memory_behind(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(refine, "LEVELS", 2)
+    monkeypatch.setattr(level, "LEVELS", 2)
     scene = short(0.02)
     phases = np.random.default_rng(5).uniform(0.0, 2.0 * np.pi, (10_000, 2))
 

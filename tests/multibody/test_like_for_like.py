@@ -42,6 +42,29 @@ def test_a_whole_surface_lies_within_its_errors(scene: str, tolerance: float, co
     assert (np.median(gap / equations.mu, axis=0) <= 1e-4).all()
 
 
+@pytest.mark.parametrize("regularization", [1e-4, 1e-5])
+def test_a_sharp_corner_of_the_law_asks_for_a_contact_that_is_as_quick(regularization: float) -> None:
+    # the contact of 1e-6 rho is 3 or 30 times slower than the friction relaxes: off by 1.4e-4 and 7e-4, estimate less
+    scene, phase = changed(load_scene("fig3-I"), duration=4.0), PHASES[:1]
+    engine = multibody.amplification(scene, phase, regularization=regularization)
+    equations = reference.amplification(scene, phase, equations="exact", regularization=regularization)
+    assert engine.status.tolist() == [Outcome.OK]
+    assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
+    np.testing.assert_allclose(engine.mu, equations.mu, rtol=8e-5)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("scene", ["fig3-I", "fig3-II"])
+def test_errors_hold_where_v_reg_is_small(scene: str) -> None:
+    phases = np.vstack([PHASES[:1], np.random.default_rng(3).uniform(0.0, 2.0 * np.pi, (15, 2))])
+    engine = multibody.amplification(load_scene(scene), phases, regularization=1e-4)
+    equations = reference.amplification(
+        load_scene(scene), phases, equations="exact", regularization=1e-4, tolerance=1e-6
+    )
+    assert (engine.status == Outcome.OK).all()
+    assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
+
+
 def test_a_smaller_tolerance_is_met_by_refinement() -> None:
     scene = changed(load_scene("fig3-I"), duration=4.0)
     equations = reference.amplification(scene, PHASES[:1], equations="exact", regularization=V_REG)
@@ -80,8 +103,8 @@ def test_a_million_times_the_mass_gives_the_same_factors() -> None:
 
     light = factors(1.0)
     np.testing.assert_array_equal(factors(2.0**20), light)  # a power of two rounds nothing
-    # the last digit of the link stiffness, 1e-16, grows where a slide begins: 1e-10 was seen
-    np.testing.assert_allclose(factors(1e6), light, rtol=1e-8)
+    # the last digit of the link stiffness, 1e-16, grows where a slide begins and in the contact: 2e-8 was seen
+    np.testing.assert_allclose(factors(1e6), light, rtol=1e-7)
 
 
 def test_phases_do_not_depend_on_their_neighbours_in_one_call() -> None:

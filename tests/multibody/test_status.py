@@ -8,7 +8,7 @@ from scenes_at_hand import CONSTANT, changed, one_body
 from scipy.integrate import solve_ivp
 
 import multibody
-from multibody import march
+from multibody import refine
 from reference.problem import GRAVITY, Outcome, load_scene
 
 
@@ -59,7 +59,7 @@ def test_a_plate_at_rest_has_no_amplification() -> None:
 
 
 def test_a_run_that_asks_for_too_many_steps_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(march, "ALLOWANCE", 0.5)
+    monkeypatch.setattr(refine, "WORK", 200.0)
     result = multibody.amplification(one_body(amplitudes=[[1.0, 0.0], [0.0, 1.0]]), [(0.0, 0.0)])
     assert result.status[0] == Outcome.STEP_LIMIT
     assert np.isnan(result.mu).all()

@@ -1,0 +1,94 @@
+"""
+Levels of accuracy: from one to the next everything the answer depends on becomes better at once.
+
+The step, the largest and that at stops, falls by two; the compliance of the contact and the tolerance of Newton's
+iteration by four. The contact follows a change of the force it must carry within sqrt(penetration) units of time. At a
+stop that force changes within the time in which regularised friction relaxes, share * v_reg / mu: the contact must be
+faster, or the friction limit it gives is the one of a moment ago. Then its error at the corner of the law is in
+proportion to x / (1 + x), x = sqrt(penetration) / relaxation, the answer of a first-order lag to an exponential.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from multibody.system import EngineModel
+from multibody.units import link_stiffness
+from reference.problem import Scene
+
+LEVELS = 8
+STEPS_PER_PERIOD = 150  # of the fastest motion that matters, at level 0
+STATIC = 0.02  # of the shortest period of loading and pendulum: faster links follow without swinging
+TURN = 0.14  # allowed change of the slip velocity in one step at level 0, as its fraction
+PENETRATION = 1e-6  # of rho, at level 0 and most
+LAG = 0.3  # x at level 0 where rounding allows: from there on a level halves the contact's error (measured)
+NEWTON = 1e-5  # relative tolerance of the forces, at level 0
+ROUNDING = 1e-15  # of the position, in units of rho; over the penetration: of the forces, in weights
+NOISE = 0.25  # share of the tolerance that rounding of the forces may take
+PEAK = 0.2  # of g: the peak for which it does
+FALL = 4.0  # of the penetration from level to level
+RATIO = 4  # between neighbouring step sizes
+SHALLOWEST, FINEST = 7, 0.05  # step sizes below the largest, at least; the smallest in allowed steps at a stop
+
+
+@dataclass(frozen=True)
+class Level:
+    """
+    step: the largest, in units of time. turn: allowed change of the slip velocity in one step, as its fraction.
+    penetration: of the contact under the weight, of rho. newton: relative tolerance of the forces. deepest: how often
+    the largest step may be divided by `RATIO`.
+    """
+
+    step: float
+    turn: float
+    penetration: float
+    newton: float
+    deepest: int
+
+    @property
+    def absolute(self) -> float:
+        """Smallest residual that Newton's iteration is asked for, in weights."""
+        return max(1e-3 * self.newton, self.rounding)
+
+    @property
+    def rounding(self) -> float:
+        """Of the contact force, in weights."""
+        return ROUNDING / self.penetration
+
+
+def largest_step(scene: Scene, model: EngineModel) -> float:
+    """Step of level 0 in units of the model, from the shortest period of the loading, the pendulum and the chain."""
+    slow = [period / model.units.time for period in scene.excitation.periods] + [2.0 * math.pi]
+    masses = scene.masses / model.units.mass
+    fastest = math.inf
+    for axis in range(2):
+        stiffness = np.zeros((len(masses), len(masses)))
+        stiffness[0, 0] = 1.0  # the pendulum carries all bodies
+        for link, k in enumerate(link_stiffness(scene, model.units)[:, axis]):
+            stiffness[link : link + 2, link : link + 2] += k * np.array([[1.0, -1.0], [-1.0, 1.0]])
+        scaled = stiffness / np.sqrt(np.outer(masses, masses))
+        fastest = min(fastest, 2.0 * math.pi / math.sqrt(float(np.linalg.eigvalsh(scaled)[-1])))
+    return min(max(fastest, STATIC * min(slow)), *slow) / STEPS_PER_PERIOD
+
+
+def levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
+    """All levels for a relative error of `tolerance`; the penetration stays where rounding would take over."""
+    step = largest_step(scene, model)
+    stiffest = min(ROUNDING / (NOISE * PEAK * tolerance), PENETRATION / FALL)
+    softest = float(np.clip((LAG * model.relaxation) ** 2, stiffest, PENETRATION))
+    stiffenings = math.floor(math.log(softest / stiffest, FALL) + 1e-9)
+    at_stop = FINEST * TURN * model.relaxation
+    deepest = max(SHALLOWEST, math.ceil(math.log(step / at_stop, RATIO))) if at_stop < step else SHALLOWEST
+    return [
+        Level(
+            step / 2.0**level,
+            TURN / 2.0**level,
+            softest / FALL ** min(level, stiffenings),
+            NEWTON / 4.0**level,
+            deepest,
+        )
+        for level in range(LEVELS)
+    ]
