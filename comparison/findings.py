@@ -9,6 +9,7 @@ from typing import Any
 import xarray as xr
 
 from comparison.acceptance import broken_limits
+from comparison.assumptions import Reach
 from comparison.budget import Entry, budget
 from comparison.claims import ClaimTable
 from comparison.differences import Difference, differences
@@ -26,6 +27,7 @@ class Findings:
     values read back from each model. effects: what slips of the print do to mu. broken: acceptance limits, one line
     each. faults: what solvers complained about. run: command, times, provenance. Fields that may be None are what only
     some commands compute. motions: see `stored_motions`. claims, scaling, convergence: see `further_findings`.
+    assumptions: how far the paper's carry, see `Reach`.
     """
 
     study: Study
@@ -41,6 +43,7 @@ class Findings:
     claims: ClaimTable | None = None
     scaling: Sequence[Trend] | None = None
     convergence: Sequence[Trend] | None = None
+    assumptions: Reach | None = None
 
 
 def findings(

@@ -19,6 +19,7 @@ import numpy as np
 import xarray as xr
 from plotly.offline import get_plotlyjs
 
+from comparison.assumption_figure import assumption_figure_name, draw_assumptions
 from comparison.budget_figure import budget_figure_name, draw_budget
 from comparison.claims import SIGNS
 from comparison.differences import Difference
@@ -61,6 +62,13 @@ class Section:
         return not self.finding or getattr(found, self.finding) is not None
 
 
+def draw_all_assumptions(figures: Path, found: Findings) -> None:
+    """The picture of every scene that has a spatial model."""
+    if found.assumptions:
+        for scene in found.assumptions.scenes:
+            draw_assumptions(figures / assumption_figure_name(scene), scene, found.assumptions.cells)
+
+
 SECTIONS = (
     Section("differences", "Differences"),
     Section("budget", "What makes the difference"),
@@ -76,6 +84,13 @@ SECTIONS = (
         "python -m comparison.run with every scene of the paper makes it, and python -m comparison.claims alone",
     ),
     Section("slips", "Slips in the print"),
+    Section(
+        "assumptions",
+        "How far the paper's assumptions carry",
+        "assumptions",
+        "no scene says where its supports are and how high and large its bodies: the spatial model needs that",
+        draw_all_assumptions,
+    ),
     Section("effective", "Effective values"),
     Section("verification", "What checks each side alone"),
     Section("provenance", "Provenance"),

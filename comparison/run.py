@@ -18,6 +18,7 @@ from datetime import UTC, datetime
 
 from rich.console import Console
 
+from comparison.assumptions import Reach
 from comparison.cluster import cluster
 from comparison.compute import computed
 from comparison.effective import effective_values
@@ -120,6 +121,8 @@ def _run(
     console.print("Keeping a few motions of every scene for the report.")
     motions = stored_motions(study, surfaces, options.jobs, executor)
     further = further_findings(study, options.jobs, executor, console.print)
+    console.print("Varying supports and heights to see how far the paper's assumptions carry.")
+    assumptions = Reach.of(study, options.jobs, executor)
     titles = {rung.key: rung.title for rung in study.ladder}
     faults = sorted(
         {f"{tile.scene.name}, {titles[tile.rung]}: {a.fault}" for tile, a in zip(tiles, answers) if a.fault}
@@ -135,7 +138,9 @@ def _run(
         "jobs": options.jobs,
         "provenance": provenance(),
     }
-    found = findings(study, surfaces, effective, effects, faults, run, motions=motions, **further)
+    found = findings(
+        study, surfaces, effective, effects, faults, run, motions=motions, assumptions=assumptions, **further
+    )
     console.print("Drawing the figures and writing the report.")
     with replaced_when_complete(options.out) as folder:
         write_report(folder, found)

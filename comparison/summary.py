@@ -35,7 +35,8 @@ def summary(found: Findings) -> dict[str, Any]:
     (name, title, digest, models: outcomes and cost in s; differences: one entry per pair and body, see `Difference`;
     budget: one per body and step, see `Entry`; effective: one per model, see `Effective`); slips (see `Slip` and
     `Effect`); claims (see `ClaimTable`; null without the paper's scenes), scaling and convergence (see `Trend`);
-    broken (acceptance limits, one line each); faults (what solvers complained about).
+    assumptions (see `Reach`; null without a spatial model); broken (acceptance limits, one line each);
+    faults (what solvers complained about).
     """
     study = found.study
     return {
@@ -60,6 +61,7 @@ def summary(found: Findings) -> dict[str, Any]:
             }
             for number, slip in enumerate(SLIPS)
         ],
+        "assumptions": found.assumptions and _finite(found.assumptions.listed()),
         "claims": claims_summary(found.claims),
         "scaling": _finite(trends_summary(found.scaling)),
         "convergence": _finite(trends_summary(found.convergence)),

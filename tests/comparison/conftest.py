@@ -31,7 +31,7 @@ class Run:
 @pytest.fixture
 def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Run]:
     """The command line with fake models in threads of this process and quick figures; --out in an empty directory."""
-    for name in ("draw_pair", "draw_budget", "draw_paper_figure"):
+    for name in ("draw_pair", "draw_budget", "draw_assumptions", "draw_paper_figure"):
         monkeypatch.setattr(report, name, lambda path, *rest: path.write_bytes(b"a quick figure"))
     monkeypatch.setattr(comparison.run, "slip_effects", lambda *rest: [])  # it asks no model of the ladder
     monkeypatch.setattr(comparison.run, "stored_motions", lambda *rest: [])

@@ -29,7 +29,7 @@ def test_check_exits_1_and_names_scene_body_key_found_and_limit(command: Callabl
 def test_without_check_a_broken_limit_is_reported_but_not_an_exit_code(command: Callable[..., Run]) -> None:
     run = command(*SMALL, ladder=fake_ladder(gap=5e-4))
     assert run.code == 0
-    assert "Acceptance limits broken" in (run.report / "index.html").read_text(encoding="utf-8")
+    assert "acceptance limits broken" in (run.report / "index.html").read_text(encoding="utf-8")
 
 
 def test_plan_computes_and_writes_nothing(command: Callable[..., Run]) -> None:

@@ -124,7 +124,7 @@ def test_every_body_of_every_scene_has_its_figures(finished: Path) -> None:
         for body in (1, 2)
         for pair in ("total", "translational", "like-for-like", "budget")
     }
-    paper = {"fig3-I-paper", "fig4-viscous-paper"}
+    paper = {f"{scene}-{kind}" for scene in ("fig3-I", "fig4-viscous") for kind in ("paper", "assumptions")}
     files = {f"{name}.{kind}" for name in expected | paper for kind in ("png", "pdf")}
     assert {entry.name for entry in (finished / "figures").iterdir()} == files
     assert all((finished / "figures" / name).read_bytes().startswith(b"%PDF") for name in files if "pdf" in name)

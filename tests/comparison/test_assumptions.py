@@ -1,0 +1,146 @@
+"""How far the assumptions carry: variations vary what they say, nothing is claimed without a value, ranges stop at the
+first variation that fails, and the real models show that turning fades with the heights over the ring."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fake_models import fake_ladder
+from matplotlib.image import imread
+
+from comparison.assumption_figure import assumption_figure_name, draw_assumptions
+from comparison.assumptions import ASSUMPTIONS, Reach, main, said
+from comparison.ladder import LADDER
+from comparison.study import Study
+from comparison.variations import FEW, MANY, PHASES, Cell, Variation, assumption_cells, ranges
+from reference.problem import Scene, load_scene, parse_scene
+
+STATED = load_scene("fig3-I")
+BARE = parse_scene(
+    b"""title = "no word about supports"
+duration = 1.0
+isolator = {period = 1.0, friction = 0.1}
+bodies = [{mass = 1.0}]
+excitation = {amplitudes = [[1.0, 0.0], [0.0, 1.0]], periods = [0.9, 1.1], decay = [0.0, 0.0]}""",
+    "bare.toml",
+)
+
+
+def _cell(variation: Variation, one: float, other: float, uncertainty: float = 0.0) -> Cell:
+    """mu_1 changes by `one` and `other` at two phase pairs, mu_2 not at all."""
+    doubt = ((uncertainty, 0.0),) * 2
+    return Cell("fig3-I", variation, ((one, 0.0), (other, 0.0)), doubt, ("ok", "ok"))
+
+
+def _said(cells: Sequence[Cell], key: str, share: float = 0.01) -> tuple[float | None, float | None]:
+    found = next(one for one in ranges([STATED], cells) if (one.body, one.key, one.share) == (1, key, share))
+    return found.holds, found.fails
+
+
+def test_there_are_the_papers_six_assumptions_in_order() -> None:
+    assert [one.number for one in ASSUMPTIONS] == ["(i)", "(ii)", "(iii)", "(iv)", "(v)", "(vi)"]
+
+
+def test_a_variation_changes_ring_heights_and_supports_and_nothing_else() -> None:
+    varied = Variation(ring=2.0, height=0.5, supports=3).of(STATED)
+    assert (varied.isolator.ring, varied.isolator.supports) == (2.0, 3)
+    assert [body.height for body in varied.bodies] == [0.1, 0.6]
+    back = Variation(ring=0.5, height=2.0, supports=4).of(varied)
+    assert back == STATED
+    assert Variation().of(STATED) == STATED
+
+
+@pytest.mark.parametrize("variations", [FEW, MANY])
+def test_ring_and_heights_are_both_varied_about_what_the_scene_states(variations: Sequence[Variation]) -> None:
+    assert Variation() in variations
+    assert len({one.ring for one in variations if one.height == 1.0 and one.supports is None}) >= 4
+    assert len({one.height for one in variations if one.ring == 1.0 and one.supports is None}) >= 4
+
+
+def test_a_ring_holds_only_if_every_wider_one_tried_does() -> None:
+    line = {4.0: 0.001, 2.0: 0.002, 1.0: 0.02, 0.5: 0.003}
+    cells = [_cell(Variation(ring=ring), size, -size / 2.0) for ring, size in line.items()]
+    assert _said(cells, "ring") == (2.0, 1.0), "0.5 m would hold, but 1 m does not"
+    assert _said(cells, "ring", 0.05) == (0.5, None)
+
+
+def test_heights_hold_only_if_every_lower_one_tried_does() -> None:
+    line = {0.0: 0.0, 0.5: -0.004, 1.0: -0.03, 2.0: 0.002}
+    cells = [_cell(Variation(height=height), 0.0, size) for height, size in line.items()]
+    assert _said(cells, "height") == (0.5, 1.0)
+    assert _said(cells, "height", 0.05) == (2.0, None)
+
+
+def test_the_uncertainty_counts_against_the_range_and_a_missing_value_ends_it() -> None:
+    wide = _cell(Variation(ring=2.0), 0.004, 0.0)
+    assert _said([wide, _cell(Variation(), 0.008, 0.0, 0.003)], "ring") == (2.0, 1.0)
+    assert _said([wide, _cell(Variation(), 0.008, 0.0, 0.001)], "ring") == (1.0, None)
+    assert _said([wide, _cell(Variation(), float("nan"), 0.0)], "ring") == (2.0, 1.0)
+    assert _said([_cell(Variation(ring=2.0), 0.2, 0.0)], "ring") == (None, 2.0)
+
+
+def test_the_sentences_name_what_holds_and_what_was_tried_next() -> None:
+    cells = [_cell(Variation(ring=2.0), 0.0, 0.0), _cell(Variation(), 0.02, 0.0)]
+    lines = [said(found) for found in ranges([STATED], cells) if found.body == 1]
+    assert "mu_1 stays within 1 % with rings from 2 m, no longer at 1 m" in lines
+    assert "mu_1 stays within 5 % with rings from 1 m, every smaller one tried too" in lines
+    assert "mu_1 stays within 1 % at no heights tried" in lines
+
+
+def test_cells_compare_the_two_engine_models_of_the_ladder_in_every_scene_that_has_both() -> None:
+    study = Study((STATED, BARE), 2, 1e-3, fake_ladder(gap=0.0))
+    cells = assumption_cells(study, 2, ThreadPoolExecutor)
+    assert [cell.variation for cell in cells] == list(FEW)
+    for cell in cells:
+        assert (np.array(cell.change) == 0.0).all(), "both fake models answer alike"
+        assert np.array(cell.change).shape == (len(PHASES), 2)
+        np.testing.assert_allclose(cell.uncertainty, 1e-3 * np.sqrt(2.0))  # both claim the 1e-3 asked
+    assert Reach.of(Study((BARE,), 2, 1e-3, fake_ladder()), 2, ThreadPoolExecutor) is None
+
+
+def test_a_model_that_raises_leaves_no_value_and_says_why() -> None:
+    study = Study((STATED,), 2, 1e-3, fake_ladder("always_raising"))
+    for cell in assumption_cells(study, 2, ThreadPoolExecutor):
+        assert np.isnan(cell.change).all()
+        assert cell.fault == "RuntimeError: the matrix is singular"
+        assert not cell.holds(1, 0.05)
+
+
+def test_the_picture_shows_what_was_tried(tmp_path: Path) -> None:
+    cells = [_cell(Variation(ring, height), 0.02 * height / ring, 0.0) for ring in (0.5, 1.0) for height in (0.0, 1.0)]
+    path = tmp_path / assumption_figure_name(STATED)
+    draw_assumptions(path, STATED, [*cells, _cell(Variation(2.0, 1.0), float("nan"), 0.0)])
+    assert imread(path)[..., :3].std() > 0.1
+
+
+def test_a_scene_without_supports_is_refused_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "bare.toml"
+    path.write_text(
+        'title = "bare"\nduration = 1.0\n[isolator]\nperiod = 1.0\nfriction = 0.1\n[[bodies]]\nmass = 1.0\n'
+        "[excitation]\namplitudes = [[1.0, 0.0], [0.0, 1.0]]\nperiods = [0.9, 1.1]\ndecay = [0.0, 0.0]\n"
+    )
+    assert main([str(path)]) == 2
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1
+    assert "the spatial model needs supports, ring and sphere_radius" in err
+
+
+def _turning(scene: Scene, variations: Sequence[Variation]) -> list[Cell]:
+    study = Study((scene.model_copy(update={"duration": 2.0}),), 1, 1e-3, LADDER)
+    return assumption_cells(study, 1, ThreadPoolExecutor, variations)
+
+
+def test_with_all_heights_zero_the_real_models_agree_within_their_errors() -> None:
+    (cell,) = _turning(load_scene("fig3-II"), [Variation(height=0.0)])
+    assert set(cell.status) == {"ok"}
+    assert (np.abs(cell.change) <= cell.uncertainty).all()
+
+
+def test_a_wider_ring_turns_the_real_platform_less() -> None:
+    narrow, wide = _turning(load_scene("fig3-I"), [Variation(ring=0.5), Variation(ring=4.0)])
+    for body in (1, 2):
+        assert narrow.largest(body) > 3.0 * wide.largest(body), "eight times the ring; mu_1 also has errors of 3e-4"
