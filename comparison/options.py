@@ -14,7 +14,7 @@ from pydantic import ValidationError
 
 from comparison.store import refuse_foreign
 from comparison.tile_store import refuse_foreign_store
-from reference.problem import Scene, SceneError, builtin_scenes, load_scene
+from reference.problem import Family, Scene, SceneError, builtin_scenes, load_family
 from reference.problem.scene_error import first_fault
 
 DEFAULT_GRID = 12  # phases per axis: the four built-in scenes then take a few minutes on two cores
@@ -25,7 +25,7 @@ DEFAULT_TOLERANCE = 1e-3
 class Options:
     """What the command line asks for, valid."""
 
-    scenes: tuple[Scene, ...]
+    families: tuple[Family, ...]
     grid: int
     out: Path
     jobs: int
@@ -34,6 +34,11 @@ class Options:
     plan: bool
     fresh: bool = False
     scheduler: str | None = None
+
+    @property
+    def scenes(self) -> tuple[Scene, ...]:
+        """Every scene of every family, in order."""
+        return tuple(scene for family in self.families for scene in family.scenes)
 
 
 class UsageError(ValueError):
@@ -51,7 +56,7 @@ def parsed(argv: Sequence[str] | None) -> Options:
     names: list[str] = given.scenes or builtin_scenes()
     amplitude = None if given.amplitude is None else _number("--amplitude", given.amplitude, 1e-12, 1e6, "m/s^2")
     options = Options(
-        scenes=tuple(_scene(name, amplitude) for name in names),
+        families=tuple(_family(name, amplitude) for name in names),
         grid=_whole("--grid", given.grid, 2, 512),
         out=given.out,
         jobs=_cores() if given.jobs is None else _whole("--jobs", given.jobs, 1, 1024),
@@ -62,11 +67,11 @@ def parsed(argv: Sequence[str] | None) -> Options:
         scheduler=given.scheduler,
     )
     seen: dict[str, str] = {}
-    for name, scene in zip(names, options.scenes):
-        if scene.name in seen:
-            rule = f"same name as {seen[scene.name]}, which names its surfaces: give each scene once, rename a file"
-            raise SceneError(name, "scene", scene.name, rule)
-        seen[scene.name] = name
+    for name, family in zip(names, options.families):
+        if family.name in seen:
+            rule = f"same name as {seen[family.name]}, which names its surfaces: give each scene once, rename a file"
+            raise SceneError(name, "scene", family.name, rule)
+        seen[family.name] = name
     if given.scheduler is not None and given.jobs is not None:
         rule = "counts processes of this machine, --scheduler takes all workers of a cluster: give one of the two"
         raise SceneError("command line", "--jobs", given.jobs, rule)
@@ -86,7 +91,8 @@ def _parser() -> argparse.ArgumentParser:
         "scenes",
         nargs="*",
         metavar="SCENE",
-        help=f"TOML file or built-in name (default: {', '.join(builtin_scenes())})",
+        help=f"TOML files, in which one key may run over a range, or built-in names "
+        f"(default: {', '.join(builtin_scenes())})",
     )
     parser.add_argument("--grid", default=str(DEFAULT_GRID), metavar="N", help="phases per axis (default %(default)s)")
     parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help="report (default %(default)s)")
@@ -113,9 +119,9 @@ def _cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _scene(name: str, amplitude: float | None) -> Scene:
+def _family(name: str, amplitude: float | None) -> Family:
     try:
-        return load_scene(name, amplitude)
+        return load_family(name, amplitude)
     except ValidationError as fault:  # the amplitude asked for makes the scene impossible
         raise first_fault(name, fault) from None
 

@@ -2,6 +2,7 @@
 
 from reference.problem.amplification import checked_phases, ground_peak, phase_grid
 from reference.problem.excitation import exponents, ground_acceleration, ground_displacement, ground_velocity
+from reference.problem.family import Family, load_family
 from reference.problem.outcome import ADVICE, Outcome
 from reference.problem.result import Amplification, State, Trajectory
 from reference.problem.scene import GRAVITY, Scene, builtin_scenes, load_scene, parse_scene
@@ -11,6 +12,7 @@ __all__ = [
     "ADVICE",
     "GRAVITY",
     "Amplification",
+    "Family",
     "Outcome",
     "Scene",
     "SceneError",
@@ -23,6 +25,7 @@ __all__ = [
     "ground_displacement",
     "ground_peak",
     "ground_velocity",
+    "load_family",
     "load_scene",
     "parse_scene",
     "phase_grid",

@@ -196,29 +196,42 @@ def load_scene(source: str | Path, amplitude: float | None = None) -> Scene:
     `amplitude`, m/s^2, scales the amplitude matrix so that its largest entry has this value.
     Raises SceneError (file, key, value, rule) when anything in it is wrong.
     """
+    scene = parse_scene(scene_text(source), str(source))
+    return scene if amplitude is None else scene.with_amplitude(amplitude)
+
+
+def scene_text(source: str | Path) -> bytes:
+    """What is written in a built-in scene or a file. Raises SceneError if there is none."""
     label = str(source)
     if label in builtin_scenes():
-        text = (resources.files("reference.problem") / "scenes" / f"{label}.toml").read_bytes()
-    else:
-        try:
-            text = Path(source).read_bytes()
-        except (OSError, ValueError) as fault:  # ValueError: no path at all, such as one with a null byte
-            reason = getattr(fault, "strerror", None) or fault
-            rule = f"{reason}; give a TOML file or one of {', '.join(builtin_scenes())}"
-            raise SceneError(label, "scene", label, rule) from None
-    scene = parse_scene(text, label)
-    return scene if amplitude is None else scene.with_amplitude(amplitude)
+        return (resources.files("reference.problem") / "scenes" / f"{label}.toml").read_bytes()
+    try:
+        return Path(source).read_bytes()
+    except (OSError, ValueError) as fault:  # ValueError: no path at all, such as one with a null byte
+        reason = getattr(fault, "strerror", None) or fault
+        rule = f"{reason}; give a TOML file or one of {', '.join(builtin_scenes())}"
+        raise SceneError(label, "scene", label, rule) from None
 
 
 def parse_scene(text: bytes, label: str) -> Scene:
     """The scene written in `text` (TOML, UTF-8); `label` names it in errors. Raises SceneError."""
+    return validated_scene(scene_tables(text, label), label, Path(label).stem)
+
+
+def scene_tables(text: bytes, label: str) -> dict[str, Any]:
+    """The tables of a scene file, not validated. Raises SceneError if they cannot be read."""
     try:
         data: dict[str, Any] = tomllib.loads(text.decode())
     except (ValueError, RecursionError) as fault:
         raise SceneError(label, "file", str(fault), "must be valid TOML in UTF-8") from None
     if "name" in data:
         raise SceneError(label, "name", data["name"], "unknown key; the scene is named after its file")
+    return data
+
+
+def validated_scene(data: dict[str, Any], label: str, name: str) -> Scene:
+    """The scene of these tables under this name; `label` names it in errors. Raises SceneError."""
     try:
-        return Scene.model_validate({**data, "name": Path(label).stem})
+        return Scene.model_validate({**data, "name": name})
     except ValidationError as fault:
         raise first_fault(label, fault) from None

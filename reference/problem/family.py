@@ -1,0 +1,121 @@
+"""
+A family of scenes that differ in one value: `friction = {range = [0.02, 0.2], steps = 10}` in place of a number.
+
+Any key of a scene file that holds one value may run: evenly over a range, or through `{values = [...]}`.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from reference.problem.scene import Scene, scene_tables, scene_text, validated_scene
+from reference.problem.scene_error import SceneError
+
+RANGE, VALUES = {"range", "steps"}, {"values"}
+MOST = 1000  # scenes of one family
+
+Value = float | int | str
+
+
+@dataclass(frozen=True)
+class Family:
+    """
+    The scenes of one file. `key`: the one that runs, as "isolator.friction", or "" where none does and there is one
+    scene; `values` of it, in the order of the scenes, which are named "file[friction=0.02]".
+    """
+
+    name: str
+    scenes: tuple[Scene, ...]
+    key: str = ""
+    values: tuple[Value, ...] = ()
+
+
+def load_family(source: str | Path, amplitude: float | None = None) -> Family:
+    """
+    Every scene of a built-in name or a TOML file; arguments and errors as for `load_scene`.
+
+    Raises SceneError too for a range that is none, for a second one, and for a value that makes its scene impossible.
+    """
+    label, name = str(source), Path(source).stem
+    data = scene_tables(scene_text(source), label)
+    found = list(_running((), data))
+    if not found:
+        scene = validated_scene(data, label, name)
+        return Family(name, (scene if amplitude is None else scene.with_amplitude(amplitude),))
+    (path, table), *others = found
+    key = ".".join(map(str, path))
+    for other, second in others:
+        rule = f"only one key of a scene may run, and {key} does: give it a value, or write a file for each"
+        raise SceneError(label, ".".join(map(str, other)), second, rule)
+    values = _values(label, key, table)
+    short = key if any(isinstance(part, int) for part in path) else str(path[-1])
+    scenes = []
+    for value, text in zip(values, _texts(label, key, values)):
+        member = validated_scene(_with(data, path, value), label, f"{name}[{short}={text}]")
+        scenes.append(member if amplitude is None else member.with_amplitude(amplitude))
+    return Family(name, tuple(scenes), key, tuple(values))
+
+
+def _running(path: tuple[str | int, ...], value: Any) -> Iterator[tuple[tuple[str | int, ...], dict[str, Any]]]:
+    """Where in the tables something runs, and the inline table that says how."""
+    if isinstance(value, dict) and path and value.keys() & (RANGE | VALUES):
+        yield path, value
+    elif isinstance(value, dict | list):
+        for key, part in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from _running((*path, key), part)
+
+
+def _values(label: str, key: str, table: dict[str, Any]) -> Sequence[Value]:
+    if set(table) == VALUES:
+        return _listed(label, f"{key}.values", table["values"])
+    if set(table) != RANGE:
+        rule = "must be {range = [lowest, highest], steps = N} or {values = [...]} and hold nothing else"
+        raise SceneError(label, key, table, rule)
+    ends, steps = table["range"], table["steps"]
+    numbers = isinstance(ends, list) and len(ends) == 2 and all(_is_number(end) for end in ends)
+    if not (numbers and ends[0] < ends[1]):
+        raise SceneError(label, f"{key}.range", ends, "must be two finite numbers, the smaller first")
+    if not (isinstance(steps, int) and not isinstance(steps, bool) and 2 <= steps <= MOST):
+        raise SceneError(label, f"{key}.steps", steps, f"must be a whole number from 2 to {MOST}, the ends included")
+    spaced = [
+        float(f"{value:.12g}") for value in np.linspace(ends[0], ends[1], steps)
+    ]  # 0.06, not 0.060000000000000005
+    whole = all(isinstance(end, int) for end in ends) and all(value.is_integer() for value in spaced)
+    return [int(value) for value in spaced] if whole else spaced
+
+
+def _listed(label: str, key: str, values: Any) -> Sequence[Value]:
+    alike = isinstance(values, list) and (all(map(_is_number, values)) or all(isinstance(v, str) for v in values))
+    if not (alike and 1 <= len(values) <= MOST):
+        raise SceneError(label, key, values, f"must be a list of 1 to {MOST} finite numbers, or of texts")
+    return list(values)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _texts(label: str, key: str, values: Sequence[Value]) -> list[str]:
+    """The values as they stand in names: short, but no two alike. A path is named by its file."""
+    for digits in range(4, 18):
+        texts = [Path(v).stem if isinstance(v, str) else f"{v:.{digits}g}" for v in values]
+        if len(set(texts)) == len(texts):
+            return texts
+    twice = next(value for value, text in zip(values, texts) if texts.count(text) > 1)
+    raise SceneError(label, key, twice, "is there twice, and the scenes are named by it: leave one away")
+
+
+def _with(data: dict[str, Any], path: tuple[str | int, ...], value: Value) -> dict[str, Any]:
+    changed: Any = copy.deepcopy(data)
+    place = changed
+    for part in path[:-1]:
+        place = place[part]
+    place[path[-1]] = value
+    return dict(changed)
