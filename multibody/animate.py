@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.engine import exudyn
+from multibody.integrate import place
 from multibody.motion import trajectory
 from multibody.surface import assembled
 from reference.problem import Scene, SceneError, Trajectory, ground_acceleration, load_scene
@@ -92,10 +93,7 @@ def view(scene: Scene, phase: Array, model: str, regularization: float | None) -
     built.stiffen(penetration)
     built.ground.set_phase(phase)
     state = built.start(None, ground_acceleration(scene, phase, [0.0])[0], penetration)
-    data, initial = built.mbs.systemData, exudyn.ConfigurationType.Initial
-    data.SetODE2Coordinates(state.coordinates, configuration=initial)
-    data.SetODE2Coordinates_t(state.velocities, configuration=initial)
-    data.SetDataCoordinates(state.contact, configuration=initial)
+    place(built, state)
     settings = exudyn.SimulationSettings()
     settings.timeIntegration.endTime = scene.duration / built.units.time
     settings.timeIntegration.numberOfSteps = round(scene.duration * 1000.0)

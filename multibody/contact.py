@@ -67,4 +67,4 @@ def settled(state: EngineState, gap_rate: float, penetration: float) -> EngineSt
     velocities[:3] -= normal * excess
     coordinates[:3] -= normal * lift
     contact[0] -= lift
-    return EngineState(coordinates, velocities, contact)
+    return EngineState(coordinates, velocities, contact, state.plate)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.engine import exudyn
+from multibody.plate import COORDINATES, HEAVY, carried_along
 from multibody.system import EngineModel, EngineState
 
 Array = NDArray[np.float64]
@@ -22,7 +23,7 @@ CONTRACTIVITY = 0.05  # of modified Newton, above which the Jacobian is renewed:
 
 @dataclass(frozen=True)
 class Motion:
-    """Steps of one run in units of the model, the first row being its start."""
+    """Steps of one run in units of the model, relative to the plate, the first row being its start."""
 
     time: Array  # (T,)
     coordinates: Array  # (T, n)
@@ -30,6 +31,7 @@ class Motion:
     accelerations: Array  # (T, n)
     contact: Array  # (T, 4 K): gap, slip speed, two unused entries, per contact
     force: Array  # (T, 6 K): force vector and normal, per contact; (T, 0) unless recorded
+    plate: Array  # (T, 3, 3): displacement, velocity, acceleration of a plate that moves; else zero
 
     @property
     def gap(self) -> Array:
@@ -56,7 +58,7 @@ class Motion:
         )
 
     def state(self, row: int) -> EngineState:
-        return EngineState(self.coordinates[row], self.velocities[row], self.contact[row])
+        return EngineState(self.coordinates[row], self.velocities[row], self.contact[row], self.plate[row])
 
 
 @contextmanager
@@ -70,6 +72,21 @@ def silence() -> Iterator[None]:
         exudyn.config.printToConsole = before
 
 
+def place(model: EngineModel, state: EngineState) -> None:
+    """Make `state` the one that the engine's next run starts from."""
+    coordinates, velocities = state.coordinates, state.velocities
+    if model.moving_plate:
+        axes = carried_along(model.bodies, len(coordinates))
+        shift = np.hstack([state.plate, np.zeros((3, 1))])
+        turns = np.zeros(COORDINATES - 3)
+        coordinates = np.concatenate([coordinates + shift[0, axes], state.plate[0], turns])
+        velocities = np.concatenate([velocities + shift[1, axes], state.plate[1], turns])
+    data, initial = model.mbs.systemData, exudyn.ConfigurationType.Initial
+    data.SetODE2Coordinates(coordinates, configuration=initial)
+    data.SetODE2Coordinates_t(velocities, configuration=initial)
+    data.SetDataCoordinates(state.contact, configuration=initial)
+
+
 class Engine:
     """
     Runs one model.
@@ -80,15 +97,12 @@ class Engine:
 
     def __init__(self, model: EngineModel, newton: float, absolute: float) -> None:
         self.model = model
-        self.settings = _settings(newton, absolute)
+        # over a moving plate the first residual is the heavy plate's: only the absolute tolerance says something
+        self.settings = _settings(newton / HEAVY if model.moving_plate else newton, absolute)
 
     def run(self, state: EngineState, begin: float, step: float, count: int) -> Motion | None:
         """`count` steps from `state` at time `begin`; None if the engine could not solve one of them."""
-        data = self.model.mbs.systemData
-        initial = exudyn.ConfigurationType.Initial
-        data.SetODE2Coordinates(state.coordinates, configuration=initial)
-        data.SetODE2Coordinates_t(state.velocities, configuration=initial)
-        data.SetDataCoordinates(state.contact, configuration=initial)
+        place(self.model, state)
         self.settings.timeIntegration.startTime = begin
         self.settings.timeIntegration.endTime = begin + count * step
         self.settings.timeIntegration.numberOfSteps = count
@@ -109,14 +123,17 @@ class Engine:
             parts = [stored(sensor)[:, 1:] for sensor in sensors]
             return np.hstack(parts) if parts else np.empty((len(time), 0))
 
-        return Motion(
-            time,
-            columns(recorders.coordinates),
-            columns(recorders.velocities),
-            columns(recorders.accelerations),
-            columns(recorders.contact),
-            columns(recorders.contact_force),
-        )
+        motion = [columns(recorders.coordinates), columns(recorders.velocities), columns(recorders.accelerations)]
+        plate = np.zeros((len(time), 3, 3))
+        if self.model.moving_plate:
+            plate = np.stack([columns([sensor])[:, :3] for sensor in recorders.plate], axis=1)
+            carried = self.model.bodies
+            for derivative, part in enumerate(motion):
+                axes = carried_along(carried, part.shape[1])
+                part[:, axes < 3] -= plate[:, derivative, axes[axes < 3]]
+        coordinates, velocities, accelerations = motion
+        contact, force = columns(recorders.contact), columns(recorders.contact_force)
+        return Motion(time, coordinates, velocities, accelerations, contact, force, plate)
 
 
 def _settings(newton: float, absolute: float) -> Any:

@@ -95,7 +95,8 @@ def march(
                 result.chunks.append(kept.upto(row))
             if outcome != Outcome.OK:
                 return _ended(result, outcome, float(kept.time[row]))
-            absolute = kept.accelerations[:, model.bodies] + ground(kept.time)[:, None, :]
+            below = kept.plate[:, 2] if model.moving_plate else ground(kept.time)
+            absolute = kept.accelerations[:, model.bodies] + below[:, None, :]
             result.peaks.add(kept.time, absolute, kept.slip)
             state, time = kept.state(last), float(kept.time[last])
             ahead = _steps_ahead(kept, engine, level)

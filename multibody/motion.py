@@ -18,9 +18,12 @@ def trajectory(
     regularization: float | None = 1e-3,
     tolerance: float = 1e-3,
     initial: State | None = None,
+    loading: str = "inertial",
 ) -> Trajectory:
     """
     One motion in the plate's frame for one phase pair (2,), rad, from rest or from `initial`.
+
+    Other arguments as in `amplification`.
 
     The instants are the engine's own, closer at stops; they are those of the run whose peaks meet `tolerance`, as in
     `amplification`, with the same statuses; a run that ends early is returned up to there. `contact_force`: sum over
@@ -32,12 +35,13 @@ def trajectory(
     pair = checked_phases(np.reshape(np.asarray(phase, float), (1, -1)))[0]
     checked("tolerance", tolerance)
     with silence():
-        built = assembled(scene, model, regularization, contact_force=True)
+        built = assembled(scene, model, regularization, loading=loading, contact_force=True)
         point = refine(scene, built, pair, tolerance, initial=initial, keep=True)
     units, bodies = built.units, built.bodies
     motion = Motion.joined(point.finest.chunks)
     time = motion.time * units.time
-    ground = ground_acceleration(scene, pair, time)
+    resting = not built.moving_plate
+    ground = ground_acceleration(scene, pair, time) if resting else motion.plate[:, 2] * units.acceleration
     vectors = motion.force.reshape(len(time), -1, 2, 3)  # per contact: force, normal
     support_force = np.abs((vectors[:, :, 0] * vectors[:, :, 1]).sum(axis=-1)) * units.force
     extra = {"slip_speed": motion.slip * units.velocity, "support_force": support_force}

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from multibody.contact import DAMPING, contact_law, corner_and_relaxation, pressed_in
 from multibody.engine import exudyn, items
 from multibody.loading import SymbolicGround, symbolic_load
+from multibody.plate import plate_for
 from multibody.recorders import recorded
 from multibody.system import EngineModel, EngineState
 from multibody.units import Units, link_stiffness, units_of
@@ -28,7 +29,9 @@ PER_BODY = 6  # x, y, z of the centre of mass and three rotations
 STIFF = 1e5  # of a bar in tension (and, times rho^2, in bending), in units of weight / rho: gives way by 1e-5 rho
 
 
-def spatial(scene: Scene, regularization: float | None, *, contact_force: bool = False) -> EngineModel:
+def spatial(
+    scene: Scene, regularization: float | None, *, loading: str = "inertial", contact_force: bool = False
+) -> EngineModel:
     """
     Assemble the spatial model; arguments as in `translational`.
 
@@ -39,7 +42,6 @@ def spatial(scene: Scene, regularization: float | None, *, contact_force: bool =
     masses = scene.masses / units.mass
     container = exudyn.SystemContainer()
     mbs = container.AddSystem()
-    frame = mbs.AddObject(items.ObjectGround())
     nodes, bodies = [], []
     for mass, height, size in zip(masses, heights, sizes):
         nodes.append(mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0, 0.0, height, 0.0, 0.0, 0.0])))
@@ -50,13 +52,15 @@ def spatial(scene: Scene, regularization: float | None, *, contact_force: bool =
         carried = float(masses[link + 1 :].sum())
         _bars(mbs, bodies[link : link + 2], heights[link : link + 2], carried, stiffness, float(np.hypot(*ring[0])))
 
+    ground = SymbolicGround(scene, units)
+    plate = plate_for(mbs, loading, ground)
     friction, threshold = contact_law(scene, regularization, units)
     contacts, contact_nodes = [], []
     for place in ring:
         contact_nodes.append(
             mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
         )
-        support = items.MarkerBodyRigid(bodyNumber=frame, localPosition=[*place, 1.0])
+        support = items.MarkerBodyRigid(bodyNumber=plate.body, localPosition=[*place, 1.0])
         depression = items.MarkerBodyRigid(bodyNumber=bodies[0], localPosition=[*place, -heights[0]])
         contacts.append(
             mbs.AddObject(
@@ -70,13 +74,13 @@ def spatial(scene: Scene, regularization: float | None, *, contact_force: bool =
                 )
             )
         )
-    ground = SymbolicGround(scene, units)
-    expressions = []
+    expressions = list(plate.expressions)
     for mass, body in zip(masses, bodies):
         centre = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body))
         load = mbs.AddLoad(items.LoadForceVector(markerNumber=centre, loadVector=[0.0, 0.0, -mass]))
-        expressions.append(symbolic_load(mbs, load, "loadVectorUserFunction", _inertial(ground, float(mass))))
-    recorders = recorded(mbs, nodes, contact_nodes, contacts if contact_force else [])
+        if not plate.moves:
+            expressions.append(symbolic_load(mbs, load, "loadVectorUserFunction", _inertial(ground, float(mass))))
+    recorders = recorded(mbs, nodes, contact_nodes, contacts if contact_force else [], plate.node)
     mbs.Assemble()
 
     count = len(contacts)
@@ -107,7 +111,7 @@ def spatial(scene: Scene, regularization: float | None, *, contact_force: bool =
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     keep = (container, expressions)
     return EngineModel(
-        mbs, units, ground, recorders, index, stiffen, start, settle, 1.0, corner, relaxation, True, keep
+        mbs, units, ground, recorders, index, stiffen, start, settle, 1.0, corner, relaxation, True, plate.moves, keep
     )
 
 

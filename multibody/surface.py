@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from multibody.integrate import silence
+from multibody.plate import LOADINGS
 from multibody.refine import refine
 from multibody.spatial import spatial
 from multibody.system import EngineModel
@@ -18,15 +19,24 @@ from reference.problem import Amplification, Outcome, Scene, checked_phases, gro
 BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": translational, "spatial": spatial}
 
 
-def assembled(scene: Scene, model: str, regularization: float | None, *, contact_force: bool = False) -> EngineModel:
-    """The engine's system of `scene`. Raises ValueError for an unknown model or a wrong or missing v_reg."""
+def assembled(
+    scene: Scene,
+    model: str,
+    regularization: float | None,
+    *,
+    loading: str = "inertial",
+    contact_force: bool = False,
+) -> EngineModel:
+    """The engine's system of `scene`. Raises ValueError for an unknown model or loading, a wrong or missing v_reg."""
+    if loading not in LOADINGS:
+        raise ValueError(f"loading: {loading!r}: must be one of {', '.join(LOADINGS)}")
     if model not in BUILDERS:
         raise ValueError(f"model: {model!r}: must be one of {', '.join(sorted(BUILDERS))}")
     if regularization is not None:
         checked("regularization", regularization)
     elif not scene.lubricated and scene.friction_coefficient > 0.0:
         raise ValueError("regularization: None: the engine's dry friction needs v_reg in m/s, greater than 0")
-    return BUILDERS[model](scene, regularization, contact_force=contact_force)
+    return BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force)
 
 
 def checked(name: str, value: float) -> float:
@@ -42,12 +52,14 @@ def amplification(
     model: str = "translational",
     regularization: float | None = 1e-3,
     tolerance: float = 1e-3,
+    loading: str = "inertial",
 ) -> Amplification:
     """
     Dynamic amplification factors mu_i of (5.1) for each phase pair, from the engine.
 
     phases: (M, 2), rad. regularization: v_reg in m/s, below which dry friction is linear in the slip velocity; may be
-    None where the contact is lubricated or frictionless. tolerance: relative error asked of every mu.
+    None where the contact is lubricated or frictionless. tolerance: relative error asked of every mu. loading:
+    "inertial" forces in the plate's frame, or motion of the "plate", which carries the supports.
 
     A point without an answer is NaN, with status "rim reached", "contact lost", "solver failed", "step limit" or "no
     ground motion"; "tolerance not met" keeps its mu with the error reached. Raises ValueError for wrong arguments.
@@ -60,7 +72,7 @@ def amplification(
     status, instant = np.full(len(pairs), Outcome.OK.value, dtype="U32"), np.full(len(pairs), np.nan)
     ground = ground_peak(scene, pairs)
     with silence():
-        built = assembled(scene, model, regularization)
+        built = assembled(scene, model, regularization, loading=loading)
         for m, phase in enumerate(pairs):
             if ground[m] == 0.0:
                 status[m], instant[m] = Outcome.NO_GROUND_MOTION, 0.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -16,13 +16,21 @@ from reference.problem import State
 Array = NDArray[np.float64]
 
 
+AT_REST = np.zeros((3, 3))
+
+
 @dataclass(frozen=True)
 class EngineState:
-    """One state of the engine in its own units: coordinates (n,), velocities (n,), contact data (c,)."""
+    """
+    One state of the engine in its own units: coordinates (n,), velocities (n,), contact data (c,).
+
+    The first two relative to the plate; plate: its own displacement, velocity, acceleration, (3, 3).
+    """
 
     coordinates: Array
     velocities: Array
     contact: Array
+    plate: Array = field(default_factory=AT_REST.copy)
 
 
 @dataclass(frozen=True)
@@ -34,6 +42,7 @@ class Recorders:
     accelerations: list[Any]
     contact: list[Any]  # gap, slip speed, and two unused entries, per contact
     contact_force: list[Any]  # force vector and normal, per contact; empty unless asked for
+    plate: list[Any]  # displacement, velocity, acceleration of a plate that moves; empty without
 
 
 @dataclass(frozen=True)
@@ -47,7 +56,8 @@ class EngineModel:
     the rate of each gap (K,) and the same fraction. rim: largest rise of the platform, in units of length. corner: slip
     speed in units of velocity under which the friction law is linear; inf if it has no such corner. relaxation: time in
     which a slip below it dies out, in units of time; inf likewise. liftoff: whether the model goes on when every
-    contact is open. keep_alive: what the engine only points to.
+    contact is open. moving_plate: whether the loading moves the plate, whose coordinates are then the system's last.
+    keep_alive: what the engine only points to.
     """
 
     mbs: Any
@@ -62,6 +72,7 @@ class EngineModel:
     corner: float
     relaxation: float
     liftoff: bool
+    moving_plate: bool
     keep_alive: tuple[Any, ...]
 
     @property

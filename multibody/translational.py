@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from multibody.contact import DAMPING, contact_law, corner_and_relaxation, pressed_in, settled
 from multibody.engine import exudyn, items
 from multibody.loading import SymbolicGround, symbolic_load
+from multibody.plate import COORDINATES, LOCKED, Plate, plate_for
 from multibody.recorders import recorded
 from multibody.system import EngineModel, EngineState
 from multibody.units import link_stiffness, units_of
@@ -24,24 +25,23 @@ from reference.problem import Scene, State
 
 Array = NDArray[np.float64]
 
-PLATFORM = 6  # coordinates of the rigid body: x, y, z and three rotations
-LOCKED = 1e15  # moment of inertia, in units of mass * length^2: turns by 1e-11 rad in 20 s under the largest torque
 HOLLOW = 2.0  # R in units of rho; in translation only R - r matters
 
 
-def translational(scene: Scene, regularization: float | None, *, contact_force: bool = False) -> EngineModel:
+def translational(
+    scene: Scene, regularization: float | None, *, loading: str = "inertial", contact_force: bool = False
+) -> EngineModel:
     """
     Assemble the translational model.
 
     regularization: v_reg, m/s, of dry friction; None where the contact is lubricated or frictionless. contact_force:
-    record it too.
+    record it too. loading: "inertial" or "plate".
     """
     units = units_of(scene)
     masses = scene.masses / units.mass
     container = exudyn.SystemContainer()
     mbs = container.AddSystem()
-    frame = mbs.AddObject(items.ObjectGround())
-    platform_node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * PLATFORM))
+    platform_node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * COORDINATES))
     platform = mbs.AddObject(
         items.ObjectRigidBody(nodeNumber=platform_node, mass=masses[0], inertia=[LOCKED] * 3 + [0.0] * 3)
     )
@@ -50,12 +50,14 @@ def translational(scene: Scene, regularization: float | None, *, contact_force: 
     if len(masses) > 1:
         nodes.append(_chain(mbs, platform_node, masses, link_stiffness(scene, units)))
 
+    ground = SymbolicGround(scene, units)
+    plate = plate_for(mbs, loading, ground)
     friction, threshold = contact_law(scene, regularization, units)
     contact_node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
     contact = mbs.AddObject(
         items.ObjectContactSphereSphere(
             markerNumbers=[
-                mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=frame, localPosition=[0.0, 0.0, 1.0])),
+                mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body, localPosition=[0.0, 0.0, 1.0])),
                 depression,
             ],
             nodeNumber=contact_node,
@@ -65,12 +67,11 @@ def translational(scene: Scene, regularization: float | None, *, contact_force: 
             frictionProportionalZone=threshold,
         )
     )
-    ground = SymbolicGround(scene, units)
-    expressions = _inertial_loads(mbs, ground, masses, depression, nodes)
-    recorders = recorded(mbs, nodes, [contact_node], [contact] if contact_force else [])
+    expressions = _inertial_loads(mbs, ground, plate, masses, depression, nodes)
+    recorders = recorded(mbs, nodes, [contact_node], [contact] if contact_force else [], plate.node)
     mbs.Assemble()
 
-    bodies = np.array([[0, 1, 2]] + [[PLATFORM + 2 * i, PLATFORM + 2 * i + 1, 2] for i in range(len(masses) - 1)])
+    bodies = np.array([[0, 1, 2]] + [[COORDINATES + 2 * i, COORDINATES + 2 * i + 1, 2] for i in range(len(masses) - 1)])
 
     def stiffen(penetration: float) -> None:
         # closer by the static penetration, so that the pendulum at rest has length rho whatever the stiffness
@@ -79,7 +80,10 @@ def translational(scene: Scene, regularization: float | None, *, contact_force: 
         mbs.SetObjectParameter(contact, "contactDamping", 2.0 * DAMPING / np.sqrt(penetration))
 
     def start(initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
-        coordinates, velocities = np.zeros(PLATFORM + 2 * len(masses) - 2), np.zeros(PLATFORM + 2 * len(masses) - 2)
+        coordinates, velocities = (
+            np.zeros(COORDINATES + 2 * len(masses) - 2),
+            np.zeros(COORDINATES + 2 * len(masses) - 2),
+        )
         if initial is not None:
             coordinates[bodies[:, :2]] = np.asarray(initial.position, float) / units.length
             velocities[bodies[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
@@ -105,6 +109,7 @@ def translational(scene: Scene, regularization: float | None, *, contact_force: 
         corner,
         relaxation,
         False,
+        plate.moves,
         (container, expressions),
     )
 
@@ -120,12 +125,12 @@ def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array) -> Any
             numberOfODE2Coordinates=count,
         )
     )
-    mass_matrix = np.zeros((PLATFORM + count, PLATFORM + count))
+    mass_matrix = np.zeros((COORDINATES + count, COORDINATES + count))
     stiffness_matrix = np.zeros_like(mass_matrix)
     mass_matrix[2, 2] = masses[1:].sum()
     for link in range(len(masses) - 1):
         for axis in range(2):
-            upper = PLATFORM + 2 * link + axis
+            upper = COORDINATES + 2 * link + axis
             lower = upper - 2 if link > 0 else axis
             mass_matrix[upper, upper] = masses[link + 1]
             pair = np.ix_([lower, upper], [lower, upper])
@@ -138,11 +143,17 @@ def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array) -> Any
     return node
 
 
-def _inertial_loads(mbs: Any, ground: SymbolicGround, masses: Array, depression: Any, nodes: list[Any]) -> list[Any]:
-    """Weight and -m times the plate's acceleration on every body. Returns the expressions."""
+def _inertial_loads(
+    mbs: Any, ground: SymbolicGround, plate: Plate, masses: Array, depression: Any, nodes: list[Any]
+) -> list[Any]:
+    """Weight and, unless the plate moves, -m times its acceleration on every body. Returns the expressions."""
 
     def on_platform(mbs: Any, t: Any, loadVector: Any) -> list[Any]:
         return [-masses[0] * ground.along(0, t), -masses[0] * ground.along(1, t), -1.0 - ground.along(2, t)]
+
+    if plate.moves:
+        mbs.AddLoad(items.LoadForceVector(markerNumber=depression, loadVector=[0.0, 0.0, -1.0]))
+        return list(plate.expressions)
 
     def on_body(i: int, axis: int) -> Any:
         return lambda mbs, t, load: -masses[i] * ground.along(axis, t)
