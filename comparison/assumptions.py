@@ -128,6 +128,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="worker processes (default %(default)s)")
     parser.add_argument("--figures", type=Path, metavar="DIR", help="write one picture per scene into this directory")
     given = parser.parse_args(argv)
+    if given.jobs < 1:
+        parser.error(f"--jobs {given.jobs}: must be a whole number from 1")
     try:
         scenes = [_spatial(name) for name in given.scenes or builtin_scenes()]
     except SceneError as fault:
@@ -140,7 +142,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         for scene in scenes:
             study = Study((scene,), 1, TOLERANCE)
-            cells = assumption_cells(study, max(1, given.jobs), process_pool, MANY)
+            cells = assumption_cells(study, given.jobs, process_pool, MANY)
             _print(console, scene, cells)
             if given.figures:
                 from comparison.assumption_figure import assumption_figure_name, draw_assumptions

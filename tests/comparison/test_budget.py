@@ -40,6 +40,13 @@ def test_the_steps_add_up_to_the_total_at_every_point(scene: str) -> None:
         assert closure(found) < 1e-14  # rounding of a handful of numbers near 1
 
 
+def test_a_budget_with_a_step_left_out_or_counted_twice_does_not_close() -> None:
+    study, surfaces = _solved(errors_in({"exact": 0.02, "resolved": 0.02}))
+    found = steps(study, surfaces, "fig3-I", 1)
+    assert closure(found[1:]) == pytest.approx(0.02)
+    assert closure([found[0], *found]) == pytest.approx(0.02)
+
+
 @pytest.mark.parametrize("culprit", ["exact", "resolved", "regularised", "translational", "spatial"])
 def test_an_error_planted_from_one_rung_on_is_blamed_on_that_rung(culprit: str) -> None:
     """A wrong stiffness, sign or mass stays in every model above the one that introduced it."""

@@ -26,6 +26,14 @@ def test_check_exits_1_and_names_scene_body_key_found_and_limit(command: Callabl
     assert "acceptance.maximum" not in run.err, "5e-4 is within the 1e-3 allowed there"
 
 
+def test_check_names_a_like_for_like_gap_beyond_twice_its_uncertainty(command: Callable[..., Run]) -> None:
+    run = command(*SMALL, "--check", ladder=fake_ladder(gap=2.1e-3))  # the engine claims 1e-3
+    assert run.code == 1
+    assert "limit broken: fig3-I: body 1: acceptance.ratio: 2.1 found, 2 allowed" in run.err
+    assert "acceptance.closure" not in run.err
+    assert "acceptance.ratio" not in command(*SMALL, "--check", ladder=fake_ladder(gap=1.9e-3)).err
+
+
 def test_without_check_a_broken_limit_is_reported_but_not_an_exit_code(command: Callable[..., Run]) -> None:
     run = command(*SMALL, ladder=fake_ladder(gap=5e-4))
     assert run.code == 0
