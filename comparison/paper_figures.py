@@ -64,6 +64,7 @@ def _surface(axes: Axes, phase: np.ndarray, height: np.ndarray, limits: tuple[fl
     axes.set_box_aspect((1.0, 1.0, 0.66), zoom=1.02)
     axes.view_init(elev=28.0, azim=-125.0)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.set_rotate_label(False)
         axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
         axis._axinfo["grid"].update(color="0.8", linewidth=0.3)
     axes.set_xticks(QUARTERS, QUARTER_NAMES)
@@ -71,5 +72,4 @@ def _surface(axes: Axes, phase: np.ndarray, height: np.ndarray, limits: tuple[fl
     axes.tick_params(pad=-2)
     axes.set_xlabel(r"$\alpha_1$", labelpad=-4)
     axes.set_ylabel(r"$\alpha_2$", labelpad=-4)
-    axes.zaxis.set_rotate_label(False)
     axes.set_zlabel(name, labelpad=-4, rotation=0.0)

@@ -22,10 +22,8 @@ async function show(box) {
     if (box.linked) return;
     box.linked = true;
     linkCameras(box);
-    box.on("plotly_click", ({ points: [point] }) => {
-      const places = data.scenes[box.dataset.scene].places;
-      if (places.length) choose(box, nearest(places, point.x, point.y));
-    });
+    box.on("plotly_hover", ({ points: [point] }) => { box.under = point; });
+    box.on("plotly_unhover", () => { box.under = null; });
   } catch (fault) {
     box.replaceChildren(`The surfaces cannot be turned in this browser (${fault.message}): see the static figure below.`);
     box.parentElement.querySelector("details").open = true;
@@ -56,6 +54,13 @@ async function choose(box, index) {
   boxes.filter(other => other.dataset.scene === box.dataset.scene && visible.has(other)).forEach(show);
 }
 boxes.forEach(box => {
+  let pressed = null;  // a turn also begins with a press on a surface: only a press that stays in its place is a click
+  box.addEventListener("pointerdown", press => { pressed = { x: press.clientX, y: press.clientY, under: box.under }; }, true);
+  box.addEventListener("pointerup", lift => {
+    const places = data.scenes[box.dataset.scene].places;
+    if (!pressed?.under || !places.length || Math.hypot(lift.clientX - pressed.x, lift.clientY - pressed.y) > 4) return;
+    choose(box, nearest(places, pressed.under.x, pressed.under.y));
+  }, true);
   const select = box.parentElement.querySelector("select");
   data.scenes[box.dataset.scene].places.forEach((place, index) => select.add(new Option([named(place), place.why].filter(Boolean).join(", "), index)));
   select.addEventListener("change", () => { if (select.value !== "") choose(box, Number(select.value)); });

@@ -4,7 +4,7 @@ const every = (rows, k) => rows.filter((_, i) => i % k === 0);
 const pick = (mu, k) => every(mu, k).map(row => every(row, k));  // every k-th phase of both axes
 const wrapped = mu => { const rows = mu.map(row => [...row, row[0]]); return [...rows, rows[0]]; };
 const turned = rows => rows[0].map((_, j) => rows.map(row => row[j]));  // plotly wants z[alpha2][alpha1]
-const axis = text => ({ title: { text }, tickvals: [0, Math.PI, turn], ticktext: ["0", "π", "2π"] });
+const axis = text => ({ title: { text }, range: [0, turn], tickvals: [0, Math.PI, turn], ticktext: ["0", "π", "2π"] });
 const SIGN = [[0, "#2166ac"], [0.5, "#f7f7f7"], [1, "#b2182b"]];
 const NAMES = ["scene", "scene2", "scene3"];
 
