@@ -128,10 +128,13 @@ def commit(work: Work, record: Record, h: float, contact: int, low: float, high:
             for m in range(STAGES):
                 coefficient += MONOMIALS[k, m] * work.a[0, axis, m]
             work.guess[axis, k] = coefficient
-    work.x[:] = work.x1
-    work.v[:] = work.v1
-    work.a0[:] = work.a[:, :, STAGES - 1]
-    work.total0[:] = work.total[:, :, STAGES - 1]
+    for i in range(work.x.shape[0]):
+        for axis in range(2):
+            work.x[i, axis] = work.x1[i, axis]
+            work.v[i, axis] = work.v1[i, axis]
+            work.a0[i, axis] = work.a[i, axis, STAGES - 1]
+        for axis in range(3):
+            work.total0[i, axis] = work.total[i, axis, STAGES - 1]
     work.run[OLD_LENGTH] = 0.0 if contact in (STOPPING, REST) else h
     if contact != STOPPING:
         work.run[TIME] += h

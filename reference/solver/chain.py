@@ -38,7 +38,9 @@ def eliminate_chain(system: System, work: Work, h: float) -> None:
 def feed_back(system: System, work: Work, h: float) -> None:
     """What the platform's stage accelerations do to its own drive through the eliminated chain."""
     for axis in range(2):
-        work.feedback[axis] = 0.0
+        for k in range(STAGES):
+            for m in range(STAGES):
+                work.feedback[axis, k, m] = 0.0
         if work.x.shape[0] == 1:
             continue
         for j in range(CHANNELS):

@@ -2,24 +2,33 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from reference.solver.collocation import DENSE, DENSE_VALUES, MONOMIALS, STAGES
 from reference.solver.compiled import compiled
 from reference.solver.platform import rest_excess
 from reference.solver.system import Array, System, Work
 
 NEVER = 2.0
+BISECTIONS = 50
 
 
 @compiled
-def value_at(values: Array, theta: float) -> float:
-    """The polynomial through the stage values (S,), at theta."""
-    total = 0.0
-    for k in range(STAGES - 1, -1, -1):
-        coefficient = 0.0
-        for m in range(STAGES):
-            coefficient += MONOMIALS[k, m] * values[m]
-        total = total * theta + coefficient
-    return total
+def lowest(values: Array) -> float:
+    """The smallest of the stage values (S,)."""
+    least = values[0]
+    for k in range(1, STAGES):
+        least = min(least, values[k])
+    return least
+
+
+@compiled
+def highest(values: Array) -> float:
+    """The largest of the stage values (S,)."""
+    most = values[0]
+    for k in range(1, STAGES):
+        most = max(most, values[k])
+    return most
 
 
 @compiled
@@ -32,10 +41,17 @@ def first_crossing(values: Array, start: float, target: float) -> float:
         for k in range(STAGES):
             here += DENSE_VALUES[n, k] * values[k]
         if (here > target) == rising:
+            coefficients = np.zeros(STAGES)
+            for k in range(STAGES):
+                for m in range(STAGES):
+                    coefficients[k] += MONOMIALS[k, m] * values[m]
             low, high = before, DENSE[n]
-            for _ in range(50):
+            for _ in range(BISECTIONS):
                 middle = 0.5 * (low + high)
-                if (value_at(values, middle) > target) == rising:
+                value = 0.0
+                for k in range(STAGES - 1, -1, -1):
+                    value = value * middle + coefficients[k]
+                if (value > target) == rising:
                     high = middle
                 else:
                     low = middle
@@ -116,7 +132,7 @@ def first_onset(system: System, work: Work) -> float:
 @compiled
 def passed(system: System, work: Work, low: float, high: float) -> float:
     """Where the excess, not positive at low and positive at high, becomes positive."""
-    for _ in range(50):
+    for _ in range(BISECTIONS // 2):  # located_onset does the rest
         middle = 0.5 * (low + high)
         if excess_at(system, work, middle) > 0.0:
             high = middle

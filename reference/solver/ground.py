@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
+from math import cos, exp
 
 from reference.solver.collocation import NODES, STAGES
 from reference.solver.compiled import compiled
@@ -12,8 +12,9 @@ from reference.solver.system import Array, System, Work
 @compiled
 def ground_at(system: System, phase: Array, t: float) -> tuple[float, float, float]:
     """(xi'', eta'', zeta'') at time t, m/s^2."""
-    z0 = np.exp(system.exponents[0] * t + 1j * phase[0]).real
-    z1 = np.exp(system.exponents[1] * t + 1j * phase[1]).real
+    e0, e1 = system.exponents[0], system.exponents[1]
+    z0 = exp(e0.real * t) * cos(e0.imag * t + phase[0])
+    z1 = exp(e1.real * t) * cos(e1.imag * t + phase[1])
     a = system.amplitudes
     return a[0, 0] * z0 + a[0, 1] * z1, a[1, 0] * z0 + a[1, 1] * z1, a[2, 0] * z0 + a[2, 1] * z1
 

@@ -78,9 +78,10 @@ def march(system: System, phase: Array, work: Work, demand: Demand, record: Reco
 
     work.best (N,) holds the squared peaks of absolute acceleration, m^2/s^4.
     """
-    work.best[:] = 0.0
-    work.doubt[:] = 0.0
-    work.run[:] = 0.0
+    for i in range(work.x.shape[0]):
+        work.best[i] = work.doubt[i] = 0.0
+    for entry in range(work.run.shape[0]):
+        work.run[entry] = 0.0
     work.run[LENGTH] = min(START * demand.period, system.duration)
     contact = first_contact(system, phase, work)
     before, idle = -1.0, 0

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from math import sqrt
 
+from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
 from reference.solver.equations import exact_acceleration, small_acceleration
 from reference.solver.friction import rest_excess_exact, rest_excess_printed, rest_excess_small, sliding_speed2
-from reference.solver.system import CREEPING, PRINTED, SLIDING, Array, System
+from reference.solver.system import CREEPING, PRINTED, SLIDING, System, Work
 
 
 @compiled
@@ -80,57 +81,56 @@ def rest_excess(
 
 
 @compiled
-def slopes(
-    system: System,
-    contact: int,
-    px: float,
-    py: float,
-    vx: float,
-    vy: float,
-    fx: float,
-    fy: float,
-    ux: float,
-    uy: float,
-    pressure: float,
-    out: Array,
-    k: int,
-) -> tuple[float, float, float, float, float]:
+def slopes(system: System, contact: int, work: Work) -> None:
     """
-    As `moving`, and the derivative of (ax, ay) by px, py, vx, vy, fx, fy in column k of `out` (12, S), two rows each.
+    Derivative of the platform's (ax, ay) by px, py, vx, vy, fx, fy at the stages, where `moving` was asked before.
+
+    Rows of work.slopes (12, S): two for each of the six.
     """
-    radius, ratio = system.radius, system.mass_ratio
-    speed2 = sliding_speed2(px, py, vx, vy, radius, system.small)
-    factor = slip_factor(system, contact, speed2)
-    sx, sy = factor * vx, factor * vy
-    ax, ay, reaction, determinant = acceleration(system, px, py, fx, fy, ux, uy, pressure, speed2, sx, sy)
-    depth2 = radius * radius - px * px - py * py
-    climb = px * vx + py * vy
-    nx, ny = -px / radius, -py / radius
-    nz = sqrt(depth2) / radius
-    for c in range(6):
-        dpx = 1.0 if c == 0 else 0.0
-        dpy = 1.0 if c == 1 else 0.0
-        dvx = 1.0 if c == 2 else 0.0
-        dvy = 1.0 if c == 3 else 0.0
-        dfx = 1.0 if c == 4 else 0.0
-        dfy = 1.0 if c == 5 else 0.0
-        dspeed2 = 2.0 * (vx * dvx + vy * dvy)
-        if not system.small:
-            dclimb = px * dvx + py * dvy + vx * dpx + vy * dpy
-            dspeed2 += 2.0 * climb * (dclimb + climb * (px * dpx + py * dpy) / depth2) / depth2
-        dfactor = -0.5 * factor * dspeed2 / speed2 if contact == SLIDING else 0.0
-        dsx = factor * dvx + dfactor * vx
-        dsy = factor * dvy + dfactor * vy
+    radius, ratio, out = system.radius, system.mass_ratio, work.slopes
+    for k in range(STAGES):
+        px, py, vx, vy = work.stage[0, k], work.stage[1, k], work.stage[2, k], work.stage[3, k]
+        fx, fy, reaction, speed2 = work.stage[4, k], work.stage[5, k], work.stage[6, k], work.stage[7, k]
+        determinant = work.stage[8, k]
+        ux, uy, pressure = work.ground[0, k], work.ground[1, k], system.gravity + work.ground[2, k]
+        factor = slip_factor(system, contact, speed2)
+        sx, sy = factor * vx, factor * vy
+        # d factor = bend * d speed2
+        bend = -0.5 * factor / speed2 if contact == SLIDING else 0.0
         if system.small:
-            lever = (dpx * sx + dpy * sy + px * dsx + py * dsy) / radius
-            out[2 * c, k] = dfx - reaction * (dpx / radius + dsx) + ux * lever
-            out[2 * c + 1, k] = dfy - reaction * (dpy / radius + dsy) + uy * lever
-        else:
-            dnx, dny = -dpx / radius, -dpy / radius
-            dtilt = 2.0 * (nx * dnx + ny * dny)
-            d_determinant = (ratio - 1.0) * (dtilt - dnx * sx - dny * sy - nx * dsx - ny * dsy)
-            d_load = dspeed2 / radius - dnx * fx - dny * fy - nx * dfx - ny * dfy - 0.5 * dtilt / nz * pressure
-            d_reaction = (ratio * d_load - reaction * d_determinant) / determinant
-            out[2 * c, k] = dfx + d_reaction * (nx - sx) + reaction * (dnx - dsx)
-            out[2 * c + 1, k] = dfy + d_reaction * (ny - sy) + reaction * (dny - dsy)
-    return ax, ay, reaction, determinant, speed2
+            for c in range(6):
+                dpx, dpy = (1.0 if c == 0 else 0.0), (1.0 if c == 1 else 0.0)
+                dvx, dvy = (1.0 if c == 2 else 0.0), (1.0 if c == 3 else 0.0)
+                dfx, dfy = (1.0 if c == 4 else 0.0), (1.0 if c == 5 else 0.0)
+                dfactor = 2.0 * bend * (vx * dvx + vy * dvy)
+                dsx, dsy = factor * dvx + dfactor * vx, factor * dvy + dfactor * vy
+                lever = (dpx * sx + dpy * sy + px * dsx + py * dsy) / radius
+                out[2 * c, k] = dfx - reaction * (dpx / radius + dsx) + ux * lever
+                out[2 * c + 1, k] = dfy - reaction * (dpy / radius + dsy) + uy * lever
+            continue
+        depth2 = radius * radius - px * px - py * py
+        climb = (px * vx + py * vy) / depth2
+        nx, ny = -px / radius, -py / radius
+        rise = pressure / sqrt(1.0 - nx * nx - ny * ny)
+        share = ratio / determinant  # of the reaction in a load along the normal
+        turn = reaction * (ratio - 1.0) / determinant
+        for axis in range(2):
+            p, v, n, s, f = (px, vx, nx, sx, fx) if axis == 0 else (py, vy, ny, sy, fy)
+            # by position
+            dspeed2 = 2.0 * climb * (v + climb * p)
+            gain = bend * dspeed2
+            dn = -1.0 / radius
+            lean = nx * vx + ny * vy
+            d_reaction = share * (dspeed2 / radius - dn * f - dn * n * rise) - turn * (dn * (2.0 * n - s) - gain * lean)
+            out[2 * axis, k] = d_reaction * (nx - sx) + reaction * ((dn if axis == 0 else 0.0) - gain * vx)
+            out[2 * axis + 1, k] = d_reaction * (ny - sy) + reaction * ((dn if axis == 1 else 0.0) - gain * vy)
+            # by velocity
+            dspeed2 = 2.0 * (v + climb * p)
+            gain = bend * dspeed2
+            d_reaction = share * dspeed2 / radius + turn * (gain * lean + factor * n)
+            out[4 + 2 * axis, k] = d_reaction * (nx - sx) - reaction * (gain * vx + (factor if axis == 0 else 0.0))
+            out[5 + 2 * axis, k] = d_reaction * (ny - sy) - reaction * (gain * vy + (factor if axis == 1 else 0.0))
+            # by drive
+            d_reaction = -share * n
+            out[8 + 2 * axis, k] = d_reaction * (nx - sx) + (1.0 if axis == 0 else 0.0)
+            out[9 + 2 * axis, k] = d_reaction * (ny - sy) + (1.0 if axis == 1 else 0.0)

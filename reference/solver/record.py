@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
 from reference.solver.near_stop import CLOCK
-from reference.solver.system import STOPPING, TIME, Record, Work
+from reference.solver.system import TIME, Record, Work
 
 
 @compiled
@@ -17,16 +18,18 @@ def record_step(work: Work, record: Record, h: float, contact: int) -> None:
     record.start[n] = work.run[TIME]
     record.length[n] = h
     record.contact[n] = contact
-    record.x[n] = work.x
-    record.v[n] = work.v
-    record.total[n] = work.total
-    record.reaction[n] = work.stage[6]
-    if contact == STOPPING:
-        record.position[n] = work.chain
-        record.velocity[n] = work.velocity
-        record.clock[n] = work.turning[CLOCK]
-    else:
-        record.a[n] = work.a
+    for k in range(STAGES):
+        record.reaction[n, k] = work.stage[6, k]
+        record.clock[n, k] = work.turning[CLOCK, k]
+        for i in range(work.x.shape[0]):
+            for axis in range(3):
+                record.total[n, i, axis, k] = work.total[i, axis, k]
+            for axis in range(2):
+                record.x[n, i, axis] = work.x[i, axis]
+                record.v[n, i, axis] = work.v[i, axis]
+                record.a[n, i, axis, k] = work.a[i, axis, k]
+                record.position[n, i, axis, k] = work.chain[i, axis, k]
+                record.velocity[n, i, axis, k] = work.velocity[i, axis, k]
 
 
 @compiled

@@ -5,7 +5,7 @@ from __future__ import annotations
 from reference.solver.advance import FATAL, SHORTEST, begin, commit, length_factor, next_step, remaining
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.events import excess_at, expand, first_onset
+from reference.solver.events import excess_at, expand, first_onset, lowest
 from reference.solver.record import note_stick
 from reference.solver.steps import rest_step, step_error
 from reference.solver.system import (
@@ -51,7 +51,7 @@ def located_onset(system: System, phase: Array, work: Work, h: float, onset: flo
 @compiled
 def rest_phase(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> tuple[int, int]:
     """Until the located onset of slip; (how it went, what the contact does next). See march.py."""
-    work.v[0, :] = 0.0
+    work.v[0, 0] = work.v[0, 1] = 0.0
     begin(system, phase, work, REST)
     run = work.run
     began = run[TIME] + run[LEFT]
@@ -70,7 +70,7 @@ def rest_phase(system: System, phase: Array, work: Work, demand: Demand, record:
             run[LENGTH] = h * min(0.7, length_factor(error, demand.tolerance))
             continue
         onset = first_onset(system, work)
-        if work.stage[6].min() <= 0.0:
+        if lowest(work.stage[6]) <= 0.0:
             if h < FATAL * demand.period:
                 return OPEN, REST
             run[LENGTH] = 0.3 * h

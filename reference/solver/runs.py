@@ -22,8 +22,10 @@ def runs(
     """
     work = workspace(peaks.shape[1])
     for m in range(phases.shape[0]):
-        work.x[:] = x
-        work.v[:] = v
+        for i in range(x.shape[0]):
+            for axis in range(2):
+                work.x[i, axis] = x[i, axis]
+                work.v[i, axis] = v[i, axis]
         codes[m] = march(system, phases[m], work, demand, record)
         instants[m] = work.run[TIME]
         steps[m] = work.run[STEPS]

@@ -22,7 +22,7 @@ from reference.solver.arc import settled_direction, squared_total
 from reference.solver.chain import eliminate_chain, load_chain
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.events import first_crossing
+from reference.solver.events import first_crossing, lowest
 from reference.solver.friction import sliding_speed2
 from reference.solver.ground import ground_at, ground_at_stages
 from reference.solver.near_stop import directed
@@ -181,7 +181,7 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
                 return UNSOLVED, SLIDING
             run[LENGTH] = h * min(0.7, factor)
             continue
-        if work.stage[7].min() < floor2:
+        if lowest(work.stage[7]) < floor2:
             slowed = first_crossing(work.stage[7], max(start2, floor2 * (1.0 + 1e-9)), floor2)
             if slowed < GRAZE:
                 return SOLVED, CREEPING

@@ -15,7 +15,7 @@ from reference.solver.advance import (
 )
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.events import first_crossing
+from reference.solver.events import first_crossing, highest
 from reference.solver.friction import sliding_speed2
 from reference.solver.platform import slip_factor
 from reference.solver.record import note_stick
@@ -74,7 +74,7 @@ def smooth_phase(
                 return UNSOLVED, contact
             run[LENGTH] = h * min(0.7, factor)
             continue
-        if contact == CREEPING and work.stage[7].max() > 0.8 * level:
+        if contact == CREEPING and highest(work.stage[7]) > 0.8 * level:
             start = sliding_speed2(work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1], system.radius, system.small)
             crossing = first_crossing(work.stage[7], min(start, level * (1.0 - LOCATED)), level)
             if crossing < GRAZE and run[HELD] == 0.0:

@@ -15,9 +15,10 @@ from reference.solver.chain import eliminate_chain, feed_back, load_chain, move_
 from reference.solver.collocation import A2, AT_START, NODES, STAGES, A
 from reference.solver.compiled import compiled
 from reference.solver.equations import vertical_acceleration
+from reference.solver.events import lowest
 from reference.solver.ground import ground_at_stages
 from reference.solver.linear_solve import factorize, solve
-from reference.solver.platform import slopes
+from reference.solver.platform import moving, slopes
 from reference.solver.system import OPEN, PAINLEVE, REST, RIM, SOLVED, UNSOLVED, Array, System, Work
 
 ITERATIONS = 14
@@ -62,19 +63,20 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
         for k in range(STAGES):
             if stage[0, k] ** 2 + stage[1, k] ** 2 >= system.radius**2:
                 return beyond_rim(system, work)
-            ax, ay, reaction, determinant, speed2 = slopes(
+            ax, ay, reaction, determinant, speed2 = moving(
                 system, contact,
                 stage[0, k], stage[1, k], stage[2, k], stage[3, k], stage[4, k], stage[5, k],
                 work.ground[0, k], work.ground[1, k], system.gravity + work.ground[2, k],
-                work.slopes, k,
             )  # fmt: skip
             stage[6, k] = reaction
             stage[7, k] = speed2
             if not determinant > 0.0:
                 return PAINLEVE
+            stage[8, k] = determinant
             work.residual[k] = ax - a[0, 0, k]
             work.residual[STAGES + k] = ay - a[0, 1, k]
         if fresh:
+            slopes(system, contact, work)
             set_matrix(work, h)
             if not factorize(work.matrix, work.pivots):
                 return UNSOLVED
@@ -91,7 +93,7 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
             place_platform(work, h)
             move_chain(system, work, h)
             absolute_accelerations(system, work, contact)
-            return SOLVED if stage[6].min() > 0.0 else OPEN
+            return SOLVED if lowest(stage[6]) > 0.0 else OPEN
         fresh = iteration > 0 and change > SLOW * before
         before = change
     return UNSOLVED

@@ -11,7 +11,7 @@ from reference.solver.arc import arc_peak
 from reference.solver.chain import chain_acceleration
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.events import first_crossing
+from reference.solver.events import first_crossing, lowest
 from reference.solver.ground import ground_at
 from reference.solver.near_stop import ACROSS, ALONG, CLOCK, DIRECTION, LOG_RATIO, SIGMA, directed, near_stop_step
 from reference.solver.platform import rest_excess
@@ -120,7 +120,7 @@ def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, rec
         if h * exp(run[LOG_SPEED]) < SHORTEST * demand.period * 1e-3 * exp(min(0.0, run[LOG_SPEED])):
             return UNSOLVED, STOPPING
         code = near_stop_step(system, phase, work, run[TIME], h, run[ANGLE], run[LOG_SPEED], NEWTON * demand.tolerance)
-        if code == SOLVED and work.stage[6].min() <= 0.0:
+        if code == SOLVED and lowest(work.stage[6]) <= 0.0:
             code = OPEN
         if code != SOLVED:
             if code != UNSOLVED and h * exp(run[LOG_SPEED]) < FATAL * demand.period:
@@ -141,7 +141,7 @@ def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, rec
         for k in range(STAGES):
             values[k] = work.turning[SIGMA, k] + work.turning[LOG_RATIO, k]
         start_value = run[LOG_SPEED] + log_ratio
-        if regularized and values.min() < level - LOCATED:
+        if regularized and lowest(values) < level - LOCATED:
             portion = first_crossing(values, max(start_value, level), level - 0.5 * LOCATED)
             if portion < 1e-9:
                 return SOLVED, CREEPING
@@ -169,7 +169,7 @@ def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, rec
         else:
             next_contact = has_stopped(system, phase, work, demand)
             if next_contact != STOPPING:
-                work.v[0, :] = 0.0
+                work.v[0, 0] = work.v[0, 1] = 0.0
                 return SOLVED, next_contact
         along = work.turning[ALONG, STAGES - 1]
         if along > 0.0 and exp(run[LOG_SPEED]) > max(AWAY * run[LENGTH], CLOSE * demand.period) * along:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple, cast
 
 import numpy as np
+from numba import types
+from numba.experimental import structref
 from numpy.typing import NDArray
 
 from reference.problem import GRAVITY, Scene, exponents
@@ -46,7 +48,13 @@ class System(NamedTuple):
     fastest: float  # rad/s, bound of the chain's natural frequencies
 
 
-class Work(NamedTuple):
+@structref.register
+class _WorkType(types.StructRef):
+    def preprocess_fields(self, fields):
+        return tuple((name, types.unliteral(typ)) for name, typ in fields)
+
+
+class Work(structref.StructRefProxy):
     """Arrays of one run: nothing is allocated while it goes on, and nothing grows with its duration."""
 
     x: Array  # (N, 2) position at the start of the step
@@ -63,7 +71,7 @@ class Work(NamedTuple):
     pivot: Complex  # (N, 2, CHANNELS) eliminated chain
     load: Complex  # (N, 2, CHANNELS)
     gain: Complex  # (2, CHANNELS) what the chain gives back to the platform
-    stage: Array  # (8, S) platform at the stages: px, py, vx, vy, fx, fy, reaction, speed2
+    stage: Array  # (9, S) platform at the stages: px, py, vx, vy, fx, fy, reaction, speed2, inertia determinant
     slopes: Array  # (12, S) derivative of its acceleration
     matrix: Array  # (2 S, 2 S)
     residual: Array  # (2 S,)
@@ -78,6 +86,9 @@ class Work(NamedTuple):
     best: Array  # (N,) largest squared absolute acceleration so far
     doubt: Array  # (N,) m/s^2, error of reading it inside its step
     defect: Array  # (N,) m/s^2, interpolation error of the step at its start
+
+
+structref.define_proxy(Work, _WorkType, ['x', 'v', 'a0', 'total0', 'x1', 'v1', 'a', 'ground', 'total', 'free', 'feedback', 'pivot', 'load', 'gain', 'stage', 'slopes', 'matrix', 'residual', 'pivots', 'chain', 'velocity', 'turning', 'powers', 'guess', 'scale', 'run', 'best', 'doubt', 'defect'])
 
 
 class Record(NamedTuple):
@@ -139,35 +150,35 @@ def workspace(bodies: int) -> Work:
     """Arrays for runs with this many bodies."""
     n, s, c = bodies, STAGES, CHANNELS
     return Work(
-        x=np.zeros((n, 2)),
-        v=np.zeros((n, 2)),
-        a0=np.zeros((n, 2)),
-        total0=np.zeros((n, 3)),
-        x1=np.zeros((n, 2)),
-        v1=np.zeros((n, 2)),
-        a=np.zeros((n, 2, s)),
-        ground=np.zeros((3, s)),
-        total=np.zeros((n, 3, s)),
-        free=np.zeros((2, s)),
-        feedback=np.zeros((2, s, s)),
-        pivot=np.zeros((n, 2, c), np.complex128),
-        load=np.zeros((n, 2, c), np.complex128),
-        gain=np.zeros((2, c), np.complex128),
-        stage=np.zeros((8, s)),
-        slopes=np.zeros((12, s)),
-        matrix=np.zeros((2 * s, 2 * s)),
-        residual=np.zeros(2 * s),
-        pivots=np.zeros(2 * s),
-        chain=np.zeros((n, 2, s)),
-        velocity=np.zeros((n, 2, s)),
-        turning=np.zeros((9, s)),
-        powers=np.zeros((5, s)),
-        guess=np.zeros((2, s)),
-        scale=np.zeros(n),
-        run=np.zeros(8),
-        best=np.zeros(n),
-        doubt=np.zeros(n),
-        defect=np.zeros(n),
+        np.zeros((n, 2)),
+        np.zeros((n, 2)),
+        np.zeros((n, 2)),
+        np.zeros((n, 3)),
+        np.zeros((n, 2)),
+        np.zeros((n, 2)),
+        np.zeros((n, 2, s)),
+        np.zeros((3, s)),
+        np.zeros((n, 3, s)),
+        np.zeros((2, s)),
+        np.zeros((2, s, s)),
+        np.zeros((n, 2, c), np.complex128),
+        np.zeros((n, 2, c), np.complex128),
+        np.zeros((2, c), np.complex128),
+        np.zeros((9, s)),
+        np.zeros((12, s)),
+        np.zeros((2 * s, 2 * s)),
+        np.zeros(2 * s),
+        np.zeros(2 * s),
+        np.zeros((n, 2, s)),
+        np.zeros((n, 2, s)),
+        np.zeros((9, s)),
+        np.zeros((5, s)),
+        np.zeros((2, s)),
+        np.zeros(n),
+        np.zeros(8),
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros(n),
     )
 
 
