@@ -23,8 +23,9 @@ def sideways(
     system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float
 ) -> float:
     """a . e_perp: positive when the direction turns counter-clockwise."""
-    ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, angle)
-    return ay * cos(angle) - ax * sin(angle)
+    ex, ey = cos(angle), sin(angle)
+    ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, ex, ey)
+    return ay * ex - ax * ey
 
 
 @compiled
@@ -32,7 +33,7 @@ def squared_total(
     system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float
 ) -> float:
     """Squared absolute acceleration of the platform sliding in the direction `angle` at vanishing speed."""
-    ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, angle)
+    ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, cos(angle), sin(angle))
     az = uz
     if not system.small:
         az += (px * ax + py * ay) / sqrt(system.radius**2 - px * px - py * py)

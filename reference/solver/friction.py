@@ -10,7 +10,7 @@ a slip vector s = factor * v_h with v_h the horizontal velocity:
 
 from __future__ import annotations
 
-from math import cos, sin, sqrt
+from math import sqrt
 
 from reference.solver.compiled import compiled
 
@@ -107,10 +107,8 @@ def rest_excess_printed(
 
 @compiled
 def slip_vector(
-    px: float, py: float, angle: float, friction: float, radius: float, small: bool
+    px: float, py: float, ex: float, ey: float, friction: float, radius: float, small: bool
 ) -> tuple[float, float, float]:
-    """Slip vector of dry sliding in the horizontal direction `angle`, and the ratio of full to horizontal speed."""
-    ex = cos(angle)
-    ey = sin(angle)
+    """Slip vector of dry sliding in the horizontal direction (ex, ey), and the ratio of full to horizontal speed."""
     ratio = sqrt(sliding_speed2(px, py, ex, ey, radius, small))
     return friction * ex / ratio, friction * ey / ratio, ratio

@@ -9,9 +9,7 @@ speed. The chain above the platform, slow on this time scale, follows by iterati
 
 from __future__ import annotations
 
-from math import cos, exp, sin
-
-import numpy as np
+from math import cos, exp, log, sin
 
 from reference.solver.collocation import NODES, STAGES, A
 from reference.solver.compiled import compiled
@@ -27,16 +25,16 @@ SETTLED = 1e-13  # rad: rounding moves the angles by this much
 NUDGE = 1e-6  # rad, for the slope by the direction: Newton's method needs it to a few digits only
 
 # rows of Work.turning
-DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, LOG_RATIO, SPEED = range(9)
+DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, LOG_RATIO, SPEED, COSINE, SINE = range(11)
 
 
 @compiled
 def directed(
     system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, pressure: float,
-    speed: float, angle: float,
+    speed: float, ex: float, ey: float,
 ) -> tuple[float, float, float, float]:  # fmt: skip
-    """(ax, ay, reaction / m1, full over horizontal speed) when sliding in the direction `angle` at any speed >= 0."""
-    sx, sy, ratio = slip_vector(px, py, angle, system.friction, system.radius, system.small)
+    """(ax, ay, reaction / m1, full over horizontal speed) when sliding in the direction (ex, ey) at any speed >= 0."""
+    sx, sy, ratio = slip_vector(px, py, ex, ey, system.friction, system.radius, system.small)
     ax, ay, reaction, _ = acceleration(system, px, py, fx, fy, ux, uy, pressure, (speed * ratio) ** 2, sx, sy)
     return ax, ay, reaction, ratio
 
@@ -52,10 +50,9 @@ def near_stop_step(
     """
     bodies = work.x.shape[0]
     turn, xs, a = work.turning, work.chain, work.a
-    along, across = (
-        work.a0[0, 0] * cos(angle) + work.a0[0, 1] * sin(angle),
-        work.a0[0, 1] * cos(angle) - work.a0[0, 0] * sin(angle),
-    )
+    ex, ey = cos(angle), sin(angle)
+    along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
+    across = work.a0[0, 1] * ex - work.a0[0, 0] * ey
     for k in range(STAGES):
         turn[DIRECTION, k] = angle
         turn[SIGMA, k] = log_speed + h * NODES[k] * along
@@ -70,6 +67,8 @@ def near_stop_step(
         moved = 0.0
         for k in range(STAGES):
             turn[SPEED, k] = exp(turn[SIGMA, k])
+            turn[COSINE, k] = cos(turn[DIRECTION, k])
+            turn[SINE, k] = sin(turn[DIRECTION, k])
         for k in range(STAGES):
             elapsed = 0.0
             for m in range(STAGES):
@@ -79,8 +78,7 @@ def near_stop_step(
             for axis in range(2):
                 for k in range(STAGES):
                     if i == 0:
-                        heading = cos(turn[DIRECTION, k]) if axis == 0 else sin(turn[DIRECTION, k])
-                        work.velocity[i, axis, k] = turn[SPEED, k] * heading
+                        work.velocity[i, axis, k] = turn[SPEED, k] * turn[COSINE + axis, k]
                     else:
                         gained = 0.0
                         for m in range(STAGES):
@@ -106,21 +104,19 @@ def near_stop_step(
             if bodies > 1:
                 fx += system.above[0, 0] * (xs[1, 0, k] - xs[0, 0, k])
                 fy += system.above[0, 1] * (xs[1, 1, k] - xs[0, 1, k])
-            theta = turn[DIRECTION, k]
-            speed = turn[SPEED, k]
+            speed, ex, ey = turn[SPEED, k], turn[COSINE, k], turn[SINE, k]
             px, py, pressure = xs[0, 0, k], xs[0, 1, k], system.gravity + uz
             if px * px + py * py >= system.radius**2:
                 return beyond_rim(system, work)
-            ax, ay, reaction, ratio = directed(system, px, py, fx, fy, ux, uy, pressure, speed, theta)
-            bx, by, _, _ = directed(system, px, py, fx, fy, ux, uy, pressure, speed, theta + NUDGE)
-            ex, ey = cos(theta), sin(theta)
-            gx, gy = cos(theta + NUDGE), sin(theta + NUDGE)
+            ax, ay, reaction, ratio = directed(system, px, py, fx, fy, ux, uy, pressure, speed, ex, ey)
+            gx, gy = ex - NUDGE * ey, ey + NUDGE * ex
+            bx, by, _, _ = directed(system, px, py, fx, fy, ux, uy, pressure, speed, gx, gy)
             a[0, 0, k], a[0, 1, k] = ax, ay
             turn[ALONG, k] = ax * ex + ay * ey
             turn[ACROSS, k] = ay * ex - ax * ey
             turn[ALONG_SLOPE, k] = (bx * gx + by * gy - turn[ALONG, k]) / NUDGE
             turn[ACROSS_SLOPE, k] = (by * gx - bx * gy - turn[ACROSS, k]) / NUDGE
-            turn[LOG_RATIO, k] = np.log(ratio)
+            turn[LOG_RATIO, k] = log(ratio)
             work.stage[0, k], work.stage[1, k] = px, py
             work.stage[2, k], work.stage[3, k] = speed * ex, speed * ey
             work.stage[4, k], work.stage[5, k] = fx, fy

@@ -80,7 +80,7 @@ def guess_onset(system: System, phase: Array, work: Work, h: float) -> None:
     for k in range(STAGES):
         ax, ay, _, _ = directed(
             system, work.x[0, 0], work.x[0, 1], work.free[0, k], work.free[1, k],
-            work.ground[0, k], work.ground[1, k], system.gravity + work.ground[2, k], 0.0, angle,
+            work.ground[0, k], work.ground[1, k], system.gravity + work.ground[2, k], 0.0, ex, ey,
         )  # fmt: skip
         along = max(ax * ex + ay * ey, LEAST * (abs(work.free[0, k]) + abs(work.free[1, k])))
         work.a[0, 0, k] = along * ex
@@ -102,7 +102,7 @@ def begin_slide(system: System, phase: Array, work: Work, demand: Demand) -> Non
             work.best[0] = onset
             work.doubt[0] = 0.0
     work.run[ANGLE] = angle
-    ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, angle)
+    ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, cos(angle), sin(angle))
     begin_with(system, work, ax, ay, ux, uy, uz, False)
 
 

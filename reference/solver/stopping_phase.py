@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import exp, log, pi
+from math import cos, exp, log, pi, sin
 
 import numpy as np
 
@@ -59,8 +59,9 @@ def ratio_in(system: System, work: Work, phase: Array) -> tuple[float, float]:
     chain_acceleration(system, work, ux, uy)
     fx, fy = drive(system, work, ux, uy)
     ax, ay, _, ratio = directed(
-        system, work.x[0, 0], work.x[0, 1], fx, fy, ux, uy, system.gravity + uz, exp(run[LOG_SPEED]), run[ANGLE]
-    )
+        system, work.x[0, 0], work.x[0, 1], fx, fy, ux, uy, system.gravity + uz,
+        exp(run[LOG_SPEED]), cos(run[ANGLE]), sin(run[ANGLE]),
+    )  # fmt: skip
     begin_with(system, work, ax, ay, ux, uy, uz, False)
     return log(ratio), (ax * ax + ay * ay) ** 0.5
 

@@ -78,7 +78,7 @@ class Work(structref.StructRefProxy):
     pivots: Array  # (2 S,) rows of the factorised matrix
     chain: Array  # (N, 2, S) position of the bodies at the stages of a step near a stop
     velocity: Array  # (N, 2, S)
-    turning: Array  # (9, S) direction, speed and time there
+    turning: Array  # (11, S) direction, speed and time there
     powers: Array  # (5, S) coefficients of the powers of theta where a step is looked at closely
     guess: Array  # (2, S) coefficients of the platform's acceleration in the step before
     scale: Array  # (N,) m/s^2, what errors are measured against
@@ -171,7 +171,7 @@ def workspace(bodies: int) -> Work:
         np.zeros(2 * s),
         np.zeros((n, 2, s)),
         np.zeros((n, 2, s)),
-        np.zeros((9, s)),
+        np.zeros((11, s)),
         np.zeros((5, s)),
         np.zeros((2, s)),
         np.zeros(n),
