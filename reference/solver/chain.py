@@ -9,12 +9,16 @@ its digits however stiff a link is.
 
 from __future__ import annotations
 
+import numpy as np
+
 from reference.solver.collocation import A2, CHANNELS, EIGENVALUES, FROM_CHANNELS, NODES, STAGES, TO_CHANNELS, A
 from reference.solver.compiled import compiled
 from reference.solver.system import System, Work
 
 ONES_IN_CHANNELS = TO_CHANNELS.sum(axis=1)
 NODES_IN_CHANNELS = TO_CHANNELS @ NODES
+_THROUGH = np.einsum("kj,jm->jkm", FROM_CHANNELS, TO_CHANNELS)  # from stage m through channel j to stage k
+THROUGH_REAL, THROUGH_IMAGINARY = _THROUGH.real.copy(), _THROUGH.imag.copy()
 
 
 @compiled
@@ -37,18 +41,19 @@ def eliminate_chain(system: System, work: Work, h: float) -> None:
 @compiled
 def feed_back(system: System, work: Work, h: float) -> None:
     """What the platform's stage accelerations do to its own drive through the eliminated chain."""
+    feedback = work.feedback
     for axis in range(2):
         for k in range(STAGES):
             for m in range(STAGES):
-                work.feedback[axis, k, m] = 0.0
+                feedback[axis, k, m] = 0.0
         if work.x.shape[0] == 1:
             continue
         for j in range(CHANNELS):
             gain = -system.above[0, axis] * work.gain[axis, j]
+            real, imaginary = gain.real, gain.imag
             for k in range(STAGES):
-                left = FROM_CHANNELS[k, j] * gain
                 for m in range(STAGES):
-                    work.feedback[axis, k, m] += (left * TO_CHANNELS[j, m]).real
+                    feedback[axis, k, m] += real * THROUGH_REAL[j, k, m] - imaginary * THROUGH_IMAGINARY[j, k, m]
 
 
 @compiled

@@ -49,7 +49,9 @@ def near_stop_step(
     Fills a, total and `turning` at the stages and x1, v1 at the end; `tolerance` bounds the last change of the angle.
     """
     bodies = work.x.shape[0]
-    turn, xs, a = work.turning, work.chain, work.a
+    x, v, a, xs, vs = work.x, work.v, work.a, work.chain, work.velocity
+    turn, ground, stage, residual = work.turning, work.ground, work.stage, work.residual[:STAGES]
+    matrix, pivots = work.matrix[:STAGES, :STAGES], work.pivots[:STAGES]
     ex, ey = cos(angle), sin(angle)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
     across = work.a0[0, 1] * ex - work.a0[0, 0] * ey
@@ -60,7 +62,7 @@ def near_stop_step(
         turn[DIRECTION, k] += max(-0.5, min(0.5, h * NODES[k] * across))
         for i in range(bodies):
             for axis in range(2):
-                xs[i, axis, k] = work.x[i, axis]
+                xs[i, axis, k] = x[i, axis]
                 a[i, axis, k] = work.a0[i, axis]
     reach = 0.0
     for iteration in range(ITERATIONS):
@@ -78,26 +80,26 @@ def near_stop_step(
             for axis in range(2):
                 for k in range(STAGES):
                     if i == 0:
-                        work.velocity[i, axis, k] = turn[SPEED, k] * turn[COSINE + axis, k]
+                        vs[i, axis, k] = turn[SPEED, k] * turn[COSINE + axis, k]
                     else:
                         gained = 0.0
                         for m in range(STAGES):
                             gained += A[k, m] * turn[SPEED, m] * a[i, axis, m]
-                        work.velocity[i, axis, k] = work.v[i, axis] + h * gained
+                        vs[i, axis, k] = v[i, axis] + h * gained
                 for k in range(STAGES):
                     shift = 0.0
                     for m in range(STAGES):
-                        shift += A[k, m] * turn[SPEED, m] * work.velocity[i, axis, m]
-                    xs[i, axis, k] = work.x[i, axis] + h * shift
+                        shift += A[k, m] * turn[SPEED, m] * vs[i, axis, m]
+                    xs[i, axis, k] = x[i, axis] + h * shift
         for k in range(STAGES):
             ux, uy, uz = ground_at(system, phase, turn[CLOCK, k])
-            work.ground[0, k], work.ground[1, k], work.ground[2, k] = ux, uy, uz
+            ground[0, k], ground[1, k], ground[2, k] = ux, uy, uz
             for i in range(1, bodies):
                 for axis in range(2):
                     pull = system.below[i, axis] * (xs[i - 1, axis, k] - xs[i, axis, k])
                     if i < bodies - 1:
                         pull += system.above[i, axis] * (xs[i + 1, axis, k] - xs[i, axis, k])
-                    pull -= work.ground[axis, k]
+                    pull -= ground[axis, k]
                     moved = max(moved, abs(pull - a[i, axis, k]) * turn[SPEED, k] * h)
                     a[i, axis, k] = pull
             fx, fy = -ux, -uy
@@ -117,27 +119,26 @@ def near_stop_step(
             turn[ALONG_SLOPE, k] = (bx * gx + by * gy - turn[ALONG, k]) / NUDGE
             turn[ACROSS_SLOPE, k] = (by * gx - bx * gy - turn[ACROSS, k]) / NUDGE
             turn[LOG_RATIO, k] = log(ratio)
-            work.stage[0, k], work.stage[1, k] = px, py
-            work.stage[2, k], work.stage[3, k] = speed * ex, speed * ey
-            work.stage[4, k], work.stage[5, k] = fx, fy
-            work.stage[6, k], work.stage[7, k] = reaction, (speed * ratio) ** 2
+            stage[0, k], stage[1, k] = px, py
+            stage[2, k], stage[3, k] = speed * ex, speed * ey
+            stage[4, k], stage[5, k] = fx, fy
+            stage[6, k], stage[7, k] = reaction, (speed * ratio) ** 2
         for k in range(STAGES):
-            work.residual[k] = angle - turn[DIRECTION, k]
+            residual[k] = angle - turn[DIRECTION, k]
             for m in range(STAGES):
-                work.residual[k] += h * A[k, m] * turn[ACROSS, m]
-                work.matrix[k, m] = -h * A[k, m] * turn[ACROSS_SLOPE, m]
-            work.matrix[k, k] += 1.0
-        matrix, pivots, residual = work.matrix[:STAGES, :STAGES], work.pivots[:STAGES], work.residual[:STAGES]
+                residual[k] += h * A[k, m] * turn[ACROSS, m]
+                matrix[k, m] = -h * A[k, m] * turn[ACROSS_SLOPE, m]
+            matrix[k, k] += 1.0
         if not factorize(matrix, pivots):
             return UNSOLVED
         solve(matrix, pivots, residual)
         for k in range(STAGES):
-            turn[DIRECTION, k] += work.residual[k]
-            moved = max(moved, abs(work.residual[k]))
+            turn[DIRECTION, k] += residual[k]
+            moved = max(moved, abs(residual[k]))
         for k in range(STAGES):
             level = log_speed
             for m in range(STAGES):
-                level += h * A[k, m] * (turn[ALONG, m] + turn[ALONG_SLOPE, m] * work.residual[m])
+                level += h * A[k, m] * (turn[ALONG, m] + turn[ALONG_SLOPE, m] * residual[m])
             moved = max(moved, abs(level - turn[SIGMA, k]))
             turn[SIGMA, k] = level
         if not moved < 1e3 or (iteration > 4 and moved > 2.0 * reach):
@@ -147,7 +148,7 @@ def near_stop_step(
             for i in range(bodies):
                 for axis in range(2):
                     work.x1[i, axis] = xs[i, axis, STAGES - 1]
-                    work.v1[i, axis] = work.velocity[i, axis, STAGES - 1]
+                    work.v1[i, axis] = vs[i, axis, STAGES - 1]
             absolute_accelerations(system, work, SLIDING)
             return SOLVED
     return UNSOLVED

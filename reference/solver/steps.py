@@ -102,16 +102,16 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
 @compiled
 def place_platform(work: Work, h: float) -> None:
     """Position, velocity and drive of the platform at the stages, from its stage accelerations."""
-    a, stage = work.a, work.stage
+    a, stage, free, feedback = work.a, work.stage, work.free, work.feedback
     for axis in range(2):
         for k in range(STAGES):
             velocity = 0.0
             position = 0.0
-            drive = work.free[axis, k]
+            drive = free[axis, k]
             for m in range(STAGES):
                 velocity += A[k, m] * a[0, axis, m]
                 position += A2[k, m] * a[0, axis, m]
-                drive += work.feedback[axis, k, m] * a[0, axis, m]
+                drive += feedback[axis, k, m] * a[0, axis, m]
             stage[axis, k] = work.x[0, axis] + h * (NODES[k] * work.v[0, axis] + h * position)
             stage[2 + axis, k] = work.v[0, axis] + h * velocity
             stage[4 + axis, k] = drive
@@ -120,16 +120,16 @@ def place_platform(work: Work, h: float) -> None:
 @compiled
 def set_matrix(work: Work, h: float) -> None:
     """Derivative of the stage equations a - acceleration(a) = 0 by the stage accelerations of the platform."""
-    matrix = work.matrix
+    matrix, feedback, slope = work.matrix, work.feedback, work.slopes
     for row in range(2):
         for column in range(2):
             for k in range(STAGES):
-                by_position = h * h * work.slopes[2 * column + row, k]
-                by_velocity = h * work.slopes[4 + 2 * column + row, k]
-                by_drive = work.slopes[8 + 2 * column + row, k]
+                by_position = h * h * slope[2 * column + row, k]
+                by_velocity = h * slope[4 + 2 * column + row, k]
+                by_drive = slope[8 + 2 * column + row, k]
                 for m in range(STAGES):
                     matrix[row * STAGES + k, column * STAGES + m] = -(
-                        by_position * A2[k, m] + by_velocity * A[k, m] + by_drive * work.feedback[column, k, m]
+                        by_position * A2[k, m] + by_velocity * A[k, m] + by_drive * feedback[column, k, m]
                     )
     for k in range(2 * STAGES):
         matrix[k, k] += 1.0
