@@ -59,65 +59,67 @@ def feed_back(system: System, work: Work, h: float) -> None:
 @compiled
 def load_chain(system: System, work: Work, h: float) -> None:
     """The loads of the eliminated chain from the state and the ground; fills `free`."""
+    x, v, free, ground, loads, pivot = work.x, work.v, work.free, work.ground, work.load, work.pivot
     bodies = work.x.shape[0]
     for axis in range(2):
         for k in range(STAGES):
-            work.free[axis, k] = -work.ground[axis, k]
+            free[axis, k] = -ground[axis, k]
         if bodies == 1:
             continue
-        stretch = work.x[1, axis] - work.x[0, axis]
-        rate = h * (work.v[1, axis] - work.v[0, axis])
+        stretch = x[1, axis] - x[0, axis]
+        rate = h * (v[1, axis] - v[0, axis])
         c0 = system.above[0, axis]
         for k in range(STAGES):
-            work.free[axis, k] += c0 * (stretch + NODES[k] * rate)
+            free[axis, k] += c0 * (stretch + NODES[k] * rate)
         for j in range(CHANNELS):
             drive = 0.0 + 0.0j
             for k in range(STAGES):
-                drive -= TO_CHANNELS[j, k] * work.ground[axis, k]
+                drive -= TO_CHANNELS[j, k] * ground[axis, k]
             level = (h * EIGENVALUES[j]) ** 2
             carried = 0.0 + 0.0j
             for i in range(bodies - 1, 0, -1):
-                force = -system.below[i, axis] * (work.x[i, axis] - work.x[i - 1, axis])
-                slope = -system.below[i, axis] * (work.v[i, axis] - work.v[i - 1, axis])
+                force = -system.below[i, axis] * (x[i, axis] - x[i - 1, axis])
+                slope = -system.below[i, axis] * (v[i, axis] - v[i - 1, axis])
                 if i < bodies - 1:
-                    force += system.above[i, axis] * (work.x[i + 1, axis] - work.x[i, axis])
-                    slope += system.above[i, axis] * (work.v[i + 1, axis] - work.v[i, axis])
+                    force += system.above[i, axis] * (x[i + 1, axis] - x[i, axis])
+                    slope += system.above[i, axis] * (v[i + 1, axis] - v[i, axis])
                 load = drive + force * ONES_IN_CHANNELS[j] + h * slope * NODES_IN_CHANNELS[j]
                 if i < bodies - 1:
                     load += level * system.above[i, axis] * carried
-                work.load[i, axis, j] = load
-                carried = load / work.pivot[i, axis, j]
+                loads[i, axis, j] = load
+                carried = load / pivot[i, axis, j]
             gain = c0 * level * carried
             for k in range(STAGES):
-                work.free[axis, k] += (FROM_CHANNELS[k, j] * gain).real
+                free[axis, k] += (FROM_CHANNELS[k, j] * gain).real
 
 
 @compiled
 def move_chain(system: System, work: Work, h: float) -> None:
     """Stage accelerations of the bodies from those of the platform; the state at the end of the step in x1, v1."""
+    x, v, a, load, pivot = work.x, work.v, work.a, work.load, work.pivot
     bodies = work.x.shape[0]
     for axis in range(2):
         for i in range(1, bodies):
             for k in range(STAGES):
-                work.a[i, axis, k] = 0.0
+                a[i, axis, k] = 0.0
         if bodies > 1:
             for j in range(CHANNELS):
                 level = (h * EIGENVALUES[j]) ** 2
                 below = 0.0 + 0.0j
                 for k in range(STAGES):
-                    below += TO_CHANNELS[j, k] * work.a[0, axis, k]
+                    below += TO_CHANNELS[j, k] * a[0, axis, k]
                 for i in range(1, bodies):
-                    below = (work.load[i, axis, j] + level * system.below[i, axis] * below) / work.pivot[i, axis, j]
+                    below = (load[i, axis, j] + level * system.below[i, axis] * below) / pivot[i, axis, j]
                     for k in range(STAGES):
-                        work.a[i, axis, k] += (FROM_CHANNELS[k, j] * below).real
+                        a[i, axis, k] += (FROM_CHANNELS[k, j] * below).real
         for i in range(bodies):
             velocity = 0.0
             position = 0.0
             for k in range(STAGES):
-                velocity += A[STAGES - 1, k] * work.a[i, axis, k]
-                position += A2[STAGES - 1, k] * work.a[i, axis, k]
-            work.v1[i, axis] = work.v[i, axis] + h * velocity
-            work.x1[i, axis] = work.x[i, axis] + h * (work.v[i, axis] + h * position)
+                velocity += A[STAGES - 1, k] * a[i, axis, k]
+                position += A2[STAGES - 1, k] * a[i, axis, k]
+            work.v1[i, axis] = v[i, axis] + h * velocity
+            work.x1[i, axis] = x[i, axis] + h * (v[i, axis] + h * position)
 
 
 @compiled

@@ -153,15 +153,16 @@ def lifted(system: System, px: float, py: float, vx: float, vy: float, ax: float
 @compiled
 def absolute_accelerations(system: System, work: Work, contact: int) -> None:
     """Relative plus ground acceleration at the stages."""
+    a, ground, stage, total = work.a, work.ground, work.stage, work.total
     for k in range(STAGES):
-        vertical = work.ground[2, k]
+        vertical = ground[2, k]
         if contact != REST:
-            vx, vy = work.stage[2, k], work.stage[3, k]
-            vertical += lifted(system, work.stage[0, k], work.stage[1, k], vx, vy, work.a[0, 0, k], work.a[0, 1, k])
+            vx, vy = stage[2, k], stage[3, k]
+            vertical += lifted(system, stage[0, k], stage[1, k], vx, vy, a[0, 0, k], a[0, 1, k])
         for i in range(work.x.shape[0]):
-            work.total[i, 0, k] = work.a[i, 0, k] + work.ground[0, k]
-            work.total[i, 1, k] = work.a[i, 1, k] + work.ground[1, k]
-            work.total[i, 2, k] = vertical
+            total[i, 0, k] = a[i, 0, k] + ground[0, k]
+            total[i, 1, k] = a[i, 1, k] + ground[1, k]
+            total[i, 2, k] = vertical
 
 
 @compiled
@@ -172,7 +173,8 @@ def step_error(work: Work) -> float:
     The interpolating polynomial, evaluated at the start of the step, misses the acceleration known there by the
     interpolation error of the step, which falls like h^7.
     """
-    load = abs(work.total0[0, 2])
+    total, total0 = work.total, work.total0
+    load = abs(total0[0, 2])
     for k in range(STAGES):
         load = max(load, abs(work.stage[4, k]) + abs(work.stage[5, k]))
     noise = ROUNDING * load
@@ -180,9 +182,9 @@ def step_error(work: Work) -> float:
     for i in range(work.x.shape[0]):
         squared = 0.0
         for axis in range(3):
-            defect = -work.total0[i, axis]
+            defect = -total0[i, axis]
             for k in range(STAGES):
-                defect += AT_START[k] * work.total[i, axis, k]
+                defect += AT_START[k] * total[i, axis, k]
             squared += defect * defect
         work.defect[i] = sqrt(squared)
         worst = max(worst, (work.defect[i] - noise) / work.scale[i])
