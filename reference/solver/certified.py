@@ -52,7 +52,7 @@ def certified_peaks(system: System, phases: Array, demand: Demand) -> Peaks:
     """
     tolerance = min(LOOSEST, max(EASE * demand.tolerance, TIGHTEST))
     before = peaks_at(system, phases, demand, RATIO * tolerance)
-    found = before
+    found = Peaks(*(part.copy() for part in before))
     open_ = np.arange(len(phases))
     while len(open_):
         after = peaks_at(system, phases[open_], demand, tolerance)
@@ -64,7 +64,7 @@ def certified_peaks(system: System, phases: Array, demand: Demand) -> Peaks:
         refused = (before.code == after.code) & (after.code != SOLVED)
         again = ~(met | refused)
         if tolerance <= TIGHTEST:
-            found.code[open_[again & solved]] = NOT_MET
+            found.code[open_[again & (after.code == SOLVED)]] = NOT_MET
             break
         before = Peaks(*(part[again] for part in after))
         open_ = open_[again]

@@ -49,13 +49,16 @@ class System(NamedTuple):
 
 
 @structref.register
-class _WorkType(types.StructRef):
-    def preprocess_fields(self, fields):
-        return tuple((name, types.unliteral(typ)) for name, typ in fields)
+class _WorkType(types.StructRef):  # type: ignore[misc]
+    """Numba's type of Work."""
 
 
-class Work(structref.StructRefProxy):
-    """Arrays of one run: nothing is allocated while it goes on, and nothing grows with its duration."""
+class Work(structref.StructRefProxy):  # type: ignore[misc]
+    """
+    Arrays of one run: nothing is allocated while it goes on, and nothing grows with its duration.
+
+    Compiled code passes it by reference: as a tuple, every call would copy and compile all its fields again.
+    """
 
     x: Array  # (N, 2) position at the start of the step
     v: Array  # (N, 2) velocity
@@ -88,7 +91,7 @@ class Work(structref.StructRefProxy):
     defect: Array  # (N,) m/s^2, interpolation error of the step at its start
 
 
-structref.define_proxy(Work, _WorkType, ['x', 'v', 'a0', 'total0', 'x1', 'v1', 'a', 'ground', 'total', 'free', 'feedback', 'pivot', 'load', 'gain', 'stage', 'slopes', 'matrix', 'residual', 'pivots', 'chain', 'velocity', 'turning', 'powers', 'guess', 'scale', 'run', 'best', 'doubt', 'defect'])
+structref.define_proxy(Work, _WorkType, list(Work.__annotations__))
 
 
 class Record(NamedTuple):
@@ -150,35 +153,35 @@ def workspace(bodies: int) -> Work:
     """Arrays for runs with this many bodies."""
     n, s, c = bodies, STAGES, CHANNELS
     return Work(
-        np.zeros((n, 2)),
-        np.zeros((n, 2)),
-        np.zeros((n, 2)),
-        np.zeros((n, 3)),
-        np.zeros((n, 2)),
-        np.zeros((n, 2)),
-        np.zeros((n, 2, s)),
-        np.zeros((3, s)),
-        np.zeros((n, 3, s)),
-        np.zeros((2, s)),
-        np.zeros((2, s, s)),
-        np.zeros((n, 2, c), np.complex128),
-        np.zeros((n, 2, c), np.complex128),
-        np.zeros((2, c), np.complex128),
-        np.zeros((9, s)),
-        np.zeros((12, s)),
-        np.zeros((2 * s, 2 * s)),
-        np.zeros(2 * s),
-        np.zeros(2 * s),
-        np.zeros((n, 2, s)),
-        np.zeros((n, 2, s)),
-        np.zeros((11, s)),
-        np.zeros((5, s)),
-        np.zeros((2, s)),
-        np.zeros(n),
-        np.zeros(8),
-        np.zeros(n),
-        np.zeros(n),
-        np.zeros(n),
+        x=np.zeros((n, 2)),
+        v=np.zeros((n, 2)),
+        a0=np.zeros((n, 2)),
+        total0=np.zeros((n, 3)),
+        x1=np.zeros((n, 2)),
+        v1=np.zeros((n, 2)),
+        a=np.zeros((n, 2, s)),
+        ground=np.zeros((3, s)),
+        total=np.zeros((n, 3, s)),
+        free=np.zeros((2, s)),
+        feedback=np.zeros((2, s, s)),
+        pivot=np.zeros((n, 2, c), np.complex128),
+        load=np.zeros((n, 2, c), np.complex128),
+        gain=np.zeros((2, c), np.complex128),
+        stage=np.zeros((9, s)),
+        slopes=np.zeros((12, s)),
+        matrix=np.zeros((2 * s, 2 * s)),
+        residual=np.zeros(2 * s),
+        pivots=np.zeros(2 * s),
+        chain=np.zeros((n, 2, s)),
+        velocity=np.zeros((n, 2, s)),
+        turning=np.zeros((11, s)),
+        powers=np.zeros((5, s)),
+        guess=np.zeros((2, s)),
+        scale=np.zeros(n),
+        run=np.zeros(8),
+        best=np.zeros(n),
+        doubt=np.zeros(n),
+        defect=np.zeros(n),
     )
 
 
