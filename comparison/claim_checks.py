@@ -208,6 +208,8 @@ def near_resonance(case: str) -> Check:
         scene = load_scene(case)
         natural = modes(scene).period.ravel()
         gaps = [float(np.abs(natural / period - 1.0).min()) for period in scene.excitation.periods]
-        return judged(max(gaps) <= CLOSE, f"nearest natural period off by {' and '.join(f'{g:.0%}' for g in gaps)}")
+        return judged(
+            max(gaps) <= CLOSE, f"nearest natural period off by {' and '.join(f'{100.0 * g:.0f} %' for g in gaps)}"
+        )
 
     return check

@@ -53,6 +53,13 @@ class ClaimTable:
         """The claims that no reading reproduces."""
         return [claim for claim, row in zip(self.claims, self.verdicts) if not any(v.finding.holds for v in row)]
 
+    def found(self, row: int) -> list[tuple[list[int], Verdict]]:
+        """What the checks of a claim found, each different answer once, with the numbers of its readings from 1 on."""
+        groups: dict[Verdict, list[int]] = {}
+        for number, verdict in enumerate(self.verdicts[row], start=1):
+            groups.setdefault(verdict, []).append(number)
+        return [(numbers, verdict) for verdict, numbers in groups.items()]
+
     def where(self, row: int) -> str:
         """Under which readings a claim holds, in words."""
         names = [reading.name for reading, verdict in zip(self.readings, self.verdicts[row]) if verdict.finding.holds]
@@ -136,10 +143,10 @@ def print_claims(console: Console, table: ClaimTable, words: bool = False) -> No
         grid.add_row(claim.figure, claim.says, *(SIGNS[verdict.finding] for verdict in row))
     console.print(grid)
     if words:
-        for claim, row in zip(table.claims, table.verdicts):
+        for row, claim in enumerate(table.claims):
             console.print(f"{claim.figure}: {claim.says} ({claim.rule})")
-            for number, verdict in enumerate(row, start=1):
-                console.print(f"   {number:2d} {SIGNS[verdict.finding]:5s} {verdict.found}")
+            for numbers, verdict in table.found(row):
+                console.print(f"   {SIGNS[verdict.finding]:5s} {', '.join(map(str, numbers))}: {verdict.found}")
     console.print(f"Most claims are reproduced under: {'; '.join(reading.name for reading in table.best)}.")
     never = [f"{claim.figure}: {claim.says}" for claim in table.never]
     console.print(f"Under no reading: {'; '.join(never) or 'none'}.")

@@ -91,7 +91,7 @@ def test_every_claim_has_its_violation() -> None:
 def test_the_loading_is_near_no_natural_period_of_the_paper() -> None:
     """The chain has 0.63 and 1.69 s in x: 0.9 and 1.1 s are a third away from either."""
     verdict = _claim("Fig. 3", "resonance").verdict({})
-    assert verdict == Verdict(Finding.NOT, "nearest natural period off by 30% and 32%")
+    assert verdict == Verdict(Finding.NOT, "nearest natural period off by 30 % and 32 %")
 
 
 def test_counts_that_only_the_drawn_square_shows_are_told_apart() -> None:
@@ -132,6 +132,7 @@ def test_the_table_names_the_best_reading_and_what_none_reproduces() -> None:
     assert [claim.says for claim in table.never] == ["none"]
     assert table.where(0) == "1 m/s², resolved; 2 m/s², resolved"
     assert table.where(2) == "no reading"
+    assert [(numbers, verdict.finding.holds) for numbers, verdict in table.found(0)] == [([1, 2], True), ([3], False)]
 
 
 def test_readings_share_every_surface_they_can() -> None:

@@ -34,7 +34,7 @@ def test_every_verdict_is_on_the_page_with_what_was_found(page: str) -> None:
     assert table.count('class="differs" title="periodic 4 and 3">yes</td>') == 2
     assert table.count('class="differs" title="drawn 4 and 3">drawn</td>') == 1
     assert '<td title="fig3-I: rim reached">?</td>' in table
-    assert "<li>no: |x<sub>2</sub> - y<sub>2</sub>| up to 0</li>" in page
+    assert "<li>1: no, |x<sub>2</sub> - y<sub>2</sub>| up to 0</li>" in page
 
 
 def test_exponents_stand_with_their_uncertainty_and_noise_has_none(page: str) -> None:
