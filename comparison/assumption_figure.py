@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from comparison.figures import save
 from comparison.variations import WITHIN, Cell
@@ -46,7 +47,7 @@ def _map(axes: Axes, scene: Scene, cells: Sequence[Cell], body: int) -> None:
         image[row, column] = size = cell.largest(body)
         known = np.isfinite(size)
         if not known:
-            axes.fill([column - 0.5, column + 0.5] * 2, [row - 0.5, row - 0.5, row + 0.5, row + 0.5], color=NO_VALUE)
+            axes.add_patch(Rectangle((column - 0.5, row - 0.5), 1.0, 1.0, color=NO_VALUE))
         dark = known and size > WITHIN[1]
         doubtful = f"\n± {100.0 * cell.uncertain(body):.2g}" if known and cell.uncertain(body) > 0.2 * size else ""
         text = f"{100.0 * size:.2g}{doubtful}" if known else "none"
@@ -57,4 +58,4 @@ def _map(axes: Axes, scene: Scene, cells: Sequence[Cell], body: int) -> None:
     axes.set_yticks(range(len(heights)), [f"{height:g}" for height in heights])
     axes.set_xlabel("radius of the ring of supports, m")
     axes.set_ylabel("heights, times the stated ones")
-    axes.set_title(rf"change of $\mu_{{{body}}}$, %: within 1, within 5, beyond", fontsize=10)
+    axes.set_title(rf"change of $\mu_{{{body}}}$, %: yellow within 1, green within 5", fontsize=10)
