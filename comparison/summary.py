@@ -15,10 +15,11 @@ from comparison.further import claims_summary, trends_summary
 from comparison.ladder import rungs_of
 from comparison.slips import SLIPS
 from comparison.surfaces import common_phases
+from comparison.verdicts import verdict
 from reference.problem import Scene
 
 SCHEMA = "phase-resonance/summary"
-VERSION = 1
+VERSION = 2
 
 
 def outcome_counts(surfaces: xr.Dataset, scene: str, model: str) -> dict[str, int]:
@@ -31,12 +32,7 @@ def summary(found: Findings) -> dict[str, Any]:
     """
     Everything a program needs to judge a run without the report. NaN is written as null.
 
-    schema, version; run (command, times, provenance); grid, tolerance; models (key, title, adds, settings); scenes
-    (name, title, digest, models: outcomes and cost in s; differences: one entry per pair and body, see `Difference`;
-    budget: one per body and step, see `Entry`; effective: one per model, see `Effective`); slips (see `Slip` and
-    `Effect`); claims (see `ClaimTable`; null without the paper's scenes), scaling and convergence (see `Trend`);
-    assumptions (see `Reach`; null without a spatial model); broken (acceptance limits, one line each);
-    faults (what solvers complained about).
+    Every key stands with its meaning in summary.schema.json.
     """
     study = found.study
     return {
@@ -89,6 +85,7 @@ def _scene(found: Findings, scene: Scene) -> dict[str, Any]:
             }
             for rung in rungs_of(scene, found.study.ladder)
         },
+        "verdict": _finite(asdict(verdict(found.study, found.surfaces, scene))),
         "differences": own(found.rows),
         "budget": own(found.budget),
         "effective": own(found.effective),

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import json
+from collections.abc import Callable, Iterator
 from importlib import resources
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
 from fake_models import errors_in, fake_ladder
+from jsonschema import Draft202012Validator
 
 from reference.problem import load_scene
 
@@ -24,7 +27,7 @@ def test_the_summary_names_every_broken_limit_and_every_verdict(finished: Path) 
     assert "12 acceptance limits broken" in text
     assert r"- fig3-I: body 1: acceptance.median: 0.01 found, 0.0001 allowed" in text
     assert "- **fig3-I** (Fig. 3a, b" in text
-    assert "step to the translational engine" in text, "the only model of the ladder that differs"
+    assert "largest step there: +1 %, to the translational engine" in text, "the only model of the ladder that differs"
     assert "cross-verified, not validated" in text
 
 
@@ -60,6 +63,32 @@ def test_junit_has_one_case_per_limit_and_scene_and_fails_the_broken_ones(finish
         assert suite.get("failures") == "3"
         text = str(failed[0].findtext("failure"))
         assert [line.split(": ")[1] for line in text.splitlines()] == ["body 1", "body 2"], "both bodies break it"
+
+
+def _schema() -> dict[str, Any]:
+    text = (resources.files("comparison") / "summary.schema.json").read_text(encoding="utf-8")
+    schema: dict[str, Any] = json.loads(text)
+    return schema
+
+
+def _objects(schema: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Every schema inside a schema."""
+    yield schema
+    inner = [*schema.get("properties", {}).values(), schema.get("items"), schema.get("additionalProperties")]
+    for part in inner:
+        if isinstance(part, dict):
+            yield from _objects(part)
+
+
+def test_every_key_of_the_summary_is_documented_and_as_documented(finished: Path) -> None:
+    schema = _schema()
+    Draft202012Validator.check_schema(schema)
+    summary = json.loads((finished / "summary.json").read_text(encoding="utf-8"))
+    assert [fault.message for fault in Draft202012Validator(schema).iter_errors(summary)] == []
+    for part in _objects(schema):
+        if "properties" in part:
+            assert part["additionalProperties"] is False, "an undocumented key is a fault"
+            assert all(key.get("description") for key in part["properties"].values())
 
 
 def test_a_point_without_an_answer_is_in_the_summary(command: Callable[..., object]) -> None:
