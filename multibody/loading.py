@@ -16,6 +16,7 @@ class SymbolicGround:
     def __init__(self, scene: Scene, units: Units) -> None:
         self.amplitudes = scene.amplitudes / units.acceleration
         self.exponents = exponents(scene) * units.time
+        self.shift = exudyn.symbolic.Real("shift", 0.0)  # the engine's own time may not be negative
         self.phases = [exudyn.symbolic.Real(f"alpha{harmonic + 1}", 0.0) for harmonic in range(2)]
 
     def set_phase(self, phase: Any) -> None:
@@ -23,9 +24,13 @@ class SymbolicGround:
         for symbol, value in zip(self.phases, phase, strict=True):
             symbol.SetValue(float(value))
 
+    def set_shift(self, shift: float) -> None:
+        """What the runs that follow add to the engine's time, in units of time."""
+        self.shift.SetValue(shift)
+
     def along(self, axis: int, time: Any) -> Any:
         """Expression of the acceleration along `axis` at the symbolic instant `time`."""
-        total = exudyn.symbolic.Real(0.0)
+        total, time = exudyn.symbolic.Real(0.0), time + self.shift
         for amplitude, exponent, phase in zip(self.amplitudes[axis], self.exponents, self.phases, strict=True):
             if amplitude != 0.0:
                 decay = exudyn.symbolic.exp(exponent.real * time)

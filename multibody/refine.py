@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from multibody.balance import balanced
 from multibody.estimate import from_compliance, from_levels
 from multibody.integrate import Engine
 from multibody.level import FALL, Level, levels
@@ -67,7 +68,10 @@ def refine(
     def run(level: Level) -> March:
         model.stiffen(level.penetration)
         engine = Engine(model, level.newton, level.absolute)
-        return march(engine, model.start(initial, first, level.penetration), end, ground, level, budget, keep=keep)
+        begin = model.start(initial, first, level.penetration)
+        if initial is None:
+            begin = balanced(engine, begin, level)
+        return march(engine, begin, end, ground, level, budget, keep=keep)
 
     marches: list[March] = []
     best: tuple[March, Array] | None = None

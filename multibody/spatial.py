@@ -26,7 +26,7 @@ from reference.problem import Scene, State
 Array = NDArray[np.float64]
 
 PER_BODY = 6  # x, y, z of the centre of mass and three rotations
-STIFF = 1e5  # of a bar in tension (and, times rho^2, in bending), in units of weight / rho: gives way by 1e-5 rho
+GIVES = 10.0  # of a bar in tension (and, times rho^2, in bending) over that of the contact under the same force
 
 
 def spatial(
@@ -48,9 +48,12 @@ def spatial(
         inertia = mass / 12.0 * (size @ size - size**2)
         box = items.ObjectRigidBody(nodeNumber=nodes[-1], mass=mass, inertia=[*inertia, 0.0, 0.0, 0.0])
         bodies.append(mbs.AddObject(box))
+    links = []
     for link, stiffness in enumerate(link_stiffness(scene, units)):
         carried = float(masses[link + 1 :].sum())
-        _bars(mbs, bodies[link : link + 2], heights[link : link + 2], carried, stiffness, float(np.hypot(*ring[0])))
+        bars = _bars(mbs, bodies[link : link + 2], heights[link : link + 2])
+        twist = float(np.hypot(*ring[0])) ** 2 * stiffness.mean()
+        links.append((bars, carried, stiffness, twist))
 
     ground = SymbolicGround(scene, units)
     plate = plate_for(mbs, loading, ground)
@@ -90,6 +93,8 @@ def spatial(
             mbs.SetObjectParameter(contact, "spheresRadii", [radius + penetration, radius + 1.0])
             mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / (count * penetration))
             mbs.SetObjectParameter(contact, "contactDamping", 2.0 * DAMPING / (count * np.sqrt(penetration)))
+        for link in links:
+            _stiffen_bars(mbs, *link, 1.0 / (GIVES * penetration))
 
     index = PER_BODY * np.arange(len(masses))[:, None] + np.arange(3)
 
@@ -105,13 +110,31 @@ def spatial(
         coordinates[index[1:, 2]], velocities[index[1:, 2]] = place[2], velocity[2]
         return EngineState(coordinates, velocities, np.tile([gap, slip, 0.0, 0.0], count))
 
+    def slippery(is_so: bool) -> None:
+        for contact in contacts:
+            mbs.SetObjectParameter(contact, "dynamicFriction", 0.0 if is_so else friction)
+
     def settle(state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
         return state
 
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     keep = (container, expressions)
     return EngineModel(
-        mbs, units, ground, recorders, index, stiffen, start, settle, 1.0, corner, relaxation, True, plate.moves, keep
+        mbs,
+        units,
+        ground,
+        recorders,
+        index,
+        stiffen,
+        start,
+        settle,
+        1.0,
+        corner,
+        relaxation,
+        True,
+        slippery,
+        plate.moves,
+        keep,
     )
 
 
@@ -134,25 +157,24 @@ def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:
     return ring, isolator.sphere_radius / units.length, heights, sizes
 
 
-def _bars(mbs: Any, bodies: list[Any], heights: Array, carried: float, stiffness: Array, ring: float) -> None:
-    """The link between two neighbours, acting half-way between their centres; carried: mass above it."""
+def _bars(mbs: Any, bodies: list[Any], heights: Array) -> Any:
+    """The link between two neighbours, acting half-way between their centres; its stiffness comes later."""
     middle = 0.5 * (heights[1] - heights[0])
     markers = [
         mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[0.0, 0.0, sign * middle]))
         for body, sign in zip(bodies, (1.0, -1.0))
     ]
-    twist = ring**2 * stiffness.mean()
-    stiff = np.array([0.0, 0.0, STIFF, STIFF, STIFF, 0.0])
-    mbs.AddObject(
-        items.ObjectConnectorRigidBodySpringDamper(
-            markerNumbers=markers,
-            stiffness=np.diag([*stiffness, *stiff[2:5], twist]),
-            # the stiff directions are damped critically, the others not at all
-            damping=np.diag(2.0 * np.sqrt(stiff * carried)),
-            # at rest the bars carry what stands on them without giving way
-            offset=[0.0, 0.0, carried / STIFF, 0.0, 0.0, 0.0],
-        )
-    )
+    return mbs.AddObject(items.ObjectConnectorRigidBodySpringDamper(markerNumbers=markers))
+
+
+def _stiffen_bars(mbs: Any, bars: Any, carried: float, shear: Array, twist: float, stiff: float) -> None:
+    """Give bars the scene's stiffness in shear and twist and `stiff` otherwise; carried: mass above them."""
+    held = np.array([0.0, 0.0, stiff, stiff, stiff, 0.0])
+    mbs.SetObjectParameter(bars, "stiffness", np.diag([*shear, *held[2:5], twist]))
+    # the stiff directions are damped critically, the others not at all
+    mbs.SetObjectParameter(bars, "damping", np.diag(2.0 * np.sqrt(held * carried)))
+    # at rest the bars carry what stands on them without giving way
+    mbs.SetObjectParameter(bars, "offset", [0.0, 0.0, carried / stiff, 0.0, 0.0, 0.0])
 
 
 def _inertial(ground: SymbolicGround, mass: float) -> Any:

@@ -109,6 +109,7 @@ def translational(
         corner,
         relaxation,
         False,
+        None,
         plate.moves,
         (container, expressions),
     )
