@@ -24,7 +24,7 @@ from comparison.progress import Stage, progress
 from comparison.readings import CASES, EVERY_READING, READINGS, Reading, without_effect
 from comparison.sweep import sweep
 
-GRID = 16  # phases per axis: the counts are those of 24 and 32
+GRID = 16  # phases per axis: 24 change a count here and there, and none of the claims that no reading reproduces
 SECONDS = 0.25  # of one case under one reading on GRID, recorded beside `Rung.seconds_per_point`
 COARSE = 2  # every second phase for surfaces that are only correlated with another
 
@@ -143,9 +143,9 @@ def print_claims(console: Console, table: ClaimTable, words: bool = False) -> No
         grid.add_row(claim.figure, claim.says, *(SIGNS[verdict.finding] for verdict in row))
     console.print(grid)
     if words:
-        for row, claim in enumerate(table.claims):
+        for place, claim in enumerate(table.claims):
             console.print(f"{claim.figure}: {claim.says} ({claim.rule})")
-            for numbers, verdict in table.found(row):
+            for numbers, verdict in table.found(place):
                 console.print(f"   {SIGNS[verdict.finding]:5s} {', '.join(map(str, numbers))}: {verdict.found}")
     console.print(f"Most claims are reproduced under: {'; '.join(reading.name for reading in table.best)}.")
     never = [f"{claim.figure}: {claim.says}" for claim in table.never]
