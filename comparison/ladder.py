@@ -132,7 +132,7 @@ SMALL = Rung(
         "unknowns": "2 N horizontal displacements; the vertical one follows from the sphere (2.1)",
         "mu_i": "supremum of (5.1) with one-sided limits at stops, in closed form",
     },
-    seconds_per_point=0.012,
+    seconds_per_point=0.005,
     tile=64,
 )
 EXACT = _next(
@@ -155,7 +155,7 @@ RESOLVED = _next(
     adds="The same motion, read only at rest and while sliding faster than v_c = 1e-3 m/s: what the one-sided "
     "limits at stops, which no sampling reaches, are worth.",
     settings={**EXACT.settings, "cutoff": V_REG},
-    seconds_per_point=0.015,
+    seconds_per_point=0.006,
     applies=dry,
 )
 REGULARISED = _next(
@@ -165,6 +165,7 @@ REGULARISED = _next(
     title="exact equations, v_reg",
     adds="Friction linear below v_reg = 1e-3 m/s, as an engine has it: no true rest, no jump at a stop.",
     settings={"equations": "exact", "regularization": V_REG},
+    seconds_per_point=0.007,
     applies=dry,
 )
 TRANSLATIONAL = _next(
@@ -183,7 +184,7 @@ TRANSLATIONAL = _next(
     amplification="multibody:amplification",
     trajectory="multibody:trajectory",
     settings={"model": "translational", "regularization": V_REG},
-    seconds_per_point=0.7,
+    seconds_per_point=0.4,
     tile=2,
     applies=any_scene,
     most=16,
@@ -200,7 +201,7 @@ SPATIAL = _next(
     adds="Every body free to turn, at its height, on a ring of supports: overturning shares the load unequally, "
     "friction twists the platform, supports may lift off.",
     settings={"model": "spatial", "regularization": V_REG},
-    seconds_per_point=3.0,
+    seconds_per_point=1.0,
     tile=1,
     applies=has_spatial_data,
     most=4,

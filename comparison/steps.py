@@ -80,13 +80,21 @@ class Step:
 
 
 def step(surfaces: xr.Dataset, scene: str, key: str, first: Rung, second: Rung, body: int, per: Rung) -> Step:
-    """The difference of two models in one body, as a share of mu of the model `per`, which must be above 0."""
+    """
+    The difference of two models in one body, as a share of mu of the model `per`, which must be above 0.
+
+    A value whose own error estimate exceeds it says nothing and counts as missing.
+    """
     data = common_phases(surfaces, scene, [first.key, second.key, per.key]).sel(body=body)
 
-    def of(name: str, rung: Rung) -> Array:
-        return np.asarray(data[name].sel(model=rung.key), float)
+    def mu(rung: Rung) -> Array:
+        value = np.asarray(data["mu"].sel(model=rung.key), float)
+        return np.where(error(rung) <= value, value, np.nan)
 
-    scale = np.where(of("mu", per) > 0.0, of("mu", per), np.nan)
+    def error(rung: Rung) -> Array:
+        return np.asarray(data["error"].sel(model=rung.key), float)
+
+    scale = np.where(mu(per) > 0.0, mu(per), np.nan)
     return Step(
         key=key,
         first=first,
@@ -94,7 +102,7 @@ def step(surfaces: xr.Dataset, scene: str, key: str, first: Rung, second: Rung, 
         body=body,
         alpha1=np.asarray(data["alpha1"]),
         alpha2=np.asarray(data["alpha2"]),
-        size=(of("mu", second) - of("mu", first)) / scale,
-        uncertainty=np.hypot(of("error", first), of("error", second)) / scale,
+        size=(mu(second) - mu(first)) / scale,
+        uncertainty=np.hypot(error(first), error(second)) / scale,
         stride=int(data["stride"].sel(model=[first.key, second.key, per.key]).max()),
     )
