@@ -13,6 +13,7 @@ from comparison.surfaces import common_phases
 
 Array = NDArray[np.float64]
 
+WORTHLESS = 0.5  # of a value: an error estimate above it means that the value says nothing
 RESOLVED = 5.0  # times u_D: a difference that large is known to a fifth of itself or better
 
 
@@ -83,13 +84,13 @@ def step(surfaces: xr.Dataset, scene: str, key: str, first: Rung, second: Rung, 
     """
     The difference of two models in one body, as a share of mu of the model `per`, which must be above 0.
 
-    A value whose own error estimate exceeds it says nothing and counts as missing.
+    A value that is not known to half of itself counts as missing.
     """
     data = common_phases(surfaces, scene, [first.key, second.key, per.key]).sel(body=body)
 
     def mu(rung: Rung) -> Array:
         value = np.asarray(data["mu"].sel(model=rung.key), float)
-        return np.where(error(rung) <= value, value, np.nan)
+        return np.where(error(rung) <= WORTHLESS * value, value, np.nan)
 
     def error(rung: Rung) -> Array:
         return np.asarray(data["error"].sel(model=rung.key), float)

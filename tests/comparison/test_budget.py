@@ -111,10 +111,10 @@ def test_a_point_without_a_value_is_left_out_of_the_steps_to_and_from_it_and_of_
     assert closure(steps(study, surfaces, "fig3-I", 1)) < 1e-14
 
 
-def test_a_value_whose_error_estimate_exceeds_it_counts_as_missing() -> None:
+def test_a_value_not_known_to_half_of_itself_counts_as_missing() -> None:
     study, surfaces = _solved(errors_in({}))
     place = {"model": "spatial", "body": 1, "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][6]}
-    for claimed, points in ((99.0, 16), (101.0, 15)):
+    for claimed, points in ((49.0, 16), (51.0, 15)):
         surfaces["mu"].loc[place], surfaces["error"].loc[place] = 100.0, claimed
         assert _table(study, surfaces)["spatial"].points == points
 
