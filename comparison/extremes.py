@@ -23,7 +23,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from comparison.extreme_cells import Cell, cells, solve_cell
 from comparison.extreme_matrix import FILE, Matrix, matrix, written
-from comparison.extreme_scenes import COLUMNS, Column, Row, rows
+from comparison.extreme_scenes import COLUMNS, ENGINE, Column, Row, rows
 from comparison.extreme_verdicts import Verdict
 from comparison.extreme_worker import NoAnswer, answers
 from comparison.provenance import provenance
@@ -40,12 +40,17 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 2
     console = Console(highlight=False)
     chosen = reduced(list(rows())) if given.reduced else list(rows())
+    if given.only:
+        chosen = [row for row in chosen if given.only in f"{row.group} {row.title}"]
+    columns = [column for column in COLUMNS if not given.models or column.key in given.models]
+    if not cells(chosen, columns):
+        print(f"command line: --only = {given.only!r}: no cell is left: take part of a row's name", file=sys.stderr)
+        return 2
     words = sys.argv[1:] if argv is None else argv
     try:
         given.out.mkdir(parents=True, exist_ok=True)
-        found = run(
-            chosen, given.jobs, given.limit, console, shlex.join(["python", "-m", "comparison.extremes", *words])
-        )
+        command = shlex.join(["python", "-m", "comparison.extremes", *words])
+        found = run(chosen, given.jobs, given.limit, console, command, columns)
         from comparison.extremes_figure import draw_extremes  # matplotlib: not needed to refuse a command
 
         draw_extremes(given.out / PICTURE, found)
@@ -105,6 +110,7 @@ def run(
         "seconds": round(time.monotonic() - begin, 1),
         "jobs": jobs,
         "limit": limit,
+        "reduced": not any(cell.column.amplification == ENGINE for cell in tasks),
         "provenance": provenance(),
     }
     places = {id(cell.row): number for number, cell in enumerate(cells(chosen, columns))}
@@ -134,6 +140,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--limit", default=LIMIT, type=float, metavar="SECONDS", help="longest time of one cell (default %(default)s)"
     )
+    parser.add_argument("--only", default="", metavar="TEXT", help="the extremes whose name contains this")
+    keys = [column.key for column in COLUMNS]
+    parser.add_argument("--models", nargs="+", choices=keys, metavar="KEY", help=f"some of {', '.join(keys)}")
     parser.add_argument("--reduced", action="store_true", help="the equations alone, without what takes long")
     return parser
 

@@ -1,0 +1,160 @@
+"""The matrix of extremes: what is wrong is found, what is right passes, and the equations fail nowhere."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from comparison.extreme_cells import Cell, cells, solve_cell
+from comparison.extreme_matrix import Entry, Matrix, read, written
+from comparison.extreme_scenes import COLUMNS, Column, Row, rows, scene
+from comparison.extreme_verdicts import Verdict
+from comparison.extremes import main, reduced, run
+from comparison.extremes_figure import draw_extremes
+
+PLAIN = Row("anything", "plain", scene(), ("fake",))
+FAILING = {
+    "crashes": "exit code 3",
+    "raises": "an inner fault",
+    "calls_nan_ok": "no finite number",
+    "lies_about_its_error": "times what is claimed",
+    "misses_the_tolerance": "asked: 0.001",
+    "refuses_what_can_be_done": "but a finer run: ok",
+    "gives_a_value_with_a_refusal": "and yet a value",
+    "invents_a_status": "no answer of a model",
+}
+
+
+def fake(model: str, finer: str = "") -> Column:
+    """A column whose model, and the finer one that confirms it, are from extreme_models."""
+    path = f"extreme_models:{model}"
+    return Column("fake", model, path, {}, 1e-3, ((f"extreme_models:{finer or model}", {}, 1e-5),))
+
+
+def computed(chosen: list[Row], *columns: Column, limit: float = 60.0) -> Matrix:
+    return run(chosen, 1, limit, Console(quiet=True), "a test", columns or COLUMNS)
+
+
+def entry(column: Column, row: Row = PLAIN, limit: float = 60.0) -> Entry:
+    return computed([row], column, limit=limit).rows[0].entries["fake"]
+
+
+def named(group: str) -> list[Row]:
+    return [row for row in reduced(list(rows())) if row.group == group]
+
+
+@pytest.mark.parametrize("model", FAILING)
+def test_a_model_that_is_wrong_fails_and_is_told_why(model):
+    found = entry(fake(model))
+    assert found.verdict == Verdict.FAILED
+    assert FAILING[model] in found.reason
+
+
+def test_a_model_that_hangs_is_killed_and_the_next_cell_is_solved():
+    other = replace(fake("honest"), key="other")
+    found = computed([replace(PLAIN, columns=("fake", "other"))], fake("hangs"), other, limit=8.0)
+    assert found.rows[0].entries["fake"].reason == "hangs: no answer within 8 s"
+    assert found.rows[0].entries["other"].verdict == Verdict.CONVERGED
+
+
+def test_a_model_that_is_right_converges_or_refuses_or_says_what_it_cannot():
+    assert solve_cell(Cell(PLAIN, fake("honest"))).judged.verdict == Verdict.CONVERGED
+    assert solve_cell(Cell(PLAIN, fake("at_the_rim"))).judged.verdict == Verdict.REFUSED
+    assert solve_cell(Cell(PLAIN, fake("unable"))).judged.verdict == Verdict.LIMIT
+
+
+def test_a_value_that_no_finer_run_confirms_fails():
+    found = solve_cell(Cell(PLAIN, fake("honest", finer="unable"))).judged
+    assert found.verdict == Verdict.FAILED
+    assert "no finer run confirms it: step limit" in found.reason
+
+
+def test_a_refusal_must_be_the_right_one_where_the_row_says_which():
+    row = replace(PLAIN, right=("contact lost",))
+    assert "instead of contact lost" in solve_cell(Cell(row, fake("at_the_rim"))).judged.reason
+
+
+def test_an_input_against_the_rules_must_be_refused_and_no_other_may_be():
+    wrong = replace(PLAIN, scene=scene(friction=-0.1))
+    assert solve_cell(Cell(replace(wrong, invalid=True), fake("honest"))).judged.verdict == Verdict.REFUSED
+    assert solve_cell(Cell(wrong, fake("honest"))).judged.verdict == Verdict.FAILED
+    assert solve_cell(Cell(replace(PLAIN, invalid=True), fake("honest"))).judged.verdict == Verdict.FAILED
+
+
+def test_the_matrix_has_every_extreme_and_at_least_120_cells():
+    every = list(rows())
+    groups = Counter(row.group for row in every)
+    for group in (
+        "friction", "v_reg, m/s", "amplitude, m/s^2", "rho, m", "bodies N", "total mass, kg",
+        "platform's share of the mass", "link periods, s", "harmonics", "decay, 1/s", "duration, s",
+        "vertical loading, m/s^2", "phases", "direction", "start at the friction limit", "three supports, ring in m",
+    ):  # fmt: skip
+        assert groups[group] > 0, group
+    assert len(cells(every)) >= 120
+    assert len({(row.group, row.title, key) for row in every for key in row.columns}) == len(cells(every))
+
+
+@pytest.mark.parametrize("group", ["friction", "v_reg, m/s", "vertical loading, m/s^2", "outside the rules"])
+def test_the_equations_fail_at_no_extreme(group):
+    for row in named(group):
+        for column in COLUMNS:
+            if column.key in row.columns:
+                found = solve_cell(Cell(row, column)).judged
+                assert found.verdict != Verdict.FAILED, (row.title, column.key, found.reason)
+
+
+@pytest.mark.long
+def test_the_equations_fail_at_none_of_the_extremes():
+    found = computed(reduced(list(rows())), limit=120.0)
+    assert [(row.group, row.title, title, cell.reason) for row, title, cell in found.listed(Verdict.FAILED)] == []
+    assert sum(found.counts().values()) >= 120
+
+
+def test_the_command_writes_the_matrix_and_its_picture(tmp_path, capsys):
+    code = main(["--models", "small", "--only", "amplitude", "--jobs", "1", "--out", str(tmp_path)])
+    out = capsys.readouterr().out
+    assert code == 0
+    assert "0 FAILED" in out
+    found = read(tmp_path)
+    assert found is not None
+    assert {row.group for row in found.rows} == {"amplitude, m/s^2", "outside the rules"} - {"outside the rules"}
+    assert (tmp_path / "extremes.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_failed_cell_is_an_exit_code_and_in_the_picture(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("comparison.extremes.COLUMNS", (fake("calls_nan_ok"),))
+    monkeypatch.setattr("comparison.extremes.rows", lambda: iter([PLAIN]))
+    assert main(["--jobs", "1", "--out", str(tmp_path)]) == 1
+    assert "FAILED: anything plain" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("words", [["--jobs", "0"], ["--limit", "-1"], ["--only", "no such extreme"]])
+def test_a_wrong_option_is_one_line(words, tmp_path, capsys):
+    assert main([*words, "--out", str(tmp_path)]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_the_file_is_read_back_as_it_was_and_another_file_is_refused(tmp_path: Path):
+    found = Matrix(
+        {"fake": "a fake"},
+        [_extreme("converged", 1e-7), _extreme("FAILED", None)],
+        {"command": "a test", "seconds": 1.0},
+    )
+    assert read(tmp_path) is None
+    written(found, tmp_path)
+    assert read(tmp_path) == found
+    draw_extremes(tmp_path / "picture.png", found)
+    (tmp_path / "extremes.json").write_text(json.dumps({"rows": []}), encoding="utf-8")
+    with pytest.raises(ValueError, match="not a matrix of extremes"):
+        read(tmp_path)
+
+
+def _extreme(verdict: str, error: float | None):
+    from comparison.extreme_matrix import Extreme
+
+    return Extreme("a group", verdict, {"fake": Entry(verdict, "a reason", error, 0.25)})
