@@ -9,6 +9,7 @@ leaves is told by one more run with a softer contact.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -53,14 +54,19 @@ def refine(
     *,
     initial: State | None = None,
     keep: bool = False,
+    plan: Sequence[Level] | None = None,
 ) -> Refined:
-    """Peaks of the absolute accelerations for one phase pair (2,), rad, with a relative error below `tolerance`."""
+    """
+    Peaks of the absolute accelerations for one phase pair (2,), rad, with a relative error below `tolerance`.
+
+    plan: the levels, if others than `levels` gives are to be tried.
+    """
     units = model.units
     end = scene.duration / units.time
     model.ground.set_phase(phase)
     first = ground_acceleration(scene, phase, [0.0])[0]
     budget = Budget(WORK / model.coordinates)
-    plan = levels(scene, model, tolerance)
+    plan = levels(scene, model, tolerance) if plan is None else plan
 
     def ground(time: Array) -> Array:
         return ground_acceleration(scene, phase, time * units.time) / units.acceleration
@@ -91,7 +97,7 @@ def refine(
         if now.outcome != Outcome.OK:
             break
         finished = [past.peaks for past in marches[-3:] if past.outcome == Outcome.OK]
-        errors = from_levels(finished, plan[: number + 1], model)
+        errors = from_levels(finished, list(plan[: number + 1]), model)
         if (errors <= tolerance * now.peaks.value).all() and level.penetration == plan[number - 1].penetration:
             softer = replace(level, penetration=FALL * level.penetration)
             errors = errors + from_compliance(now.peaks, run(softer), softer, model)
