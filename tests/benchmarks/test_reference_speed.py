@@ -1,5 +1,7 @@
 """
-The reference beside SciPy's LSODA on the same points: exact equations, v_reg = 1e-3 m/s, accuracy measured on both.
+The reference beside LSODA, called by SciPy and by compiled code (numbalsoda): exact equations, v_reg = 1e-3 m/s.
+
+The accuracy is measured on both.
 
 Run with `python -m pytest tests/benchmarks/test_reference_speed.py -m long -s`; reference/README.md has the figures.
 """
@@ -7,10 +9,11 @@ Run with `python -m pytest tests/benchmarks/test_reference_speed.py -m long -s`;
 from __future__ import annotations
 
 import time
+from functools import cache
 
 import numpy as np
 import pytest
-from numba import njit
+from numba import carray, cfunc, njit
 from scipy.integrate import solve_ivp
 
 import reference
@@ -44,51 +47,104 @@ def slope(t, y, amplitudes, s, phase, below, above, mass_ratio, radius, friction
     return out
 
 
-def lsoda_mu(scene, phase):
-    """mu_1, mu_2 from SciPy's LSODA."""
+@njit
+def accelerations(times, states, *constants):
+    out = np.empty_like(states)
+    for n in range(len(times)):
+        out[n] = slope(times[n], states[n], *constants)
+    return out
+
+
+def constants_of(scene, phase):
     masses, k = scene.masses, scene.stiffness[0]
-    constants = (
+    return (
         scene.amplitudes, exponents(scene), np.asarray(phase), k / masses[1], k / masses[0],
         scene.total_mass / masses[0], scene.radius, scene.friction_coefficient,
     )  # fmt: skip
+
+
+def scipy_motion(scene, phase):
+    """Times (T,) and states (T, 8) from SciPy's LSODA."""
     times = np.linspace(0.0, scene.duration, SAMPLES)
     run = solve_ivp(
-        slope, (0.0, scene.duration), np.zeros(8), "LSODA", times, args=constants,
+        slope, (0.0, scene.duration), np.zeros(8), "LSODA", times, args=constants_of(scene, phase),
         rtol=LSODA_TOLERANCE, atol=LSODA_TOLERANCE * 1e-2,
     )  # fmt: skip
-    a = np.array([slope(t, y, *constants) for t, y in zip(run.t, run.y.T)])[:, 4:].reshape(-1, 2, 2)
-    x, v = run.y[:2].T, run.y[4:6].T
+    return run.t, run.y.T
+
+
+def numbalsoda_motion(scene, phase):
+    """Times (T,) and states (T, 8) from LSODA called by compiled code."""
+    from numbalsoda import lsoda
+
+    amplitudes, s, alpha, *rest = constants_of(scene, phase)
+    data = np.concatenate([amplitudes.ravel(), s.real, s.imag, alpha, *[np.atleast_1d(part) for part in rest]])
+    times = np.linspace(0.0, scene.duration, SAMPLES)
+    states, success = lsoda(
+        compiled_slope(), np.zeros(8), times, data, rtol=LSODA_TOLERANCE, atol=LSODA_TOLERANCE * 1e-2
+    )
+    assert success
+    return times, states
+
+
+@cache
+def compiled_slope():
+    """Address of `slope` in the form that numbalsoda calls."""
+    from numbalsoda import lsoda_sig
+
+    @cfunc(lsoda_sig)
+    def right_hand_side(t, y, dy, data):
+        p = carray(data, (19,))
+        s = p[6:8] + 1j * p[8:10]
+        out = slope(t, carray(y, (8,)), p[:6].reshape((3, 2)), s, p[10:12], p[12:14], p[14:16], p[16], p[17], p[18])
+        state = carray(dy, (8,))
+        for i in range(8):
+            state[i] = out[i]
+
+    return right_hand_side.address
+
+
+def lsoda_mu(scene, phase, motion):
+    """mu_1, mu_2 read from a motion of LSODA."""
+    constants = constants_of(scene, phase)
+    t, y = motion(scene, phase)
+    a = accelerations(t, y, *constants)[:, 4:].reshape(-1, 2, 2)
+    x, v = y[:, :2], y[:, 4:6]
     depth = np.sqrt(scene.radius**2 - (x**2).sum(axis=1))
     climb = (x * v).sum(axis=1) / depth
     vertical = ((v**2).sum(axis=1) + climb**2 + (x * a[:, 0]).sum(axis=1)) / depth
-    ground = ground_acceleration(scene, phase, run.t)
+    ground = ground_acceleration(scene, phase, t)
     total = a + ground[:, None, :2]
     squares = (total**2).sum(axis=2) + (vertical + ground[:, 2])[:, None] ** 2
     return np.sqrt(squares.max(axis=0)) / ground_peak(scene, [phase])[0]
 
 
 @pytest.mark.long
-def test_the_reference_is_faster_than_lsoda_at_better_accuracy():
+@pytest.mark.parametrize("motion", [scipy_motion, numbalsoda_motion])
+def test_the_reference_is_faster_than_lsoda_at_better_accuracy(motion):
+    if motion is numbalsoda_motion:
+        pytest.importorskip("numbalsoda", reason="needs a C++ and a Fortran compiler to be installed")
     scene = reference.load_scene("fig3-I")
     phases = reference.phase_grid(16)
     some = phases[:: len(phases) // LSODA_POINTS][:LSODA_POINTS]
     reference.amplification(scene, phases[:1], regularization=V_REG)  # compiled
-    lsoda_mu(scene, some[0])
+    lsoda_mu(scene, some[0], motion)
     begin = time.process_time()
     found = reference.amplification(scene, phases, regularization=V_REG)
     ours = (time.process_time() - begin) / len(phases)
     begin = time.process_time()
-    theirs_mu = np.array([lsoda_mu(scene, phase) for phase in some])
+    theirs_mu = np.array([lsoda_mu(scene, phase, motion) for phase in some])
     theirs = (time.process_time() - begin) / len(some)
     truth = reference.amplification(scene, some, regularization=V_REG, tolerance=1e-9).mu
     error = np.abs(reference.amplification(scene, some, regularization=V_REG).mu / truth - 1.0)
     their_error = np.abs(theirs_mu / truth - 1.0)
-    for name, seconds, gap in (("reference", ours, error), ("LSODA", theirs, their_error)):
+    for name, seconds, gap in (("reference", ours, error), (motion.__name__, theirs, their_error)):
         print(f"\n{name}: {1e3 * seconds:.2f} ms a point, error {np.median(gap):.1e} median, {gap.max():.1e} largest")
-    print(f"ratio of processor time {theirs / ours:.0f}")
+    print(f"ratio of processor time {theirs / ours:.1f}")
     assert (found.status == "ok").all()
     assert error.max() <= their_error.max()
-    assert theirs / ours > 15.0  # 41 was measured on a busy machine: the claim is the order of magnitude
+    # 78 (SciPy) was measured on a busy machine, its calls of Python included: the claim is the order of magnitude
+    assert theirs / ours > (30.0 if motion is scipy_motion else 1.0)
 
 
 @pytest.mark.long
