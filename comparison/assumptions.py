@@ -18,6 +18,7 @@ from typing import Any, Literal
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
+from rich.progress import Progress
 from rich.table import Table
 
 from comparison.executors import process_pool
@@ -141,8 +142,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     try:
         for scene in scenes:
-            study = Study((scene,), 1, TOLERANCE)
-            cells = assumption_cells(study, given.jobs, process_pool, MANY)
+            cells = _watched(console, scene, given.jobs)
             _print(console, scene, cells)
             if given.figures:
                 from comparison.assumption_figure import assumption_figure_name, draw_assumptions
@@ -161,6 +161,13 @@ def _spatial(name: str) -> Scene:
         rule = "the spatial model needs supports, ring and sphere_radius of the isolator, height and size of every body"
         raise SceneError(name, "isolator, bodies", scene.name, rule)
     return scene
+
+
+def _watched(console: Console, scene: Scene, jobs: int) -> list[Cell]:
+    with Progress(console=console, transient=True) as progress:
+        bar = progress.add_task(scene.name, total=1 + len(MANY))
+        study = Study((scene,), 1, TOLERANCE)
+        return assumption_cells(study, jobs, process_pool, MANY, lambda: progress.advance(bar))
 
 
 def _print(console: Console, scene: Scene, cells: Sequence[Cell]) -> None:

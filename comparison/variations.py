@@ -106,9 +106,17 @@ Solved = tuple[Array, Array, tuple[str, ...], str]
 
 
 def assumption_cells(
-    study: Study, jobs: int, executor: Callable[[int], Executor], variations: Sequence[Variation] = FEW
+    study: Study,
+    jobs: int,
+    executor: Callable[[int], Executor],
+    variations: Sequence[Variation] = FEW,
+    done: Callable[[], None] = lambda: None,
 ) -> list[Cell]:
-    """Every variation of every scene to which both engine models apply, computed on `executor(jobs)`."""
+    """
+    Every variation of every scene to which both engine models apply, computed on `executor(jobs)`.
+
+    `done` is called as each is finished, and once more per scene for the translational model.
+    """
     asked: list[Task] = []
     for scene in study.scenes:
         engines = [rung for rung in rungs_of(scene, study.ladder) if rung.side == "engine"]
@@ -117,7 +125,7 @@ def assumption_cells(
             asked.append((scene, plain, None, plain.tolerance(study.tolerance)))
             tolerance = spatial.tolerance(study.tolerance)
             asked += [(scene, spatial, variation, tolerance) for variation in variations]
-    solved = sweep(asked, varied, _lost, lambda task, found: None, jobs, executor)
+    solved = sweep(asked, varied, _lost, lambda task, found: done(), jobs, executor)
     held_against = {task[0].name: found for task, found in zip(asked, solved) if task[2] is None}
     return [_cell(task[0], task[2], found, held_against[task[0].name]) for task, found in zip(asked, solved) if task[2]]
 
