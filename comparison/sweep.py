@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
@@ -100,29 +100,53 @@ class _Sweep(Generic[Task, Result]):
     def _drain(self, pool: Executor, jobs: int) -> None:
         """Work until nothing is left, or until the pool breaks, with its tasks queued again."""
         while self._queue or self._flying:
-            while len(self._flying) < width(pool, jobs) and (work := self._next()) is not None:
-                try:
-                    self._flying[pool.submit(self._solve, work.task)] = work
-                except BrokenExecutor:
-                    self._broken(work)
-                    return
-            for future in wait(self._flying, LOOK, return_when=FIRST_COMPLETED).done:
-                try:
-                    result = future.result()
-                except WorkerDiedError as fault:
-                    self._died(self._flying.pop(future), fault.times)
-                except BrokenExecutor:
-                    self._broken()
-                    return
-                except ExecutorLostError:
-                    raise
-                except Exception as fault:
-                    work = self._flying.pop(future)
-                    self._keep(work, self._lost(work.task, Outcome.SOLVER_FAILED, f"{type(fault).__name__}: {fault}"))
-                else:
-                    self._keep(self._flying.pop(future), result)
+            if not self._fill(pool, jobs):
+                return
+            arrived = [
+                (self._flying.pop(future), future)
+                for future in wait(self._flying, LOOK, return_when=FIRST_COMPLETED).done
+            ]
+            broken = [work for work, future in arrived if isinstance(_fault(future), BrokenExecutor)]
+            try:
+                unbroken = not broken and self._fill(pool, jobs, more=True)  # workers go on while results are stored
+            finally:
+                for work, future in arrived:
+                    self._take(work, future)
+            for _, future in arrived:
+                if isinstance(fault := _fault(future), ExecutorLostError):
+                    raise fault
+            if broken:
+                self._broken(broken)
+            if not unbroken:
+                return
 
-    def _next(self) -> _Work[Task, Result] | None:
+    def _take(self, work: _Work[Task, Result], future: Future[Result]) -> None:
+        fault = _fault(future)
+        if fault is None:
+            self._keep(work, future.result())
+        elif isinstance(fault, WorkerDiedError):
+            self._died(work, fault.times)
+        elif not isinstance(fault, BrokenExecutor | ExecutorLostError):
+            message = f"{type(fault).__name__}: {fault}"
+            self._keep(work, self._lost(work.task, Outcome.SOLVER_FAILED, message))
+
+    def _fill(self, pool: Executor, jobs: int, more: bool = False) -> bool:
+        """
+        As many tasks in flight as the executor has workers; False if it is found broken.
+
+        more: results have arrived that may make tasks ready, so that none is passed over yet.
+        """
+        while len(self._flying) < width(pool, jobs) and (work := self._next(more)) is not None:
+            try:
+                self._flying[pool.submit(self._solve, work.task)] = work
+            except BrokenExecutor:
+                if self._flying:
+                    self._queue.appendleft(work)
+                self._broken([] if self._flying else [work])
+                return False
+        return True
+
+    def _next(self, more: bool) -> _Work[Task, Result] | None:
         """What to submit now, taken from the queue; a suspect flies alone."""
         flying = list(self._flying.values())
         if any(work.alone for work in flying):
@@ -130,6 +154,8 @@ class _Sweep(Generic[Task, Result]):
         for work in self._queue:
             if not (work.alone and flying) and self._ready(work.task):
                 break
+            if more:
+                return None
         else:
             if flying or not self._queue:
                 return None
@@ -137,13 +163,10 @@ class _Sweep(Generic[Task, Result]):
         self._queue.remove(work)
         return work
 
-    def _broken(self, refused: _Work[Task, Result] | None = None) -> None:
-        """Any task in flight may have done it. The only one there was did; of several each is tried alone."""
-        suspects = sorted(self._flying.values(), key=lambda work: work.place)
-        if refused is not None and suspects:
-            self._queue.appendleft(refused)
-        elif refused is not None:  # the pool broke before it had anything to do
-            suspects = [refused]
+    def _broken(self, suspects: Sequence[_Work[Task, Result]]) -> None:
+        """The suspects or any task in flight did it. If there was only one it did; of several each is tried alone."""
+        suspects = sorted([*suspects, *self._flying.values()], key=lambda work: work.place)
+        self._flying.clear()
         if len(suspects) == 1:
             self._died(suspects[0])
         else:
@@ -173,3 +196,11 @@ class _Sweep(Generic[Task, Result]):
         if len(parent.parts) == parent.count:
             assert self._join is not None, "what can be split can be joined"
             self._keep(parent, self._join(parent.task, [parent.parts[place] for place in range(parent.count)]))
+
+
+def _fault(future: Future[Result]) -> BaseException | None:
+    """What the task raised, None if nothing."""
+    try:
+        return future.exception()
+    except CancelledError as cancelled:
+        return cancelled

@@ -37,7 +37,7 @@ class LocalCluster:
             client.wait_for_workers(workers, timeout=DEADLINE)
 
     def _start(self, words: list[str]) -> subprocess.Popen[bytes]:
-        paths = os.pathsep.join([str(HERE), str(HERE.parents[1])])
+        paths = os.pathsep.join([str(HERE), str(HERE.parents[1]), os.environ.get("PYTHONPATH", "")])
         settings = {
             "PYTHONPATH": paths,
             "PYTHONWARNINGS": "ignore",

@@ -1,0 +1,95 @@
+"""
+What store, sweep and executor cost beside the work they carry.
+
+Tiles that only wait keep the processors free, so that the pause of a worker between two of them is what handing them
+out takes; its median, beside the known length of a tile, does not mind a busy machine.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from rich.console import Console
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "comparison"))
+
+from fake_models import fake_ladder
+from local_cluster import LocalCluster
+
+from comparison.cluster import cluster
+from comparison.compute import computed
+from comparison.executors import Pool, process_pool
+from comparison.study import Study
+from comparison.tile_store import TileStore
+from reference.problem import Amplification, Scene, load_scene
+
+TILE = 0.5  # s a tile takes; the study's take about one
+TILES = 16
+WORKERS = 2
+
+
+def timed(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+    """Takes TILE and says when it began and ended, s of the machine's clock, and in which process."""
+    begin = time.monotonic()
+    time.sleep(TILE)
+    where = np.array([[float(os.getpid()), 0.0]])
+    return Amplification(np.array([[begin, time.monotonic()]]), where, np.full(1, "ok"), np.full(1, np.nan), TILE)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """s: what a worker waits between two tiles in the median, and processor time of this process per tile."""
+
+    waiting: float
+    handing_out: float
+
+    @property
+    def overhead(self) -> float:
+        """Share of the sweep. The two overlap: this is more than what is lost."""
+        return (self.waiting + self.handing_out / WORKERS) / TILE
+
+
+def measured(folder: Path, executor: Pool) -> Measured:
+    """A stored sweep of TILES tiles."""
+    rung = replace(fake_ladder(tile=1)[0], amplification="test_sweep_overhead:timed")
+    study = Study((load_scene("fig3-I"),), 4, 1e-3, [rung])
+    begin = time.process_time()
+    found = computed(study, TileStore(folder), Console(quiet=True), WORKERS, executor)
+    spent = time.process_time() - begin
+    assert len(list(folder.glob("*/*.tile"))) == len(found.answers) == TILES
+    waits = []
+    for process in {answer.error[0, 0] for answer in found.answers}:
+        spans = sorted(tuple(answer.mu[0]) for answer in found.answers if answer.error[0, 0] == process)
+        waits += [after[0] - before[1] for before, after in pairwise(spans)]
+    assert len(waits) == TILES - WORKERS
+    return Measured(float(np.median(waits)), spent / TILES)
+
+
+@pytest.fixture(scope="module")
+def pool(tmp_path_factory: pytest.TempPathFactory) -> Measured:
+    return measured(tmp_path_factory.mktemp("pool") / "tiles", process_pool)
+
+
+def test_store_and_executor_take_at_most_3_percent_of_the_sweep(pool: Measured) -> None:
+    assert pool.overhead <= 0.03, pool
+
+
+def test_two_workers_of_a_dask_cluster_are_within_10_percent_of_the_process_pool(
+    pool: Measured, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))  # where the workers find the tiles' model
+    workers = LocalCluster(tmp_path, WORKERS)
+    try:
+        with cluster(workers.address, {"test_sweep_overhead:timed"}) as there:
+            dask = measured(tmp_path / "tiles", there)
+    finally:
+        workers.end()
+    assert TILE + dask.waiting <= 1.1 * (TILE + pool.waiting), (dask, pool)

@@ -1,0 +1,117 @@
+"""A worker that dies costs its task one retry, then the points that kill it and no other, on any executor."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Callable
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fake_models import fake_ladder
+
+from comparison.executors import ExecutorLostError, process_pool
+from comparison.halves import halves, joined
+from comparison.study import Study
+from comparison.sweep import sweep
+from comparison.tiles import Answer, Tile, solve_tile, unanswered
+from reference.problem import Outcome, load_scene
+
+pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="SIGKILL")
+
+
+def common_pool(jobs: int) -> Executor:
+    """As a user may bring it: a death ends every task in flight."""
+    return ProcessPoolExecutor(jobs, get_context("spawn"))
+
+
+def _lost(task: Path, outcome: Outcome, fault: str) -> str:
+    return f"{outcome}: {fault}"
+
+
+def _done(task: object, result: object) -> None:
+    pass
+
+
+def counted(place: Path) -> str:
+    """Leaves a mark of every call; the one named "kills" dies at its first, "kills always" at each."""
+    calls = len(list(place.parent.glob(f"{place.name}-*")))
+    (place.parent / f"{place.name}-{calls}").touch()
+    if place.name == "kills always" or (place.name == "kills" and calls == 0):
+        os.kill(os.getpid(), signal.SIGKILL)
+    return place.name
+
+
+def _calls(folder: Path) -> dict[str, int]:
+    names = [mark.name.rsplit("-", 1)[0] for mark in folder.iterdir()]
+    return {name: names.count(name) for name in names}
+
+
+def test_a_death_costs_its_own_task_one_retry_and_no_other(tmp_path: Path) -> None:
+    tasks = [tmp_path / name for name in ("one", "kills", "two", "kills always", "three", "four")]
+    results = sweep(tasks, counted, _lost, _done, 2, process_pool)
+    died = "worker died: the worker process died 2 times"
+    assert results == ["one", "kills", "two", died, "three", "four"]
+    assert _calls(tmp_path) == {"one": 1, "kills": 2, "two": 1, "kills always": 2, "three": 1, "four": 1}
+
+
+def test_in_a_common_pool_of_processes_the_culprit_is_found_too(tmp_path: Path) -> None:
+    tasks = [tmp_path / name for name in ("one", "kills always", "two")]
+    results = sweep(tasks, counted, _lost, _done, 2, common_pool)
+    assert [results[0], results[2]] == ["one", "two"]
+    assert str(results[1]).startswith("worker died: ")
+    assert _calls(tmp_path)["kills always"] <= 3, "once among others, then alone"
+
+
+@pytest.mark.parametrize("tile", [3, pytest.param(16, marks=pytest.mark.long)])
+def test_splitting_finds_the_one_point_that_kills(tile: int) -> None:
+    ladder = [rung for rung in fake_ladder("killing", tile=tile) if rung.key == "translational"]
+    tiles = Study((load_scene("fig3-I"),), 4, 1e-3, ladder).tiles()
+    seen: list[Tile] = []
+
+    def done(one: Tile, answer: Answer) -> None:
+        seen.append(one)
+
+    answers = sweep(tiles, solve_tile, unanswered, done, 2, process_pool, split=halves, join=joined)
+    assert [outcome for answer in answers for outcome in answer.status] == ["ok"] * 15 + ["worker died"]
+    mu = np.concatenate([answer.mu for answer in answers])
+    whole = [solve_tile(one) for one in Study((load_scene("fig3-I"),), 4, 1e-3, fake_ladder(gap=0.0)).tiles()]
+    np.testing.assert_array_equal(mu[:15], np.concatenate([answer.mu for answer in whole])[:15])
+    assert len(seen) == len(tiles), "told of whole tiles, once each"
+    assert [answer.fault for answer in answers][-1] == "the worker process died 2 times"
+
+
+def test_halves_of_a_tile_are_its_points_in_order() -> None:
+    tile = Study((load_scene("fig3-I"),), 3, 1e-3, fake_ladder(tile=7)).tiles()[1]
+    early, late = halves(tile)
+    np.testing.assert_array_equal(np.concatenate([early.phases, late.phases]), tile.phases)
+    assert (early.first, late.first) == (tile.first, tile.first + len(early.phases))
+    assert halves(halves(tile)[0]) == []
+    whole, parts = solve_tile(tile), [solve_tile(part) for part in (early, late)]
+    together = joined(tile, parts)
+    np.testing.assert_array_equal(together.mu, whole.mu)
+    assert (together.status, together.fault) == (whole.status, "")
+    assert together.cost == pytest.approx(whole.cost, rel=1e-12)  # a sum in another order
+
+
+def test_any_executor_will_do_and_one_that_is_lent_stays_open() -> None:
+    with ThreadPoolExecutor(2) as lent:
+        assert sweep(["a", "b"], str.upper, lambda *rest: "lost", _done, 2, lent) == ["A", "B"]
+        assert lent.submit(str.upper, "c").result() == "C"
+
+
+@pytest.mark.parametrize("broken_before", [True, False])
+def test_a_lent_executor_that_breaks_ends_the_sweep_in_one_line(tmp_path: Path, broken_before: bool) -> None:
+    arrived: list[str] = []
+    tasks = [tmp_path / name for name in ("one", "kills always", "two")]
+    done: Callable[[Path, str], None] = lambda task, result: arrived.append(result)  # noqa: E731
+    with common_pool(1) as lent:
+        if broken_before:
+            assert lent.submit(counted, tmp_path / "kills always").exception() is not None
+        with pytest.raises(ExecutorLostError, match=r"^the executor is broken: ") as fault:
+            sweep(tasks, counted, _lost, done, 1, lent)
+    assert "\n" not in str(fault.value)
+    assert arrived == ([] if broken_before else ["one"]), "what had arrived was told"
