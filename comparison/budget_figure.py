@@ -16,6 +16,7 @@ from comparison.budget import TOTAL, steps
 from comparison.figures import QUARTER_NAMES, QUARTERS, SIGN_COLOURS, closed, save
 from comparison.steps import Step
 from comparison.study import Study
+from comparison.wording import mathtext, verbatim
 from reference.problem import Scene
 
 LINEAR = 1e-6  # relative: below it the colours are linear, above it logarithmic in both directions
@@ -32,7 +33,7 @@ def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, bo
     figure = Figure(figsize=(13.0, 3.4), dpi=110)
     FigureCanvasAgg(figure)
     heading = f"{scene.title} ({scene.name}), body {body}: what each model adds (dots: not resolved)"
-    figure.suptitle(heading, fontsize=12, y=0.98)
+    figure.suptitle(verbatim(heading), fontsize=12, y=0.98)
     sizes = np.abs(np.concatenate([step.size[np.isfinite(step.size)] for step in found] or [np.zeros(0)]))
     largest = max(float(sizes.max()) if sizes.size else 0.0, 10.0 * LINEAR)
     norm = SymLogNorm(100.0 * LINEAR, vmin=-100.0 * largest, vmax=100.0 * largest)
@@ -61,5 +62,5 @@ def _map(axes: Axes, step: Step, norm: SymLogNorm) -> QuadMesh:
     axes.set_yticks(QUARTERS, QUARTER_NAMES, fontsize=8)
     known = step.known
     share = f"real at {100.0 * step.real[known].mean():.0f} % of {known.sum()}" if known.any() else "no common point"
-    axes.set_title(f"{'total' if step.key == TOTAL else step.second.title}\n{share}", fontsize=8)
+    axes.set_title(f"{'total' if step.key == TOTAL else mathtext(step.second.title)}\n{share}", fontsize=8)
     return image

@@ -16,6 +16,7 @@ from comparison.differences import pair_step
 from comparison.ladder import Pair
 from comparison.steps import Step
 from comparison.surfaces import common_phases
+from comparison.wording import mathtext, verbatim
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
@@ -36,7 +37,9 @@ def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: P
     both = [common_phases(surfaces, scene.name, [r.key]).sel(model=r.key, body=body) for r in (pair.first, pair.second)]
     figure = Figure(figsize=(13.0, 4.6), dpi=110)
     FigureCanvasAgg(figure)
-    figure.suptitle(f"{scene.title} ({scene.name}), body {body}: {pair.title} difference", fontsize=12, y=0.98)
+    figure.suptitle(
+        verbatim(f"{scene.title} ({scene.name}), body {body}: {pair.title} difference"), fontsize=12, y=0.98
+    )
     finite = np.concatenate([data["mu"].values[np.isfinite(data["mu"].values)] for data in both])
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
     if low == high:
@@ -45,7 +48,7 @@ def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: P
         axes = figure.add_axes(place, projection="3d")
         assert isinstance(axes, Axes3D)
         _surface(axes, *closed(data["alpha1"].values, data["mu"].values), low, high)
-        axes.set_title(f"$\\mu_{{{body}}}$, {rung.title}", fontsize=11, pad=0)
+        axes.set_title(f"$\\mu_{{{body}}}$, {mathtext(rung.title)}", fontsize=11, pad=0)
     _map(figure, figure.add_axes((0.70, 0.14, 0.22, 0.65)), pair_step(surfaces, scene.name, pair, body))
     save(figure, path)
 

@@ -16,6 +16,7 @@ from comparison.figures import QUARTER_NAMES, QUARTERS, closed
 from comparison.ladder import pairs_of
 from comparison.study import Study
 from comparison.surfaces import common_phases
+from comparison.wording import mathtext
 from reference.problem import Scene
 
 PRINT = {"font.family": "STIXGeneral", "mathtext.fontset": "stix", "font.size": 8.0}  # as journals set figures
@@ -49,7 +50,7 @@ def draw_paper_figure(stem: Path, study: Study, surfaces: xr.Dataset, scene: Sce
                 axes = figure.add_axes(place, projection="3d")
                 letter = chr(ord("a") + 2 * row + column)
                 _surface(axes, phase, height, (low, high), rf"$\mu_{{{row + 1}}}$")
-                axes.set_title(f"({letter}) $\\mu_{{{row + 1}}}$, {rung.title}", y=1.0, fontsize=9.0)
+                axes.set_title(f"({letter}) $\\mu_{{{row + 1}}}$, {mathtext(rung.title)}", y=1.0, fontsize=9.0)
         figure.savefig(stem.with_suffix(".pdf"), metadata={"CreationDate": None})
         figure.savefig(stem.with_suffix(".png"), dpi=RESOLUTION)
 

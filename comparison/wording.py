@@ -9,6 +9,7 @@ from markupsafe import Markup, escape
 
 POWERS = re.compile(r"\^(\w)")
 SUBSCRIPTS = re.compile(r"(?<=[\w>])_(\w+)")
+INDEXED = re.compile(r"\b([a-zA-Z]+)_(\w+)")
 SMALL = {"beta": "β", "eta": "η", "lambda": "λ", "mu": "μ", "rho": "ρ", "tau": "τ", "xi": "ξ", "zeta": "ζ"}
 GREEK = {**SMALL, "Delta": "Δ", "Phi": "Φ"}
 LETTERS = re.compile(rf"(?<![a-zA-Z^])(d?)({'|'.join(GREEK)})(?![a-zA-Z])")
@@ -46,3 +47,13 @@ def symbols(text: str) -> Markup:
     """Names such as v_reg, l^3 and rho as they are printed: with indices, powers and Greek letters."""
     greek = LETTERS.sub(lambda found: found.group(1) + GREEK[found.group(2)], str(escape(text)))
     return Markup(SUBSCRIPTS.sub(r"<sub>\1</sub>", POWERS.sub(r"<sup>\1</sup>", greek)))
+
+
+def verbatim(text: str) -> str:
+    """A text of a scene for matplotlib, which reads dollars as the marks of a formula."""
+    return text.replace("$", r"\$")
+
+
+def mathtext(text: str) -> str:
+    """Names such as v_reg for matplotlib, with indices."""
+    return INDEXED.sub(r"$\1_{\\mathrm{\2}}$", verbatim(text))

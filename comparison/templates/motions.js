@@ -2,6 +2,7 @@
 // the motions of a phase pair, drawn below the surfaces they were chosen on
 const turn = 2 * Math.PI;
 const around = (a, b) => { const d = Math.abs(a - b) % turn; return Math.min(d, turn - d); };
+const indexed = text => text.replace(/_(\w+)/g, "<sub>$1</sub>");  // v_reg as plotly writes it
 const degrees = phase => `${Math.round(phase * 180 / Math.PI)}°`;
 const named = place => `(${place.phases.map(degrees).join(", ")})`;
 const nearest = (places, alpha1, alpha2) => places.reduce((best, place, index) => {
@@ -44,13 +45,13 @@ async function drawMotions(box, scene, body, place, models, titles) {
     }
     if (motion.about.status !== "ok") notes.push(`${titles[model]} ended early: ${motion.about.status}`);
     const line = { color: COLOURS[k], width: k ? 1.2 : 1.8, dash: k ? "4px,2px" : "solid" };
-    const common = { mode: "lines", line, legendgroup: model, name: titles[model] };
+    const common = { mode: "lines", line, legendgroup: model, name: indexed(titles[model]) };
     const x = motion.position(body, 0), y = motion.position(body, 1), ax = motion.acceleration(body, 0), ay = motion.acceleration(body, 1);
     [x, y, ax, ay].forEach((values, row) => traces.push({ ...common, x: motion.time, y: values, xaxis: "x", yaxis: `y${row ? row + 1 : ""}`, showlegend: row === 0 }));
     const peak = ax.reduce((best, _, i) => Math.hypot(ax[i], ay[i]) > Math.hypot(ax[best], ay[best]) ? i : best, 0);
     const most = Math.hypot(ax[peak], ay[peak]).toPrecision(4);
     [ax, ay].forEach((values, row) => traces.push({ x: [motion.time[peak]], y: [values[peak]], yaxis: `y${row + 3}`, mode: "markers", showlegend: false,
-      marker: { color: COLOURS[k], size: 9, symbol: k ? "diamond-open" : "circle-open" }, hovertemplate: `largest |a|: ${most} m/s²<extra>${titles[model]}</extra>` }));
+      marker: { color: COLOURS[k], size: 9, symbol: k ? "diamond-open" : "circle-open" }, hovertemplate: `largest |a|: ${most} m/s²<extra>${indexed(titles[model])}</extra>` }));
     const rest = motion.about.stick;
     traces.push({ ...common, x: rest.flatMap(([a, b]) => [a, b, null]), y: rest.flatMap(() => [k, k, null]), yaxis: "y5", showlegend: false, line: { color: COLOURS[k], width: 9 } });
     path.push(motion.position(1, 0), motion.position(1, 1));

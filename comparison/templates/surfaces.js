@@ -79,7 +79,7 @@ function drawSurfaces(box, data, pair, chosen) {
   ], {
     margin: { l: 0, r: 10, t: 6, b: 0 }, font: { size: 11 }, uirevision: pair,
     scene: space(0, 0.3, range), scene2: space(0.31, 0.62, range), scene3: space(0.69, 0.99, [-reach, reach]),
-    annotations: [heading(0.13, `${mu}, ${data.titles[first]}`), heading(0.46, `${mu}, ${data.titles[second]}`),
+    annotations: [heading(0.13, `${mu}, ${indexed(data.titles[first])}`), heading(0.46, `${mu}, ${indexed(data.titles[second])}`),
       heading(0.85, "difference, % of the first")],
   }, { displaylogo: false, responsive: true, modeBarButtonsToRemove: ["toImage"] });
 }

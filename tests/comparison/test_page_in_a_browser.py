@@ -128,7 +128,7 @@ def test_another_phase_pair_and_other_models_are_chosen_without_a_mouse(visit: V
     page.locator(".choice select").nth(1).select_option(index=2)
     page.wait_for_function("document.querySelectorAll('.motions')[1].data?.length > 0")
     page.get_by_role("button", name="like for like").click()
-    wanted = "document.querySelectorAll('.motions')[1].data?.[0].name === 'exact equations, v_reg'"
+    wanted = "document.querySelectorAll('.motions')[1].data?.[0].name === 'exact equations, v<sub>reg</sub>'"
     page.wait_for_function(wanted)
     page.get_by_role("button", name="total").click()
 

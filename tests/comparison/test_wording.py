@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from comparison.wording import degrees, percent, scientific, significant, symbols
+from comparison.wording import degrees, mathtext, percent, scientific, signed, significant, symbols, verbatim
 
 NAN = float("nan")
 
@@ -35,6 +35,16 @@ def test_shares_and_sizes_keep_the_digits_that_matter() -> None:
     assert scientific(1.234e-5) == "1.2e-05"
     assert significant(0.24849020288) == "0.2484902"
     assert degrees(3.14159265) == "180°"
+
+
+def test_a_share_below_the_rounding_of_the_tables_is_not_given_digits() -> None:
+    assert (percent(5e-9), percent(-5e-9), percent(1e-6)) == ("< 0.0001 %", "< 0.0001 %", "0.0001 %")
+    assert [signed(value) for value in (0.123, -0.0123, 0.0, -5e-9)] == ["+12 %", "−1.2 %", "0 %", "< 0.0001 %"]
+
+
+def test_figures_write_indices_and_leave_the_dollars_of_a_scene_alone() -> None:
+    assert mathtext("exact equations, v_reg") == r"exact equations, $v_{\mathrm{reg}}$"
+    assert (verbatim("5 $ a_b"), mathtext("a $")) == (r"5 \$ a_b", r"a \$")
 
 
 def test_what_is_not_known_is_said_in_words() -> None:
