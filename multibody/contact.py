@@ -14,6 +14,7 @@ from reference.problem import Scene
 Array = NDArray[np.float64]
 
 DAMPING = 1.0  # ratio of the contact: its own motion dies out within a few of its periods and is not seen
+ROUNDING = 1e-15  # of a position about rho away, in units of rho; over the penetration: of the force, in weights
 ALWAYS_LINEAR = 1e6  # v_reg of the lubricated contact in units of velocity, above any speed: mu = f_c |v| throughout
 
 

@@ -26,7 +26,6 @@ TURN = 0.14  # allowed change of the slip velocity in one step at level 0, as it
 PENETRATION = 1e-6  # of rho, at level 0 and most
 LAG = 0.3  # x at level 0 where rounding allows: from there on a level halves the contact's error (measured)
 NEWTON = 1e-5  # relative tolerance of the forces, at level 0
-ROUNDING = 1e-15  # of the position, in units of rho; over the penetration: of the forces, in weights
 NOISE = 0.25  # share of the tolerance that rounding of the forces may take
 PEAK = 0.2  # of g: the peak for which it does
 FALL = 4.0  # of the penetration from level to level
@@ -46,17 +45,13 @@ class Level:
     turn: float
     penetration: float
     newton: float
+    rounding: float
     deepest: int
 
     @property
     def absolute(self) -> float:
         """Smallest residual that Newton's iteration is asked for, in weights."""
         return max(1e-3 * self.newton, self.rounding)
-
-    @property
-    def rounding(self) -> float:
-        """Of the contact force, in weights."""
-        return ROUNDING / self.penetration
 
 
 def largest_step(scene: Scene, model: EngineModel) -> float:
@@ -77,18 +72,22 @@ def largest_step(scene: Scene, model: EngineModel) -> float:
 def levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
     """All levels for a relative error of `tolerance`; the penetration stays where rounding would take over."""
     step = largest_step(scene, model)
-    stiffest = min(ROUNDING / (NOISE * PEAK * tolerance), PENETRATION / FALL)
+    stiffest = min(model.rounding / (NOISE * PEAK * tolerance), PENETRATION / FALL)
     softest = float(np.clip((LAG * model.relaxation) ** 2, stiffest, PENETRATION))
     stiffenings = math.floor(math.log(softest / stiffest, FALL) + 1e-9)
+    if not model.rigid:
+        softest, stiffenings = softest / FALL ** min(stiffenings, 1), 0
+    penetrations = [softest / FALL ** min(level, stiffenings) for level in range(LEVELS)]
     at_stop = FINEST * TURN * model.relaxation
     deepest = max(SHALLOWEST, math.ceil(math.log(step / at_stop, RATIO))) if at_stop < step else SHALLOWEST
     return [
         Level(
             step / 2.0**level,
             TURN / 2.0**level,
-            softest / FALL ** min(level, stiffenings),
+            penetration,
             NEWTON / 4.0**level,
+            model.rounding / penetration,
             deepest,
         )
-        for level in range(LEVELS)
+        for level, penetration in enumerate(penetrations)
     ]

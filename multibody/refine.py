@@ -98,7 +98,8 @@ def refine(
             break
         finished = [past.peaks for past in marches[-3:] if past.outcome == Outcome.OK]
         errors = from_levels(finished, list(plan[: number + 1]), model)
-        if (errors <= tolerance * now.peaks.value).all() and level.penetration == plan[number - 1].penetration:
+        shared = model.rigid and level.penetration == plan[number - 1].penetration
+        if shared and (errors <= tolerance * now.peaks.value).all():
             softer = replace(level, penetration=FALL * level.penetration)
             errors = errors + from_compliance(now.peaks, run(softer), softer, model)
         best = now, errors

@@ -56,9 +56,10 @@ class EngineModel:
     the rate of each gap (K,) and the same fraction. rim: largest rise of the platform, in units of length. corner: slip
     speed in units of velocity under which the friction law is linear; inf if it has no such corner. relaxation: time in
     which a slip below it dies out, in units of time; inf likewise. liftoff: whether the model goes on when every
-    contact is open. slippery: takes the friction away, or gives it back; None if the model's start needs no balance.
-    moving_plate: whether the loading moves the plate, whose coordinates are then the system's last.
-    keep_alive: what the engine only points to.
+    contact is open. slippery: takes the friction away, or gives it back; None if the start needs no balance. rigid:
+    whether the contact stands for a rigid one, and its compliance for an error. rounding: of a contact force times its
+    penetration, in units of weight times length. moving_plate: whether the loading moves the plate, whose coordinates
+    are then the system's last. keep_alive: what the engine only points to.
     """
 
     mbs: Any
@@ -74,6 +75,8 @@ class EngineModel:
     relaxation: float
     liftoff: bool
     slippery: Callable[[bool], None] | None
+    rigid: bool
+    rounding: float
     moving_plate: bool
     keep_alive: tuple[Any, ...]
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.contact import DAMPING, contact_law, corner_and_relaxation, pressed_in, settled
+from multibody.contact import DAMPING, ROUNDING, contact_law, corner_and_relaxation, pressed_in, settled
 from multibody.engine import exudyn, items
 from multibody.loading import SymbolicGround, symbolic_load
 from multibody.plate import COORDINATES, LOCKED, Plate, plate_for
@@ -110,6 +110,8 @@ def translational(
         relaxation,
         False,
         None,
+        True,
+        ROUNDING,
         plate.moves,
         (container, expressions),
     )
