@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from comparison.claims import ClaimTable, claims_tested
@@ -13,8 +13,6 @@ from comparison.study import Study
 from comparison.trends import Trend
 from reference.problem import builtin_scenes
 
-Trends = list[Trend]
-
 
 def further_findings(study: Study, jobs: int, executor: Pool, say: Callable[[str], None]) -> dict[str, Any]:
     """Fields of `Findings`: claims (None unless the study has every scene of the paper), scaling, convergence."""
@@ -23,8 +21,8 @@ def further_findings(study: Study, jobs: int, executor: Pool, say: Callable[[str
         say("Testing the paper's claims under readings of what it leaves open.")
         claims = claims_tested(jobs, executor)
     say("Scaling loading and friction down, and letting regularisation and compliance vanish.")
-    scaling: Trends = scaling_trends(study, jobs, executor)
-    convergence: Trends = convergence_trends(study, jobs, executor)
+    scaling = scaling_trends(study, jobs, executor)
+    convergence = convergence_trends(study, jobs, executor)
     return {"claims": claims, "scaling": scaling, "convergence": convergence}
 
 
@@ -51,7 +49,7 @@ def claims_summary(table: ClaimTable | None) -> dict[str, Any] | None:
     }
 
 
-def trends_summary(trends: Trends | None) -> list[dict[str, Any]] | None:
+def trends_summary(trends: Sequence[Trend] | None) -> list[dict[str, Any]] | None:
     """Trends for summary.json; numbers that are NaN are for the caller to replace."""
     if trends is None:
         return None
