@@ -41,7 +41,8 @@ class Rung:
     One model. `adds`: the sentence the report prints. `settings`: keyword arguments of its functions.
     `assumptions`: its row in the report's table of equations. `seconds_per_point`: recorded cost of one phase pair of
     a built-in scene with 20 s of motion, on RECORDED_ON. `applies`: whether the scene gives it anything to add. `most`:
-    phases per axis that its cost allows, or None; of a finer study it computes every k-th phase.
+    phases per axis that its cost allows, or None; of a finer study it computes every k-th phase. `symmetric`: mirrored
+    phases (symmetry.py) are known to give mirrored motions and are not computed again.
     """
 
     key: str
@@ -55,6 +56,7 @@ class Rung:
     seconds_per_point: float
     tile: int  # phase pairs solved in one call: about a second of work
     most: int | None = None
+    symmetric: bool = False
     applies: Callable[[Scene], bool] = field(default=any_scene)
 
     def tolerance(self, asked: float) -> float:
@@ -134,6 +136,7 @@ SMALL = Rung(
     },
     seconds_per_point=0.005,
     tile=64,
+    symmetric=True,
 )
 EXACT = _next(
     SMALL,
@@ -205,6 +208,7 @@ SPATIAL = _next(
     tile=1,
     applies=has_spatial_data,
     most=4,
+    symmetric=False,  # supports and boxes may be placed without it
 )
 
 LADDER: tuple[Rung, ...] = (SMALL, EXACT, RESOLVED, REGULARISED, TRANSLATIONAL, SPATIAL)

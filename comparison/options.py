@@ -34,6 +34,7 @@ class Options:
     plan: bool
     fresh: bool = False
     scheduler: str | None = None
+    full: bool = False
 
     @property
     def scenes(self) -> tuple[Scene, ...]:
@@ -64,6 +65,7 @@ def parsed(argv: Sequence[str] | None) -> Options:
         check=given.check,
         plan=given.plan,
         fresh=given.fresh,
+        full=given.full,
         scheduler=given.scheduler,
     )
     seen: dict[str, str] = {}
@@ -110,6 +112,11 @@ def _parser() -> argparse.ArgumentParser:
         help="relative error asked of every engine mu; the reference is asked for 1e-6 or better (default %(default)s)",
     )
     parser.add_argument("--amplitude", metavar="A", help="largest ground acceleration amplitude of every scene, m/s^2")
+    parser.add_argument(
+        "--full",
+        action="store_true",
+        help="compute every phase pair, even where a symmetry of the scene gives it; --plan says what that costs",
+    )
     parser.add_argument("--check", action="store_true", help="exit 1 if a scene's acceptance limits are broken")
     parser.add_argument("--plan", action="store_true", help="print what would be computed and its cost; run nothing")
     return parser

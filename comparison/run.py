@@ -57,7 +57,7 @@ def main(
         try:
             options = parsed(argv)
             console = Console(highlight=False, width=None if sys.stdout.isatty() else PLAIN_WIDTH)
-            study = Study(options.scenes, options.grid, options.tolerance, ladder)
+            study = Study(options.scenes, options.grid, options.tolerance, ladder, options.full)
             if options.plan:
                 print_plan(console, study, options)
                 return 0
@@ -123,6 +123,7 @@ def _run(
     further = further_findings(study, options.jobs, executor, console.print)
     console.print("Varying supports and heights to see how far the paper's assumptions carry.")
     assumptions = Reach.of(study, options.jobs, executor)
+    families = [family for family in options.families if len(family.scenes) > 1] or None
     titles = {rung.key: rung.title for rung in study.ladder}
     faults = sorted(
         {f"{tile.scene.name}, {titles[tile.rung]}: {a.fault}" for tile, a in zip(tiles, answers) if a.fault}
@@ -138,9 +139,8 @@ def _run(
         "jobs": options.jobs,
         "provenance": provenance(),
     }
-    found = findings(
-        study, surfaces, effective, effects, faults, run, motions=motions, assumptions=assumptions, **further
-    )
+    more = {"motions": motions, "assumptions": assumptions, "families": families, **further}
+    found = findings(study, surfaces, effective, effects, faults, run, **more)
     console.print("Drawing the figures and writing the report.")
     with replaced_when_complete(options.out) as folder:
         write_report(folder, found)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparison.ladder import LADDER, Rung
+from comparison.symmetry import sources
 from comparison.tiles import Tile
 from reference.problem import Scene, phase_grid
 
@@ -20,13 +21,15 @@ class Study:
     Scenes x models x a grid of `grid` by `grid` phase pairs, each mu to the relative error `tolerance`.
 
     A model that is too expensive for all of them computes every k-th phase of either axis, k being its stride. Strides
-    are multiples of one another, so that of any two models the coarser grid is part of the finer.
+    are multiples of one another, so that of any two models the coarser grid is part of the finer. Phases whose motion
+    is the mirror image of another's are not computed again, unless the study is `full`.
     """
 
     scenes: tuple[Scene, ...]
     grid: int
     tolerance: float
     ladder: Sequence[Rung] = LADDER
+    full: bool = False
 
     @cached_property
     def strides(self) -> dict[str, int]:
@@ -51,6 +54,15 @@ class Study:
         axis = self.axis(rung)
         return (self.grid * axis[:, None] + axis).ravel()
 
+    def sources(self, scene: Scene, rung: Rung) -> NDArray[np.intp]:
+        """For each of `places` the one whose answer is also its own, by the symmetries of the scene (symmetry.py)."""
+        places = self.places(rung)
+        return places if self.full or not rung.symmetric else places[sources(scene, len(self.axis(rung)))]
+
+    def solved(self, scene: Scene, rung: Rung) -> NDArray[np.intp]:
+        """The places that the model is asked for."""
+        return np.unique(self.sources(scene, rung))
+
     def tiles(self) -> list[Tile]:
         """
         The whole work, model by model.
@@ -65,14 +77,14 @@ class Study:
                 amplification=rung.amplification,
                 settings={**rung.settings, "tolerance": rung.tolerance(self.tolerance)},
                 first=first,
-                phases=phases[self.places(rung)[first : first + rung.tile]],
+                phases=phases[self.solved(scene, rung)[first : first + rung.tile]],
             )
             for rung in self.ladder
             for scene in self.scenes
             if rung.applies(scene)
-            for first in range(0, self.points(rung), rung.tile)
+            for first in range(0, len(self.solved(scene, rung)), rung.tile)
         ]
 
     def seconds(self, rung: Rung) -> float:
         """Predicted cost of one model on every scene it applies to, s on one core."""
-        return sum(rung.seconds(scene, self.points(rung)) for scene in self.scenes if rung.applies(scene))
+        return sum(rung.seconds(scene, len(self.solved(scene, rung))) for scene in self.scenes if rung.applies(scene))

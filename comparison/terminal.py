@@ -12,23 +12,27 @@ from comparison.differences import Difference
 from comparison.ladder import RECORDED_ON
 from comparison.options import Options
 from comparison.study import Study
+from comparison.symmetry import symmetry
 
 START_UP = 5.0  # s: worker processes start and load the compiled equations, recorded on RECORDED_ON
 
 
 def print_plan(console: Console, study: Study, options: Options) -> None:
     """What would be computed and its predicted cost."""
-    table = _table("scene", "model", "points", "tolerance", "s on one core")
+    table = _table("scene", "model", "points", "computed", "tolerance", "s on one core")
     total = 0.0
     for scene in study.scenes:
         for rung in study.ladder:
             if not rung.applies(scene):
                 continue
-            seconds = rung.seconds(scene, study.points(rung))
+            points, computed = study.points(rung), len(study.solved(scene, rung))
+            seconds = rung.seconds(scene, computed)
             total += seconds
-            cells = str(study.points(rung)), f"{rung.tolerance(study.tolerance):.0e}", f"{seconds:.1f}"
+            cells = str(points), str(computed), f"{rung.tolerance(study.tolerance):.0e}", f"{seconds:.1f}"
             table.add_row(scene.name, rung.title, *cells)
     console.print(table)
+    for scene in study.scenes:
+        console.print(f"{scene.name}: {'every phase pair is computed (--full)' if study.full else symmetry(scene)}")
     wall = START_UP + total / options.jobs
     console.print(f"{study.grid} x {study.grid} phases, {options.jobs} worker processes: about {wall:.0f} s.")
     console.print(f"Costs were recorded on {RECORDED_ON}; another machine scales them all alike.")

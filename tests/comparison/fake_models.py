@@ -147,11 +147,11 @@ def errors_in(gaps: Mapping[str, float], claimed: Mapping[str, float] | None = N
 
 
 def fake_ladder(engine: str = "smooth", gap: float = 0.01, tile: int = 4) -> tuple[Rung, ...]:
-    """The real ladder with fake functions: the engine lies `gap` above the reference, or is another model here."""
+    """The real ladder with fake functions, without symmetries: the engine lies `gap` above, or is another model here."""
     rungs = []
     for rung in LADDER:
         name = engine if rung.side == "engine" else "smooth"
         settings = {"gap": gap} if (rung.side, name) == ("engine", "smooth") else {}
         functions = {"amplification": f"fake_models:{name}", "trajectory": "fake_models:forbidden"}
-        rungs.append(replace(rung, **functions, settings=settings, tile=tile))
+        rungs.append(replace(rung, **functions, settings=settings, tile=tile, symmetric=False))
     return tuple(rungs)
