@@ -12,6 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from comparison.budget import TOTAL, Entry
+from comparison.findings import Findings
 from comparison.ladder import Rung
 from reference.problem import Family
 
@@ -24,12 +25,11 @@ def family_figure_name(family: Family, body: int) -> str:
     return f"{family.name}-body{body}-family.png"
 
 
-def draw_families(folder: Path, families: Sequence[Family], entries: Sequence[Entry], ladder: Sequence[Rung]) -> None:
-    """Write the figure of every body of every family of more than one scene into `folder`, PNG."""
-    for family in families:
-        if len(family.scenes) > 1:
-            for body in range(1, max(len(scene.bodies) for scene in family.scenes) + 1):
-                draw_family(folder / family_figure_name(family, body), family, entries, ladder, body)
+def draw_families(folder: Path, found: Findings) -> None:
+    """Write the figure of every body of every family into `folder`, PNG."""
+    for family in found.families or ():
+        for body in range(1, family.bodies + 1):
+            draw_family(folder / family_figure_name(family, body), family, found.budget, found.study.ladder, body)
 
 
 def draw_family(path: Path, family: Family, entries: Sequence[Entry], ladder: Sequence[Rung], body: int) -> None:

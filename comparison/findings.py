@@ -18,6 +18,7 @@ from comparison.slips import Effect
 from comparison.study import Study
 from comparison.trajectories import StoredMotion
 from comparison.trends import Trend
+from reference.problem import Family
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Findings:
     values read back from each model. effects: what slips of the print do to mu. broken: acceptance limits, one line
     each. faults: what solvers complained about. run: command, times, provenance. Fields that may be None are what only
     some commands compute. motions: see `stored_motions`. claims, scaling, convergence: see `further_findings`.
-    assumptions: how far the paper's carry, see `Reach`.
+    assumptions: how far the paper's carry, see `Reach`. families: those of more than one scene.
     """
 
     study: Study
@@ -44,6 +45,7 @@ class Findings:
     scaling: Sequence[Trend] | None = None
     convergence: Sequence[Trend] | None = None
     assumptions: Reach | None = None
+    families: Sequence[Family] | None = None
 
 
 def findings(

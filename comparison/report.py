@@ -26,6 +26,7 @@ from comparison.budget_figure import budget_figure_name, draw_budget
 from comparison.claims import SIGNS
 from comparison.differences import Difference
 from comparison.effective import PHASES
+from comparison.family_figure import draw_families
 from comparison.figures import draw_pair, figure_name
 from comparison.findings import Findings
 from comparison.humps import LEAST_SHARE, MOST_SHARE, SHARE
@@ -76,6 +77,13 @@ SECTIONS = (
     Section("budget", "What makes the difference"),
     Section("scaling", "Scaling test", "scaling", "python -m comparison.run makes it"),
     Section("convergence", "What the steps tend to", "convergence", "python -m comparison.run makes it"),
+    Section(
+        "families",
+        "Families of scenes",
+        "families",
+        "a range in a scene file makes one: friction = {range = [0.02, 0.2], steps = 10}",
+        draw_families,
+    ),
     Section("surfaces", "Surfaces"),
     Section("outcomes", "Outcomes and cost"),
     Section("models", "What was compared"),

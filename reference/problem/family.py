@@ -36,6 +36,11 @@ class Family:
     key: str = ""
     values: tuple[Value, ...] = ()
 
+    @property
+    def bodies(self) -> int:
+        """Bodies of a scene: no range changes their number."""
+        return len(self.scenes[0].bodies)
+
 
 def load_family(source: str | Path, amplitude: float | None = None) -> Family:
     """

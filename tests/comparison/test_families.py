@@ -1,0 +1,75 @@
+"""A range in a scene file, or many files, is one study; its budget is drawn against the value that runs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Run
+from fake_models import fake_ladder
+from matplotlib.axes import Axes
+from matplotlib.image import imread
+
+from comparison.budget import budget
+from comparison.family_figure import draw_family, family_figure_name
+from comparison.study import Study
+from comparison.surfaces import labelled_surfaces
+from comparison.tiles import solve_tile
+from reference.problem import load_family
+
+SCENES = Path(__file__).parents[2] / "reference/problem/scenes"
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    text = (SCENES / "fig3-I.toml").read_text(encoding="utf-8")
+    assert "friction = 0.1" in text
+    place = tmp_path / "mine.toml"
+    place.write_text(text.replace("friction = 0.1", "friction = {range = [0.1, 0.2], steps = 3}"), encoding="utf-8")
+    return place
+
+
+def test_a_range_and_other_files_are_computed_and_reported_in_one_run(command: Callable[..., Run], file: Path) -> None:
+    run = command(str(file), str(SCENES / "fig4-viscous.toml"), "--grid", "2")
+    assert run.code == 0
+    names = [scene["name"] for scene in json.loads((run.report / "summary.json").read_text(encoding="utf-8"))["scenes"]]
+    assert names == ["mine[friction=0.1]", "mine[friction=0.15]", "mine[friction=0.2]", "fig4-viscous"]
+    page = (run.report / "index.html").read_text(encoding="utf-8")
+    assert "Families of scenes" in page
+    assert "3 values of isolator.friction" in page
+    for body in (1, 2):
+        assert (run.report / "figures" / f"mine-body{body}-family.png").exists()
+
+
+def test_without_a_range_there_is_no_such_section(command: Callable[..., Run]) -> None:
+    run = command("fig4-viscous", "--grid", "2")
+    assert "Families of scenes</h2>" not in (run.report / "index.html").read_text(encoding="utf-8")
+    assert not list((run.report / "figures").glob("*-family.png"))
+
+
+def test_the_figure_shows_mean_and_largest_step_of_every_scene_in_percent(
+    file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    family = load_family(file)
+    study = Study(family.scenes, 4, 1e-3, fake_ladder(gap=0.01))  # the engine lies 1 % above the reference
+    surfaces = labelled_surfaces(study, study.tiles(), [solve_tile(tile) for tile in study.tiles()])
+    drawn: list[tuple[list[float], list[float], str]] = []
+    plot = Axes.plot
+
+    def told(axes: Axes, x: np.ndarray, y: np.ndarray, **look: object) -> object:
+        drawn.append((list(x), list(y), str(look.get("label", look.get("linestyle", "mean")))))
+        return plot(axes, x, y, **look)
+
+    monkeypatch.setattr(Axes, "plot", told)
+    path = tmp_path / family_figure_name(family, 1)
+    draw_family(path, family, budget(study, surfaces), study.ladder, 1)
+    assert {tuple(x) for x, _, _ in drawn} == {(0.1, 0.15, 0.2)}
+    largest = {label: y for _, y, label in drawn if label not in ("mean", "--")}
+    assert set(largest) == {"total", *(rung.title for rung in study.ladder[1:])}
+    np.testing.assert_allclose(largest["total"], 1.0, rtol=1e-9)
+    np.testing.assert_allclose(largest["translational engine"], 1.0, rtol=1e-9)
+    np.testing.assert_array_equal(largest["exact equations"], 0.0)
+    assert imread(path).std() > 0.05, "not an empty picture"
