@@ -57,7 +57,7 @@ def main(
         try:
             options = parsed(argv)
             console = Console(highlight=False, width=None if sys.stdout.isatty() else PLAIN_WIDTH)
-            study = Study(options.scenes, options.grid, options.tolerance, ladder)
+            study = Study(options.scenes, options.grid, options.tolerance, ladder, options.full)
             if options.plan:
                 print_plan(console, study, options)
                 return 0
