@@ -187,6 +187,7 @@ def _print(console: Console, scene: Scene, cells: Sequence[Cell]) -> None:
             ", ".join(sorted(set(cell.status))),
         )
     console.print(table)
+    console.print(f"{sum(cell.cost for cell in cells):.0f} s of compute")
     for found in ranges([scene], cells):
         console.print(said(found))
 

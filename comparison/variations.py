@@ -62,7 +62,8 @@ class Cell:
     The spatial model of one variation against the translational model, which no variation changes.
 
     change: mu over mu of the translational model minus one, per phase pair and body, NaN without a value; uncertainty:
-    of it, the two error estimates together. status: of each phase pair. fault: what went wrong, or "".
+    of it, the two error estimates together. status: of each phase pair. fault: what went wrong, or "". cost: s of
+    compute of the spatial model.
     """
 
     scene: str
@@ -71,6 +72,7 @@ class Cell:
     uncertainty: tuple[tuple[float, ...], ...]
     status: tuple[str, ...]
     fault: str = ""
+    cost: float = 0.0
 
     def largest(self, body: int) -> float:
         """Largest |change| of mu_i over the phase pairs; NaN if one has no value: nothing is claimed then."""
@@ -102,7 +104,7 @@ class Range:
 
 
 Task = tuple[Scene, Rung, Variation | None, float]
-Solved = tuple[Array, Array, tuple[str, ...], str]
+Solved = tuple[Array, Array, tuple[str, ...], str, float]
 
 
 def assumption_cells(
@@ -131,7 +133,7 @@ def assumption_cells(
 
 
 def varied(task: Task) -> Solved:
-    """mu (M, N), its errors, the statuses and what went wrong, of one task at PHASES."""
+    """mu (M, N), its errors, the statuses, what went wrong and the cost, of one task at PHASES."""
     scene, rung, variation, tolerance = task
     short = scene.model_copy(update={"duration": min(scene.duration, DURATION)})
     model = short if variation is None else variation.of(short)
@@ -139,18 +141,20 @@ def varied(task: Task) -> Solved:
         found = imported(rung.amplification)(model, PHASES, **rung.settings, tolerance=tolerance)
     except Exception as fault:
         return _lost(task, Outcome.SOLVER_FAILED, f"{type(fault).__name__}: {fault}")
-    return found.mu, found.error, tuple(str(one) for one in found.status), ""
+    return found.mu, found.error, tuple(str(one) for one in found.status), "", float(found.cost)
 
 
 def _lost(task: Task, outcome: Outcome, fault: str) -> Solved:
     nothing = np.full((len(PHASES), len(task[0].bodies)), np.nan)
-    return nothing, nothing, (outcome.value,) * len(PHASES), fault
+    return nothing, nothing, (outcome.value,) * len(PHASES), fault, 0.0
 
 
 def _cell(scene: Scene, variation: Variation, spatial: Solved, plain: Solved) -> Cell:
     change = spatial[0] / plain[0] - 1.0
     uncertainty = np.hypot(spatial[1], plain[1]) / plain[0]
-    return Cell(scene.name, variation, _rows(change), _rows(uncertainty), spatial[2], spatial[3] or plain[3])
+    return Cell(
+        scene.name, variation, _rows(change), _rows(uncertainty), spatial[2], spatial[3] or plain[3], spatial[4]
+    )
 
 
 def _rows(array: Array) -> tuple[tuple[float, ...], ...]:
