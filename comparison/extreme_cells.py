@@ -45,12 +45,15 @@ def solve_cell(cell: Cell) -> Solved:
     row, column = cell.row, cell.column
     tolerance = float(row.settings.get("tolerance", column.tolerance))
     begin = time.monotonic()
-    reply = _ask(row, column.amplification, {**column.settings, **row.settings, "tolerance": tolerance})
+    asked_function = row.amplification or column.amplification
+    reply = _ask(row, asked_function, {**column.settings, **row.settings, "tolerance": tolerance})
     seconds = time.monotonic() - begin
     finer: list[Reply] = []
     for function, settings, asked in column.finer if _answers(reply) else ():
         share = min(1.0, tolerance / column.tolerance)
-        stricter = {**settings, **row.settings, "tolerance": max(asked * share, STRICTEST)}
+        # another function knows only what its own settings name
+        known = {key: value for key, value in row.settings.items() if function == asked_function or key in settings}
+        stricter = {**settings, **known, "tolerance": max(asked * share, STRICTEST)}
         finer.append(_ask(row, function, stricter))
         if _confirms(finer[-1], reply):
             break

@@ -63,17 +63,18 @@ class Matrix:
 def matrix(
     cells: Sequence[Cell], results: Sequence[Solved | NoAnswer], columns: Sequence[Column], run: Mapping[str, Any]
 ) -> Matrix:
-    """Results laid out by extreme and model; no answer at all is a failure."""
+    """Results laid out by extreme and model."""
     rows: dict[tuple[str, str], dict[str, Entry]] = {}
     for cell, result in zip(cells, results):
         row = rows.setdefault((cell.row.group, cell.row.title), {})
-        row[cell.column.key] = _entry(result)
+        row[cell.column.key] = as_entry(result)
     used = {key for entries in rows.values() for key in entries}
     titles = {column.key: column.title for column in columns if column.key in used}
     return Matrix(titles, [Extreme(group, title, entries) for (group, title), entries in rows.items()], run)
 
 
-def _entry(result: Solved | NoAnswer) -> Entry:
+def as_entry(result: Solved | NoAnswer) -> Entry:
+    """The result as it is shown; no answer at all is a failure."""
     if isinstance(result, NoAnswer):
         return Entry(Verdict.FAILED.value, result.why, None, None)
     verdict: Judged = result.judged

@@ -19,6 +19,9 @@ SYMMETRIC: Phases = ((0.0, 0.0), (0.0, math.pi), (math.pi / 2, math.pi / 2), (ma
 GRAVITY_LIMIT = 9.81  # m/s^2: downward acceleration of the plate at which the contact carries nothing
 
 
+EQUATIONS, ENGINE = "reference:amplification", "multibody:amplification"
+
+
 @dataclass(frozen=True)
 class Column:
     """
@@ -41,6 +44,7 @@ class Row:
     An extreme. scene: as in a scene file. columns: keys of the models it concerns. settings: of the models, in place of
     the column's. invalid: the rules of the input refuse it. right: outcomes that may stand in place of an answer,
     where the physics or the rules say which; any named one if empty. quick: takes the equations less than a second.
+    amplification: function in place of the column's.
     """
 
     group: str
@@ -52,10 +56,11 @@ class Row:
     invalid: bool = False
     right: tuple[str, ...] = ()
     quick: bool = True
+    amplification: str = ""
 
 
 def _column(key: str, title: str, equations: str, regularization: float | None) -> Column:
-    function, settings = "reference:amplification", {"equations": equations, "regularization": regularization}
+    function, settings = EQUATIONS, {"equations": equations, "regularization": regularization}
     return Column(key, title, function, settings, 1e-6, ((function, settings, 1e-8), (function, settings, 1e-7)))
 
 
@@ -63,7 +68,7 @@ V_REG = 1e-3  # m/s, where it is not the extreme
 _REGULARISED = {"equations": "exact", "regularization": V_REG}
 _TRANSLATIONAL = {"model": "translational", "regularization": V_REG}
 _SPATIAL = {"model": "spatial", "regularization": V_REG}
-ENGINE = "multibody:amplification"
+GIVEN = "comparison.extreme_engine:amplification"  # the engine at a step or a contact stiffness of the row
 
 COLUMNS = (
     _column("small", "small equations", "small", None),
@@ -95,6 +100,7 @@ ALL = tuple(column.key for column in COLUMNS)
 PLANAR = ALL[:4]  # every model whose bodies do not turn
 REFERENCE = ALL[:3]
 WITH_V_REG = ALL[2:]
+WITH_ENGINE = ALL[3:]
 
 
 def scene(
@@ -150,16 +156,36 @@ def rows() -> Iterator[Row]:
         yield Row("v_reg, m/s", f"{speed:g}", scene(), WITH_V_REG, settings={"regularization": speed})
     for cutoff in (1e-1, 1e-4, 1e-12):
         yield Row("cutoff v_c, m/s", f"{cutoff:g}", scene(), ("small", "exact"), settings={"cutoff": cutoff})
+    for exponent in (2, 4, 6, 8, 10, 12):
+        given = {"contact_stiffness": 10.0**exponent, "tolerance": 1e-2}
+        yield Row(
+            "contact stiffness, N/m",
+            f"1e{exponent}",
+            scene(duration=1.0),
+            WITH_ENGINE,
+            settings=given,
+            amplification=GIVEN,
+        )
+    for exponent in (-6, -5, -4, -3, -2, -1):
+        given = {"step": 10.0**exponent, "tolerance": 1e-2}
+        brief = scene(duration=0.02 if exponent == -6 else 0.2 if exponent == -5 else 1.0)
+        yield Row("step of the engine, s", f"1e{exponent}", brief, WITH_ENGINE, settings=given, amplification=GIVEN)
     for amplitude in (1e-9, 1e-6, 1e-3, 5.0, 20.0, 1e3, 1e9):
         yield Row("amplitude, m/s^2", f"{amplitude:g}", scene(amplitudes=_along(amplitude)), ALL)
     near_rim = scene(amplitudes=_along(12.0), friction=0.02, duration=20.0)
     yield Row("amplitude, m/s^2", "12, friction 0.02, along the rim", near_rim, PLANAR, phases=PHASES[:1])
     for radius in (1e-3, 3e-2, 30.0, 1e3):
         yield Row("rho, m", f"{radius:g}", scene(radius=radius), ALL)
-    for count in (1, 2, 10, 100, 1000):
-        tower = scene(masses=[1.0] * count, link=(0.3, 0.25) if count > 2 else (1.5, 1.2), storey=0.3)
-        few = PHASES if count < 100 else PHASES[:1]
-        yield Row("bodies N", str(count), tower, ALL if count <= 10 else PLANAR, phases=few)
+    for count, link in (
+        (1, 1.0),
+        (2, 1.0),
+        (10, 0.3),
+        (100, 0.03),
+        (1000, 0.01),
+    ):  # a shock climbs them in 0.5 to 1.6 s
+        tower = scene(masses=[1.0] * count, link=(link, 0.8 * link), storey=0.3, duration=3.0 if count <= 10 else 2.0)
+        few = PHASES if count <= 10 else PHASES[:1]
+        yield Row("bodies N", str(count), tower, ALL if count <= 10 else PLANAR, phases=few, quick=count <= 100)
     for total in (1e-6, 1e-3, 1e3, 1e9):
         yield Row("total mass, kg", f"{total:g}", scene(masses=[0.5 * total, 0.5 * total]), ALL)
     for share in (1e-6, 1e-3, 0.999, 0.999999):

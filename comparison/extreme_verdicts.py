@@ -28,7 +28,7 @@ PHYSICS = {
     Outcome.NO_GROUND_MOTION,
 }
 NUMERICS = {Outcome.TOLERANCE_NOT_MET, Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED}
-FINE = 0.1  # share of the tolerance within which a run must know the value to confirm it, or half of what is claimed
+FINE = 0.1  # share of the tolerance within which a run must know the value to confirm it, if not as well as claimed
 ROUNDING = 1e-12  # relative: two runs this close are the same
 
 
@@ -115,7 +115,7 @@ def _value(status: str, mu: Array, error: Array, finer: Sequence[tuple[Reply, in
             share = off[worst] / allowed[worst]
             reason = f"mu_{worst + 1} is off by {off[worst] / abs(mu[worst]):.1e}, {share:.2g} times what is claimed"
             return Judged(Verdict.FAILED, reason, claimed)
-        if status == Outcome.OK and (other.error[m] <= np.maximum(0.5 * error, FINE * tolerance * np.abs(mu))).all():
+        if status == Outcome.OK and (other.error[m] <= np.maximum(error, FINE * tolerance * np.abs(mu))).all():
             return Judged(Verdict.CONVERGED, f"error {claimed:.1e} confirmed", claimed)
     if status == Outcome.TOLERANCE_NOT_MET:
         return Judged(Verdict.LIMIT, f"{status}: {claimed:.1e}", claimed)

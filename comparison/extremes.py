@@ -22,10 +22,10 @@ from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from comparison.extreme_cells import Cell, cells, solve_cell
-from comparison.extreme_matrix import FILE, Matrix, matrix, written
-from comparison.extreme_scenes import COLUMNS, ENGINE, Column, Row, rows
+from comparison.extreme_matrix import FILE, Matrix, as_entry, matrix, written
+from comparison.extreme_scenes import COLUMNS, ENGINE, EQUATIONS, Column, Row, rows
 from comparison.extreme_verdicts import Verdict
-from comparison.extreme_worker import NoAnswer, answers
+from comparison.extreme_worker import answers
 from comparison.provenance import provenance
 
 LIMIT = 90.0  # s for one cell with its finer runs, on a machine that does nothing else
@@ -95,14 +95,16 @@ def run(
 
         def done(index: int, result: Any) -> None:
             bar.advance(shown)
-            verdict = Verdict.FAILED if isinstance(result, NoAnswer) else result.judged.verdict
-            if verdict == Verdict.FAILED:
-                cell = tasks[index]
-                why = result.why if isinstance(result, NoAnswer) else result.judged.reason
-                text = f"FAILED: {cell.row.group} {cell.row.title}, {cell.column.title}: {why}"
-                bar.console.print(escape(text), soft_wrap=True)
+            entry, cell = as_entry(result), tasks[index]
+            if entry.verdict == Verdict.FAILED or not console.is_terminal:
+                spent = "" if entry.seconds is None else f" ({entry.seconds:.1f} s)"
+                name = f"{cell.row.group} {cell.row.title}, {cell.column.title}"
+                bar.console.print(escape(f"{entry.verdict}: {name}: {entry.reason}{spent}"), soft_wrap=True)
 
-        first = next((cell for cell in tasks if cell.column.amplification.startswith("reference:")), None)
+        # the reference is compiled on its first use: not within the time of a cell
+        asks = {name for column in columns for name in (column.amplification, *(finer[0] for finer in column.finer))}
+        compiled = next((column for column in COLUMNS if column.amplification in asks & {EQUATIONS}), None)
+        first = Cell(chosen[0], compiled) if compiled and tasks else None
         results = answers(tasks, work, limit, jobs, done, first)
     facts = {
         "command": command,
