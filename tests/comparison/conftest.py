@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from fake_models import fake_ladder, known_motions
 from known_further import known_further
+from PIL import Image
 
 import comparison.run
 from comparison import report
@@ -28,11 +29,16 @@ class Run:
     report: Path
 
 
+def quick_figure(path: Path, *rest: object) -> None:
+    """One dot."""
+    Image.new("RGB", (1, 1)).save(path, "PNG")
+
+
 @pytest.fixture
 def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Run]:
     """The command line with fake models in threads of this process and quick figures; --out in an empty directory."""
     for name in ("draw_pair", "draw_budget", "draw_assumptions", "draw_paper_figure"):
-        monkeypatch.setattr(report, name, lambda path, *rest: path.write_bytes(b"a quick figure"))
+        monkeypatch.setattr(report, name, quick_figure)
     monkeypatch.setattr(comparison.run, "slip_effects", lambda *rest: [])  # it asks no model of the ladder
     monkeypatch.setattr(comparison.run, "stored_motions", lambda *rest: [])
     monkeypatch.setattr(comparison.run, "further_findings", lambda *rest: {})

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from conftest import Run
+from conftest import Run, quick_figure
 from fake_models import fake_ladder
 
 from comparison import report
@@ -41,7 +41,7 @@ def test_a_report_that_cannot_be_finished_leaves_the_old_one(
         drawn.append(path)
         if len(drawn) == 2:  # the surfaces, the summary and a figure are written by then
             raise fault
-        path.write_bytes(b"a quick figure")
+        quick_figure(path)
 
     monkeypatch.setattr(report, "draw_pair", breaks)
     run = command(*SMALL, "--tolerance", "2e-3")
