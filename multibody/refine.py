@@ -87,7 +87,7 @@ def refine(
         now = run(level)
         marches.append(now)
         if now.outcome in UNFINISHED:
-            if best is not None:
+            if best is not None or [past.outcome in UNFINISHED for past in marches].count(True) > 1:
                 break
             continue
         best = None

@@ -9,8 +9,9 @@ import pytest
 from scenes_at_hand import CONSTANT, changed, one_body
 
 import multibody
-from reference.problem import GRAVITY, Scene, load_scene
+from reference.problem import GRAVITY, Outcome, Scene, ground_acceleration, load_scene
 
+LOST = (Outcome.CONTACT_LOST, Outcome.RIM_REACHED, Outcome.SOLVER_FAILED)
 SIZE = [1.0, 1.0, 0.2]
 
 
@@ -30,6 +31,35 @@ def test_with_all_heights_zero_it_is_the_translational_model() -> None:
     turning, moving = multibody.amplification(flat, phase, model="spatial"), multibody.amplification(scene, phase)
     assert turning.status[0] == moving.status[0] == "ok"
     assert (np.abs(turning.mu - moving.mu) <= turning.error + moving.error).all()
+
+
+def test_the_start_is_in_balance_with_the_loading() -> None:
+    # supports that start with equal shares would swing for 1 ms, with 1.6 times the ground's acceleration here
+    scene = changed(
+        load_scene("fig3-I"), duration=0.01, excitation={"amplitudes": [[1.0, 0.0], [0.0, 1.0], [4.0, 2.0]]}
+    )
+    motion = multibody.trajectory(scene, (0.3, 1.1), model="spatial")
+    ground = ground_acceleration(scene, (0.3, 1.1), motion.time)[:, None, 2]
+    assert np.abs(ground).max() > 4.0
+    # every body goes up with the plate; what is left is 7e-3 of the settling and what the sphere lifts in 10 ms
+    np.testing.assert_allclose(motion.absolute_acceleration[:, :, 2] - ground, 0.0, atol=2e-2)
+
+
+@pytest.mark.parametrize("supports", [3, 4])
+def test_errors_hold_against_a_tenth_of_the_tolerance(supports: int) -> None:
+    scene = changed(load_scene("fig3-I"), duration=3.0, isolator={"supports": supports})
+    phases = [(2.0, 0.7)]
+    loose, tight = (multibody.amplification(scene, phases, model="spatial", tolerance=t) for t in (1e-3, 1e-4))
+    assert loose.status.tolist() == tight.status.tolist() == ["ok"]
+    assert (np.abs(loose.mu - tight.mu) <= loose.error + tight.error).all()
+
+
+def test_a_tower_on_three_supports_too_close_together_is_lost_by_name() -> None:
+    scene = changed(load_scene("fig3-I"), duration=1.5, isolator={"supports": 3, "ring": 0.05})
+    result = multibody.amplification(scene, [(2.0, 0.7)], model="spatial", tolerance=1e-2)
+    assert result.status[0] in LOST
+    assert np.isnan(result.mu).all()
+    assert 0.0 < result.instant[0] < 1.5
 
 
 def test_supports_share_the_load_as_the_overturning_moment_demands() -> None:
