@@ -13,6 +13,7 @@ from comparison.ladder import RECORDED_ON
 from comparison.options import Options
 from comparison.study import Study
 from comparison.symmetry import symmetry
+from comparison.tile_store import TileStore, store_beside
 
 START_UP = 5.0  # s: worker processes start and load the compiled equations, recorded on RECORDED_ON
 
@@ -35,6 +36,9 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
         console.print(f"{scene.name}: {'every phase pair is computed (--full)' if study.full else symmetry(scene)}")
     wall = START_UP + total / options.jobs
     console.print(f"{study.grid} x {study.grid} phases, {options.jobs} worker processes: about {wall:.0f} s.")
+    store, tiles = TileStore(store_beside(options.out)), study.tiles()
+    if not options.fresh and (stored := sum(map(store.holds, tiles))):
+        console.print(f"{stored} of {len(tiles)} tiles are in {store.folder} already: they are not computed again.")
     console.print(f"Costs were recorded on {RECORDED_ON}; another machine scales them all alike.")
     console.print("On a new installation compiling the reference adds some minutes of one worker, once.")
     console.print(f"Nothing was computed. The report would go to {options.out}.")

@@ -55,6 +55,10 @@ class TileStore:
         self.kept += 1
         return answer
 
+    def holds(self, tile: Tile) -> bool:
+        """Whether there is a file for it, whatever its state."""
+        return self._place(tile).exists()
+
     def put(self, tile: Tile, answer: Answer) -> None:
         """
         Store an answer. Raises StoreError, and leaves what is stored as it was.

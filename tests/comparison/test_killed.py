@@ -105,6 +105,9 @@ def test_the_same_command_computes_nothing_twice_and_fresh_computes_all(command:
     assert "of 16 points" not in again.out, "no progress: nothing to do"
     summary = json.loads((again.report / "summary.json").read_text(encoding="utf-8"))["run"]
     assert summary["tiles_stored_before"] == summary["tiles"] > 0
+    tiles = summary["tiles"]
+    assert f"{tiles} of {tiles} tiles are in" in command(*words, "--plan").out.replace("\n", " ")
+    assert "tiles are in" not in command(*words, "--fresh", "--plan").out
     fresh = command(*words, "--fresh")
     assert "16 of 16 points" in fresh.out
     summary = json.loads((fresh.report / "summary.json").read_text(encoding="utf-8"))["run"]
