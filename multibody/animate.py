@@ -9,6 +9,7 @@ model.
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -87,7 +88,9 @@ def draw(scene: Scene, motion: Trajectory, out: Path, *, stretch: float, speed: 
 
 
 def view(scene: Scene, phase: Array, model: str, regularization: float | None) -> None:
-    """Run the model in the engine's own viewer, which needs a screen."""
+    """Run the model in the engine's own viewer. Raises ValueError without a screen."""
+    if sys.platform == "linux" and not os.environ.get("DISPLAY"):
+        raise ValueError("--view: no screen: DISPLAY is not set; leave --view out to write a film instead")
     built = assembled(scene, model, regularization)
     penetration = 1e-6
     built.stiffen(penetration)
@@ -97,8 +100,8 @@ def view(scene: Scene, phase: Array, model: str, regularization: float | None) -
     settings = exudyn.SimulationSettings()
     settings.timeIntegration.endTime = scene.duration / built.units.time
     settings.timeIntegration.numberOfSteps = round(scene.duration * 1000.0)
-    settings.timeIntegration.simulateInRealtime = True
-    settings.timeIntegration.realtimeFactor = 1.0 / built.units.time
+    settings.timeIntegration.realtime.active = True
+    settings.timeIntegration.realtime.factor = 1.0 / built.units.time
     container = built.keep_alive[0]
     container.renderer.Start()
     container.renderer.DoIdleTasks()

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
+import sys
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +14,7 @@ from PIL import Image
 from scenes_at_hand import one_body
 
 import multibody
+from multibody import animate
 from multibody.animate import frames, main
 
 SHORT = """
@@ -37,6 +42,54 @@ def test_a_film_is_written_off_screen(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "status ok" in capsys.readouterr().out
     with Image.open(out) as film:
         assert film.n_frames == 6  # 25 per second and the first
+
+
+class Screen:
+    """Stands in for the engine's renderer and solver: notes what it is asked for."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.calls: list[str] = []
+        self.end: float | None = None
+        built = animate.assembled
+
+        def assembled(*arguments: Any) -> Any:
+            model = built(*arguments)
+            self.model = model
+            self.renderer = SimpleNamespace(
+                Start=lambda: self.calls.append("start"),
+                DoIdleTasks=lambda: self.calls.append("idle"),
+                Stop=lambda: self.calls.append("stop"),
+            )
+            system = SimpleNamespace(SolveDynamic=self.solve, systemData=model.mbs.systemData)
+            system.SetObjectParameter = model.mbs.SetObjectParameter
+            return dataclasses.replace(model, mbs=system, keep_alive=(self,))
+
+        monkeypatch.setattr(animate, "assembled", assembled)
+
+    def solve(self, settings: Any) -> None:
+        self.calls.append("solve")
+        self.end = settings.timeIntegration.endTime
+
+
+@pytest.mark.parametrize("model", ["translational", "spatial"])
+def test_the_viewer_shows_the_whole_run_of_the_model_asked_for(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DISPLAY", ":0")
+    screen = Screen(monkeypatch)
+    assert main(["fig3-I", "--phases", "0.3", "1.1", "--model", model, "--view"]) == 0
+    assert screen.calls == ["start", "idle", "solve", "idle", "stop"]
+    assert screen.end == pytest.approx(20.0 / screen.model.units.time)
+    assert screen.model.liftoff == (model == "spatial")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the screen is not named by a variable")
+def test_without_a_screen_the_viewer_is_refused_in_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv("DISPLAY", raising=False)
+    assert main(["fig3-I", "--phases", "0.3", "1.1", "--view"]) == 2
+    message = capsys.readouterr().err
+    assert "--view" in message
+    assert message.count("\n") == 1
 
 
 def test_frames_follow_the_motion() -> None:
