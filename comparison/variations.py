@@ -22,7 +22,7 @@ from reference.problem import Outcome, Scene
 
 Array = NDArray[np.float64]
 
-PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (4.0, 5.5)])  # rad
+PHASES = np.array([(0.0, 0.0), (0.3, 1.1), (2.0, 0.7)])  # rad; the first is where turning tells most in fig3-I
 DURATION = 6.0  # s: the loading is strongest in its first seconds
 WITHIN = (0.01, 0.05)  # of mu_i
 
