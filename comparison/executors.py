@@ -48,7 +48,7 @@ def width(executor: Executor, jobs: int) -> int:
 
 def abandon(executor: Executor) -> None:
     """Shut down without waiting for what is under way, and end it where the executor can."""
-    end = getattr(executor, "abandon", None)
+    end: Callable[[], None] | None = getattr(executor, "abandon", None)
     if end is not None:
         end()
     else:
@@ -66,6 +66,12 @@ class Lent(Executor):
             return self._executor.submit(solve, *args, **kwargs)
         except BrokenExecutor as fault:  # nobody here can make another one
             raise ExecutorLostError(f"the executor is broken: {fault}") from None
+
+    def __getattr__(self, name: str) -> Any:
+        """What the executor has beyond the usual, if it has it."""
+        if name in ("abandon", "width"):
+            return getattr(self._executor, name)
+        raise AttributeError(name)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Nothing: whoever lent it ends it."""
@@ -100,6 +106,8 @@ class Workers(Executor):
         return answer
 
     def _arrived(self, pool: ProcessPoolExecutor, found: Future[Any], answer: Future[Any]) -> None:
+        if found.cancelled():
+            return  # the sweep has been given up, and nobody waits for the answer
         fault = found.exception()
         if isinstance(fault, BrokenExecutor):
             fault = WorkerDiedError(str(fault))

@@ -77,10 +77,13 @@ def _ended(
     """The exit code; whatever ends the run early, what is finished is kept, and the line printed says how to go on."""
     try:
         if options.scheduler is None:
-            return _run(study, options, console, command_line(words), factory(executor), store)
-        with cluster(options.scheduler, {rung.amplification for rung in study.ladder}) as workers:
-            there = replace(options, jobs=workers.width)
-            return _run(study, there, console, command_line(words), factory(workers), store)
+            if executor is not process_pool:
+                return _run(study, options, console, command_line(words), factory(executor), store)
+            with process_pool(options.jobs) as workers:  # started once, for all that the study computes
+                return _run(study, options, console, command_line(words), factory(workers), store)
+        with cluster(options.scheduler, {rung.amplification for rung in study.ladder}) as there:
+            options = replace(options, jobs=there.width)
+            return _run(study, options, console, command_line(words), factory(there), store)
     except KeyboardInterrupt as stop:
         print(f"interrupted: {going_on(store, study, words)}", file=sys.stderr)
         return 128 + getattr(stop, "number", signal.SIGINT)

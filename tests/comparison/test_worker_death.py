@@ -8,6 +8,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
+from threading import Barrier
 
 import numpy as np
 import pytest
@@ -101,6 +102,16 @@ def test_any_executor_will_do_and_one_that_is_lent_stays_open() -> None:
     with ThreadPoolExecutor(2) as lent:
         assert sweep(["a", "b"], str.upper, lambda *rest: "lost", _done, 2, lent) == ["A", "B"]
         assert lent.submit(str.upper, "c").result() == "C"
+
+
+def test_a_lent_executor_says_how_many_tasks_it_takes() -> None:
+    class Three(ThreadPoolExecutor):
+        width = 3
+
+    together = Barrier(3)
+    with Three(3) as lent:
+        places = sweep([60.0] * 3, together.wait, lambda *rest: -1, _done, 1, lent)
+    assert sorted(places) == [0, 1, 2], "each waited for the other two"
 
 
 @pytest.mark.parametrize("broken_before", [True, False])
