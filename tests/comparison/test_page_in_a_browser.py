@@ -82,6 +82,8 @@ def test_the_first_screen_has_every_verdict_and_every_bar(
     assert page.locator("ul.verdicts li").count() == 2
     assert page.locator(".bars .row").count() == 4, "two bodies in each of two scenes"
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), "nothing is wider than the window"
+    tables = "[...document.querySelectorAll('.table')].filter(t => t.scrollWidth > t.clientWidth).length"
+    assert page.evaluate(tables) == 0, "no table must be pushed sideways to be read"
     assert all(_has_colours(_drawn(page, 0))), "surfaces are drawn at this size"
     page.close()
 
