@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -19,7 +20,11 @@ from comparison.surfaces import common_phases
 from comparison.wording import mathtext
 from reference.problem import Scene
 
-PRINT = {"font.family": "STIXGeneral", "mathtext.fontset": "stix", "font.size": 8.0}  # as journals set figures
+PRINT: dict[Any, Any] = {
+    "font.family": "STIXGeneral",
+    "mathtext.fontset": "stix",
+    "font.size": 8.0,
+}  # as journals set figures
 WIDTH = 6.9  # inches, two columns of a page
 RESOLUTION = 300  # dots per inch
 
