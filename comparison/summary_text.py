@@ -39,7 +39,10 @@ def _limits(broken: Sequence[str]) -> str:
 def _verdicts(found: Findings) -> str:
     study = found.study
     said = [(scene, verdict(study, found.surfaces, scene)) for scene in study.scenes]
-    return "\n".join(f"- **{scene.name}** ({_plain(scene.title)}): {_plain(one.sentence.replace('mu_', 'μ_'))}" for scene, one in said)
+    return "\n".join(
+        f"- **{scene.name}** ({_plain(scene.title)}): {_plain(one.sentence.replace('mu_', 'μ_'))}"
+        for scene, one in said
+    )
 
 
 def _differences(found: Findings) -> list[str]:

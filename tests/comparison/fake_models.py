@@ -141,13 +141,14 @@ def errors_in(gaps: Mapping[str, float], claimed: Mapping[str, float] | None = N
             rung,
             amplification="fake_models:planted",
             settings={"gap": gaps.get(rung.key, 0.0), "claimed": (claimed or {}).get(rung.key, 1e-5)},
+            symmetric=False,
         )
         for rung in LADDER
     )
 
 
 def fake_ladder(engine: str = "smooth", gap: float = 0.01, tile: int = 4) -> tuple[Rung, ...]:
-    """The real ladder with fake functions, without symmetries: the engine lies `gap` above, or is another model here."""
+    """The real ladder with fake functions, no symmetries: the engine lies `gap` above, or is another model here."""
     rungs = []
     for rung in LADDER:
         name = engine if rung.side == "engine" else "smooth"
