@@ -57,7 +57,8 @@ class Study:
     def sources(self, scene: Scene, rung: Rung) -> NDArray[np.intp]:
         """For each of `places` the one whose answer is also its own, by the symmetries of the scene (symmetry.py)."""
         places = self.places(rung)
-        return places if self.full or not rung.symmetric else places[sources(scene, len(self.axis(rung)))]
+        even = self.grid % self.strides[rung.key] == 0  # else the last phase and the first are closer than the others
+        return places[sources(scene, len(self.axis(rung)))] if rung.symmetric and even and not self.full else places
 
     def solved(self, scene: Scene, rung: Rung) -> NDArray[np.intp]:
         """The places that the model is asked for."""

@@ -82,6 +82,16 @@ def test_a_coarse_step_with_an_honest_error_is_not_called_a_difference() -> None
     assert table["translational"].uncertain == pytest.approx(0.03 * 1.02, rel=1e-3)  # u_A = 1e-5 adds 5e-8
 
 
+@pytest.mark.parametrize("grid", [12, 34, 48, 50])
+@pytest.mark.parametrize("name", ["fig3-I", "fig3-II"])
+def test_phases_that_are_not_computed_again_are_pi_away_from_those_that_are(grid: int, name: str) -> None:
+    """34 and 50 leave the engine an even number of phases that do not divide the period evenly."""
+    study, scene = Study((load_scene(name),), grid, 1e-3), load_scene(name)
+    for rung in study.ladder:
+        apart = np.subtract(np.divmod(study.places(rung), grid), np.divmod(study.sources(scene, rung), grid))
+        assert (2 * apart % grid == 0).all(), rung.key
+
+
 def test_a_step_known_to_less_than_a_fifth_is_counted_apart_and_not_as_real() -> None:
     for gap, expected in ((0.9, (0.0, 0.0)), (1.1, (0.0, 1.0)), (4.9, (0.0, 1.0)), (5.1, (1.0, 0.0))):
         study, surfaces = _solved(errors_in({"exact": gap * 1e-3}, claimed={"small": 6e-4, "exact": 8e-4}))
