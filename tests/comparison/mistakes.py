@@ -29,7 +29,10 @@ NEWTON = 1e-5  # tolerance of the coarse engine's iteration
 PENETRATION = 1e-6  # of rho, of its contact
 SOURCES = Path(reference.__file__).parent
 IN_THE_COPY = """
-import json, sys
+import json, sys, types
+from numba.experimental import structref
+structref.StructRefProxy = types.SimpleNamespace  # what compiled code keeps in a structure of its own
+structref.define_proxy = lambda *rest: None
 from reference import amplification
 from reference.problem import Scene
 asked = json.load(sys.stdin)
