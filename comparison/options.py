@@ -17,7 +17,7 @@ from comparison.tile_store import refuse_foreign_store
 from reference.problem import Family, Scene, SceneError, builtin_scenes, load_family
 from reference.problem.scene_error import first_fault
 
-DEFAULT_GRID = 12  # phases per axis: the four built-in scenes then take a few minutes on two cores
+DEFAULT_GRID = 48  # phases per axis of the equations; a model that costs more takes every k-th (ladder.py)
 DEFAULT_TOLERANCE = 1e-3
 
 
