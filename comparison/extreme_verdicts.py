@@ -92,7 +92,7 @@ def _point(reply: Reply, m: int, finer: Sequence[Reply], tolerance: float, right
     if status in NUMERICS:
         return Judged(Verdict.LIMIT, status)
     answered = [other.status[m] for other in finer if len(other.status) > m and other.status[m] not in NUMERICS]
-    if answered and answered[0] != status:
+    if answered and answered[0] != status and status not in right:
         return Judged(Verdict.FAILED, f"{status}, but a finer run: {answered[0]}")
     return Judged(Verdict.REFUSED, status)
 

@@ -107,9 +107,11 @@ def refine(
             return _answer(model, now, errors, Outcome.OK)
     if best is not None:
         return _answer(model, *best, Outcome.TOLERANCE_NOT_MET)
-    # levels that do not agree, or end alike: by how the first of the last two that has no answer ends
-    failed = next(past for past in marches[:-3:-1] if past.outcome != Outcome.OK)
     nothing = np.full(len(model.bodies), np.nan)
+    # levels that do not agree, or end alike: by how the first of the last two that has no answer ends
+    failed = next((past for past in marches[:-3:-1] if past.outcome != Outcome.OK), None)
+    if failed is None:  # one level has an answer, and no steps are left for another that tells its error
+        return Refined(nothing, nothing, Outcome.STEP_LIMIT, scene.duration, marches[-1])
     return Refined(nothing, nothing, failed.outcome, failed.instant * units.time, failed)
 
 

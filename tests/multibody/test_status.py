@@ -9,6 +9,8 @@ from scipy.integrate import solve_ivp
 
 import multibody
 from multibody import refine
+from multibody.level import levels
+from multibody.surface import assembled
 from reference.problem import GRAVITY, Outcome, load_scene
 
 
@@ -94,3 +96,12 @@ def test_a_trajectory_ends_where_the_model_does() -> None:
 def test_wrong_arguments_are_refused_by_name(options: dict[str, object], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         multibody.amplification(load_scene("fig3-I"), **{"phases": [(0.0, 0.0)], **options})  # type: ignore[arg-type]
+
+
+def test_a_point_whose_budget_ends_after_one_level_is_refused() -> None:
+    """One answer alone says nothing about its error."""
+    scene = load_scene("fig3-I").model_copy(update={"duration": 0.5})
+    model = assembled(scene, "translational", 1e-3)
+    one = refine.refine(scene, model, np.array([0.3, 1.1]), 1e-3, plan=levels(scene, model, 1e-3)[:1])
+    assert one.outcome == Outcome.STEP_LIMIT
+    assert np.isnan(one.peaks).all()
