@@ -1,9 +1,10 @@
 """
-Look at one motion: `python -m multibody.animate SCENE --phases A1 A2 [--out run.gif]`.
+Look at one motion: `python -m multibody.animate SCENE --phases A1 A2 [--model spatial] [--out run.gif]`.
 
-Left: the platform from above, in the plate's frame, with the path of its contact point on every support. Right: the
-chain from the side, with the curve on which the platform swings. `--view` opens the engine's own viewer on the same
-model.
+First the boxes from above, in the plate's frame, with the path of the contact point on every support; then the chain
+from two sides, with the curve on which the platform's centre swings. Boxes turn as the spatial model's do; the title
+says how many times displacements, contact paths, tilt and yaw are drawn larger. `--view` opens the engine's own viewer
+on the same model.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
+from scipy.spatial.transform import Rotation
 
 from multibody.engine import exudyn
 from multibody.integrate import place
@@ -27,15 +30,46 @@ Array = NDArray[np.float64]
 
 FRAMES_PER_SECOND = 25
 RING, SUPPORTS, SPHERE, STOREY = 1.0, 4, 0.05, 1.0  # m, -, m, m: drawn where the scene gives no spatial data
+SEEN, LARGEST = 0.3, 1e4  # rad or m, up to which turns and contact paths are magnified; by this much at most
+CORNERS = 0.5 * np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 
 
-def frames(motion: Trajectory, rate: float) -> Array:
-    """Positions (F, N, 3), m, at equally spaced instants, `rate` of them per second of motion."""
-    count = max(round(motion.time[-1] * rate), 1) + 1
-    instants = np.linspace(motion.time[0], motion.time[-1], count)
-    flat = motion.position.reshape(len(motion.time), -1)
-    columns = [np.interp(instants, motion.time, column) for column in flat.T]
-    return np.stack(columns, axis=-1).reshape(count, *motion.position.shape[1:])
+def frames(time: Array, values: Array, rate: float) -> Array:
+    """`values` (T, ...) given at `time` (T,), s, at equally spaced instants (F, ...), `rate` of them per second."""
+    count = max(round(time[-1] * rate), 1) + 1
+    instants = np.linspace(time[0], time[-1], count)
+    columns = [np.interp(instants, time, column) for column in values.reshape(len(time), -1).T]
+    return np.stack(columns, axis=-1).reshape(count, *values.shape[1:])
+
+
+def box_corners(centre: Array, size: Array, turns: Array) -> Array:
+    """Corners (..., 8, 3), m, of boxes at `centre` (..., 3), m, turned by Rx(a) Ry(b) Rz(c), `turns` (..., 3), rad."""
+    matrices = Rotation.from_euler("XYZ", turns.reshape(-1, 3)).as_matrix().reshape(*turns.shape, 3)
+    turned: Array = (CORNERS * np.asarray(size)[..., None, :]) @ np.swapaxes(matrices, -1, -2)
+    return centre[..., None, :] + turned
+
+
+def magnified(values: Array, seen: float) -> float:
+    """Factor, 1, 2 or 5 times a power of ten and at most `LARGEST`, which makes the largest value `seen` or less."""
+    largest = float(np.abs(values).max())
+    wanted = min(max(seen / largest, 1.0), LARGEST) if largest > 0.0 else LARGEST
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted))
+
+
+def contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
+    """
+    From each support to its contact point in plan, (F, K, 2), m, for the platform's `shift` and `turns` (F, 3).
+
+    The point lies on the sphere of radius r, in the direction from the depression's centre to the sphere's.
+    """
+    supports = _supports(scene)
+    arms = np.column_stack([supports, np.full(len(supports), -(scene.bodies[0].height or 0.0))])
+    matrices = Rotation.from_euler("XYZ", turns).as_matrix()
+    depressions = shift[:, None, :] + arms @ np.swapaxes(matrices, 1, 2) - arms
+    lever = (scene.isolator.sphere_radius or SPHERE) / scene.radius
+    paths: Array = -lever * depressions[:, :, :2]
+    return paths
 
 
 def draw(scene: Scene, motion: Trajectory, out: Path, *, stretch: float, speed: float) -> None:
@@ -45,43 +79,73 @@ def draw(scene: Scene, motion: Trajectory, out: Path, *, stretch: float, speed: 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     from matplotlib.animation import FuncAnimation, PillowWriter
+    from matplotlib.patches import Circle
 
-    positions = frames(motion, FRAMES_PER_SECOND / speed) * stretch
-    figure, (above, side) = plt.subplots(1, 2, figsize=(10.0, 5.5))
-    supports = _supports(scene)
-    reach = 1.2 * (float(np.abs(supports).max()) + float(np.abs(positions[:, 0, :2]).max()))
-    above.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xlabel="x [m]", ylabel="y [m]")
-    above.plot(*supports.T, "o", color="0.6", markersize=10, label="supports")
-    outline = above.plot([], [], color="tab:blue", label="platform")[0]
-    paths = [above.plot([], [], color="tab:red", linewidth=0.8)[0] for _ in supports]
-    paths[0].set_label("contact point")
-    above.legend(loc="upper right", fontsize="small")
+    rate = FRAMES_PER_SECOND / speed
+    shifts = frames(motion.time, motion.position, rate)
+    turns = frames(motion.time, motion.extra.get("turns", np.zeros_like(motion.position)), rate)
+    tilt, yaw = magnified(turns[..., :2], SEEN), magnified(turns[..., 2], SEEN)
+    supports, heights, sizes = _supports(scene), *_boxes(scene)
+    rest = heights[:, None] * np.array([0.0, 0.0, 1.0])
+    corners = box_corners(rest + shifts * stretch, sizes, turns * np.array([tilt, tilt, yaw]))
+    paths = contact_paths(scene, shifts[:, 0], turns[:, 0])
+    closer = magnified(paths, SEEN)
+    paths = supports + paths * closer
 
-    heights = np.array([STOREY * i if body.height is None else body.height for i, body in enumerate(scene.bodies)])
-    side.set(xlim=(-reach, reach), ylim=(-0.3, float(heights[-1]) + 0.6), xlabel="x [m]", ylabel="z [m]")
-    swing = np.linspace(-0.5, 0.5, 101) * scene.radius
-    for x, _ in supports:
-        side.plot(x + swing * stretch, (scene.radius - np.sqrt(scene.radius**2 - swing**2)) * stretch, color="0.8")
-    masts = side.plot([], [], "o-", color="tab:blue", markersize=8)[0]
-    boxes = [side.plot([], [], color="tab:blue", linewidth=6, solid_capstyle="butt")[0] for _ in heights]
-    lever = (scene.isolator.sphere_radius or SPHERE) / scene.radius
-    corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]]) * np.abs(supports).max()
+    figure, panels = plt.subplots(1, 3, figsize=(15.0, 6.0))
+    figure.subplots_adjust(left=0.05, right=0.99, bottom=0.2, top=0.86, wspace=0.2)
+    reach = 1.08 * float(np.abs(corners[..., :2]).max())
+    low, high = float(corners[..., 2].min()) - 0.15, float(corners[..., 2].max()) + 0.15
+    colours = [f"C{i}" for i in range(len(heights))]
+    outlines = []  # panel by panel, each body's
+    for panel, axes in zip(panels, ((0, 1), (0, 2), (1, 2))):
+        names = ["xyz"[axis] for axis in axes]
+        panel.set(xlim=(-reach, reach), aspect="equal", xlabel=f"{names[0]} [m]", ylabel=f"{names[1]} [m]")
+        panel.set(ylim=(-reach, reach) if axes[1] == 1 else (low, high))
+        for i, colour in enumerate(colours):
+            name = f"body {i + 1}" if i else "platform"
+            outline = panel.fill([0.0], [0.0], facecolor=colour, edgecolor=colour, alpha=0.35, label=name)[0]
+            outlines.append((outline, i, list(axes)))
+
+    above, *sides = panels
+    above.add_patch(Circle((0.0, 0.0), float(np.hypot(*supports[0])), fill=False, color="0.5", linestyle=":"))
+    above.plot(*supports.T, "o", color="0.4", markersize=6, label="supports on their ring")
+    lines = [above.plot([], [], color="tab:red", linewidth=1.0)[0] for _ in supports]
+    lines[0].set_label("path of the contact point")
+    points = above.plot([], [], ".", color="tab:red", markersize=6)[0]
+    swing = np.linspace(-0.25, 0.25, 101) * scene.radius
+    rise = scene.radius - np.sqrt(scene.radius**2 - swing**2)
+    masts = []
+    for axis, side in enumerate(sides):
+        for support in supports[:, axis]:  # the sphere's centre stands rho above the depression's
+            side.plot([support, support], [low, scene.radius], color="0.5", linewidth=1.5)
+            side.plot(support, scene.radius, "o", color="0.4", markersize=6)
+        side.plot(swing * stretch, heights[0] + rise * stretch, ":", color="0.2", label="swing of the centre")
+        masts.append(side.plot([], [], "o-", color="0.2", markersize=3, linewidth=1.0)[0])
+    handles = dict(zip(*reversed(above.get_legend_handles_labels())))
+    handles |= dict(zip(*reversed(sides[0].get_legend_handles_labels())))
+    figure.legend(handles.values(), handles.keys(), loc="lower center", ncols=len(handles), fontsize="small")
+    for panel, view_from in zip(panels, ("from above", "along y", "along x")):
+        panel.set_title(view_from, fontsize="medium")
     title = figure.suptitle("")
+    scales = f"displacements x {stretch:g}, contact paths x {closer:g}"
+    if "turns" in motion.extra:
+        scales += f", tilt x {tilt:g}, yaw x {yaw:g}"
 
     def show(frame: int) -> list[Any]:
-        now = positions[frame]
-        outline.set_data(*(corners + now[0, :2]).T)
-        for path, support in zip(paths, supports):
-            # on the sphere of radius r, in the direction from the depression's centre to the sphere's
-            path.set_data(*(support - lever * positions[: frame + 1, 0, :2]).T)
-        masts.set_data(now[:, 0], heights + now[:, 2])
-        for i, box in enumerate(boxes):
-            box.set_data(now[i, 0] + np.array([-0.4, 0.4]) * reach, [heights[i] + now[i, 2]] * 2)
-        seconds = frame * speed / FRAMES_PER_SECOND
-        title.set_text(f"{scene.title}\nt = {seconds:.2f} s, displacements x {stretch:g}")
-        return [outline, masts, title, *paths, *boxes]
+        for outline, body, axes in outlines:
+            flat = corners[frame, body][:, axes]
+            outline.set_xy(flat[ConvexHull(flat).vertices])
+        for line, path in zip(lines, np.swapaxes(paths, 0, 1)):
+            line.set_data(*path[: frame + 1].T)
+        points.set_data(*paths[frame].T)
+        centres = rest + shifts[frame] * stretch
+        for axis, mast in enumerate(masts):
+            mast.set_data(centres[:, axis], centres[:, 2])
+        title.set_text(f"{scene.title}\nt = {frame / rate:.2f} s; {scales}")
+        return [title, points, *lines, *masts, *(outline for outline, _, _ in outlines)]
 
-    animation = FuncAnimation(figure, show, frames=len(positions), blit=False)
+    animation = FuncAnimation(figure, show, frames=len(shifts), blit=False)
     writer = PillowWriter(fps=FRAMES_PER_SECOND) if out.suffix == ".gif" else None
     animation.save(str(out), writer=writer)
     plt.close(figure)
@@ -115,6 +179,14 @@ def _supports(scene: Scene) -> Array:
     count = scene.isolator.supports or SUPPORTS
     angles = 2.0 * np.pi * (np.arange(count) + 0.5) / count
     return (scene.isolator.ring or RING) * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def _boxes(scene: Scene) -> tuple[Array, Array]:
+    """Heights (N,) and sizes (N, 3) of the bodies, m."""
+    heights = [0.2 + STOREY * i if body.height is None else body.height for i, body in enumerate(scene.bodies)]
+    width = 2.0 * (scene.isolator.ring or RING)
+    sizes = [[width, width, 0.2 * STOREY] if body.size is None else body.size for body in scene.bodies]
+    return np.array(heights), np.array(sizes)
 
 
 def _arguments(words: list[str] | None) -> argparse.Namespace:

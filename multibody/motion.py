@@ -29,8 +29,9 @@ def trajectory(
     `amplification`, with the same statuses; a run that ends early is returned up to there. `contact_force`: sum over
     the supports. `stick`: intervals in which every support slips slower than v_reg. `extra`: slip_speed (T, K), m/s,
     and support_force (T, K), N, of K contacts (one in the translational model); the spatial model adds yaw and tilt of
-    the platform (T,), rad, and liftoff (L, 3): support, start and end, s, of every time a contact is open. Raises
-    ValueError for wrong arguments.
+    the platform (T,), rad, turns (T, N, 3), rad, the angles a, b, c of every body, which is turned against the plate by
+    Rx(a) Ry(b) Rz(c), and liftoff (L, 3): support, start and end, s, of every time a contact is open. Raises ValueError
+    for wrong arguments.
     """
     pair = checked_phases(np.reshape(np.asarray(phase, float), (1, -1)))[0]
     checked("tolerance", tolerance)
@@ -46,7 +47,7 @@ def trajectory(
     support_force = np.abs((vectors[:, :, 0] * vectors[:, :, 1]).sum(axis=-1)) * units.force
     extra = {"slip_speed": motion.slip * units.velocity, "support_force": support_force}
     if model == "spatial":
-        extra |= _attitude(motion, time)
+        extra |= _attitude(motion, bodies, time)
     return Trajectory(
         time=time,
         position=motion.coordinates[:, bodies] * units.length,
@@ -60,16 +61,17 @@ def trajectory(
     )
 
 
-def _attitude(motion: Motion, time: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
-    """How the platform turns, and when it leaves a support."""
-    roll, pitch, yaw = motion.coordinates[:, 3:6].T
+def _attitude(motion: Motion, bodies: NDArray[np.int_], time: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    """How the bodies turn, and when the platform leaves a support."""
+    turns = motion.coordinates[:, bodies + 3]  # of a body, behind its three displacements
+    roll, pitch, yaw = turns[:, 0].T
     open_at = [
         (float(support), *interval)
         for support, gap in enumerate(motion.gap.T)
         for interval in _intervals(time, gap >= 0.0)
     ]
     tilt = np.arcsin(np.hypot(np.sin(pitch), np.sin(roll) * np.cos(pitch)))
-    return {"yaw": yaw, "tilt": tilt, "liftoff": np.array(open_at).reshape(-1, 3)}
+    return {"yaw": yaw, "tilt": tilt, "turns": turns, "liftoff": np.array(open_at).reshape(-1, 3)}
 
 
 def _intervals(time: NDArray[np.float64], holds: NDArray[np.bool_]) -> list[tuple[float, float]]:

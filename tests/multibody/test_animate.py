@@ -10,12 +10,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from exudyn.rigidBodyUtilities import RotXYZ2RotationMatrix
+from numpy.typing import NDArray
 from PIL import Image
-from scenes_at_hand import one_body
+from scenes_at_hand import changed, one_body
+from scipy.spatial import ConvexHull
 
 import multibody
 from multibody import animate
-from multibody.animate import frames, main
+from multibody.animate import box_corners, contact_paths, draw, frames, magnified, main
+from reference.problem import load_scene
 
 SHORT = """
 title = "short"
@@ -94,11 +98,60 @@ def test_without_a_screen_the_viewer_is_refused_in_one_line(
 
 def test_frames_follow_the_motion() -> None:
     motion = multibody.trajectory(one_body(amplitudes=[[3.0, 0.0], [0.0, 0.0]]), (0.0, 0.0))
-    shown = frames(motion, 10.0)
+    shown = frames(motion.time, motion.position, 10.0)
     assert shown.shape == (11, 1, 3)
     np.testing.assert_allclose(shown[-1], motion.position[-1])
     middle = np.array([np.interp(0.5, motion.time, motion.position[:, 0, axis]) for axis in range(3)])
     np.testing.assert_allclose(shown[5, 0], middle)
+
+
+def test_the_drawn_corners_turn_with_the_body() -> None:
+    centre, size = np.array([1.0, 2.0, 3.0]), np.array([4.0, 2.0, 1.0])
+    quarter = box_corners(centre, size, np.array([0.0, 0.0, np.pi / 2.0])) - centre
+    # a quarter about z swaps length and width; the corner at (+, +) goes to (-, +)
+    np.testing.assert_allclose(np.abs(quarter), np.tile([1.0, 2.0, 0.5], (8, 1)), atol=1e-15)
+    np.testing.assert_allclose(quarter[-1], [-1.0, 2.0, 0.5], atol=1e-15)
+    angles = np.array([0.3, -0.2, 0.5])
+    turned = box_corners(centre, size, angles) - centre
+    straight = box_corners(centre, size, np.zeros(3)) - centre
+    # the engine's own matrix of its angles
+    np.testing.assert_allclose(turned, straight @ RotXYZ2RotationMatrix(angles).T, atol=1e-14)
+
+
+def test_the_film_of_the_spatial_model_shows_its_turns(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = changed(load_scene("fig3-I"), duration=1.5)
+    motion = multibody.trajectory(scene, (2.0, 0.7), model="spatial")
+    turns = motion.extra["turns"]
+    np.testing.assert_array_equal(turns[:, 0, 2], motion.extra["yaw"])
+    assert np.abs(turns[:, 1, 2]).max() > 1e-5  # the body above turns too
+
+    seen: list[NDArray[np.float64]] = []
+    monkeypatch.setattr(animate, "ConvexHull", lambda flat: seen.append(flat) or ConvexHull(flat))
+    draw(scene, motion, tmp_path / "run.gif", stretch=1.0, speed=15.0)
+    from_above = np.array(seen[-6])  # three views of two bodies in the last frame: the platform in the first
+    edge = from_above[4] - from_above[0]  # along the box's own x
+    yaw, factor = motion.extra["yaw"][-1], magnified(frames(motion.time, turns, 25.0 / 15.0)[..., 2], 0.3)
+    assert factor >= 10.0
+    # to the square of the tilt drawn, which is 0.3 at most
+    assert np.arctan2(edge[1], edge[0]) == pytest.approx(factor * yaw, rel=0.1)
+
+
+def test_contact_points_move_against_the_platform_and_around_with_its_yaw() -> None:
+    scene = load_scene("fig3-I")
+    shift = np.array([[0.01, -0.02, 0.0]])
+    lever = 0.05 / scene.radius
+    moved = contact_paths(scene, shift, np.zeros((1, 3)))
+    np.testing.assert_allclose(moved, np.tile(-lever * shift[:, :2], (1, 4, 1)), atol=1e-15)
+    yawed = contact_paths(scene, np.zeros((1, 3)), np.array([[0.0, 0.0, 1e-3]]))[0]
+    # the supports of a ring of 1 m stand at 45 degrees: each goes along the ring, the first towards (-, +)
+    np.testing.assert_allclose(yawed[0], -lever * 1e-3 * np.sqrt(0.5) * np.array([-1.0, 1.0]), rtol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("largest", "factor"), [(0.0, 1e4), (1e-9, 1e4), (9.4e-5, 2e3), (1.4e-3, 200.0), (0.3, 1.0), (1.0, 1.0)]
+)
+def test_turns_are_magnified_by_round_factors_and_never_reduced(largest: float, factor: float) -> None:
+    assert magnified(np.array([0.0, -largest]), 0.3) == factor
 
 
 @pytest.mark.parametrize(
