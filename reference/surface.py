@@ -10,7 +10,7 @@ import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.problem import Amplification, Outcome, Scene, checked_phases, ground_peak
+from reference.problem import GRAVITY, Amplification, Outcome, Scene, checked_phases, ground_peak
 from reference.solver.certified import NOT_MET, certified_peaks
 from reference.solver.system import (
     OPEN,
@@ -34,6 +34,8 @@ OUTCOMES = {
     UNSOLVED: Outcome.SOLVER_FAILED,
 }
 STEPS_PER_PERIOD = 1000  # a run in trouble ends after so many steps per loading period, and FIRST_STEPS more
+STEPS_PER_VIBRATION, MOST_FOR_VIBRATIONS = 30, 300_000  # of the chain's fastest, besides
+VIBRATIONS = 10.0  # of the chain during which forces hardly change: stiff links follow without swinging
 FIRST_STEPS = 20_000
 PARTS = 8  # pieces of the surface per thread, so that none waits long for another
 
@@ -123,15 +125,30 @@ def checked_demand(
         raise ValueError(f"cutoff = {cutoff!r}: belongs to the set-valued law; give no regularization with it")
     system = pack(scene, equations == "small", regularization, rest_condition == "printed")
     period = min(scene.excitation.periods)
+    vibrations = min(STEPS_PER_VIBRATION * scene.duration * system.fastest / (2.0 * np.pi), MOST_FOR_VIBRATIONS)
     with np.errstate(over="ignore"):  # refused by loads_are_finite
         unit = float(np.sqrt((np.abs(scene.amplitudes).sum(axis=1) ** 2).sum()))
     return system, Demand(
         tolerance=float(tolerance),
         unit=unit,
-        period=period,
+        period=time_scale(scene, unit, system.fastest),
         cutoff=0.0 if cutoff is None else float(cutoff),
-        step_limit=FIRST_STEPS + int(min(1e9, STEPS_PER_PERIOD * scene.duration / period)),
+        step_limit=FIRST_STEPS + int(min(1e9, STEPS_PER_PERIOD * scene.duration / period + vibrations)),
     )
+
+
+def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
+    """
+    Time in which forces change, s, given the size of the loading, m/s^2, and the chain's fastest vibration, rad/s.
+
+    The shortest of the loading's and the pendulum's periods, the softest link's, VIBRATIONS of the fastest, the decay
+    of the loading, and the time in which it drives the platform across the cap.
+    """
+    frequencies = [2.0 * np.pi / period for period in scene.excitation.periods]
+    frequencies += [*scene.excitation.decay, float(np.sqrt((GRAVITY + acceleration) / scene.radius))]
+    if len(scene.bodies) > 1:
+        frequencies += [float(np.sqrt((scene.stiffness / scene.masses[1:, None]).min())), fastest / VIBRATIONS]
+    return float(2.0 * np.pi / max(frequencies))
 
 
 def loads_are_finite(system: System) -> bool:

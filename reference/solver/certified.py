@@ -6,13 +6,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from reference.solver.advance import FLOOR
 from reference.solver.runs import runs
 from reference.solver.system import SOLVED, Array, Demand, System, record_of
 
 RATIO = 30.0  # between the tolerances of the two runs
 SHARE = 0.4  # of their difference that may be left in the finer run; its error is expected to be 1 / RATIO of it
-LUCK = 7e-4  # of the tolerance inside a step: two runs that agree better do so by luck
+LUCK = 5e-4  # of the tolerance inside a step: two runs that agree better do so by luck
 READING = 2.0  # of the interpolation error where the peak was read: the step before may have left as much
+RESERVE = 0.005  # of the tolerance asked: two runs that agree better than that may do so by luck
 ROUNDING = 1e-12  # relative error that no tolerance removes: some hundred steps, some ten operations each
 LOOSEST = 1e-5  # tolerance of accelerations inside a step, of the first finer run: looser ones save few steps
 TIGHTEST = 1e-11
@@ -56,8 +58,9 @@ def certified_peaks(system: System, phases: Array, demand: Demand) -> Peaks:
     open_ = np.arange(len(phases))
     while len(open_):
         after = peaks_at(system, phases[open_], demand, tolerance)
-        error = _error(before, after, tolerance)
-        for total, part in zip(found, after._replace(error=error)):
+        error = _error(before, after, tolerance, demand.unit)
+        stated = np.maximum(error, RESERVE * demand.tolerance * after.value)
+        for total, part in zip(found, after._replace(error=stated)):
             total[open_] = part
         solved = (before.code == SOLVED) & (after.code == SOLVED)
         met = solved & (error <= demand.tolerance * after.value).all(axis=1)
@@ -72,7 +75,9 @@ def certified_peaks(system: System, phases: Array, demand: Demand) -> Peaks:
     return found
 
 
-def _error(before: Peaks, after: Peaks, tolerance: float) -> Array:
+def _error(before: Peaks, after: Peaks, tolerance: float, unit: float) -> Array:
     """Estimated error of `after`, (M, N): what reading the peak leaves, and what the runs' states leave."""
-    between = np.abs(after.value - before.value)
-    return READING * after.error + SHARE * between + (LUCK * tolerance + ROUNDING) * after.value
+    share = np.where(after.value < FLOOR * unit, 1.0, SHARE)  # steps do not resolve less than that
+    between = share * np.abs(after.value - before.value)
+    rounding = ROUNDING * np.maximum(after.value, unit)  # small accelerations are differences of large ones
+    return READING * after.error + between + LUCK * tolerance * after.value + rounding

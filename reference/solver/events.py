@@ -10,6 +10,7 @@ from reference.solver.platform import rest_excess
 from reference.solver.system import Array, System, Work
 
 NEVER = 2.0
+SEARCHES = 30  # golden sections of two instants: a passing shorter than a millionth of the step moves nothing
 BISECTIONS = 50
 
 
@@ -32,32 +33,69 @@ def highest(values: Array) -> float:
 
 
 @compiled
+def powers_of(values: Array) -> Array:
+    """Coefficients of the powers of theta of the polynomial through the stage values (S,)."""
+    coefficients = np.zeros(STAGES)
+    for k in range(STAGES):
+        for m in range(STAGES):
+            coefficients[k] += MONOMIALS[k, m] * values[m]
+    return coefficients
+
+
+@compiled
+def value_at(coefficients: Array, theta: float) -> float:
+    """The polynomial at theta."""
+    value = 0.0
+    for k in range(STAGES - 1, -1, -1):
+        value = value * theta + coefficients[k]
+    return value
+
+
+@compiled
 def first_crossing(values: Array, start: float, target: float) -> float:
     """First theta at which the polynomial through `values` has passed `target`, seen from `start` at theta = 0."""
-    rising = start < target
-    before = 0.0
+    way = 1.0 if start < target else -1.0
+    top, place, change, before = -1.0e300, 0.0, 0.0, way * (start - target)
     for n in range(1, DENSE.shape[0]):
         here = 0.0
         for k in range(STAGES):
             here += DENSE_VALUES[n, k] * values[k]
-        if (here > target) == rising:
-            coefficients = np.zeros(STAGES)
-            for k in range(STAGES):
-                for m in range(STAGES):
-                    coefficients[k] += MONOMIALS[k, m] * values[m]
-            low, high = before, DENSE[n]
-            for _ in range(BISECTIONS):
-                middle = 0.5 * (low + high)
-                value = 0.0
-                for k in range(STAGES - 1, -1, -1):
-                    value = value * middle + coefficients[k]
-                if (value > target) == rising:
-                    high = middle
-                else:
-                    low = middle
-            return high
-        before = DENSE[n]
+        here = way * (here - target)
+        if here > 0.0:
+            return crossed(powers_of(values), target, way, DENSE[n - 1], DENSE[n])
+        change = max(change, abs(here - before))
+        if here > top:
+            top, place = here, DENSE[n]
+        before = here
+    if top + change < 0.0:
+        return NEVER
+    # it may pass the target and return between two of these instants
+    coefficients = powers_of(values)
+    low, high = max(0.0, place - DENSE[1]), min(1.0, place + DENSE[1])
+    begin = low
+    for _ in range(SEARCHES):
+        left, right = low + 0.382 * (high - low), high - 0.382 * (high - low)
+        at_left = way * (value_at(coefficients, left) - target)
+        at_right = way * (value_at(coefficients, right) - target)
+        if max(at_left, at_right) > 0.0:
+            return crossed(coefficients, target, way, begin, left if at_left > 0.0 else right)
+        if at_left > at_right:
+            high = right
+        else:
+            low = left
     return NEVER
+
+
+@compiled
+def crossed(coefficients: Array, target: float, way: float, low: float, high: float) -> float:
+    """Where the polynomial, not beyond the target at low and beyond it at high, passes it."""
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        if way * (value_at(coefficients, middle) - target) > 0.0:
+            high = middle
+        else:
+            low = middle
+    return high
 
 
 @compiled

@@ -10,12 +10,14 @@ A lubricated contact is wetted throughout. Each phase carries the state in `Work
 
 from __future__ import annotations
 
+from math import pi
+
 from reference.solver.advance import drive, remaining
 from reference.solver.compiled import compiled
 from reference.solver.ground import ground_at
 from reference.solver.platform import rest_excess
 from reference.solver.rest_phase import rest_phase
-from reference.solver.sliding_phase import sliding_phase, speed2
+from reference.solver.sliding_phase import barely_slips, sliding_phase, speed2
 from reference.solver.smooth_phase import smooth_phase
 from reference.solver.stopping_phase import stopping_phase
 from reference.solver.system import (
@@ -26,6 +28,7 @@ from reference.solver.system import (
     REGULARIZED,
     REST,
     RIM,
+    SET_VALUED,
     SLIDING,
     SOLVED,
     STEP_LIMIT,
@@ -39,11 +42,12 @@ from reference.solver.system import (
     Work,
 )
 
-START = 0.02  # of the shorter loading period: first step
+START = 0.02  # of the period (system.py): first step
 
 NEARLY = 1e-8  # of it: what little may be left when a step fails
 AT_RIM = 0.998  # of the squared radius
 BORDER = 1e-6  # of it: for so long such a state is left to rest or creep
+CRAWL = 1e-8  # of the loading's velocity: a slide that cannot go on at this speed has not moved
 
 
 @compiled
@@ -72,6 +76,15 @@ def named(system: System, work: Work, demand: Demand, code: int) -> int:
 
 
 @compiled
+def crawls(system: System, phase: Array, work: Work, contact: int, demand: Demand) -> bool:
+    """Whether a slide that cannot go on hardly moves, under a drive that hardly exceeds the friction limit."""
+    if system.law != SET_VALUED or contact == REST:
+        return False
+    slow2 = (CRAWL * demand.unit * demand.period / (2.0 * pi)) ** 2
+    return speed2(system, work) <= slow2 and barely_slips(system, phase, work)
+
+
+@compiled
 def march(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> int:
     """
     Follow the motion from the state in work.x, work.v to the end; how it ended (system.py), at time work.run[TIME].
@@ -94,6 +107,10 @@ def march(system: System, phase: Array, work: Work, demand: Demand, record: Reco
             code, contact = smooth_phase(system, phase, work, contact, demand, record)
         else:
             code, contact = stopping_phase(system, phase, work, demand, record)
+        if code == UNSOLVED and crawls(system, phase, work, contact, demand):
+            work.v[0, 0] = work.v[0, 1] = 0.0
+            work.run[HELD] = max(work.run[HELD], BORDER * demand.period)
+            code, contact = SOLVED, REST
         if code != SOLVED:
             return named(system, work, demand, code)
         idle = idle + 1 if work.run[TIME] == before else 0

@@ -57,6 +57,7 @@ CLOSE = 0.05  # of the period: or would stop within this time
 CALM = 0.5  # rad: what the chain's fastest vibration may turn in the time that is left then
 TURN = 0.3  # cosine of the largest turn of the velocity between two stages
 LOCATED = 1e-9  # of the squared speed: a slide this close to v_reg has come down to it
+NEAR = 1.25  # of the squared v_reg: a slide that comes so near may pass it between two stages
 STIFF = 0.03  # share of the friction limit times the step: at a lower speed the direction follows the force
 LEAST = 1e-12  # of the drive: a slide that begins has a direction
 BARELY = 1e-4  # of the squared friction limit
@@ -181,7 +182,7 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
                 return UNSOLVED, SLIDING
             run[LENGTH] = h * min(0.7, factor)
             continue
-        if lowest(work.stage[7]) < floor2:
+        if lowest(work.stage[7]) < NEAR * floor2:
             slowed = first_crossing(work.stage[7], max(start2, floor2 * (1.0 + 1e-9)), floor2)
             if slowed < GRAZE:
                 return SOLVED, CREEPING

@@ -117,7 +117,7 @@ class Demand(NamedTuple):
 
     tolerance: float  # of accelerations, relative
     unit: float  # m/s^2, the scale errors are measured against from below
-    period: float  # s, the shorter loading period
+    period: float  # s, in which forces change (time_scale)
     cutoff: float  # m/s, v_c of the resolved peak; 0 for the supremum
     step_limit: int
 
