@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import resource
 import sys
 import time
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -100,3 +102,32 @@ def test_ten_thousand_short_runs_leave_no_memory_behind(monkeypatch: pytest.Monk
     for tile in np.array_split(phases, 100):  # a fresh system for every hundred, as a sweep does
         multibody.amplification(scene, tile)
     assert resident() - before < 50.0
+
+
+def processor_time_of(phase: np.ndarray) -> float:
+    """What one point of fig3-I costs the process that answers it, s of processor time."""
+    begin = time.process_time()
+    assert multibody.amplification(load_scene("fig3-I"), [phase]).status[0] == "ok"
+    return time.process_time() - begin
+
+
+@pytest.mark.long
+def test_points_cost_no_more_processor_time_in_two_workers_than_in_one() -> None:
+    phases = list(np.random.default_rng(5).uniform(0.0, 2.0 * np.pi, (12, 2)))
+    context = multiprocessing.get_context("spawn")
+    cost: dict[int, list[float]] = {1: [], 2: []}  # per point, summed over the workers, of every round
+    wall: dict[int, list[float]] = {1: [], 2: []}
+    with ProcessPoolExecutor(1, context) as alone, ProcessPoolExecutor(2, context) as pair:
+        for pool in (alone, pair):  # starts the workers, which compile the loading's peak
+            list(pool.map(processor_time_of, phases[:4]))
+        for _ in range(5):  # in turn, so that what else the machine does falls on both
+            for workers, pool in ((1, alone), (2, pair)):
+                begin = time.perf_counter()
+                cost[workers].append(sum(pool.map(processor_time_of, phases)) / len(phases))
+                wall[workers].append(time.perf_counter() - begin)
+    efficiency, speedup = np.divide(cost[1], cost[2]), np.divide(wall[1], wall[2])
+    print(f"\n{np.median(cost[1]):.3f} s a point alone, {np.median(cost[2]):.3f} s with two workers, processor time")
+    print(f"efficiency by round {np.round(efficiency, 2)}, wall time less by {np.round(speedup, 2)}")
+    # workers share nothing but the machine's memory and clock, which a tenth leaves room for; waiting does not count
+    # here, so that the load of others does not, and the wall ratio is for a reader who knows the machine to be idle
+    assert np.median(efficiency) >= 0.9
