@@ -134,7 +134,7 @@ SMALL = Rung(
         "unknowns": "2 N horizontal displacements; the vertical one follows from the sphere (2.1)",
         "mu_i": "supremum of (5.1) with one-sided limits at stops, in closed form",
     },
-    seconds_per_point=0.005,
+    seconds_per_point=0.002,
     tile=64,
     symmetric=True,
 )
@@ -158,7 +158,7 @@ RESOLVED = _next(
     adds="The same motion, read only at rest and while sliding faster than v_c = 1e-3 m/s: what the one-sided "
     "limits at stops, which no sampling reaches, are worth.",
     settings={**EXACT.settings, "cutoff": V_REG},
-    seconds_per_point=0.006,
+    seconds_per_point=0.002,
     applies=dry,
 )
 REGULARISED = _next(
@@ -168,7 +168,7 @@ REGULARISED = _next(
     title="exact equations, v_reg",
     adds="Friction linear below v_reg = 1e-3 m/s, as an engine has it: no true rest, no jump at a stop.",
     settings={"equations": "exact", "regularization": V_REG},
-    seconds_per_point=0.007,
+    seconds_per_point=0.003,
     applies=dry,
 )
 TRANSLATIONAL = _next(
@@ -187,7 +187,7 @@ TRANSLATIONAL = _next(
     amplification="multibody:amplification",
     trajectory="multibody:trajectory",
     settings={"model": "translational", "regularization": V_REG},
-    seconds_per_point=0.4,
+    seconds_per_point=0.35,
     tile=2,
     applies=any_scene,
     most=16,
@@ -204,7 +204,7 @@ SPATIAL = _next(
     adds="Every body free to turn, at its height, on a ring of supports: overturning shares the load unequally, "
     "friction twists the platform, supports may lift off.",
     settings={"model": "spatial", "regularization": V_REG},
-    seconds_per_point=1.0,
+    seconds_per_point=0.6,
     tile=1,
     applies=has_spatial_data,
     most=4,
