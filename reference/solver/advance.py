@@ -13,12 +13,14 @@ from reference.solver.platform import moving
 from reference.solver.record import record_step
 from reference.solver.steps import lifted
 from reference.solver.system import (
+    LENGTH,
     OLD_LENGTH,
     REST,
     SLIDING,
     STEPS,
     STOPPING,
     TIME,
+    UNSOLVED,
     Array,
     Demand,
     Record,
@@ -113,6 +115,28 @@ def length_factor(error: float, tolerance: float) -> float:
     if error <= 0.0:
         return GROW
     return min(GROW, max(SHRINK, SAFETY * (tolerance / error) ** (1.0 / ORDER)))
+
+
+@compiled
+def too_short(demand: Demand, h: float, code: int) -> bool:
+    """Whether a step that failed with `code` need not be tried with a shorter one."""
+    return h < (SHORTEST if code == UNSOLVED else FATAL) * demand.period
+
+
+@compiled
+def shortened(work: Work, demand: Demand, h: float, factor: float) -> bool:
+    """Set a shorter length for a step that misses the tolerance; False if it is as short as steps get."""
+    if h < SHORTEST * demand.period:
+        return False
+    work.run[LENGTH] = h * min(0.7, factor)
+    return True
+
+
+@compiled
+def adapt(work: Work, h: float, factor: float) -> None:
+    """The length after a step that was made; one cut short for another reason does not shorten the next."""
+    if h * factor > work.run[LENGTH] or h == work.run[LENGTH]:
+        work.run[LENGTH] = h * factor
 
 
 @compiled

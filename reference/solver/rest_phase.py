@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from reference.solver.advance import FATAL, SHORTEST, begin, commit, length_factor, next_step, remaining
+from reference.solver.advance import FATAL, adapt, begin, commit, length_factor, next_step, remaining, shortened
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
 from reference.solver.events import excess_at, expand, first_onset, lowest
@@ -64,10 +64,10 @@ def rest_phase(system: System, phase: Array, work: Work, demand: Demand, record:
             h = min(h, run[HELD])
         rest_step(system, phase, work, run[TIME], h)
         error = step_error(work)
+        factor = length_factor(error, demand.tolerance)
         if not error <= demand.tolerance:
-            if h < SHORTEST * demand.period:
+            if not shortened(work, demand, h, factor):
                 return UNSOLVED, REST
-            run[LENGTH] = h * min(0.7, length_factor(error, demand.tolerance))
             continue
         onset = first_onset(system, work)
         if lowest(work.stage[6]) <= 0.0:
@@ -83,7 +83,6 @@ def rest_phase(system: System, phase: Array, work: Work, demand: Demand, record:
             return SOLVED, SLIDING
         commit(work, record, h, REST, 0.0, 1.0)
         run[HELD] = 0.0
-        if h * length_factor(error, demand.tolerance) > run[LENGTH] or h == run[LENGTH]:
-            run[LENGTH] = h * length_factor(error, demand.tolerance)
+        adapt(work, h, factor)
     note_stick(record, began, run[TIME])
     return SOLVED, REST

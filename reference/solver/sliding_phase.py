@@ -5,7 +5,6 @@ from __future__ import annotations
 from math import atan2, cos, log, sin, sqrt
 
 from reference.solver.advance import (
-    FATAL,
     GROW,
     NEWTON,
     SHORTEST,
@@ -17,6 +16,8 @@ from reference.solver.advance import (
     length_factor,
     next_step,
     remaining,
+    shortened,
+    too_short,
 )
 from reference.solver.arc import settled_direction, squared_total
 from reference.solver.chain import eliminate_chain, load_chain
@@ -161,7 +162,7 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
         else:
             first_guess(work, h)
         code = moving_step(system, phase, work, SLIDING, run[TIME], h, NEWTON * demand.tolerance * work.scale[0])
-        if code == SOLVED and (turns_too_far(work)):
+        if code == SOLVED and turns_too_far(work):
             code = UNSOLVED
         if code != SOLVED:
             if speed == 0.0 and h < GRAZE * demand.period:
@@ -169,7 +170,7 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
                     return UNSOLVED, SLIDING
                 run[HELD] = 10.0 * GRAZE * demand.period
                 return SOLVED, REST
-            if h < (SHORTEST if code == UNSOLVED else FATAL) * demand.period:
+            if too_short(demand, h, code):
                 return code, SLIDING
             run[LENGTH] = 0.3 * h
             growth = CAUTIOUS
@@ -178,9 +179,8 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
         error = step_error(work)
         factor = length_factor(error, demand.tolerance)
         if not error <= demand.tolerance:
-            if h < SHORTEST * demand.period:
+            if not shortened(work, demand, h, factor):
                 return UNSOLVED, SLIDING
-            run[LENGTH] = h * min(0.7, factor)
             continue
         if lowest(work.stage[7]) < NEAR * floor2:
             slowed = first_crossing(work.stage[7], max(start2, floor2 * (1.0 + 1e-9)), floor2)

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from reference.solver.advance import (
-    FATAL,
     NEWTON,
-    SHORTEST,
+    adapt,
     begin,
     commit,
     first_guess,
     length_factor,
     next_step,
     remaining,
+    shortened,
+    too_short,
 )
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
@@ -63,16 +64,15 @@ def smooth_phase(
         enough = NEWTON * demand.tolerance * work.scale[0] / (1.0 + h * rate)
         code = moving_step(system, phase, work, contact, run[TIME], h, enough)
         if code != SOLVED:
-            if h < (SHORTEST if code == UNSOLVED else FATAL) * demand.period:
+            if too_short(demand, h, code):
                 return code, contact
             run[LENGTH] = 0.3 * h
             continue
         error = step_error(work)
         factor = length_factor(error, demand.tolerance)
         if not error <= demand.tolerance:
-            if h < SHORTEST * demand.period:
+            if not shortened(work, demand, h, factor):
                 return UNSOLVED, contact
-            run[LENGTH] = h * min(0.7, factor)
             continue
         if contact == CREEPING and highest(work.stage[7]) > 0.8 * level:
             start = sliding_speed2(work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1], system.radius, system.small)
@@ -88,8 +88,7 @@ def smooth_phase(
         if contact == CREEPING and work.stage[7, STAGES - 1] > level * (1.0 - LOCATED):
             note_stick(record, began, run[TIME])
             return SOLVED, SLIDING
-        if h * factor > run[LENGTH] or h == run[LENGTH]:
-            run[LENGTH] = h * factor
+        adapt(work, h, factor)
     if contact == CREEPING:
         note_stick(record, began, run[TIME])
     return SOLVED, contact
