@@ -71,6 +71,12 @@ class Study:
         The cut depends on the study alone, never on the number of workers: a result must not depend on scheduling.
         """
         phases = phase_grid(self.grid)
+        work = [
+            (rung, scene, self.solved(scene, rung))
+            for rung in self.ladder
+            for scene in self.scenes
+            if rung.applies(scene)
+        ]
         return [
             Tile(
                 scene=scene,
@@ -78,12 +84,10 @@ class Study:
                 amplification=rung.amplification,
                 settings={**rung.settings, "tolerance": rung.tolerance(self.tolerance)},
                 first=first,
-                phases=phases[self.solved(scene, rung)[first : first + rung.tile]],
+                phases=phases[places[first : first + rung.tile]],
             )
-            for rung in self.ladder
-            for scene in self.scenes
-            if rung.applies(scene)
-            for first in range(0, len(self.solved(scene, rung)), rung.tile)
+            for rung, scene, places in work
+            for first in range(0, len(places), rung.tile)
         ]
 
     def seconds(self, rung: Rung) -> float:

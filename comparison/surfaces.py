@@ -33,11 +33,15 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
     status = np.full(plane, NOT_APPLICABLE, dtype=object)
     for index, scene in enumerate(study.scenes):
         status[index, [models.index(rung.key) for rung in rungs_of(scene, study.ladder)]] = NOT_ASKED
-    rungs = {rung.key: rung for rung in study.ladder}
+    solved = {
+        (scene.name, rung.key): study.solved(scene, rung)
+        for scene in study.scenes
+        for rung in rungs_of(scene, study.ladder)
+    }
     cost = np.zeros(plane[:2])
     for tile, answer in zip(tiles, answers, strict=True):
         where = names.index(tile.scene.name), models.index(tile.rung)
-        span = study.solved(tile.scene, rungs[tile.rung])[tile.first : tile.first + len(tile.phases)]
+        span = solved[tile.scene.name, tile.rung][tile.first : tile.first + len(tile.phases)]
         count = len(tile.scene.bodies)
         mu[where][span, :count] = answer.mu
         error[where][span, :count] = answer.error
@@ -45,11 +49,10 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
         status[where][span] = answer.status
         cost[where] += answer.cost
     for row, scene in enumerate(study.scenes):
-        for column, rung in enumerate(study.ladder):
-            if rung.applies(scene):
-                place, source = study.places(rung), study.sources(scene, rung)
-                for array in (mu, error, instant, status):
-                    array[row, column, place] = array[row, column, source]
+        for rung in rungs_of(scene, study.ladder):
+            column, place, source = models.index(rung.key), study.places(rung), study.sources(scene, rung)
+            for array in (mu, error, instant, status):
+                array[row, column, place] = array[row, column, source]
     square = (len(names), len(models), study.grid, study.grid)
     axis = 2.0 * np.pi * np.arange(study.grid) / study.grid
     surface, point = ("scene", "model", "body", "alpha1", "alpha2"), ("scene", "model", "alpha1", "alpha2")
