@@ -23,11 +23,11 @@ from rich.table import Table
 
 from comparison.executors import process_pool
 from comparison.ladder import has_spatial_data
+from comparison.progress import wide_console
 from comparison.study import Study
 from comparison.variations import DURATION, MANY, PHASES, Cell, Range, assumption_cells, ranges
 from reference.problem import Scene, SceneError, builtin_scenes, load_scene
 
-PLAIN_WIDTH = 120  # columns of a table that goes to a file or a pipe
 TOLERANCE = 1e-3
 
 
@@ -136,7 +136,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except SceneError as fault:
         print(fault, file=sys.stderr)
         return 2
-    console = Console(highlight=False, width=None if sys.stdout.isatty() else PLAIN_WIDTH)
+    console = wide_console()
     console.print(
         f"{len(MANY)} variations at {len(PHASES)} phase pairs over {DURATION:g} s of motion: minutes for each scene."
     )

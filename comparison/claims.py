@@ -20,7 +20,7 @@ from comparison.claim_checks import Finding, Verdict
 from comparison.claim_list import CLAIMS, Claim
 from comparison.evidence import Evidence, Question, gathered, lost
 from comparison.executors import Pool, process_pool
-from comparison.progress import Stage, progress
+from comparison.progress import Stage, progress, wide_console
 from comparison.readings import CASES, EVERY_READING, READINGS, Reading, without_effect
 from comparison.sweep import sweep
 
@@ -107,7 +107,6 @@ def _question(case: str, reading: Reading, grid: int) -> Question:
     )
 
 
-PLAIN_WIDTH = 120  # columns of a table that goes to a file or a pipe
 SIGNS = {Finding.REPRODUCED: "yes", Finding.AS_DRAWN: "drawn", Finding.NOT: "no", Finding.OPEN: "?"}
 
 
@@ -122,7 +121,7 @@ def main(argv: Sequence[str] | None = None, executor: Pool = process_pool) -> in
     parser.add_argument("--words", action="store_true", help="print what every check found, too")
     given = parser.parse_args(argv)
     readings = EVERY_READING if given.all else READINGS
-    console = Console(highlight=False, width=None if sys.stdout.isatty() else PLAIN_WIDTH)
+    console = wide_console()
     count = len(questions(readings, CLAIMS, given.grid))
     stage = Stage(count, count * SECONDS * (given.grid / GRID) ** 2)
     with progress(console, {"claims": stage}, given.jobs) as display:

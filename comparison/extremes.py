@@ -8,7 +8,6 @@ run. Writes extremes.json and extremes.png. Exit codes: 0 no cell failed; 1 some
 from __future__ import annotations
 
 import argparse
-import os
 import shlex
 import sys
 import time
@@ -26,6 +25,7 @@ from comparison.extreme_matrix import FILE, Matrix, as_entry, matrix, written
 from comparison.extreme_scenes import COLUMNS, ENGINE, EQUATIONS, Column, Row, rows
 from comparison.extreme_verdicts import Verdict
 from comparison.extreme_worker import answers
+from comparison.options import cores
 from comparison.provenance import provenance
 
 LIMIT = 90.0  # s for one cell with its finer runs, on a machine that does nothing else
@@ -136,9 +136,8 @@ def _parser() -> argparse.ArgumentParser:
         description="Every model at the extremes of every quantity, judged by finer runs, as a matrix.",
         allow_abbrev=False,
     )
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help=f"where {FILE} goes")
-    parser.add_argument("--jobs", default=cores, type=int, metavar="N", help="worker processes (default %(default)s)")
+    parser.add_argument("--jobs", default=cores(), type=int, metavar="N", help="worker processes (default %(default)s)")
     parser.add_argument(
         "--limit", default=LIMIT, type=float, metavar="SECONDS", help="longest time of one cell (default %(default)s)"
     )

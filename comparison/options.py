@@ -60,7 +60,7 @@ def parsed(argv: Sequence[str] | None) -> Options:
         families=tuple(_family(name, amplitude) for name in names),
         grid=_whole("--grid", given.grid, 2, 512),
         out=given.out,
-        jobs=_cores() if given.jobs is None else _whole("--jobs", given.jobs, 1, 1024),
+        jobs=cores() if given.jobs is None else _whole("--jobs", given.jobs, 1, 1024),
         tolerance=_number("--tolerance", given.tolerance, 1e-12, 0.1, "relative error of mu"),
         check=given.check,
         plan=given.plan,
@@ -98,7 +98,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--grid", default=str(DEFAULT_GRID), metavar="N", help="phases per axis (default %(default)s)")
     parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help="report (default %(default)s)")
-    parser.add_argument("--jobs", metavar="N", help=f"worker processes of this machine (default {_cores()})")
+    parser.add_argument("--jobs", metavar="N", help=f"worker processes of this machine (default {cores()})")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="compute on the Dask cluster with this scheduler")
     parser.add_argument(
         "--fresh",
@@ -122,7 +122,8 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _cores() -> int:
+def cores() -> int:
+    """Processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -12,6 +13,12 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 EVERY = 15.0  # s between plain lines
+PLAIN_WIDTH = 120  # columns of a table that goes to a file or a pipe
+
+
+def wide_console() -> Console:
+    """Standard output: as wide as the terminal, or PLAIN_WIDTH columns where there is none."""
+    return Console(highlight=False, width=None if sys.stdout.isatty() else PLAIN_WIDTH)
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,7 @@ from comparison.further import further_findings
 from comparison.going_on import command_line, going_on, here
 from comparison.ladder import LADDER, Rung
 from comparison.options import Options, UsageError, parsed
+from comparison.progress import wide_console
 from comparison.provenance import provenance
 from comparison.slips import slip_effects
 from comparison.stopping import stoppable
@@ -38,8 +39,6 @@ from comparison.terminal import print_differences, print_plan
 from comparison.tile_store import StoreError, TileStore, store_beside
 from comparison.trajectories import stored_motions
 from reference.problem import SceneError
-
-PLAIN_WIDTH = 120  # columns of a table that goes to a file or a pipe
 
 
 def main(
@@ -56,7 +55,7 @@ def main(
     with stoppable():
         try:
             options = parsed(argv)
-            console = Console(highlight=False, width=None if sys.stdout.isatty() else PLAIN_WIDTH)
+            console = wide_console()
             study = Study(options.scenes, options.grid, options.tolerance, ladder, options.full)
             if options.plan:
                 print_plan(console, study, options)
