@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,8 +11,9 @@ from typing import NoReturn
 
 from pydantic import ValidationError
 
-from comparison.store import refuse_foreign
-from comparison.tile_store import refuse_foreign_store
+from comparison.report.store import refuse_foreign
+from comparison.sweep.executors import cores
+from comparison.sweep.tile_store import refuse_foreign_store
 from reference.problem import Family, Scene, SceneError, builtin_scenes, load_family
 from reference.problem.scene_error import first_fault
 
@@ -120,11 +120,6 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--check", action="store_true", help="exit 1 if a scene's acceptance limits are broken")
     parser.add_argument("--plan", action="store_true", help="print what would be computed and its cost; run nothing")
     return parser
-
-
-def cores() -> int:
-    """Processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _family(name: str, amplitude: float | None) -> Family:

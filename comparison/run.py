@@ -18,26 +18,26 @@ from datetime import UTC, datetime
 
 from rich.console import Console
 
-from comparison.assumptions import Reach
-from comparison.cluster import cluster
-from comparison.compute import computed
-from comparison.effective import effective_values
-from comparison.executors import ExecutorLostError, Pool, factory, process_pool
-from comparison.findings import findings
-from comparison.further import further_findings
-from comparison.going_on import command_line, going_on, here
-from comparison.ladder import LADDER, Rung
+from comparison.account.surfaces import labelled_surfaces
+from comparison.analyses.effective import effective_values
+from comparison.analyses.further import further_findings
+from comparison.analyses.slips import slip_effects
+from comparison.analyses.trajectories import stored_motions
+from comparison.assumptions.reach import Reach
 from comparison.options import Options, UsageError, parsed
-from comparison.progress import wide_console
+from comparison.plan.ladder import LADDER, Rung
+from comparison.plan.study import Study
 from comparison.provenance import provenance
-from comparison.slips import slip_effects
-from comparison.stopping import stoppable
-from comparison.store import replaced_when_complete
-from comparison.study import Study
-from comparison.surfaces import labelled_surfaces
+from comparison.report.findings import findings
+from comparison.report.store import replaced_when_complete
+from comparison.sweep.cluster import cluster
+from comparison.sweep.compute import computed
+from comparison.sweep.executors import ExecutorLostError, Pool, factory, process_pool
+from comparison.sweep.going_on import command_line, going_on, here
+from comparison.sweep.progress import wide_console
+from comparison.sweep.stopping import stoppable
+from comparison.sweep.tile_store import StoreError, TileStore, store_beside
 from comparison.terminal import print_differences, print_plan
-from comparison.tile_store import StoreError, TileStore, store_beside
-from comparison.trajectories import stored_motions
 from reference.problem import SceneError
 
 
@@ -106,7 +106,7 @@ def _run(
     executor: Callable[[int], Executor],
     store: TileStore,
 ) -> int:
-    from comparison.report import write_report  # plotting libraries: not needed to refuse a command or to plan
+    from comparison.report.report import write_report  # plotting libraries: not needed to refuse a command or to plan
 
     begin, began = time.monotonic(), datetime.now(UTC)
     tiles = study.tiles()

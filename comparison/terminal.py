@@ -8,14 +8,13 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from comparison.differences import Difference
-from comparison.ladder import RECORDED_ON
+from comparison.account.differences import Difference
 from comparison.options import Options
-from comparison.study import Study
-from comparison.symmetry import symmetry
-from comparison.tile_store import TileStore, store_beside
-
-START_UP = 5.0  # s: worker processes start and load the compiled equations, recorded on RECORDED_ON
+from comparison.plan.ladder import RECORDED_ON
+from comparison.plan.study import Study
+from comparison.plan.symmetry import symmetry
+from comparison.sweep.tile_store import TileStore, store_beside
+from comparison.sweep.warm_up import START_UP
 
 
 def print_plan(console: Console, study: Study, options: Options) -> None:

@@ -24,11 +24,11 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "comparison"))
 from fake_models import fake_ladder
 from local_cluster import LocalCluster
 
-from comparison.cluster import cluster
-from comparison.compute import computed
-from comparison.executors import Pool, process_pool
-from comparison.study import Study
-from comparison.tile_store import TileStore
+from comparison.plan.study import Study
+from comparison.sweep.cluster import cluster
+from comparison.sweep.compute import computed
+from comparison.sweep.executors import Pool, process_pool
+from comparison.sweep.tile_store import TileStore
 from reference.problem import Amplification, Scene, load_scene
 
 TILE = 0.5  # s a tile takes; the study's take about one

@@ -13,10 +13,10 @@ from known_further import known_further
 from PIL import Image
 
 import comparison.run
-from comparison import report
-from comparison.ladder import Rung
+from comparison.analyses.slips import Effect
+from comparison.plan.ladder import Rung
+from comparison.report import report
 from comparison.run import main
-from comparison.slips import Effect
 
 
 @dataclass(frozen=True)

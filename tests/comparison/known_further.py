@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from comparison.claim_checks import Finding, Verdict
-from comparison.claim_list import CLAIMS
-from comparison.claims import ClaimTable
-from comparison.readings import READINGS
-from comparison.trends import trend
+from comparison.analyses.trends import trend
+from comparison.claims.checks import Finding, Verdict
+from comparison.claims.claims import CLAIMS
+from comparison.claims.readings import READINGS
+from comparison.claims.table import ClaimTable
 
 SCALES = (1.0, 0.5, 0.25)
 

@@ -10,11 +10,11 @@ import xarray as xr
 from fake_models import errors_in, fake_ladder
 from numpy.typing import NDArray
 
-from comparison.budget import TOTAL, Entry, budget, closure, steps, torus_distance
-from comparison.ladder import Rung
-from comparison.study import Study
-from comparison.surfaces import labelled_surfaces
-from comparison.tiles import solve_tile
+from comparison.account.budget import TOTAL, Entry, budget, closure, steps, torus_distance
+from comparison.account.surfaces import labelled_surfaces
+from comparison.plan.ladder import Rung
+from comparison.plan.study import Study
+from comparison.plan.tiles import solve_tile
 from reference.problem import load_scene
 
 GRID = 8

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from comparison.acceptance import broken_limits
-from comparison.budget import budget, closure, steps
-from comparison.differences import differences
-from comparison.study import Study
-from comparison.surfaces import labelled_surfaces
-from comparison.tiles import solve_tile
+from comparison.account.acceptance import broken_limits
+from comparison.account.budget import budget, closure, steps
+from comparison.account.differences import differences
+from comparison.account.surfaces import labelled_surfaces
+from comparison.plan.study import Study
+from comparison.plan.tiles import solve_tile
 from reference.problem import builtin_scenes, load_scene
 
 pytestmark = pytest.mark.long

@@ -10,13 +10,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from comparison import claims, evidence
-from comparison.claim_checks import Finding, Verdict, judged, similar
-from comparison.claim_list import CLAIMS, Claim
-from comparison.claims import claims_tested, main, questions, tabulated
-from comparison.evidence import Evidence, Question
-from comparison.readings import CASES, EVERY_READING, READINGS, Reading, without_effect
-from comparison.smoothness import Bend
+from comparison.claims import evidence
+from comparison.claims import table as table_module  # table: what a test made
+from comparison.claims.__main__ import main
+from comparison.claims.checks import Finding, Verdict, judged, similar
+from comparison.claims.claims import CLAIMS, Claim
+from comparison.claims.evidence import Evidence, Question
+from comparison.claims.readings import CASES, EVERY_READING, READINGS, Reading, without_effect
+from comparison.claims.smoothness import Bend
+from comparison.claims.table import claims_tested, questions, tabulated
 
 Array = NDArray[np.float64]
 N = 16
@@ -150,7 +152,7 @@ def test_a_case_that_fails_or_dies_is_named_and_the_others_answered(monkeypatch:
             raise RuntimeError("singular")
         return PAPER[question.case]
 
-    monkeypatch.setattr(claims, "gathered", gathered)
+    monkeypatch.setattr(table_module, "gathered", gathered)
     table = claims_tested(2, ThreadPoolExecutor, N, READINGS[:2])
     findings = {claim.says: row[0] for claim, row in zip(table.claims, table.verdicts)}
     assert findings["mu_1 is similar to case II"].found == "fig4-dry: solver failed: RuntimeError: singular"
@@ -167,7 +169,7 @@ def test_what_a_solver_complains_about_becomes_the_fault(monkeypatch: pytest.Mon
 
 
 def test_the_command_prints_the_table(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr(claims, "gathered", lambda question: PAPER[question.case])
+    monkeypatch.setattr(table_module, "gathered", lambda question: PAPER[question.case])
     assert main(["--jobs", "2", "--grid", "16", "--words"], ThreadPoolExecutor) == 0
     printed = capsys.readouterr().out
     assert "1 m/s², f_c 0.1 s/m, resolved: 15 of 16" in printed

@@ -12,12 +12,12 @@ from conftest import Run
 from fake_models import fake_ladder
 from local_cluster import LocalCluster
 
-from comparison.cluster import cluster
-from comparison.halves import halves, joined
-from comparison.study import Study
-from comparison.sweep import sweep
-from comparison.tile_store import TileStore
-from comparison.tiles import Answer, Tile, solve_tile, unanswered
+from comparison.plan.study import Study
+from comparison.plan.tiles import Answer, Tile, solve_tile, unanswered
+from comparison.sweep.cluster import cluster
+from comparison.sweep.halves import halves, joined
+from comparison.sweep.sweep import sweep
+from comparison.sweep.tile_store import TileStore
 from reference.problem import load_scene
 
 
@@ -107,7 +107,7 @@ def test_no_scheduler_is_a_wrong_option(command: Callable[..., Run]) -> None:
 def test_workers_with_other_code_are_refused(
     workers: LocalCluster, command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("comparison.surroundings._version", lambda name: "9.9")
+    monkeypatch.setattr("comparison.sweep.surroundings._version", lambda name: "9.9")
     run = command("fig3-I", "--scheduler", workers.address, ladder=fake_ladder("forbidden"))
     assert run.code == 2
     assert "here it is 9.9: install the same" in run.err

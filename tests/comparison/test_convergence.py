@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from comparison import convergence
-from comparison.convergence import LIMITS, PENETRATIONS, Limit, convergence_trends, limit_trends
-from comparison.study import Study
+from comparison.analyses import convergence
+from comparison.analyses.convergence import LIMITS, PENETRATIONS, Limit, convergence_trends, limit_trends
+from comparison.plan.study import Study
 from reference.problem import Amplification, Scene, load_scene
 
 Array = NDArray[np.float64]

@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from comparison.extreme_cells import Cell, cells, solve_cell
-from comparison.extreme_matrix import Entry, Matrix, read, written
-from comparison.extreme_scenes import COLUMNS, Column, Row, rows, scene
-from comparison.extreme_verdicts import Verdict
-from comparison.extremes import main, reduced, run
-from comparison.extremes_figure import draw_extremes
+from comparison.extremes.__main__ import main, reduced, run
+from comparison.extremes.cells import Cell, cells, solve_cell
+from comparison.extremes.figure import draw_extremes
+from comparison.extremes.matrix import Entry, Matrix, read, written
+from comparison.extremes.rows import COLUMNS, Column, Row, rows, scene
+from comparison.extremes.verdicts import Verdict
 
 PLAIN = Row("anything", "plain", scene(), ("fake",))
 FAILING = {
@@ -127,8 +127,8 @@ def test_the_command_writes_the_matrix_and_its_picture(tmp_path, capsys):
 
 
 def test_a_failed_cell_is_an_exit_code_and_in_the_picture(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("comparison.extremes.COLUMNS", (fake("calls_nan_ok"),))
-    monkeypatch.setattr("comparison.extremes.rows", lambda: iter([PLAIN]))
+    monkeypatch.setattr("comparison.extremes.__main__.COLUMNS", (fake("calls_nan_ok"),))
+    monkeypatch.setattr("comparison.extremes.__main__.rows", lambda: iter([PLAIN]))
     assert main(["--jobs", "1", "--out", str(tmp_path)]) == 1
     assert "FAILED: anything plain" in capsys.readouterr().out
 
@@ -155,6 +155,6 @@ def test_the_file_is_read_back_as_it_was_and_another_file_is_refused(tmp_path: P
 
 
 def _extreme(verdict: str, error: float | None):
-    from comparison.extreme_matrix import Extreme
+    from comparison.extremes.matrix import Extreme
 
     return Extreme("a group", verdict, {"fake": Entry(verdict, "a reason", error, 0.25)})

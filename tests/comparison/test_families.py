@@ -13,11 +13,11 @@ from fake_models import fake_ladder
 from matplotlib.axes import Axes
 from matplotlib.image import imread
 
-from comparison.budget import budget
-from comparison.family_figure import draw_family, family_figure_name
-from comparison.study import Study
-from comparison.surfaces import labelled_surfaces
-from comparison.tiles import solve_tile
+from comparison.account.budget import budget
+from comparison.account.surfaces import labelled_surfaces
+from comparison.plan.study import Study
+from comparison.plan.tiles import solve_tile
+from comparison.report.family_figure import draw_family, family_figure_name
 from reference.problem import load_family
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"

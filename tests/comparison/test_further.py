@@ -11,9 +11,9 @@ from typing import Any
 
 import pytest
 
-from comparison import further
-from comparison.further import claims_summary, further_findings, trends_summary
-from comparison.study import Study
+from comparison.analyses import further
+from comparison.analyses.further import claims_summary, further_findings, trends_summary
+from comparison.plan.study import Study
 from reference.problem import builtin_scenes, load_scene
 
 

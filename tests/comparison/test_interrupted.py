@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from comparison.ladder import LADDER
+from comparison.plan.ladder import LADDER
 
 HERE = Path(__file__).parent
 SCRIPT = """

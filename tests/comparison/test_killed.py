@@ -16,10 +16,10 @@ from conftest import Run
 from fake_models import fake_ladder
 from rich.console import Console
 
-from comparison.compute import computed
-from comparison.study import Study
-from comparison.tile_store import TileStore, store_beside
-from comparison.tiles import Answer
+from comparison.plan.study import Study
+from comparison.plan.tiles import Answer
+from comparison.sweep.compute import computed
+from comparison.sweep.tile_store import TileStore, store_beside
 from reference.problem import load_scene
 
 HERE = Path(__file__).parent
@@ -33,8 +33,8 @@ sys.path[:0] = [{here!r}, {root!r}]
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from rich.console import Console
-from comparison.compute import computed
-from comparison.tile_store import TileStore
+from comparison.sweep.compute import computed
+from comparison.sweep.tile_store import TileStore
 
 from test_killed import study
 

@@ -16,14 +16,14 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from comparison.acceptance import broken_limits
-from comparison.budget import TOTAL, closure, steps
-from comparison.differences import differences
-from comparison.ladder import LADDER, Rung
-from comparison.steps import RESOLVED
-from comparison.study import Study
-from comparison.surfaces import labelled_surfaces
-from comparison.tiles import solve_tile
+from comparison.account.acceptance import broken_limits
+from comparison.account.budget import TOTAL, closure, steps
+from comparison.account.differences import differences
+from comparison.account.steps import RESOLVED
+from comparison.account.surfaces import labelled_surfaces
+from comparison.plan.ladder import LADDER, Rung
+from comparison.plan.study import Study
+from comparison.plan.tiles import solve_tile
 from reference.problem import load_scene
 
 GRID = 2

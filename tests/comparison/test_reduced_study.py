@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparison.ladder import EXACT, REGULARISED, SMALL, TRANSLATIONAL, Rung
-from comparison.study import Study
-from comparison.surfaces import labelled_surfaces
-from comparison.symmetry import sources
-from comparison.tiles import solve_tile
+from comparison.account.surfaces import labelled_surfaces
+from comparison.plan.ladder import EXACT, REGULARISED, SMALL, TRANSLATIONAL, Rung
+from comparison.plan.study import Study
+from comparison.plan.symmetry import sources
+from comparison.plan.tiles import solve_tile
 from reference.problem import Scene, builtin_scenes, load_scene
 
 GRID = 4

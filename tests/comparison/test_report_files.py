@@ -12,8 +12,8 @@ import pytest
 import xarray as xr
 from matplotlib.image import imread
 
-from comparison.ladder import LADDER
-from comparison.store import PARTS
+from comparison.plan.ladder import LADDER
+from comparison.report.store import PARTS
 from reference.problem import load_scene
 
 GRID = 4

@@ -66,7 +66,7 @@ def test_junit_has_one_case_per_limit_and_scene_and_fails_the_broken_ones(finish
 
 
 def _schema() -> dict[str, Any]:
-    text = (resources.files("comparison") / "summary.schema.json").read_text(encoding="utf-8")
+    text = (resources.files("comparison.report") / "summary.schema.json").read_text(encoding="utf-8")
     schema: dict[str, Any] = json.loads(text)
     return schema
 

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from comparison import slips
-from comparison.ladder import V_REG
-from comparison.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
-from comparison.slips import PHASES, SLIPS, Slip, measured, slip_effects
-from comparison.study import Study
+from comparison.analyses import slips
+from comparison.analyses.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
+from comparison.analyses.slips import PHASES, SLIPS, Slip, measured, slip_effects
+from comparison.plan.ladder import V_REG
+from comparison.plan.study import Study
 from reference import amplification, trajectory
 from reference.problem import Scene, load_scene
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from comparison.smoothness import bends
-from comparison.symmetry import halved, quartered, surface
+from comparison.claims.smoothness import bends
+from comparison.plan.symmetry import halved, quartered, surface
 from reference import amplification
 from reference.problem import Amplification, Scene, load_scene, phase_grid
 

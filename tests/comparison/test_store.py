@@ -10,8 +10,8 @@ import pytest
 from conftest import Run, quick_figure
 from fake_models import fake_ladder
 
-from comparison import report
-from comparison.store import replaced_when_complete
+from comparison.report import report
+from comparison.report.store import replaced_when_complete
 
 SMALL = ["fig3-I", "--grid", "2"]
 

@@ -13,11 +13,11 @@ from conftest import Run
 from fake_models import fake_ladder
 from rich.console import Console
 
-from comparison.compute import computed
-from comparison.study import Study
-from comparison.surroundings import source_digest
-from comparison.tile_store import TileStore, surface_key
-from comparison.tiles import Answer, solve_tile, unanswered
+from comparison.plan.study import Study
+from comparison.plan.tiles import Answer, solve_tile, unanswered
+from comparison.sweep.compute import computed
+from comparison.sweep.surroundings import source_digest
+from comparison.sweep.tile_store import TileStore, surface_key
 from reference.problem import Outcome, load_scene
 
 
@@ -54,7 +54,7 @@ def test_a_tile_belongs_to_scene_model_settings_versions_and_source(
     assert store.get(replace(tile, scene=renamed)) is not None, "a name changes no number"
     for name, value in (("_version", "9.9"), ("source_digest", "changed")):
         with monkeypatch.context() as patch:
-            patch.setattr(f"comparison.surroundings.{name}", lambda package, value=value: value)
+            patch.setattr(f"comparison.sweep.surroundings.{name}", lambda package, value=value: value)
             assert store.get(tile) is None, name
 
 

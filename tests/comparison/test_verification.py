@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from comparison.verification import CHECKS, ENGINE, REFERENCE, Check
+from comparison.report.verification import CHECKS, ENGINE, REFERENCE, Check
 
 TESTS = Path(__file__).parents[1]
 

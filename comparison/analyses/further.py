@@ -1,0 +1,70 @@
+"""What a study finds beside its surfaces: the paper's claims, the scaling test, and what the steps tend to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from comparison.analyses.convergence import convergence_trends
+from comparison.analyses.scaling import scaling_trends
+from comparison.analyses.trends import Trend
+from comparison.claims.table import ClaimTable, claims_tested
+from comparison.plan.study import Study
+from comparison.sweep.executors import Pool
+from reference.problem import builtin_scenes
+
+
+def further_findings(study: Study, jobs: int, executor: Pool, say: Callable[[str], None]) -> dict[str, Any]:
+    """Fields of `Findings`: claims (None unless the study has every scene of the paper), scaling, convergence."""
+    claims: ClaimTable | None = None
+    if {scene.name for scene in study.scenes} >= set(builtin_scenes()):
+        say("Testing the paper's claims under readings of what it leaves open.")
+        claims = claims_tested(jobs, executor)
+    say("Scaling loading and friction down, and letting regularisation and compliance vanish.")
+    scaling = scaling_trends(study, jobs, executor)
+    convergence = convergence_trends(study, jobs, executor)
+    return {"claims": claims, "scaling": scaling, "convergence": convergence}
+
+
+def claims_summary(table: ClaimTable | None) -> dict[str, Any] | None:
+    """The table of claims for summary.json: readings, verdicts in their order, the best, and what none reproduces."""
+    if table is None:
+        return None
+    return {
+        "grid": table.grid,
+        "readings": [reading.name for reading in table.readings],
+        "reproduced": [table.held(column) for column in range(len(table.readings))],
+        "best": [reading.name for reading in table.best],
+        "never": [f"{claim.figure}: {claim.says}" for claim in table.never],
+        "claims": [
+            {
+                "figure": claim.figure,
+                "says": claim.says,
+                "rule": claim.rule,
+                "weaker": claim.weaker,
+                "verdicts": [{"finding": str(verdict.finding), "found": verdict.found} for verdict in row],
+            }
+            for claim, row in zip(table.claims, table.verdicts)
+        ],
+    }
+
+
+def trends_summary(trends: Sequence[Trend] | None) -> list[dict[str, Any]] | None:
+    """Trends for summary.json; numbers that are NaN are for the caller to replace."""
+    if trends is None:
+        return None
+    return [
+        {
+            "scene": one.scene,
+            "body": one.body,
+            "what": one.what,
+            "parameter": list(one.parameter),
+            "medians": one.medians,
+            "exponent": one.slope.exponent,
+            "uncertainty": one.slope.uncertainty,
+            "points": one.slope.points,
+            "expected": one.expected,
+            "verdict": one.verdict,
+        }
+        for one in trends
+    ]

@@ -1,0 +1,1 @@
+"""How far the paper's assumptions carry."""

@@ -1,0 +1,1 @@
+"""Every model at the extremes of every quantity."""

@@ -1,0 +1,152 @@
+"""
+Numerical stability at the extremes: `python -m comparison.extremes [--out DIR]`.
+
+Every model meets every extreme of `extreme_scenes` in a process that can be killed, and its answer is judged by a finer
+run. Writes extremes.json and extremes.png. Exit codes: 0 no cell failed; 1 some did; 2 a wrong option; 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+import sys
+import time
+from collections.abc import Callable, Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from comparison.extremes.cells import Cell, cells, solve_cell
+from comparison.extremes.matrix import FILE, Matrix, as_entry, matrix, written
+from comparison.extremes.rows import COLUMNS, ENGINE, EQUATIONS, Column, Row, rows
+from comparison.extremes.verdicts import Verdict
+from comparison.extremes.worker import answers
+from comparison.provenance import provenance
+from comparison.sweep.executors import cores
+
+LIMIT = 90.0  # s for one cell with its finer runs, on a machine that does nothing else
+PICTURE = "extremes.png"
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run what the command line asks for; the exit code."""
+    given = _parser().parse_args(argv)
+    if not given.limit > 0.0 or given.jobs < 1:
+        print("command line: --limit and --jobs must be greater than 0", file=sys.stderr)
+        return 2
+    console = Console(highlight=False)
+    chosen = reduced(list(rows())) if given.reduced else list(rows())
+    if given.only:
+        chosen = [row for row in chosen if given.only in f"{row.group} {row.title}"]
+    columns = [column for column in COLUMNS if not given.models or column.key in given.models]
+    if not cells(chosen, columns):
+        print(f"command line: --only = {given.only!r}: no cell is left: take part of a row's name", file=sys.stderr)
+        return 2
+    words = sys.argv[1:] if argv is None else argv
+    try:
+        given.out.mkdir(parents=True, exist_ok=True)
+        command = shlex.join(["python", "-m", "comparison.extremes.__main__", *words])
+        found = run(chosen, given.jobs, given.limit, console, command, columns)
+        from comparison.extremes.figure import draw_extremes  # matplotlib: not needed to refuse a command
+
+        draw_extremes(given.out / PICTURE, found)
+        file = written(found, given.out)
+    except KeyboardInterrupt:
+        print("interrupted: nothing was written", file=sys.stderr)
+        return 130
+    except OSError as fault:
+        print(f"command line: --out = {str(given.out)!r}: could not be written: {fault}", file=sys.stderr)
+        return 2
+    _tell(console, found)
+    console.print(f"Matrix: {file}, {given.out / PICTURE}", soft_wrap=True)
+    return 1 if found.counts()[Verdict.FAILED] else 0
+
+
+def reduced(every: Sequence[Row]) -> list[Row]:
+    """The extremes for a quick look: those of the equations alone that take a fraction of a second."""
+    cheap = {"small", "exact", "regularised"}
+    kept = [(row, tuple(key for key in row.columns if key in cheap)) for row in every if row.quick]
+    return [Row(**{**vars(row), "columns": columns}) for row, columns in kept if columns]
+
+
+def run(
+    chosen: Sequence[Row],
+    jobs: int,
+    limit: float,
+    console: Console,
+    command: str,
+    columns: Sequence[Column] = COLUMNS,
+    work: Callable[[Cell], Any] = solve_cell,
+) -> Matrix:
+    """The matrix of the chosen rows, computed by `jobs` processes; limit: s for one cell."""
+    tasks = cells(chosen, columns)
+    # the longest first: no process waits at the end for a cell that another has just begun
+    tasks.sort(key=lambda cell: cell.row.quick)
+    begin, began = time.monotonic(), datetime.now(UTC)
+    bar = Progress(
+        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), console=console
+    )
+    with bar:
+        shown = bar.add_task("extremes", total=len(tasks))
+
+        def done(index: int, result: Any) -> None:
+            bar.advance(shown)
+            entry, cell = as_entry(result), tasks[index]
+            if entry.verdict == Verdict.FAILED or not console.is_terminal:
+                spent = "" if entry.seconds is None else f" ({entry.seconds:.1f} s)"
+                name = f"{cell.row.group} {cell.row.title}, {cell.column.title}"
+                bar.console.print(escape(f"{entry.verdict}: {name}: {entry.reason}{spent}"), soft_wrap=True)
+
+        # the reference is compiled on its first use: not within the time of a cell
+        asks = {name for column in columns for name in (column.amplification, *(finer[0] for finer in column.finer))}
+        compiled = next((column for column in COLUMNS if column.amplification in asks & {EQUATIONS}), None)
+        first = Cell(chosen[0], compiled) if compiled and tasks else None
+        results = answers(tasks, work, limit, jobs, done, first)
+    facts = {
+        "command": command,
+        "began": began.isoformat(timespec="seconds"),
+        "seconds": round(time.monotonic() - begin, 1),
+        "jobs": jobs,
+        "limit": limit,
+        "reduced": not any(cell.column.amplification == ENGINE for cell in tasks),
+        "provenance": provenance(),
+    }
+    places = {id(cell.row): number for number, cell in enumerate(cells(chosen, columns))}
+    order = sorted(range(len(tasks)), key=lambda index: places[id(tasks[index].row)])
+    return matrix([tasks[index] for index in order], [results[index] for index in order], columns, facts)
+
+
+def _tell(console: Console, found: Matrix) -> None:
+    """Counts, and what a model cannot do."""
+    for row, title, entry in found.listed(Verdict.LIMIT):
+        console.print(escape(f"limit: {row.group} {row.title}, {title}: {entry.reason}"), soft_wrap=True)
+    for row, title, entry in found.listed(Verdict.FAILED):
+        console.print(escape(f"FAILED: {row.group} {row.title}, {title}: {entry.reason}"), soft_wrap=True)
+    counts = ", ".join(f"{count} {name}" for name, count in found.counts().items())
+    console.print(f"{sum(found.counts().values())} cells in {found.run['seconds']} s: {counts}.")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="python -m comparison.extremes",
+        description="Every model at the extremes of every quantity, judged by finer runs, as a matrix.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help=f"where {FILE} goes")
+    parser.add_argument("--jobs", default=cores(), type=int, metavar="N", help="worker processes (default %(default)s)")
+    parser.add_argument(
+        "--limit", default=LIMIT, type=float, metavar="SECONDS", help="longest time of one cell (default %(default)s)"
+    )
+    parser.add_argument("--only", default="", metavar="TEXT", help="the extremes whose name contains this")
+    keys = [column.key for column in COLUMNS]
+    parser.add_argument("--models", nargs="+", choices=keys, metavar="KEY", help=f"some of {', '.join(keys)}")
+    parser.add_argument("--reduced", action="store_true", help="the equations alone, without what takes long")
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""What is computed: scenes, the ladder of models, phases, tiles."""

@@ -1,0 +1,95 @@
+"""What is asked: scenes, grid of phases, models; cut into tiles for the workers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparison.plan.ladder import LADDER, Rung
+from comparison.plan.symmetry import sources
+from comparison.plan.tiles import Tile
+from reference.problem import Scene, phase_grid
+
+
+@dataclass(frozen=True)
+class Study:
+    """
+    Scenes x models x a grid of `grid` by `grid` phase pairs, each mu to the relative error `tolerance`.
+
+    A model that is too expensive for all of them computes every k-th phase of either axis, k being its stride. Strides
+    are multiples of one another, so that of any two models the coarser grid is part of the finer. Phases whose motion
+    is the mirror image of another's are not computed again, unless the study is `full`.
+    """
+
+    scenes: tuple[Scene, ...]
+    grid: int
+    tolerance: float
+    ladder: Sequence[Rung] = LADDER
+    full: bool = False
+
+    @cached_property
+    def strides(self) -> dict[str, int]:
+        """The stride of every model by its key: the smallest that leaves it no more phases than its `most`."""
+        strides, stride = {}, 1
+        for rung in sorted(self.ladder, key=lambda rung: -(rung.most or self.grid)):
+            most = min(rung.most or self.grid, self.grid)
+            stride *= -(-self.grid // (most * stride))
+            strides[rung.key] = stride
+        return strides
+
+    def axis(self, rung: Rung) -> NDArray[np.intp]:
+        """Which of the `grid` phases of either axis a model computes."""
+        return np.arange(0, self.grid, self.strides[rung.key])
+
+    def points(self, rung: Rung) -> int:
+        """Phase pairs of one surface of this model."""
+        return len(self.axis(rung)) ** 2
+
+    def places(self, rung: Rung) -> NDArray[np.intp]:
+        """The model's phase pairs as places on the whole grid, alpha2 running fastest."""
+        axis = self.axis(rung)
+        return (self.grid * axis[:, None] + axis).ravel()
+
+    def sources(self, scene: Scene, rung: Rung) -> NDArray[np.intp]:
+        """For each of `places` the one whose answer is also its own, by the symmetries of the scene (symmetry.py)."""
+        places = self.places(rung)
+        even = self.grid % self.strides[rung.key] == 0  # else the last phase and the first are closer than the others
+        return places[sources(scene, len(self.axis(rung)))] if rung.symmetric and even and not self.full else places
+
+    def solved(self, scene: Scene, rung: Rung) -> NDArray[np.intp]:
+        """The places that the model is asked for."""
+        return np.unique(self.sources(scene, rung))
+
+    def tiles(self) -> list[Tile]:
+        """
+        The whole work, model by model.
+
+        The cut depends on the study alone, never on the number of workers: a result must not depend on scheduling.
+        """
+        phases = phase_grid(self.grid)
+        work = [
+            (rung, scene, self.solved(scene, rung))
+            for rung in self.ladder
+            for scene in self.scenes
+            if rung.applies(scene)
+        ]
+        return [
+            Tile(
+                scene=scene,
+                rung=rung.key,
+                amplification=rung.amplification,
+                settings={**rung.settings, "tolerance": rung.tolerance(self.tolerance)},
+                first=first,
+                phases=phases[places[first : first + rung.tile]],
+            )
+            for rung, scene, places in work
+            for first in range(0, len(places), rung.tile)
+        ]
+
+    def seconds(self, rung: Rung) -> float:
+        """Predicted cost of one model on every scene it applies to, s on one core."""
+        return sum(rung.seconds(scene, len(self.solved(scene, rung))) for scene in self.scenes if rung.applies(scene))

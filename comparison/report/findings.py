@@ -1,0 +1,63 @@
+"""Everything a run found, as the report and the summary need it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import xarray as xr
+
+from comparison.account.acceptance import broken_limits
+from comparison.assumptions.reach import Reach
+from comparison.account.budget import Entry, budget
+from comparison.claims.table import ClaimTable
+from comparison.account.differences import Difference, differences
+from comparison.analyses.effective import Effective
+from comparison.analyses.slips import Effect
+from comparison.plan.study import Study
+from comparison.analyses.trajectories import StoredMotion
+from comparison.analyses.trends import Trend
+from reference.problem import Family
+
+
+@dataclass(frozen=True)
+class Findings:
+    """
+    surfaces: see `labelled_surfaces`. rows: differences of pairs of models. budget: what every rung adds. effective:
+    values read back from each model. effects: what slips of the print do to mu. broken: acceptance limits, one line
+    each. faults: what solvers complained about. run: command, times, provenance. Fields that may be None are what only
+    some commands compute. motions: see `stored_motions`. claims, scaling, convergence: see `further_findings`.
+    assumptions: how far the paper's carry, see `Reach`. families: those of more than one scene.
+    """
+
+    study: Study
+    surfaces: xr.Dataset
+    rows: Sequence[Difference]
+    budget: Sequence[Entry]
+    effective: Sequence[Effective]
+    effects: Sequence[Effect]
+    broken: Sequence[str]
+    faults: Sequence[str]
+    run: Mapping[str, Any]
+    motions: Sequence[StoredMotion] | None = None
+    claims: ClaimTable | None = None
+    scaling: Sequence[Trend] | None = None
+    convergence: Sequence[Trend] | None = None
+    assumptions: Reach | None = None
+    families: Sequence[Family] | None = None
+
+
+def findings(
+    study: Study,
+    surfaces: xr.Dataset,
+    effective: Sequence[Effective],
+    effects: Sequence[Effect],
+    faults: Sequence[str],
+    run: Mapping[str, Any],
+    **more: Any,
+) -> Findings:
+    """What the surfaces say once they are complete; `more`: the fields that may be None."""
+    rows = differences(study, surfaces)
+    broken = broken_limits(study, surfaces, rows)
+    return Findings(study, surfaces, rows, budget(study, surfaces), effective, effects, broken, faults, run, **more)

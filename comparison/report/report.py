@@ -1,0 +1,268 @@
+"""
+Writes the report: index.html, which needs none of the others; surfaces.nc; summary.json and summary.md; junit.xml;
+figures/.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib import resources
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import numpy as np
+import xarray as xr
+from PIL import Image
+from plotly.offline import get_plotlyjs
+
+from comparison.assumptions.figure import assumption_figure_name, draw_assumptions
+from comparison.drawing.budget_figure import budget_figure_name, draw_budget
+from comparison.claims.table import SIGNS
+from comparison.account.differences import Difference
+from comparison.analyses.effective import PHASES
+from comparison.report.family_figure import draw_families
+from comparison.drawing.figures import draw_pair, figure_name
+from comparison.report.findings import Findings
+from comparison.claims.humps import LEAST_SHARE, MOST_SHARE, SHARE
+from comparison.report.junit import junit
+from comparison.plan.ladder import Pair, pairs_of, rungs_of
+from comparison.report.page_data import packed, packed_motions, page_data
+from comparison.drawing.paper_figures import draw_paper_figure, paper_figure_name
+from comparison.analyses.slips import SLIPS, Effect
+from comparison.plan.study import Study
+from comparison.report.summary import outcome_counts, summary
+from comparison.report.summary_text import summary_text
+from comparison.account.verdicts import bar, verdict
+from comparison.report.verification import CHECKS
+from comparison.wording import degrees, percent, scientific, significant, symbols
+from reference.problem import ADVICE, Outcome, Scene
+
+
+@dataclass(frozen=True)
+class Section:
+    """
+    One section of the page: templates/sections/<name>.html.j2 below its heading, in the order of SECTIONS.
+
+    finding: the field of `Findings` it shows, at hand in the template as `section_data`; where that is None the section
+    is left out and `absent` says which command makes it. draw: writes its pictures into the folder of the figures; the
+    template shows one by {{ picture("file name") }}.
+    """
+
+    name: str
+    title: str
+    finding: str = ""
+    absent: str = ""
+    draw: Callable[[Path, Findings], None] | None = None
+
+    def present(self, found: Findings) -> bool:
+        """Whether the findings hold what the section shows."""
+        return not self.finding or getattr(found, self.finding) is not None
+
+
+def draw_all_assumptions(figures: Path, found: Findings) -> None:
+    """The picture of every scene that has a spatial model."""
+    if found.assumptions:
+        for scene in found.assumptions.scenes:
+            draw_assumptions(figures / assumption_figure_name(scene), scene, found.assumptions.cells)
+
+
+SECTIONS = (
+    Section("differences", "Differences"),
+    Section("budget", "What makes the difference"),
+    Section("scaling", "Scaling test", "scaling", "python -m comparison.run makes it"),
+    Section("convergence", "What the steps tend to", "convergence", "python -m comparison.run makes it"),
+    Section(
+        "families",
+        "Families of scenes",
+        "families",
+        "a range in a scene file makes one: friction = {range = [0.02, 0.2], steps = 10}",
+        draw_families,
+    ),
+    Section("surfaces", "Surfaces"),
+    Section("outcomes", "Outcomes and cost"),
+    Section("models", "What was compared"),
+    Section(
+        "claims",
+        "The paper's claims",
+        "claims",
+        "python -m comparison.run with every scene of the paper makes it, and python -m comparison.claims alone",
+    ),
+    Section("slips", "Slips in the print"),
+    Section(
+        "assumptions",
+        "How far the paper's assumptions carry",
+        "assumptions",
+        "no scene says where its supports are and how high and large its bodies: the spatial model needs that",
+        draw_all_assumptions,
+    ),
+    Section("effective", "Effective values"),
+    Section("verification", "What checks each side alone"),
+    Section("provenance", "Provenance"),
+)
+SCRIPTS = ("motions.js", "surfaces.js", "report.js")
+
+
+def write_report(folder: Path, found: Findings) -> None:
+    """Write every file of the report into `folder`, which exists and is empty."""
+    study, run = found.study, found.run
+    stamped = found.surfaces.assign_attrs(command=run["command"], **run["provenance"])
+    stamped.to_netcdf(folder / "surfaces.nc", engine="h5netcdf")
+    text = json.dumps(summary(found), indent=1, ensure_ascii=False, allow_nan=False)
+    (folder / "summary.json").write_text(text, encoding="utf-8")
+    (folder / "summary.md").write_text(summary_text(found), encoding="utf-8")
+    (folder / "junit.xml").write_text(junit(found), encoding="utf-8")
+    figures = folder / "figures"
+    figures.mkdir()
+    for scene in study.scenes:
+        for body in range(1, len(scene.bodies) + 1):
+            for pair in pairs_of(scene, study.ladder):
+                draw_pair(figures / figure_name(scene, body, pair), found.surfaces, scene, body, pair)
+            draw_budget(figures / budget_figure_name(scene, body), study, found.surfaces, scene, body)
+        draw_paper_figure(figures / paper_figure_name(scene), study, found.surfaces, scene)
+    for section in SECTIONS:
+        if section.draw and section.present(found):
+            section.draw(figures, found)
+    (folder / "index.html").write_text(_page(figures, found), encoding="utf-8")
+
+
+def _page(figures: Path, found: Findings) -> str:
+    study = found.study
+    templates = resources.files("comparison.report") / "templates"
+    loader = jinja2.PackageLoader("comparison.report", "templates")
+    environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
+    environment.filters.update(
+        percent=percent, scientific=scientific, degrees=degrees, significant=significant, symbols=symbols
+    )
+    page = environment.get_template("report.html.j2")
+    ladder = [rung for rung in study.ladder if any(rung.applies(scene) for scene in study.scenes)]
+    return page.render(
+        sections=[section for section in SECTIONS if section.present(found)],
+        absent=[section for section in SECTIONS if not section.present(found)],
+        found=found,
+        picture=lambda name: _inlined(figures / name),
+        study=study,
+        run=found.run,
+        scenes=[_scene(figures, found, scene) for scene in study.scenes],
+        pairs=list({pair.key: pair for scene in study.scenes for pair in pairs_of(scene, study.ladder)}.values()),
+        ladder=ladder,
+        step_numbers={rung.key: number for number, rung in enumerate(ladder)},
+        titles={"scene": "as stated", **{rung.key: rung.title for rung in study.ladder}},
+        properties=_properties(ladder),
+        rows=found.rows,
+        budget=found.budget,
+        effective=found.effective,
+        phases=PHASES,
+        slips=_slips(found),
+        checks=CHECKS,
+        claim_signs=SIGNS,
+        hump_share=SHARE,
+        hump_shares=(LEAST_SHARE, MOST_SHARE),
+        outcomes=_outcomes(study, found.surfaces),
+        advice=ADVICE,
+        broken=found.broken,
+        faults=found.faults,
+        style=(templates / "report.css").read_text(encoding="utf-8"),
+        scripts=[(templates / name).read_text(encoding="utf-8") for name in SCRIPTS],
+        plotly=packed(get_plotlyjs().encode()),
+        motions=packed_motions(found),
+        data=page_data(found),
+    )
+
+
+def _scene(figures: Path, found: Findings, scene: Scene) -> dict[str, Any]:
+    pairs = pairs_of(scene, found.study.ladder)
+    own = [row for row in found.rows if row.scene == scene.name]
+    return {
+        "scene": scene,
+        "digest": scene.digest(),
+        "verdict": verdict(found.study, found.surfaces, scene),
+        "verdicts": [_verdict(pair, [row for row in own if row.pair == pair.key]) for pair in pairs],
+        "bodies": [
+            {
+                "number": body,
+                "bar": bar(found.study, found.surfaces, scene, body),
+                "pictures": [
+                    {"pair": pair, "png": _inlined(figures / figure_name(scene, body, pair))} for pair in pairs
+                ],
+                "budget": _inlined(figures / budget_figure_name(scene, body)),
+            }
+            for body in range(1, len(scene.bodies) + 1)
+        ],
+    }
+
+
+def _verdict(pair: Pair, rows: Sequence[Difference]) -> str:
+    """One line: how large the pair's difference is, and where."""
+    known = [row for row in rows if math.isfinite(row.maximum)]
+    if not known:
+        return f"{pair.title.capitalize()}: no phase pair has a value on both sides."
+    worst = max(known, key=lambda row: row.maximum)
+    medians = ", ".join(f"{percent(row.median)} for body {row.body}" for row in rows)
+    return (
+        f"{pair.title.capitalize()} ({pair.first.title} against {pair.second.title}): median {medians}; "
+        f"largest {percent(worst.maximum)}, body {worst.body}, at ({degrees(worst.phases[0])}, "
+        f"{degrees(worst.phases[1])}); {rows[0].not_ok} of {rows[0].asked} points not ok."
+    )
+
+
+def _inlined(path: Path) -> str:
+    """The picture inside the page, the same to the last dot in half the bytes."""
+    smaller = BytesIO()
+    with Image.open(path) as picture:
+        picture.convert("RGB").save(smaller, "WEBP", lossless=True, quality=20, method=1)  # hardly smaller with more
+    return "data:image/webp;base64," + base64.b64encode(smaller.getvalue()).decode()
+
+
+def _properties(ladder: Sequence[Any]) -> list[dict[str, Any]]:
+    """Rows of the table of assumptions; in each, which models depart from the one before them."""
+    names = list(dict.fromkeys(name for rung in ladder for name in rung.assumptions))
+    table = []
+    for name in names:
+        texts = [rung.assumptions.get(name, "") for rung in ladder]
+        cells = [{"text": text, "differs": i > 0 and text != texts[i - 1]} for i, text in enumerate(texts)]
+        table.append({"name": name, "cells": cells})
+    return table
+
+
+def _slips(found: Findings) -> list[dict[str, Any]]:
+    """The slips with one sentence each about their largest effect in every scene they touch."""
+    rows = []
+    for number, slip in enumerate(SLIPS):
+        effects = [effect for effect in found.effects if effect.slip == number and (effect.change or effect.fault)]
+        rows.append(
+            {"slip": slip, "effects": [_effect(effect) for effect in effects] or [slip.none or "no scene here"]}
+        )
+    return rows
+
+
+def _effect(effect: Effect) -> str:
+    if effect.fault:
+        return f"{effect.scene}: {effect.fault}"
+    change = np.array(effect.change)
+    lost = "" if np.isfinite(change).all() else "no answer at some phases; "
+    sizes = [
+        f"mu_{body} by up to {percent(float(np.nanmax(np.abs(column)))) if np.isfinite(column).any() else 'any size'}"
+        for body, column in enumerate(change.T, start=1)
+    ]
+    return f"{effect.scene}: {lost}{', '.join(sizes)}"
+
+
+def _outcomes(study: Study, surfaces: xr.Dataset) -> list[dict[str, Any]]:
+    return [
+        {
+            "scene": scene.name,
+            "model": rung.title,
+            "counts": outcome_counts(surfaces, scene.name, rung.key),
+            "points": study.points(rung),
+            "cost": float(surfaces["cost"].sel(scene=scene.name, model=rung.key)),
+            "ok": outcome_counts(surfaces, scene.name, rung.key).get(Outcome.OK.value, 0),
+        }
+        for scene in study.scenes
+        for rung in rungs_of(scene, study.ladder)
+    ]

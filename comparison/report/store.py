@@ -1,0 +1,90 @@
+"""Where the report goes: written aside, put in place only when complete, never over what is not a report."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from comparison.report.summary import SCHEMA
+from reference.problem import SceneError
+
+PARTS = {"index.html", "surfaces.nc", "summary.json", "summary.md", "junit.xml", "figures"}
+
+
+def refuse_foreign(out: Path) -> None:
+    """Raise SceneError, one line, if a report cannot be put at `out` or would destroy something else there."""
+
+    def refusal(rule: str) -> SceneError:
+        return SceneError("command line", "--out", str(out), rule)
+
+    place = out.resolve()
+    if place.exists():
+        if not place.is_dir():
+            raise refusal("is a file: give the directory the report goes to")
+        if Path.cwd().resolve().is_relative_to(place):
+            raise refusal("is the directory you work in: give one inside it")
+        present = {entry.name for entry in place.iterdir()}
+        if present and not _is_report(place):
+            raise refusal("exists and is not a report of this study: give another directory, or empty this one")
+        if strangers := sorted(present - PARTS):
+            raise refusal(f"the report there also holds {strangers[0]!r}, which would be lost: move it away")
+    try:
+        tempfile.TemporaryDirectory(dir=_existing_ancestor(place.parent), prefix=f".{place.name}-").cleanup()
+    except OSError as fault:
+        raise refusal(f"cannot be written: {fault.strerror}") from None
+
+
+@contextmanager
+def replaced_when_complete(out: Path) -> Iterator[Path]:
+    """A new directory beside `out` to write into; it takes the place of `out` if the block ends without exception."""
+    place = out.resolve()
+    made = _make_parents(place.parent)
+    aside = Path(tempfile.mkdtemp(dir=place.parent, prefix=f".{place.name}-"))
+    try:
+        new = aside / "new"
+        new.mkdir()
+        yield new
+        _swap(new, place, aside / "old")
+    except BaseException:
+        shutil.rmtree(aside, ignore_errors=True)
+        with suppress(OSError):
+            for parent in made:
+                parent.rmdir()
+        raise
+    shutil.rmtree(aside, ignore_errors=True)
+
+
+def _swap(new: Path, place: Path, old: Path) -> None:
+    try:
+        if place.exists():
+            os.rename(place, old)
+        os.rename(new, place)
+    except BaseException:
+        if old.exists() and not place.exists():
+            os.rename(old, place)
+        raise
+
+
+def _is_report(place: Path) -> bool:
+    try:
+        summary = json.loads((place / "summary.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return False
+    return isinstance(summary, dict) and summary.get("schema") == SCHEMA
+
+
+def _existing_ancestor(folder: Path) -> Path:
+    return next(parent for parent in (folder, *folder.parents) if parent.exists())
+
+
+def _make_parents(folder: Path) -> list[Path]:
+    """Create what is missing of `folder`; the directories made, deepest first."""
+    missing = [parent for parent in (folder, *folder.parents) if not parent.exists()]
+    for parent in reversed(missing):
+        parent.mkdir()
+    return missing

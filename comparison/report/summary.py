@@ -1,0 +1,101 @@
+"""summary.json: the numbers of a report for programs. VERSION grows when a key changes its meaning or goes."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from comparison.report.findings import Findings
+from comparison.analyses.further import claims_summary, trends_summary
+from comparison.plan.ladder import rungs_of
+from comparison.analyses.slips import SLIPS
+from comparison.account.surfaces import common_phases
+from comparison.account.verdicts import verdict
+from reference.problem import Scene
+
+SCHEMA = "phase-resonance/summary"
+VERSION = 2
+
+
+def outcome_counts(surfaces: xr.Dataset, scene: str, model: str) -> dict[str, int]:
+    """How many of the phase pairs asked of the model ended in each outcome, most frequent first."""
+    status = common_phases(surfaces, scene, [model])["status"].sel(model=model)
+    return dict(Counter(np.asarray(status).ravel().tolist()).most_common())
+
+
+def summary(found: Findings) -> dict[str, Any]:
+    """
+    Everything a program needs to judge a run without the report. NaN is written as null.
+
+    Every key stands with its meaning in summary.schema.json.
+    """
+    study = found.study
+    return {
+        "schema": SCHEMA,
+        "version": VERSION,
+        "run": dict(found.run),
+        "grid": study.grid,
+        "tolerance": study.tolerance,
+        "models": [
+            {"key": rung.key, "title": rung.title, "adds": rung.adds, "settings": dict(rung.settings)}
+            for rung in study.ladder
+        ],
+        "scenes": [_scene(found, scene) for scene in study.scenes],
+        "slips": [
+            {
+                "where": slip.where,
+                "printed": slip.printed,
+                "corrected": slip.corrected,
+                "why": slip.why,
+                "none": slip.none,
+                "effects": [_finite(asdict(effect)) for effect in found.effects if effect.slip == number],
+            }
+            for number, slip in enumerate(SLIPS)
+        ],
+        "assumptions": found.assumptions and _finite(found.assumptions.listed()),
+        "claims": claims_summary(found.claims),
+        "scaling": _finite(trends_summary(found.scaling)),
+        "convergence": _finite(trends_summary(found.convergence)),
+        "broken": list(found.broken),
+        "faults": list(found.faults),
+    }
+
+
+def _scene(found: Findings, scene: Scene) -> dict[str, Any]:
+    def own(rows: Sequence[Any]) -> list[dict[str, Any]]:
+        return [_finite(asdict(row)) for row in rows if row.scene == scene.name]
+
+    return {
+        "name": scene.name,
+        "title": scene.title,
+        "digest": scene.digest(),
+        "bodies": len(scene.bodies),
+        "duration": scene.duration,
+        "acceptance": scene.acceptance.model_dump(),
+        "models": {
+            rung.key: {
+                "phases_per_axis": len(found.study.axis(rung)),
+                "outcomes": outcome_counts(found.surfaces, scene.name, rung.key),
+                "cost": float(found.surfaces["cost"].sel(scene=scene.name, model=rung.key)),
+            }
+            for rung in rungs_of(scene, found.study.ladder)
+        },
+        "verdict": _finite(asdict(verdict(found.study, found.surfaces, scene))),
+        "differences": own(found.rows),
+        "budget": own(found.budget),
+        "effective": own(found.effective),
+    }
+
+
+def _finite(value: Any) -> Any:
+    """JSON knows no NaN: null instead."""
+    if isinstance(value, dict):
+        return {key: _finite(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(part) for part in value]
+    return None if isinstance(value, float) and not np.isfinite(value) else value

@@ -1,0 +1,103 @@
+"""summary.md: the verdicts, the limits and the two tables that a pull request should show."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from comparison.report.findings import Findings
+from comparison.plan.ladder import rungs_of
+from comparison.report.summary import outcome_counts
+from comparison.account.verdicts import bar, verdict
+from comparison.wording import degrees, percent
+from reference.problem import Outcome
+
+
+def summary_text(found: Findings) -> str:
+    """GitHub's Markdown."""
+    study, run = found.study, found.run
+    count = len(study.scenes)
+    heading = f"## Phase-resonance study: {count} scene{'' if count == 1 else 's'}, {study.grid} × {study.grid} phases"
+    parts = [heading, _limits(found.broken), _verdicts(found), *_differences(found), *_budget(found), *_lost(found)]
+    made = ", ".join(
+        f"{name} {run['provenance'][name]}" for name in ("commit", "exudyn", "numba") if name in run["provenance"]
+    )
+    parts.append(
+        "The two codes are cross-verified, not validated: no measurement is involved.  \n"
+        f"`{run['command']}`: {run['seconds']} s with {run['jobs']} workers, began {run['began']}; {made}. "
+        "Surfaces to turn, motions, assumptions and provenance: `index.html` of the report."
+    )
+    return "\n\n".join(parts) + "\n"
+
+
+def _limits(broken: Sequence[str]) -> str:
+    if not broken:
+        return "**Every acceptance limit holds.**"
+    lines = "\n".join(f"- {_plain(line)}" for line in broken)
+    return f"**{len(broken)} acceptance limit{'' if len(broken) == 1 else 's'} broken:**\n\n{lines}"
+
+
+def _verdicts(found: Findings) -> str:
+    study = found.study
+    said = [(scene, verdict(study, found.surfaces, scene)) for scene in study.scenes]
+    return "\n".join(
+        f"- **{scene.name}** ({_plain(scene.title)}): {_plain(one.sentence.replace('mu_', 'μ_'))}"
+        for scene, one in said
+    )
+
+
+def _differences(found: Findings) -> list[str]:
+    rows = [
+        [
+            row.scene,
+            str(row.body),
+            row.pair.replace("-", " "),
+            *(percent(value) for value in (row.median, row.percentile95, row.maximum)),
+            f"({degrees(row.phases[0])}, {degrees(row.phases[1])})",
+            percent(row.beyond_error),
+            f"{row.unanswered} of {row.asked}",
+        ]
+        for row in found.rows
+    ]
+    names = ["scene", "body", "difference", "median", "95 %", "maximum", "at (α₁, α₂)", "beyond u_D", "no value"]
+    return ["### Differences", _table(names, rows, left=3)]
+
+
+def _budget(found: Findings) -> list[str]:
+    study = found.study
+    models = [rung for rung in study.ladder[1:] if any(rung.applies(scene) for scene in study.scenes)]
+    rows = []
+    for scene in study.scenes:
+        for body in range(1, len(scene.bodies) + 1):
+            one = bar(study, found.surfaces, scene, body)
+            sizes = {segment.model: percent(segment.size) for segment in one.segments}
+            rows.append([scene.name, str(body), *(sizes.get(rung.key, "") for rung in models), percent(one.total)])
+    names = ["scene", "body", *(rung.title for rung in models), "total"]
+    return [
+        "### What makes the difference",
+        "Mean absolute size of every step, by the model it leads to; steps of opposite sign cancel in the total.",
+        _table(names, rows, left=2),
+    ]
+
+
+def _lost(found: Findings) -> list[str]:
+    lines = [
+        f"- {scene.name}, {rung.title}: {count} × {outcome}"
+        for scene in found.study.scenes
+        for rung in rungs_of(scene, found.study.ladder)
+        for outcome, count in outcome_counts(found.surfaces, scene.name, rung.key).items()
+        if outcome != Outcome.OK
+    ]
+    lines += [f"- {_plain(line)}" for line in found.faults]
+    return ["### Points that are not ok", "\n".join(lines)] if lines else []
+
+
+def _table(names: Sequence[str], rows: Sequence[Sequence[str]], left: int) -> str:
+    rule = [":---" if index < left else "---:" for index in range(len(names))]
+    return "\n".join("| " + " | ".join(_plain(cell) for cell in row) + " |" for row in [names, rule, *rows])
+
+
+def _plain(text: str) -> str:
+    """Nothing in a text of ours or of a scene is to be read as Markdown."""
+    for mark in "\\|<*_`":
+        text = text.replace(mark, f"\\{mark}")
+    return text

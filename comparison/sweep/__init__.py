@@ -1,0 +1,1 @@
+"""How it is computed: on any executor, stored, resumed, nothing lost."""
