@@ -13,7 +13,7 @@ from __future__ import annotations
 from math import pi
 
 from reference.solver.advance import drive, remaining
-from reference.solver.compiled import compiled
+from reference.solver.compiled import compiled, merged
 from reference.solver.ground import ground_at
 from reference.solver.platform import rest_excess
 from reference.solver.rest_phase import rest_phase
@@ -84,7 +84,7 @@ def crawls(system: System, phase: Array, work: Work, contact: int, demand: Deman
     return speed2(system, work) <= slow2 and barely_slips(system, phase, work)
 
 
-@compiled
+@merged
 def march(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> int:
     """
     Follow the motion from the state in work.x, work.v to the end; how it ended (system.py), at time work.run[TIME].

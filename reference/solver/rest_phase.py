@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from reference.solver.advance import FATAL, adapt, begin, commit, length_factor, next_step, remaining, shortened
 from reference.solver.collocation import STAGES
-from reference.solver.compiled import compiled
+from reference.solver.compiled import compiled, merged
 from reference.solver.events import excess_at, expand, first_onset, lowest
 from reference.solver.record import note_stick
 from reference.solver.steps import rest_step, step_error
@@ -48,7 +48,7 @@ def located_onset(system: System, phase: Array, work: Work, h: float, onset: flo
     return end
 
 
-@compiled
+@merged
 def rest_phase(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> tuple[int, int]:
     """Until the located onset of slip; (how it went, what the contact does next). See march.py."""
     work.v[0, 0] = work.v[0, 1] = 0.0

@@ -22,7 +22,7 @@ from reference.solver.advance import (
 from reference.solver.arc import settled_direction, squared_total
 from reference.solver.chain import eliminate_chain, load_chain
 from reference.solver.collocation import STAGES
-from reference.solver.compiled import compiled
+from reference.solver.compiled import compiled, merged
 from reference.solver.events import first_crossing, lowest
 from reference.solver.friction import sliding_speed2
 from reference.solver.ground import ground_at, ground_at_stages
@@ -130,7 +130,7 @@ def turns_too_far(work: Work) -> bool:
     return False
 
 
-@compiled
+@merged
 def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> tuple[int, int]:
     """(how it went, what the contact does next); see march.py."""
     run = work.run

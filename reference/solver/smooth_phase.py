@@ -15,7 +15,7 @@ from reference.solver.advance import (
     too_short,
 )
 from reference.solver.collocation import STAGES
-from reference.solver.compiled import compiled
+from reference.solver.compiled import merged
 from reference.solver.events import first_crossing, highest
 from reference.solver.friction import sliding_speed2
 from reference.solver.platform import slip_factor
@@ -41,7 +41,7 @@ LOCATED = 1e-9  # of the squared speed: creep this close to v_reg has reached it
 GRAZE = 1e-6  # of a step: a crossing this early means that the phase begins on the level
 
 
-@compiled
+@merged
 def smooth_phase(
     system: System, phase: Array, work: Work, contact: int, demand: Demand, record: Record
 ) -> tuple[int, int]:

@@ -10,7 +10,7 @@ from reference.solver.advance import FATAL, SHORTEST, begin_with, commit, drive,
 from reference.solver.arc import arc_peak
 from reference.solver.chain import chain_acceleration
 from reference.solver.collocation import STAGES
-from reference.solver.compiled import compiled
+from reference.solver.compiled import compiled, merged
 from reference.solver.events import first_crossing, lowest
 from reference.solver.ground import ground_at
 from reference.solver.near_stop import ACROSS, ALONG, CLOCK, DIRECTION, LOG_RATIO, SIGMA, directed, near_stop_step
@@ -103,7 +103,7 @@ def has_stopped(system: System, phase: Array, work: Work, demand: Demand) -> int
     return REST
 
 
-@compiled
+@merged
 def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> tuple[int, int]:
     """(how it went, what the contact does next); see march.py."""
     run = work.run
