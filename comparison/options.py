@@ -115,7 +115,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--full",
         action="store_true",
-        help="compute every phase pair, even where a symmetry of the scene gives it; --plan says what that costs",
+        help="compute every phase pair and model in full, even what the scene does not require; --plan lists that",
     )
     parser.add_argument("--check", action="store_true", help="exit 1 if a scene's acceptance limits are broken")
     parser.add_argument("--plan", action="store_true", help="print what would be computed and its cost; run nothing")

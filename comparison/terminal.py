@@ -11,8 +11,8 @@ from rich.table import Table
 from comparison.account.differences import Difference
 from comparison.options import Options
 from comparison.plan.ladder import RECORDED_ON
+from comparison.plan.left_out import left_out
 from comparison.plan.study import Study
-from comparison.plan.symmetry import symmetry
 from comparison.sweep.tile_store import TileStore, store_beside
 from comparison.sweep.warm_up import START_UP
 
@@ -26,13 +26,12 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
             if not rung.applies(scene):
                 continue
             points, computed = study.points(rung), len(study.solved(scene, rung))
-            seconds = rung.seconds(scene, computed)
+            seconds = study.seconds_of(scene, rung)
             total += seconds
             cells = str(points), str(computed), f"{rung.tolerance(study.tolerance):.0e}", f"{seconds:.1f}"
             table.add_row(scene.name, rung.title, *cells)
     console.print(table)
-    for scene in study.scenes:
-        console.print(f"{scene.name}: {'every phase pair is computed (--full)' if study.full else symmetry(scene)}")
+    _print_left_out(console, study)
     wall = START_UP + total / options.jobs
     console.print(f"{study.grid} x {study.grid} phases, {options.jobs} worker processes: about {wall:.0f} s.")
     store, tiles = TileStore(store_beside(options.out)), study.tiles()
@@ -41,6 +40,18 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
     console.print(f"Costs were recorded on {RECORDED_ON}; another machine scales them all alike.")
     console.print("On a new installation compiling the reference adds some minutes of one worker, once.")
     console.print(f"Nothing was computed. The report would go to {options.out}.")
+
+
+def _print_left_out(console: Console, study: Study) -> None:
+    """What the scenes do not require, and what that saves."""
+    if study.full:
+        console.print("Every phase pair and every model is computed in full (--full).")
+    elif rows := left_out(study):
+        console.print("Left out, because the scene does not require it (--full computes it):")
+        for row in rows:
+            console.print(f"  {row.scene}: {row.what} ({row.models}): cost {row.cost}: {row.why}")
+    else:
+        console.print("Nothing is left out: the scenes require all of it.")
 
 
 def print_differences(console: Console, rows: Sequence[Difference]) -> None:

@@ -14,7 +14,7 @@ from multibody.refine import refine
 from multibody.spatial import spatial
 from multibody.system import EngineModel
 from multibody.translational import translational
-from reference.problem import Amplification, Outcome, Scene, checked_phases, ground_peak
+from reference.problem import Amplification, Outcome, Scene, checked_phases, ground_peak, untilted
 
 BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": translational, "spatial": spatial}
 
@@ -53,13 +53,15 @@ def amplification(
     regularization: float | None = 1e-3,
     tolerance: float = 1e-3,
     loading: str = "inertial",
+    full: bool = False,
 ) -> Amplification:
     """
     Dynamic amplification factors mu_i of (5.1) for each phase pair, from the engine.
 
     phases: (M, 2), rad. regularization: v_reg in m/s, below which dry friction is linear in the slip velocity; may be
     None where the contact is lubricated or frictionless. tolerance: relative error asked of every mu. loading:
-    "inertial" forces in the plate's frame, or motion of the "plate", which carries the supports.
+    "inertial" forces in the plate's frame, or motion of the "plate", which carries the supports. full: the model asked
+    for, even where the scene does not require it (reference.problem.reductions).
 
     A point without an answer is NaN, with status "rim reached", "contact lost", "solver failed", "step limit" or "no
     ground motion"; "tolerance not met" keeps its mu with the error reached. Raises ValueError for wrong arguments.
@@ -71,8 +73,9 @@ def amplification(
     mu, error = np.full(shape, np.nan), np.full(shape, np.nan)
     status, instant = np.full(len(pairs), Outcome.OK.value, dtype="U32"), np.full(len(pairs), np.nan)
     ground = ground_peak(scene, pairs)
+    level = model == "spatial" and not full and untilted(scene).allowed
     with silence():
-        built = assembled(scene, model, regularization, loading=loading)
+        built = assembled(scene, "translational" if level else model, regularization, loading=loading)
         for m, phase in enumerate(pairs):
             if ground[m] == 0.0:
                 status[m], instant[m] = Outcome.NO_GROUND_MOTION, 0.0
@@ -80,6 +83,9 @@ def amplification(
                 status[m], instant[m] = Outcome.NON_FINITE_LOAD, 0.0
             else:
                 point = refine(scene, built, phase, tolerance)
+                if level and np.isnan(point.peaks).any():  # off its supports the model asked for goes on
+                    whole = assembled(scene, model, regularization, loading=loading)
+                    point = refine(scene, whole, phase, tolerance)
                 status[m], instant[m] = point.outcome, point.instant
                 mu[m], error[m] = point.peaks / ground[m], point.errors / ground[m]
     return Amplification(mu, error, status, instant, time.process_time() - clock)

@@ -10,8 +10,9 @@ import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.problem import GRAVITY, Amplification, Outcome, Scene, checked_phases, ground_peak
-from reference.solver.certified import NOT_MET, certified_peaks
+from reference.closed_form.frictionless import frictionless_peaks
+from reference.problem import GRAVITY, Amplification, Outcome, Scene, checked_phases, ground_peak, linear
+from reference.solver.certified import NOT_MET, Peaks, certified_peaks
 from reference.solver.system import (
     OPEN,
     PAINLEVE,
@@ -19,6 +20,7 @@ from reference.solver.system import (
     SOLVED,
     STEP_LIMIT,
     UNSOLVED,
+    Array,
     Demand,
     System,
     pack,
@@ -48,6 +50,7 @@ def amplification(
     tolerance: float = 1e-6,
     cutoff: float | None = None,
     rest_condition: str = "consistent",
+    full: bool = False,
 ) -> Amplification:
     """
     Amplification factors mu_i (5.1) by the paper's equations, from rest, with certified errors.
@@ -55,7 +58,8 @@ def amplification(
     phases: (M, 2), rad. equations: "exact" (3.9)-(3.13) or "small" (4.3)-(4.4). regularization: v_reg, m/s, below
     which dry friction is linear, or None for the set-valued law; a lubricated scene needs none. tolerance: relative
     error asked of every mu, 1e-10 to 0.1. cutoff: v_c, m/s, of the resolved peak (set-valued law only), or None for
-    the supremum with its one-sided limits. rest_condition: "consistent", or "printed" for (4.6) as it stands.
+    the supremum with its one-sided limits. rest_condition: "consistent", or "printed" for (4.6) as it stands. full:
+    integrate every motion, even where the scene does not require it (reference.problem.reductions).
 
     Returns mu and error (M, N), status and instant (M,), cost. Statuses: ok; tolerance not met (mu and its larger error
     are given); and with mu NaN: rim reached (4.1), contact lost, painleve paradox, non-finite load, no ground motion,
@@ -70,13 +74,16 @@ def amplification(
     if not loads_are_finite(system):
         return Amplification(mu, error, status, np.zeros(count), 0.0)
 
+    summed = system.small and not full and linear(scene).allowed
+
     def solve(part: slice) -> float:
         begin = time.thread_time()
         ground = ground_peak(scene, pairs[part])
         moving = ground > 0.0
         status[part] = Outcome.NO_GROUND_MOTION.value
         places = np.arange(count)[part][moving]
-        peaks = certified_peaks(system, pairs[places], demand)
+        some = pairs[places]
+        peaks = superposed(scene, system, some, demand) if summed else certified_peaks(system, some, demand)
         outcomes = np.array([OUTCOMES[int(code)] for code in peaks.code], dtype=object)
         outcomes[(outcomes == Outcome.OK) & ~np.isfinite(peaks.value).all(axis=1)] = Outcome.SOLVER_FAILED
         known = (outcomes == Outcome.OK) | (outcomes == Outcome.TOLERANCE_NOT_MET)
@@ -88,13 +95,25 @@ def amplification(
         return time.thread_time() - begin
 
     threads = numba.get_num_threads()
-    if threads == 1 or count < 2:
+    if summed or threads == 1 or count < 2:
         cost = solve(slice(0, count))
     else:
         solve(slice(0, 1))  # compiled once, before the threads need it
         with ThreadPoolExecutor(threads) as pool:
             cost = sum(pool.map(solve, parts(count, PARTS * threads)))
     return Amplification(mu, error, status, instant, cost)
+
+
+def superposed(scene: Scene, system: System, phases: Array, demand: Demand) -> Peaks:
+    """The peaks of a linear scene, from one motion per harmonic; runs only where it may reach the rim (4.1)."""
+    value, error, at_rim = frictionless_peaks(scene, phases)
+    met = (error <= demand.tolerance * value).all(axis=1)
+    nothing = np.zeros(len(phases))
+    found = Peaks(value, error, np.where(met, SOLVED, NOT_MET), nothing, nothing.copy())
+    if at_rim.any():  # whether it does, and when, is for the run to say
+        for whole, ran in zip(found, certified_peaks(system, phases[at_rim], demand)):
+            whole[at_rim] = ran
+    return found
 
 
 def parts(count: int, pieces: int) -> Iterator[slice]:

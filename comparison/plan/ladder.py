@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
-from reference.problem import Scene
+from reference.problem import Scene, even_ring, no_friction
 
 V_REG = 1e-3  # m/s: below it friction grows linearly with the slip velocity, on both sides alike
 REFERENCE_TOLERANCE = (
@@ -21,11 +21,20 @@ RECORDED_ON = "one core of a 2-core AMD EPYC (x86-64) virtual machine"
 
 
 def dry(scene: Scene) -> bool:
-    return not scene.lubricated
+    """Whether there is dry friction, which may be regularised."""
+    return not scene.lubricated and not no_friction(scene)
 
 
 def any_scene(scene: Scene) -> bool:
     return True
+
+
+def never(scene: Scene) -> bool:
+    return False
+
+
+def on_an_even_ring(scene: Scene) -> bool:
+    return even_ring(scene).allowed
 
 
 def has_spatial_data(scene: Scene) -> bool:
@@ -41,8 +50,8 @@ class Rung:
     One model. `adds`: the sentence the report prints. `settings`: keyword arguments of its functions.
     `assumptions`: its row in the report's table of equations. `seconds_per_point`: recorded cost of one phase pair of
     a built-in scene with 20 s of motion, on RECORDED_ON. `applies`: whether the scene gives it anything to add. `most`:
-    phases per axis that its cost allows, or None; of a finer study it computes every k-th phase. `symmetric`: mirrored
-    phases (symmetry.py) are known to give mirrored motions and are not computed again.
+    phases per axis that its cost allows, or None; of a finer study it computes every k-th phase. `symmetric`: whether
+    mirrored phases (symmetry.py) are known to give mirrored motions of the scene and are not computed again.
     """
 
     key: str
@@ -56,7 +65,7 @@ class Rung:
     seconds_per_point: float
     tile: int  # phase pairs solved in one call: about a second of work
     most: int | None = None
-    symmetric: bool = False
+    symmetric: Callable[[Scene], bool] = field(default=never)
     applies: Callable[[Scene], bool] = field(default=any_scene)
 
     def tolerance(self, asked: float) -> float:
@@ -136,7 +145,7 @@ SMALL = Rung(
     },
     seconds_per_point=0.002,
     tile=64,
-    symmetric=True,
+    symmetric=any_scene,
 )
 EXACT = _next(
     SMALL,
@@ -208,7 +217,7 @@ SPATIAL = _next(
     tile=1,
     applies=has_spatial_data,
     most=4,
-    symmetric=False,  # supports and boxes may be placed without it
+    symmetric=on_an_even_ring,
 )
 
 LADDER: tuple[Rung, ...] = (SMALL, EXACT, RESOLVED, REGULARISED, TRANSLATIONAL, SPATIAL)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparison.plan.ladder import LADDER, Rung
+from comparison.plan.savings import saving
 from comparison.plan.symmetry import sources
 from comparison.plan.tiles import Tile
 from reference.problem import Scene, phase_grid
@@ -22,7 +23,8 @@ class Study:
 
     A model that is too expensive for all of them computes every k-th phase of either axis, k being its stride. Strides
     are multiples of one another, so that of any two models the coarser grid is part of the finer. Phases whose motion
-    is the mirror image of another's are not computed again, unless the study is `full`.
+    is the mirror image of another's are not computed again, and models leave out what the scene does not require,
+    unless the study is `full`.
     """
 
     scenes: tuple[Scene, ...]
@@ -58,7 +60,9 @@ class Study:
         """For each of `places` the one whose answer is also its own, by the symmetries of the scene (symmetry.py)."""
         places = self.places(rung)
         even = self.grid % self.strides[rung.key] == 0  # else the last phase and the first are closer than the others
-        return places[sources(scene, len(self.axis(rung)))] if rung.symmetric and even and not self.full else places
+        return (
+            places[sources(scene, len(self.axis(rung)))] if rung.symmetric(scene) and even and not self.full else places
+        )
 
     def solved(self, scene: Scene, rung: Rung) -> NDArray[np.intp]:
         """The places that the model is asked for."""
@@ -77,19 +81,29 @@ class Study:
             for scene in self.scenes
             if rung.applies(scene)
         ]
+        asked = {"full": True} if self.full else {}
         return [
             Tile(
                 scene=scene,
                 rung=rung.key,
                 amplification=rung.amplification,
-                settings={**rung.settings, "tolerance": rung.tolerance(self.tolerance)},
+                settings={**rung.settings, "tolerance": rung.tolerance(self.tolerance), **asked},
                 first=first,
-                phases=phases[places[first : first + rung.tile]],
+                phases=phases[places[first : first + size]],
             )
             for rung, scene, places in work
-            for first in range(0, len(places), rung.tile)
+            for size in [rung.tile * max(1, round(self.saving(scene, rung)))]
+            for first in range(0, len(places), size)
         ]
+
+    def saving(self, scene: Scene, rung: Rung) -> float:
+        """How many times less a point costs for what the model leaves out of this scene."""
+        return 1.0 if self.full else saving(scene, rung)
+
+    def seconds_of(self, scene: Scene, rung: Rung) -> float:
+        """Predicted cost of one model on one scene, s on one core."""
+        return rung.seconds(scene, len(self.solved(scene, rung))) / self.saving(scene, rung)
 
     def seconds(self, rung: Rung) -> float:
         """Predicted cost of one model on every scene it applies to, s on one core."""
-        return sum(rung.seconds(scene, len(self.solved(scene, rung))) for scene in self.scenes if rung.applies(scene))
+        return sum(self.seconds_of(scene, rung) for scene in self.scenes if rung.applies(scene))

@@ -9,15 +9,15 @@ from typing import Any
 import xarray as xr
 
 from comparison.account.acceptance import broken_limits
-from comparison.assumptions.reach import Reach
 from comparison.account.budget import Entry, budget
-from comparison.claims.table import ClaimTable
 from comparison.account.differences import Difference, differences
 from comparison.analyses.effective import Effective
 from comparison.analyses.slips import Effect
-from comparison.plan.study import Study
 from comparison.analyses.trajectories import StoredMotion
 from comparison.analyses.trends import Trend
+from comparison.assumptions.reach import Reach
+from comparison.claims.table import ClaimTable
+from comparison.plan.study import Study
 from reference.problem import Family
 
 

@@ -15,11 +15,11 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from comparison.account.differences import pair_step
-from comparison.report.findings import Findings
-from comparison.plan.ladder import Pair, pairs_of, rungs_of
-from comparison.plan.study import Study
 from comparison.account.surfaces import common_phases
 from comparison.analyses.trajectories import Place, StoredMotion
+from comparison.plan.ladder import Pair, pairs_of, rungs_of
+from comparison.plan.study import Study
+from comparison.report.findings import Findings
 from reference.problem import Scene
 
 Array = NDArray[np.float64]

@@ -21,24 +21,24 @@ import xarray as xr
 from PIL import Image
 from plotly.offline import get_plotlyjs
 
-from comparison.assumptions.figure import assumption_figure_name, draw_assumptions
-from comparison.drawing.budget_figure import budget_figure_name, draw_budget
-from comparison.claims.table import SIGNS
 from comparison.account.differences import Difference
+from comparison.account.verdicts import bar, verdict
 from comparison.analyses.effective import PHASES
-from comparison.report.family_figure import draw_families
-from comparison.drawing.figures import draw_pair, figure_name
-from comparison.report.findings import Findings
-from comparison.claims.humps import LEAST_SHARE, MOST_SHARE, SHARE
-from comparison.report.junit import junit
-from comparison.plan.ladder import Pair, pairs_of, rungs_of
-from comparison.report.page_data import packed, packed_motions, page_data
-from comparison.drawing.paper_figures import draw_paper_figure, paper_figure_name
 from comparison.analyses.slips import SLIPS, Effect
+from comparison.assumptions.figure import assumption_figure_name, draw_assumptions
+from comparison.claims.humps import LEAST_SHARE, MOST_SHARE, SHARE
+from comparison.claims.table import SIGNS
+from comparison.drawing.budget_figure import budget_figure_name, draw_budget
+from comparison.drawing.figures import draw_pair, figure_name
+from comparison.drawing.paper_figures import draw_paper_figure, paper_figure_name
+from comparison.plan.ladder import Pair, pairs_of, rungs_of
 from comparison.plan.study import Study
+from comparison.report.family_figure import draw_families
+from comparison.report.findings import Findings
+from comparison.report.junit import junit
+from comparison.report.page_data import packed, packed_motions, page_data
 from comparison.report.summary import outcome_counts, summary
 from comparison.report.summary_text import summary_text
-from comparison.account.verdicts import bar, verdict
 from comparison.report.verification import CHECKS
 from comparison.wording import degrees, percent, scientific, significant, symbols
 from reference.problem import ADVICE, Outcome, Scene

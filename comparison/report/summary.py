@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from comparison.report.findings import Findings
-from comparison.analyses.further import claims_summary, trends_summary
-from comparison.plan.ladder import rungs_of
-from comparison.analyses.slips import SLIPS
 from comparison.account.surfaces import common_phases
 from comparison.account.verdicts import verdict
+from comparison.analyses.further import claims_summary, trends_summary
+from comparison.analyses.slips import SLIPS
+from comparison.plan.ladder import rungs_of
+from comparison.report.findings import Findings
 from reference.problem import Scene
 
 SCHEMA = "phase-resonance/summary"

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from comparison.report.findings import Findings
-from comparison.plan.ladder import rungs_of
-from comparison.report.summary import outcome_counts
 from comparison.account.verdicts import bar, verdict
+from comparison.plan.ladder import rungs_of
+from comparison.report.findings import Findings
+from comparison.report.summary import outcome_counts
 from comparison.wording import degrees, percent
 from reference.problem import Outcome
 

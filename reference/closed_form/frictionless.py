@@ -1,9 +1,11 @@
 """
 Frictionless small vibration (4.3)-(4.4), mu = 0, from rest, under the damped cosines (5.3): the whole chain, exact.
 
-Per axis and natural mode, eta'' + omega^2 eta = -Gamma Re(sum_k a_k exp(i alpha_k) exp(s_k t)): a particular part
--Gamma exp(s t)/(s^2 + omega^2) and the free vibration that starts it from rest. The response is linear in
-exp(i alpha_k), so a whole surface over the phases follows from one complex response per harmonic.
+Per axis and natural mode, eta'' + omega^2 eta = -Gamma Re(sum_k a_k exp(i alpha_k) exp(s_k t)), solved from rest by
+    eta = -Gamma (D(s, i omega) - D(s, -i omega)) / (2 i omega),   D(s, z) = (exp(s t) - exp(z t)) / (s - z).
+D has a limit at resonance, t exp(z t), and D' = z D + exp(s t). The modes' participation adds up to a unit motion of
+every body, so the absolute acceleration is -sum_j X_j omega_j^2 eta_j: nothing of the ground is left to subtract.
+The response is linear in exp(i alpha_k): a whole surface follows from one complex response per harmonic.
 """
 
 from __future__ import annotations
@@ -11,15 +13,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.natural_modes import modes
-from reference.problem import Scene, checked_phases, exponents, ground_peak
+from reference.closed_form.phase_peaks import Series, largest, reached
+from reference.natural_modes import Modes, modes
+from reference.problem import Scene, checked_phases, exponents, ground_peak, linear
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-SAMPLES = 48  # per shortest period
-NEAR = 0.97  # of the highest sample: |a|^2 sampled so falls short of its maximum by less than 1 %
-ZOOM = np.linspace(-1.0, 1.0, 33)
+INTERVALS = 16  # per shortest period: the terms left out of a series of ORDERS are below 1e-14 of the motion
+ORDERS = 11
+ROUNDING = 1e-13  # relative error of a frequency and of an operation
 
 
 def frictionless_motion(scene: Scene, phase: ArrayLike, time: ArrayLike) -> tuple[Array, Array, Array]:
@@ -31,66 +34,69 @@ def frictionless_motion(scene: Scene, phase: ArrayLike, time: ArrayLike) -> tupl
     """
     _check(scene)
     turn = np.exp(1j * np.asarray(phase, dtype=float))
-    time = np.asarray(time, dtype=float)
-    position, velocity, acceleration = ((_response(scene, time, order) @ turn).real for order in range(3))
-    return position, velocity, acceleration + (_ground(scene, time) @ turn).real[:, None, :]
+    natural, instants = modes(scene), np.asarray(time, dtype=float)
+    position, velocity = ((part @ turn).real for part in _responses(scene, natural, instants, 2, absolute=False))
+    acceleration = (_responses(scene, natural, instants, 1, absolute=True)[0] @ turn).real
+    return position, velocity, acceleration
 
 
 def frictionless_amplification(scene: Scene, phases: ArrayLike) -> Array:
     """mu_i of (5.1) for phase pairs (M, 2), rad: (M, N), to about 1e-12. Raises as `frictionless_motion`."""
-    _check(scene)
     pairs = checked_phases(phases)
-    shortest = min(*scene.excitation.periods, 2.0 * np.pi / float(modes(scene).frequency.max()))
-    count = int(np.ceil(scene.duration / shortest * SAMPLES)) + 1
-    time = np.linspace(0.0, scene.duration, count)
-    sampled = _absolute(scene, time)
-    peaks = np.empty((len(pairs), len(scene.masses)))
-    for m, turn in enumerate(np.exp(1j * pairs)):
-        squares = ((sampled @ turn).real ** 2).sum(axis=-1)
-        for body in range(squares.shape[1]):
-            column = squares[:, body]
-            around = np.pad(column, 1)
-            tops = (column >= around[:-2]) & (column >= around[2:]) & (column >= NEAR * column.max())
-            centres, half = time[tops], time[1]
-            for _ in range(5):  # each zooms in 16 times, past where |a|^2 is flat to rounding
-                local = np.clip(centres[:, None] + half * ZOOM, 0.0, scene.duration)
-                values = ((_absolute(scene, local.ravel())[:, body] @ turn).real ** 2).sum(axis=-1).reshape(local.shape)
-                centres, half = local[np.arange(len(local)), values.argmax(axis=1)], half / 16.0
-            peaks[m, body] = np.sqrt(values.max())
-    result: Array = peaks / ground_peak(scene, pairs)[:, None]
+    result: Array = frictionless_peaks(scene, pairs)[0] / ground_peak(scene, pairs)[:, None]
     return result
+
+
+def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """
+    Largest absolute accelerations, m/s^2, and their errors, (M, N) each; at which phases the rim (4.1) may be reached.
+
+    Raises as `frictionless_motion`. A motion to the rim has left the small equations: its peaks mean nothing.
+    """
+    _check(scene)
+    natural = modes(scene)
+    shortest = min(
+        *scene.excitation.periods, 2.0 * np.pi / max(float(natural.frequency.max()), *scene.excitation.decay)
+    )
+    count = int(np.ceil(scene.duration / shortest * INTERVALS))
+    half = 0.5 * scene.duration / count
+    centres: Array = half * (2.0 * np.arange(count, dtype=float) + 1.0)
+    series = Series.of(_responses(scene, natural, centres, ORDERS, absolute=True), half)
+    path = Series.of([part[:, :1] for part in _responses(scene, natural, centres, ORDERS, absolute=False)], half)
+    peaks, doubt = largest(series, phases)
+    uncertain = ROUNDING * (10.0 + float(natural.frequency.max()) * scene.duration)
+    return peaks, doubt + uncertain * series.envelope, reached(path, phases, scene.radius)
 
 
 def _check(scene: Scene) -> None:
-    if scene.friction_coefficient > 0.0:
-        raise ValueError("the scene has friction: no closed form")
-    if scene.amplitudes[2].any():
-        raise ValueError("vertical loading makes the pendulum's stiffness vary: no closed form")
+    if not (allowed := linear(scene)):
+        raise ValueError(f"{scene.name}: {allowed.reason}: no closed form")
 
 
-def _ground(scene: Scene, time: Array) -> Complex:
-    """Complex ground acceleration per harmonic, (T, 2 axes, 2 harmonics), m/s^2."""
-    harmonics: Complex = np.exp(np.multiply.outer(time, exponents(scene)))
-    result: Complex = harmonics[:, None, :] * scene.amplitudes[:2].astype(complex)
-    return result
+def _responses(scene: Scene, natural: Modes, time: Array, orders: int, *, absolute: bool) -> list[Complex]:
+    """
+    Complex response per harmonic and its derivatives up to order `orders` - 1: (T, N, 2 axes, 2 harmonics) each.
 
-
-def _absolute(scene: Scene, time: Array) -> Complex:
-    result: Complex = _response(scene, time, 2) + _ground(scene, time)[:, None]
-    return result
-
-
-def _response(scene: Scene, time: Array, order: int) -> Complex:
-    """Derivative `order` of the complex displacement per harmonic, (T, N, 2 axes, 2 harmonics)."""
-    natural = modes(scene)
-    result = np.empty((len(time), len(scene.masses), 2, 2), dtype=complex)
+    absolute: of the absolute acceleration, else of the displacement.
+    """
+    parts = [np.empty((len(time), len(scene.masses), 2, 2), dtype=complex) for _ in range(orders)]
     for axis in range(2):
-        omega = 1j * natural.frequency[axis]
+        omega = natural.frequency[axis]
+        weight = natural.participation[axis] / (2j * omega) * (omega**2 if absolute else -1.0)
         for k, s in enumerate(exponents(scene)):
-            particular = -natural.participation[axis] / (s * s - omega * omega)
-            rising, falling = -0.5 * particular * (1.0 + s / omega), -0.5 * particular * (1.0 - s / omega)
-            modal = particular * (s**order * np.exp(s * time))[:, None]
-            modal = modal + rising * omega**order * np.exp(np.multiply.outer(time, omega))
-            modal = modal + falling * (-omega) ** order * np.exp(np.multiply.outer(time, -omega))
-            result[:, :, axis, k] = modal @ natural.shape[axis].T * scene.amplitudes[axis, k]
+            forced = np.exp(s * time)[:, None]
+            rising, falling = (_divided(s, root, time) for root in (1j * omega, -1j * omega))
+            for part in parts:
+                part[:, :, axis, k] = (weight * (rising - falling)) @ natural.shape[axis].T * scene.amplitudes[axis, k]
+                rising, falling = 1j * omega * rising + forced, -1j * omega * falling + forced
+                forced = s * forced
+    return parts
+
+
+def _divided(s: complex, roots: Complex, time: Array) -> Complex:
+    """D(s, z) for the roots z (N,), (T, N), s: t exp(z t) where s meets z."""
+    gap = s - roots
+    same = gap == 0.0
+    growth = np.expm1(np.multiply.outer(time, gap)) / np.where(same, 1.0, gap)
+    result: Complex = np.exp(np.multiply.outer(time, roots)) * np.where(same, time[:, None], growth)
     return result

@@ -4,6 +4,16 @@ from reference.problem.amplification import checked_phases, ground_peak, phase_g
 from reference.problem.excitation import exponents, ground_acceleration, ground_displacement, ground_velocity
 from reference.problem.family import Family, load_family
 from reference.problem.outcome import ADVICE, Outcome
+from reference.problem.reductions import (
+    Reduction,
+    even_ring,
+    half_turn,
+    linear,
+    no_friction,
+    own_axes,
+    untilted,
+    unused_harmonics,
+)
 from reference.problem.result import Amplification, State, Trajectory
 from reference.problem.scene import GRAVITY, Scene, builtin_scenes, load_scene, parse_scene
 from reference.problem.scene_error import SceneError
@@ -14,19 +24,27 @@ __all__ = [
     "Amplification",
     "Family",
     "Outcome",
+    "Reduction",
     "Scene",
     "SceneError",
     "State",
     "Trajectory",
     "builtin_scenes",
     "checked_phases",
+    "even_ring",
     "exponents",
     "ground_acceleration",
     "ground_displacement",
     "ground_peak",
     "ground_velocity",
+    "half_turn",
+    "linear",
     "load_family",
     "load_scene",
+    "no_friction",
+    "own_axes",
     "parse_scene",
     "phase_grid",
+    "untilted",
+    "unused_harmonics",
 ]

@@ -13,7 +13,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from comparison.analyses.trajectories import StoredMotion, chosen_places, shown_rungs
-from comparison.plan.ladder import LADDER, Rung
+from comparison.plan.ladder import LADDER, Rung, never
 from comparison.plan.study import Study
 from reference.problem import GRAVITY, Amplification, Outcome, Scene, Trajectory
 
@@ -141,7 +141,7 @@ def errors_in(gaps: Mapping[str, float], claimed: Mapping[str, float] | None = N
             rung,
             amplification="fake_models:planted",
             settings={"gap": gaps.get(rung.key, 0.0), "claimed": (claimed or {}).get(rung.key, 1e-5)},
-            symmetric=False,
+            symmetric=never,
         )
         for rung in LADDER
     )
@@ -154,5 +154,5 @@ def fake_ladder(engine: str = "smooth", gap: float = 0.01, tile: int = 4) -> tup
         name = engine if rung.side == "engine" else "smooth"
         settings = {"gap": gap} if (rung.side, name) == ("engine", "smooth") else {}
         functions = {"amplification": f"fake_models:{name}", "trajectory": "fake_models:forbidden"}
-        rungs.append(replace(rung, **functions, settings=settings, tile=tile, symmetric=False))
+        rungs.append(replace(rung, **functions, settings=settings, tile=tile, symmetric=never))
     return tuple(rungs)

@@ -3,12 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
+import multibody
 from comparison.account.surfaces import labelled_surfaces
-from comparison.plan.ladder import EXACT, REGULARISED, SMALL, TRANSLATIONAL, Rung
+from comparison.plan.ladder import (
+    EXACT,
+    LADDER,
+    REGULARISED,
+    RESOLVED,
+    SMALL,
+    SPATIAL,
+    TRANSLATIONAL,
+    Rung,
+    never,
+    rungs_of,
+)
+from comparison.plan.left_out import left_out
+from comparison.plan.savings import saving
 from comparison.plan.study import Study
 from comparison.plan.symmetry import sources
 from comparison.plan.tiles import solve_tile
@@ -43,6 +58,85 @@ def test_the_engine_has_the_symmetry_too() -> None:
     assert (abs(reduced["mu"] - full["mu"]) <= reduced["error"] + full["error"]).all()
 
 
+def short(duration: float = 2.0, name: str = "fig3-I", **changes: Any) -> Scene:
+    """`name` over so short a time, with the given keys of isolator, excitation, or of every body."""
+    table = load_scene(name).model_dump(exclude_none=True)
+    table["isolator"] |= changes.get("isolator", {})
+    table["excitation"] |= changes.get("excitation", {})
+    for body in table["bodies"]:
+        body |= changes.get("bodies", {})
+    return Scene.model_validate({**table, "duration": duration})
+
+
+@pytest.mark.parametrize("supports", [4, 6])
+def test_the_spatial_model_on_an_even_ring_has_it_too(supports: int) -> None:
+    scene = short(isolator={"supports": supports})
+    phases = np.array([[2.0, 0.7], [0.3, 1.1]])
+    here = multibody.amplification(scene, phases, model="spatial")
+    for shift in ([np.pi, 0.0], [0.0, np.pi]):
+        there = multibody.amplification(scene, phases + shift, model="spatial")
+        assert (here.status == "ok").all()
+        assert (abs(here.mu - there.mu) <= here.error + there.error).all()
+    assert len(Study((scene,), GRID, 1e-3, [SPATIAL]).solved(scene, SPATIAL)) == GRID**2 // 4
+
+
+def test_on_an_odd_ring_the_spatial_model_is_computed_in_full() -> None:
+    scene = short(isolator={"supports": 3})
+    assert len(Study((scene,), GRID, 1e-3, [SPATIAL]).solved(scene, SPATIAL)) == GRID**2
+    # with reason: mirrored x is another motion (2.0, 0.7, over 20 s: by eleven error estimates)
+    here, there = (
+        multibody.trajectory(scene, (2.0 + shift, 0.7), model="spatial").position[-1, 0, 0] for shift in (0.0, np.pi)
+    )
+    assert abs(here + there) > 1e-6 * abs(here)
+
+
+def test_the_phase_of_a_harmonic_without_amplitude_is_not_varied() -> None:
+    scene = short(4.0, excitation={"amplitudes": [[1.0, 0.0], [0.5, 0.0], [0.3, 0.0]]})
+    whole, full = surfaces(scene, [EXACT], full=True)
+    fewer, reduced = surfaces(scene, [EXACT], full=False)
+    assert (whole, fewer) == (GRID**2, GRID)
+    assert (abs(reduced["mu"] - full["mu"]) <= reduced["error"] + full["error"]).all()
+    almost = short(excitation={"amplitudes": [[1.0, 1e-9], [0.5, 0.0], [0.3, 0.0]]})
+    assert len(Study((almost,), GRID, 1e-3, [EXACT]).solved(almost, EXACT)) == GRID**2
+
+
+def test_without_friction_no_law_of_friction_is_varied() -> None:
+    free, held = short(isolator={"friction": 0.0}), short(isolator={"friction": 1e-9})
+    assert [rung.key for rung in rungs_of(free, LADDER)] == ["small", "exact", "translational", "spatial"]
+    assert len(rungs_of(held, LADDER)) == len(LADDER)
+    [tile] = Study((free,), 3, 1e-3, [EXACT]).tiles()
+    answers = [
+        solve_tile(replace(tile, settings={**rung.settings, "tolerance": 1e-6}))
+        for rung in (EXACT, RESOLVED, REGULARISED)
+    ]
+    for other in answers[1:]:
+        assert (abs(other.mu - answers[0].mu) <= other.error + answers[0].error).all()
+
+
+def test_a_full_study_asks_both_sides_for_all_of_it() -> None:
+    for full in (False, True):
+        tiles = Study((short(),), GRID, 1e-3, full=full).tiles()
+        assert all(tile.settings.get("full", False) == full for tile in tiles)
+    free = short(4.0, isolator={"friction": 0.0})
+    _, whole = surfaces(free, [SMALL], full=True)
+    _, reduced = surfaces(free, [SMALL], full=False)
+    assert (abs(reduced["mu"] - whole["mu"]) <= reduced["error"] + whole["error"]).all()
+    assert float(reduced["error"].max()) < 1e-8 < float(whole["error"].max()), "one is a sum, the other integrated"
+
+
+def test_what_is_left_out_is_listed_with_its_saving() -> None:
+    scene = short(isolator={"friction": 0.0}, bodies={"height": 0.0})
+    rows = {row.what: row for row in left_out(Study((scene,), GRID, 1e-3))}
+    assert [row.models for row in rows.values()] == ["all", "regularised, resolved", "small", "spatial"]
+    assert rows["mirrored phases"].cost == "1/4"
+    study, full = Study((scene,), GRID, 1e-3), Study((scene,), GRID, 1e-3, full=True)
+    assert left_out(full) == []
+    for rung in (SMALL, SPATIAL):
+        points = len(study.solved(scene, rung)) / len(full.solved(scene, rung))
+        assert study.seconds(rung) == pytest.approx(full.seconds(rung) * points / saving(scene, rung))
+        assert saving(scene, rung) > 1.0 == saving(load_scene("fig3-I"), rung)
+
+
 def test_just_outside_the_condition_nothing_is_saved() -> None:
     table = load_scene("fig3-I").model_dump(exclude_none=True)
     crossed = [[1.0, 1e-9], [0.0, 1.0]]
@@ -56,7 +150,7 @@ def test_just_outside_the_condition_nothing_is_saved() -> None:
 def test_an_odd_grid_and_a_model_without_the_symmetry_are_computed_in_full() -> None:
     scene = load_scene("fig3-I")
     assert (sources(scene, 5) == np.arange(25)).all()
-    plain = replace(EXACT, symmetric=False)
+    plain = replace(EXACT, symmetric=never)
     assert len(Study((scene,), GRID, 1e-3, [plain]).solved(scene, plain)) == GRID**2
 
 

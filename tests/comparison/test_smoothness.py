@@ -9,9 +9,9 @@ import pytest
 from numpy.typing import NDArray
 
 from comparison.claims.smoothness import bends
-from comparison.plan.symmetry import halved, quartered, surface
+from comparison.plan.symmetry import surface
 from reference import amplification
-from reference.problem import Amplification, Scene, load_scene, phase_grid
+from reference.problem import Amplification, Scene, half_turn, load_scene, own_axes, phase_grid
 
 Array = NDArray[np.float64]
 SHAPES: dict[str, Callable[[Array, Array], Array]] = {
@@ -75,10 +75,10 @@ def test_what_is_not_symmetric_is_solved_in_full() -> None:
     def with_rows(*rows: list[float]) -> Scene:
         return Scene.model_validate({**table, "excitation": {**table["excitation"], "amplitudes": [*rows]}})
 
-    assert quartered(with_rows([0.0, 1.0], [1.0, 0.0])), "each along its own axis, the other way round"
-    assert not quartered(with_rows([1.0, 1.0], [0.0, 0.0])), "both along one axis"
-    assert not quartered(with_rows([1.0, 0.0], [0.5, 1.0]))
-    assert not halved(with_rows([1.0, 0.0], [0.0, 1.0], [0.1, 0.0])), "with vertical loading nothing is symmetric"
+    assert own_axes(with_rows([0.0, 1.0], [1.0, 0.0])), "each along its own axis, the other way round"
+    assert not own_axes(with_rows([1.0, 1.0], [0.0, 0.0])), "both along one axis"
+    assert not own_axes(with_rows([1.0, 0.0], [0.5, 1.0]))
+    assert not half_turn(with_rows([1.0, 0.0], [0.0, 1.0], [0.1, 0.0])), "with vertical loading nothing is symmetric"
     asked = []
 
     def solve(scene: Scene, phases: Array) -> Amplification:

@@ -27,6 +27,7 @@ def ask(entry: dict[str, Any], tolerance: float, cutoff: float | None = None) ->
         regularization=entry["regularization"],
         tolerance=tolerance,
         cutoff=cutoff,
+        full=True,  # the solver, even where a sum of motions would do
     )
 
 

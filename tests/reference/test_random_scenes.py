@@ -56,7 +56,7 @@ def scenes(draw: st.DrawFn) -> Scene:
 
 def hold(scene: Scene, phase: tuple[float, float], equations: str, v_reg: float | None) -> None:
     coarse, fine = (
-        reference.amplification(scene, [phase], equations, v_reg, tolerance)
+        reference.amplification(scene, [phase], equations, v_reg, tolerance, full=True)
         for tolerance in (TOLERANCE, TOLERANCE / 100.0)
     )
     for found, tolerance in ((coarse, TOLERANCE), (fine, TOLERANCE / 100.0)):

@@ -1,0 +1,104 @@
+"""
+What a scene does not require, and why: the one place in which work is left out, decided from the scene alone.
+
+Each reduction is exact: with and without it a point has the same mu within the error estimates. Both sides and the
+study ask here, and nowhere else; `full=True` (`--full`) asks nothing and computes everything.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from reference.problem.scene import GRAVITY, Scene
+
+FASTEST = 2e5  # rad in the whole motion: links that vibrate more often are stepped over at less cost than summed up
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """One thing that may be left out. allowed: whether this scene lets it; reason: why, or what forbids it."""
+
+    allowed: bool
+    reason: str
+
+    def __bool__(self) -> bool:
+        return self.allowed
+
+
+def half_turn(scene: Scene) -> Reduction:
+    """Adding pi to both phases turns the motion by half a turn about the vertical: same mu."""
+    if scene.amplitudes[2].any():
+        return Reduction(False, "vertical loading: every phase pair is its own")
+    return Reduction(True, "no vertical loading: adding pi to both phases turns the motion by half a turn")
+
+
+def own_axes(scene: Scene) -> Reduction:
+    """Adding pi to either phase alone mirrors the motion: same mu."""
+    used = scene.amplitudes[:2] != 0.0
+    if not half_turn(scene):
+        return half_turn(scene)
+    if (used.sum(axis=0) <= 1).all() and (used.sum(axis=1) <= 1).all():
+        return Reduction(
+            True, "each harmonic has its own axis and none is vertical: adding pi to either phase mirrors the motion"
+        )
+    return Reduction(False, "a harmonic acts along both axes, or both along one")
+
+
+def untilted(scene: Scene) -> Reduction:
+    """Nothing turns the bodies of the spatial model: assumption (vi) holds, it moves like the translational one."""
+    isolator = scene.isolator
+    if None in (isolator.supports, isolator.ring, isolator.sphere_radius):
+        return Reduction(False, "no supports are stated")
+    if any(body.height is None or body.size is None or body.height > 0.0 for body in scene.bodies):
+        return Reduction(False, "bodies above the depressions: inertia tilts and twists them")
+    return Reduction(True, "every centre of mass is level with the depressions: equal supports, no body turns")
+
+
+def even_ring(scene: Scene) -> Reduction:
+    """Supports and boxes of the spatial model are their own mirror images: it has the symmetries of the loading."""
+    supports = scene.isolator.supports or 0
+    if supports % 2 or supports == 0:
+        return Reduction(False, "an odd number of supports: a turned or mirrored ring is another one")
+    return Reduction(
+        True, "an even number of supports on a ring, boxes centred above it: both are mirror images of themselves"
+    )
+
+
+def unused_harmonics(scene: Scene) -> list[int]:
+    """Harmonics without any amplitude (0, 1): their phase changes nothing."""
+    return [int(harmonic) for harmonic in np.flatnonzero(~scene.amplitudes.any(axis=0))]
+
+
+def no_friction(scene: Scene) -> Reduction:
+    """No law of friction is left to regularise or to resolve: such models are the exact equations over again."""
+    if scene.friction_coefficient > 0.0:
+        return Reduction(False, "friction")
+    return Reduction(True, "no friction: without it v_reg and v_c change nothing")
+
+
+def linear(scene: Scene) -> Reduction:
+    """
+    The small equations (4.3)-(4.4) are linear, and their motion is a sum of one complex motion per harmonic.
+
+    A lubricated contact is not linear: R mu w = R f_c v is, but (4.3) keeps the term f_c u (p . v) / rho beside it.
+    """
+    if scene.lubricated and scene.friction_coefficient > 0.0:
+        return Reduction(False, "lubricated: (4.3) keeps friction terms with xi'' x1 x1', which are not linear")
+    if scene.friction_coefficient > 0.0:
+        return Reduction(False, "dry friction is not linear")
+    if scene.amplitudes[2].any():
+        return Reduction(False, "vertical loading makes the pendulum's stiffness depend on time and phases")
+    if not fastest(scene) * scene.duration <= FASTEST:
+        return Reduction(False, f"more than {FASTEST:g} rad of the fastest vibration: cheaper to step over")
+    return Reduction(True, "no friction, no vertical loading: the small equations are linear, the surface is a sum")
+
+
+def fastest(scene: Scene) -> float:
+    """An upper bound of every angular frequency and rate of decay in the small equations, rad/s."""
+    below = np.vstack([np.full((1, 2), scene.total_mass * GRAVITY / scene.radius), scene.stiffness])
+    above = np.vstack([scene.stiffness, np.zeros((1, 2))])
+    natural = math.sqrt(float((2.0 * (below + above) / scene.masses[:, None]).max()))  # Gershgorin
+    return max(natural, 2.0 * math.pi / min(scene.excitation.periods), *scene.excitation.decay)
