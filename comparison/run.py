@@ -24,6 +24,7 @@ from comparison.analyses.further import further_findings
 from comparison.analyses.slips import slip_effects
 from comparison.analyses.trajectories import stored_motions
 from comparison.assumptions.reach import Reach
+from comparison.extremes.matrix import read as stored_extremes
 from comparison.options import Options, UsageError, parsed
 from comparison.plan.ladder import LADDER, Rung
 from comparison.plan.study import Study
@@ -125,6 +126,7 @@ def _run(
     further = further_findings(study, options.jobs, executor, console.print)
     console.print("Varying supports and heights to see how far the paper's assumptions carry.")
     assumptions = Reach.of(study, options.jobs, executor)
+    extremes = stored_extremes(options.out)
     families = [family for family in options.families if len(family.scenes) > 1] or None
     titles = {rung.key: rung.title for rung in study.ladder}
     faults = sorted(
@@ -141,7 +143,7 @@ def _run(
         "jobs": options.jobs,
         "provenance": provenance(),
     }
-    more = {"motions": motions, "assumptions": assumptions, "families": families, **further}
+    more = {"motions": motions, "assumptions": assumptions, "families": families, "extremes": extremes, **further}
     found = findings(study, surfaces, effective, effects, faults, run, **more)
     console.print("Drawing the figures and writing the report.")
     with replaced_when_complete(options.out) as folder:

@@ -20,7 +20,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from comparison.extremes.cells import Cell, cells, solve_cell
+from comparison.extremes.cells import Cell, Solved, cells, solve_cell
 from comparison.extremes.matrix import FILE, Matrix, as_entry, matrix, written
 from comparison.extremes.rows import COLUMNS, ENGINE, EQUATIONS, Column, Row, rows
 from comparison.extremes.verdicts import Verdict
@@ -29,7 +29,6 @@ from comparison.provenance import provenance
 from comparison.sweep.executors import cores
 
 LIMIT = 90.0  # s for one cell with its finer runs, on a machine that does nothing else
-PICTURE = "extremes.png"
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -51,7 +50,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         given.out.mkdir(parents=True, exist_ok=True)
         command = shlex.join(["python", "-m", "comparison.extremes.__main__", *words])
         found = run(chosen, given.jobs, given.limit, console, command, columns)
-        from comparison.extremes.figure import draw_extremes  # matplotlib: not needed to refuse a command
+        from comparison.extremes.figure import PICTURE, draw_extremes  # matplotlib: not needed to refuse a command
 
         draw_extremes(given.out / PICTURE, found)
         file = written(found, given.out)
@@ -63,6 +62,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 2
     _tell(console, found)
     console.print(f"Matrix: {file}, {given.out / PICTURE}", soft_wrap=True)
+    console.print("A report written into the same directory by comparison.run shows it.")
     return 1 if found.counts()[Verdict.FAILED] else 0
 
 
@@ -97,7 +97,7 @@ def run(
             bar.advance(shown)
             entry, cell = as_entry(result), tasks[index]
             if entry.verdict == Verdict.FAILED or not console.is_terminal:
-                spent = "" if entry.seconds is None else f" ({entry.seconds:.1f} s)"
+                spent = "" if entry.seconds is None else f" ({entry.seconds:.1f} s, in all {entry.total:.1f} s)"
                 name = f"{cell.row.group} {cell.row.title}, {cell.column.title}"
                 bar.console.print(escape(f"{entry.verdict}: {name}: {entry.reason}{spent}"), soft_wrap=True)
 
@@ -110,6 +110,7 @@ def run(
         "command": command,
         "began": began.isoformat(timespec="seconds"),
         "seconds": round(time.monotonic() - begin, 1),
+        "cpu_seconds": round(sum(result.total for result in results if isinstance(result, Solved)), 1),
         "jobs": jobs,
         "limit": limit,
         "reduced": not any(cell.column.amplification == ENGINE for cell in tasks),
@@ -127,7 +128,8 @@ def _tell(console: Console, found: Matrix) -> None:
     for row, title, entry in found.listed(Verdict.FAILED):
         console.print(escape(f"FAILED: {row.group} {row.title}, {title}: {entry.reason}"), soft_wrap=True)
     counts = ", ".join(f"{count} {name}" for name, count in found.counts().items())
-    console.print(f"{sum(found.counts().values())} cells in {found.run['seconds']} s: {counts}.")
+    spent = f"{found.run['seconds']} s, {found.run['cpu_seconds']} s of processor time"
+    console.print(f"{sum(found.counts().values())} cells in {spent}: {counts}.")
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -29,10 +29,11 @@ class Cell:
 
 @dataclass(frozen=True)
 class Solved:
-    """What came of a cell, and how long the model took for its answer, s of wall time without the finer runs."""
+    """What came of a cell, and processor time in s: of the model's answer, and in all with the finer runs."""
 
     judged: Judged
     seconds: float
+    total: float
 
 
 def cells(rows: Sequence[Row], columns: Sequence[Column] = COLUMNS) -> list[Cell]:
@@ -44,10 +45,10 @@ def solve_cell(cell: Cell) -> Solved:
     """Run the cell and judge it."""
     row, column = cell.row, cell.column
     tolerance = float(row.settings.get("tolerance", column.tolerance))
-    begin = time.monotonic()
+    begin = time.process_time()
     asked_function = row.amplification or column.amplification
     reply = _ask(row, asked_function, {**column.settings, **row.settings, "tolerance": tolerance})
-    seconds = time.monotonic() - begin
+    seconds = time.process_time() - begin
     finer: list[Reply] = []
     for function, settings, asked in column.finer if _answers(reply) else ():
         share = min(1.0, tolerance / column.tolerance)
@@ -58,7 +59,7 @@ def solve_cell(cell: Cell) -> Solved:
         if _confirms(finer[-1], reply):
             break
     verdict = judged(reply, finer, tolerance, row.invalid, row.right)
-    return Solved(replace(verdict, reason=" ".join(verdict.reason.split())), seconds)
+    return Solved(replace(verdict, reason=" ".join(verdict.reason.split())), seconds, time.process_time() - begin)
 
 
 def _answers(reply: Reply) -> bool:

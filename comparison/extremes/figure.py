@@ -29,6 +29,7 @@ MEANING = {
     Verdict.FAILED: "FAILED: no answer, or a wrong one",
 }
 HEIGHT, WIDTH, LABELS, MARGIN, TOP = 0.2, 0.9, 1.75, 0.2, 1.15  # of fields, labels and borders, inches
+PICTURE = "extremes.png"
 PANELS = 2  # side by side, so that the whole fits a screen
 
 
@@ -93,15 +94,16 @@ def _field(axes: Axes, place: int, line: int, entry: Entry) -> None:
     dark = verdict == Verdict.FAILED
     axes.add_patch(Rectangle((place + 0.02, line + 0.06), 0.96, 0.88, color=COLOURS[verdict], lw=0))
     axes.text(
-        place + 0.5, line + 0.52, _said(verdict, entry), ha="center", va="center", fontsize=6.5,
+        place + 0.5, line + 0.52, said(entry), ha="center", va="center", fontsize=6.5,
         color="white" if dark else "#1b1f24",
     )  # fmt: skip
 
 
-def _said(verdict: Verdict, entry: Entry) -> str:
-    if verdict == Verdict.CONVERGED and entry.error is not None:
+def said(entry: Entry) -> str:
+    """What stands in the field: the error claimed, or the status in its own words."""
+    if entry.verdict == Verdict.CONVERGED and entry.error is not None:
         return f"{entry.error:.0e}"
-    if verdict == Verdict.FAILED:
+    if entry.verdict == Verdict.FAILED:
         return "FAILED"
     words = entry.reason.split(":")[0]
     return words if words in set(Outcome) else "against a rule"

@@ -7,6 +7,7 @@ import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +21,16 @@ FILE = "extremes.json"
 
 @dataclass(frozen=True)
 class Entry:
-    """One cell. error: the largest relative error claimed, None without a value. seconds: None without an answer."""
+    """
+    One cell. error: the largest relative one claimed, None without a value. seconds, total: processor time of the
+    model's answer, and of the cell with its finer runs; None without an answer.
+    """
 
     verdict: str
     reason: str
     error: float | None
     seconds: float | None
+    total: float | None
 
 
 @dataclass(frozen=True)
@@ -50,7 +55,11 @@ class Matrix:
         seen = Counter(entry.verdict for row in self.rows for entry in row.entries.values())
         return {verdict.value: seen[verdict.value] for verdict in Verdict}
 
-    def listed(self, verdict: Verdict) -> list[tuple[Extreme, str, Entry]]:
+    def groups(self) -> list[list[Extreme]]:
+        """The rows that share a quantity."""
+        return [list(rows) for _, rows in groupby(self.rows, key=lambda row: row.group)]
+
+    def listed(self, verdict: str) -> list[tuple[Extreme, str, Entry]]:
         """The rows, titles of columns and entries with this verdict."""
         return [
             (row, self.columns[key], entry)
@@ -76,10 +85,10 @@ def matrix(
 def as_entry(result: Solved | NoAnswer) -> Entry:
     """The result as it is shown; no answer at all is a failure."""
     if isinstance(result, NoAnswer):
-        return Entry(Verdict.FAILED.value, result.why, None, None)
+        return Entry(Verdict.FAILED.value, result.why, None, None, None)
     verdict: Judged = result.judged
     error = verdict.error if math.isfinite(verdict.error) else None
-    return Entry(verdict.verdict.value, verdict.reason, error, round(result.seconds, 3))
+    return Entry(verdict.verdict.value, verdict.reason, error, round(result.seconds, 3), round(result.total, 3))
 
 
 def written(found: Matrix, folder: Path) -> Path:

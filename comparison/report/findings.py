@@ -17,6 +17,7 @@ from comparison.analyses.trajectories import StoredMotion
 from comparison.analyses.trends import Trend
 from comparison.assumptions.reach import Reach
 from comparison.claims.table import ClaimTable
+from comparison.extremes.matrix import Matrix
 from comparison.plan.study import Study
 from reference.problem import Family
 
@@ -28,7 +29,8 @@ class Findings:
     values read back from each model. effects: what slips of the print do to mu. broken: acceptance limits, one line
     each. faults: what solvers complained about. run: command, times, provenance. Fields that may be None are what only
     some commands compute. motions: see `stored_motions`. claims, scaling, convergence: see `further_findings`.
-    assumptions: how far the paper's carry, see `Reach`. families: those of more than one scene.
+    assumptions: how far the paper's carry, see `Reach`. families: those of more than one scene. extremes: the
+    matrix that `python -m comparison.extremes` left beside the report.
     """
 
     study: Study
@@ -46,6 +48,7 @@ class Findings:
     convergence: Sequence[Trend] | None = None
     assumptions: Reach | None = None
     families: Sequence[Family] | None = None
+    extremes: Matrix | None = None
 
 
 def findings(

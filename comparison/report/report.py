@@ -31,6 +31,9 @@ from comparison.claims.table import SIGNS
 from comparison.drawing.budget_figure import budget_figure_name, draw_budget
 from comparison.drawing.figures import draw_pair, figure_name
 from comparison.drawing.paper_figures import draw_paper_figure, paper_figure_name
+from comparison.extremes.figure import COLOURS, MEANING, PICTURE, draw_extremes, said
+from comparison.extremes.matrix import written
+from comparison.extremes.verdicts import Verdict
 from comparison.plan.ladder import Pair, pairs_of, rungs_of
 from comparison.plan.study import Study
 from comparison.report.family_figure import draw_families
@@ -101,6 +104,13 @@ SECTIONS = (
         "no scene says where its supports are and how high and large its bodies: the spatial model needs that",
         draw_all_assumptions,
     ),
+    Section(
+        "extremes",
+        "Stability at the extremes",
+        "extremes",
+        "python -m comparison.extremes makes it, beside the report; the next run of the study shows it",
+        lambda figures, found: draw_extremes(figures / PICTURE, found.extremes) if found.extremes else None,
+    ),
     Section("effective", "Effective values"),
     Section("verification", "What checks each side alone"),
     Section("provenance", "Provenance"),
@@ -117,6 +127,8 @@ def write_report(folder: Path, found: Findings) -> None:
     (folder / "summary.json").write_text(text, encoding="utf-8")
     (folder / "summary.md").write_text(summary_text(found), encoding="utf-8")
     (folder / "junit.xml").write_text(junit(found), encoding="utf-8")
+    if found.extremes:
+        written(found.extremes, folder)
     figures = folder / "figures"
     figures.mkdir()
     for scene in study.scenes:
@@ -161,6 +173,8 @@ def _page(figures: Path, found: Findings) -> str:
         slips=_slips(found),
         checks=CHECKS,
         claim_signs=SIGNS,
+        verdicts=[(verdict.value, COLOURS[verdict], MEANING[verdict]) for verdict in Verdict],
+        said=said,
         hump_share=SHARE,
         hump_shares=(LEAST_SHARE, MOST_SHARE),
         outcomes=_outcomes(study, found.surfaces),

@@ -10,10 +10,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from comparison.extremes.matrix import read
 from comparison.report.summary import SCHEMA
 from reference.problem import SceneError
 
-PARTS = {"index.html", "surfaces.nc", "summary.json", "summary.md", "junit.xml", "figures"}
+BESIDE = {"extremes.json", "extremes.png"}  # what another command leaves there: the next report takes it up
+PARTS = {"index.html", "surfaces.nc", "summary.json", "summary.md", "junit.xml", "figures"} | BESIDE
 
 
 def refuse_foreign(out: Path) -> None:
@@ -29,10 +31,14 @@ def refuse_foreign(out: Path) -> None:
         if Path.cwd().resolve().is_relative_to(place):
             raise refusal("is the directory you work in: give one inside it")
         present = {entry.name for entry in place.iterdir()}
-        if present and not _is_report(place):
+        if present - BESIDE and not _is_report(place):
             raise refusal("exists and is not a report of this study: give another directory, or empty this one")
         if strangers := sorted(present - PARTS):
             raise refusal(f"the report there also holds {strangers[0]!r}, which would be lost: move it away")
+        try:
+            read(place)
+        except ValueError as fault:
+            raise refusal(f"the report cannot take up {fault}") from None
     try:
         tempfile.TemporaryDirectory(dir=_existing_ancestor(place.parent), prefix=f".{place.name}-").cleanup()
     except OSError as fault:

@@ -61,6 +61,7 @@ def summary(found: Findings) -> dict[str, Any]:
         "claims": claims_summary(found.claims),
         "scaling": _finite(trends_summary(found.scaling)),
         "convergence": _finite(trends_summary(found.convergence)),
+        "extremes": found.extremes and _finite(asdict(found.extremes)),
         "broken": list(found.broken),
         "faults": list(found.faults),
     }

@@ -143,7 +143,7 @@ def test_the_file_is_read_back_as_it_was_and_another_file_is_refused(tmp_path: P
     found = Matrix(
         {"fake": "a fake"},
         [_extreme("converged", 1e-7), _extreme("FAILED", None)],
-        {"command": "a test", "seconds": 1.0},
+        {"command": "a test", "seconds": 1.0, "cpu_seconds": 2.0},
     )
     assert read(tmp_path) is None
     written(found, tmp_path)
@@ -157,4 +157,4 @@ def test_the_file_is_read_back_as_it_was_and_another_file_is_refused(tmp_path: P
 def _extreme(verdict: str, error: float | None):
     from comparison.extremes.matrix import Extreme
 
-    return Extreme("a group", verdict, {"fake": Entry(verdict, "a reason", error, 0.25)})
+    return Extreme("a group", verdict, {"fake": Entry(verdict, "a reason", error, 0.25, 0.5)})
