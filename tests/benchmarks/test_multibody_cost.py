@@ -4,23 +4,18 @@ from __future__ import annotations
 
 import multiprocessing
 import resource
-import sys
 import time
 from concurrent.futures import ProcessPoolExecutor
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import multibody
+from comparison.tradeoff.constant_step import FORMULATIONS, PENETRATION, SOLVERS, run
 from multibody import level
 from multibody.integrate import Engine
 from reference.problem import load_scene
-
-sys.path.insert(0, str(Path(__file__).parent))
-
-from multibody_formulations import FORMULATIONS, PENETRATION, SOLVERS, run
 
 PHASE = np.array([0.3, 1.1])
 

@@ -1,0 +1,143 @@
+"""
+Speed for accuracy: `python -m comparison.tradeoff [SCENE ...] [--quick] [--out DIR]`.
+
+Measures the error of mu_i against compute time per point, for every model and every numerical parameter, and writes
+tradeoff.json, SCENE-tradeoff.nc and SCENE-tradeoff.png. Exit codes: 0 done; 2 a wrong scene or option; 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+import sys
+import time
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from comparison.provenance import provenance
+from comparison.sweep.executors import Pool, cores, process_pool
+from comparison.sweep.progress import Stage, progress, wide_console
+from comparison.tradeoff.measure import Task, measured, tasks
+from comparison.tradeoff.trade import Trade, written
+from reference.problem import Scene, SceneError, load_scene
+
+DEFAULT = "fig3-I"
+STARTING = 8.0  # s of a worker before its first task: imports, compiled code loaded
+
+
+def main(argv: Sequence[str] | None = None, executor: Pool = process_pool) -> int:
+    """Measure the scenes of the command line; the exit code."""
+    given = _parser().parse_args(argv)
+    if given.jobs < 1:
+        print(f"command line: --jobs = {given.jobs}: must be a whole number from 1", file=sys.stderr)
+        return 2
+    console = wide_console()
+    words = list(sys.argv[1:] if argv is None else argv)
+    try:
+        scenes = [load_scene(name) for name in given.scenes or [DEFAULT]]
+        given.out.mkdir(parents=True, exist_ok=True)
+        trades = []
+        for scene in scenes:
+            trade, data = watched(scene, given.quick, given.jobs, console, words, executor)
+            trades.append(trade)
+            _kept(trade, data, given.out)
+        file = written(trades, given.out)
+    except SceneError as fault:
+        print(fault, file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("interrupted: nothing more was written", file=sys.stderr)
+        return 130
+    except OSError as fault:
+        print(f"command line: --out = {str(given.out)!r}: could not be written: {fault}", file=sys.stderr)
+        return 2
+    for trade in trades:
+        print_trade(console, trade)
+    console.print(f"Trade: {file}, and SCENE-tradeoff.png and .nc beside it.", soft_wrap=True)
+    return 0
+
+
+def watched(
+    scene: Scene, quick: bool, jobs: int, console: Console, words: Sequence[str], executor: Pool
+) -> tuple[Trade, xr.Dataset]:
+    """The trade of a scene, measured under a display of what is done and left."""
+    planned = {id(task): (task, seconds) for task, seconds in tasks(scene, quick)}
+    stages: dict[str, Stage] = {}
+    for task, seconds in planned.values():
+        stage = stages.get(_stage(task), Stage(0, 0.0))
+        stages[_stage(task)] = Stage(stage.points + len(task.phases), stage.seconds + seconds)
+    began, begin = datetime.now(UTC), time.monotonic()
+    about = STARTING + sum(stage.seconds for stage in stages.values()) / jobs
+    console.print(f"{scene.title} ({scene.name}): about {about:.0f} s with {jobs} workers.")
+    run: dict[str, Any] = {
+        "command": shlex.join(["python", "-m", "comparison.tradeoff", *words]),
+        "began": began.isoformat(timespec="seconds"),
+        "jobs": jobs,
+        "quick": quick,
+        "provenance": provenance(),
+    }
+    with progress(console, stages, jobs) as display:
+        trade, data = measured(
+            scene, quick, jobs, run, lambda task: display.advance(_stage(task), len(task.phases)), executor
+        )
+    run["seconds"] = round(time.monotonic() - begin, 1)
+    return trade, data
+
+
+def _stage(task: Task) -> str:
+    path, given = task.function
+    if "scipy" in path:
+        return f"SciPy {given['method']}"
+    if "constant" in path:
+        return "engine at constant step"
+    return "reference" if "reference" in path else f"{given['model']} engine"
+
+
+def _kept(trade: Trade, data: xr.Dataset, folder: Path) -> None:
+    """Values and picture of one scene."""
+    from comparison.tradeoff.figure import draw_tradeoff, tradeoff_figure_name  # plotting: not needed to refuse
+
+    data.to_netcdf(folder / f"{trade.scene}-tradeoff.nc", engine="h5netcdf")
+    draw_tradeoff(folder / tradeoff_figure_name(trade.scene), trade)
+
+
+def print_trade(console: Console, trade: Trade) -> None:
+    """The fronts: what to take for which accuracy; and how each truth was checked."""
+    for question in trade.questions:
+        console.print(f"{trade.scene}, {question.title}: {question.points} phase pairs", style="bold")
+        console.print(f"  truth: {question.truth}; {'; '.join(question.checks)}", soft_wrap=True)
+        table = Table(box=SIMPLE_HEAD, pad_edge=False)
+        table.add_column("on the Pareto front of a mu", no_wrap=True)
+        for heading in ("value", "s per point", "median error", "95 %"):
+            table.add_column(heading, justify="right", no_wrap=True)
+        for entry in sorted(trade.of(question.key), key=lambda one: one.seconds):
+            if any(entry.front):
+                sizes = ("  ".join(f"{part:.0e}" for part in parts) for parts in (entry.median, entry.most))
+                value = f"{entry.value:.0e} {entry.unit}".strip()
+                table.add_row(escape(entry.method), value, f"{entry.seconds:.4f}", *sizes)
+        console.print(table)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="python -m comparison.tradeoff",
+        description="Error of mu_i against compute time for every model and every numerical parameter.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"TOML file or built-in name (default: {DEFAULT})")
+    parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help="where the files go")
+    parser.add_argument("--jobs", default=cores(), type=int, metavar="N", help="worker processes (default %(default)s)")
+    parser.add_argument("--quick", action="store_true", help="fewer points and values: under a minute")
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

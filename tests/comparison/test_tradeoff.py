@@ -1,0 +1,153 @@
+"""The measured trade: fronts that nothing beats, errors that fall along every parameter, truths that are checked."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from comparison.tradeoff import __main__ as command
+from comparison.tradeoff import measure
+from comparison.tradeoff.measure import Found, entry, measured, sample
+from comparison.tradeoff.settings import QUESTIONS, RUN, Setting, settings
+from comparison.tradeoff.trade import FILE, Trade, on_front, quantile, read, with_fronts
+from reference.problem import Scene, load_scene
+
+SECONDS = 2.0  # of motion: a few slides and stops
+
+
+@pytest.fixture(scope="module")
+def scene() -> Scene:
+    return load_scene("fig3-I").model_copy(update={"duration": SECONDS})
+
+
+@pytest.fixture(scope="module")
+def trade(scene: Scene) -> Trade:
+    """The quick trade, without what is dear, in this process."""
+    dear = "Exudyn", "Radau", "DOP853"
+    kept = [one for one in settings(scene, quick=True) if not any(name in one.method for name in dear)]
+    kept = [one for one in kept if one.question != "spatial"]
+    patch = pytest.MonkeyPatch()
+    patch.setattr(measure, "settings", lambda scene, quick: kept)
+    patch.setattr(measure, "asked", lambda scene: [one for one in QUESTIONS if one.key != "spatial"])
+    patch.setattr(measure, "sweep", lambda work, solve, *rest: [solve(task) for task in work])
+    found, _ = measured(scene, True, 1, {"command": "here", "provenance": {}})
+    patch.undo()
+    return found
+
+
+def test_nothing_on_the_front_is_beaten_and_all_else_is() -> None:
+    cost, error = [1.0, 2.0, 3.0, 2.5, 1.0, 4.0], [1e-2, 1e-3, 1e-4, 2e-3, 1e-1, float("inf")]
+    assert on_front(cost, error) == [True, True, True, False, False, False]
+
+
+def test_two_settings_that_are_alike_are_both_on_the_front() -> None:
+    assert on_front([1.0, 1.0], [1e-3, 1e-3]) == [True, True]
+
+
+def test_the_share_of_points_is_met_by_a_value_that_occurred() -> None:
+    assert quantile(np.array([1.0, 2.0, 3.0, 40.0]), 0.95) == 40.0
+    assert quantile(np.array([np.nan]), 0.5) is None
+
+
+def test_a_setting_that_leaves_points_without_a_value_or_solves_another_model_is_not_on_the_front() -> None:
+    setting = Setting("exact", "one", "step", "", 1.0, RUN, {}, 1.0)
+    truth = np.ones((3, 1))
+    good = entry(setting, Found(truth * 1.1, truth * np.nan, 3.0, np.nan), truth)
+    lost = entry(setting, Found(truth * [[1.0], [np.nan], [1.0]], truth * np.nan, 1.0, np.nan), truth)
+    other = replace(entry(setting, Found(truth, truth, 0.1, np.nan), truth), model_error=True)
+    assert [one.front for one in with_fronts([good, lost, other], 1)] == [(True,), (False,), (False,)]
+    assert lost.answered == 2
+
+
+@pytest.mark.parametrize("question", ["exact", "small", "regularised"])
+def test_the_error_of_the_reference_falls_with_its_tolerance(trade: Trade, question: str) -> None:
+    for method in ("reference, one run", "reference, two runs and an estimate"):
+        errors = np.array([one.most for one in trade.methods(question)[method]], dtype=float)
+        # from 1e-1 to 1e-8: a method of order 13 with steps of order 7 gains far more than a thousand
+        assert (errors[-1] < 1e-3 * errors[0]).all() or (errors[-1] < 1e-8).all()
+        assert (errors[-1] < 1e-8).all()
+
+
+def test_every_error_estimate_of_the_reference_holds_at_95_percent_of_the_points(trade: Trade) -> None:
+    for one in trade.entries:
+        if one.controlled and one.method.startswith("reference"):
+            for error, claimed in zip(one.most, one.claimed):
+                assert error <= max(claimed, 1e-10), one  # the truth is not known better
+
+
+def test_scipy_and_the_engine_tend_to_the_truth_of_the_reference(trade: Trade) -> None:
+    """The check that the diagram states: codes and methods with little in common meet."""
+    for method, within in (("SciPy LSODA", 1e-7), ("translational engine, two levels", 1e-5)):
+        own = [one for one in trade.of("regularised") if one.method.startswith(method)]
+        assert max(own[-1].most) < within
+        assert max(own[-1].most) < 0.1 * max(own[0].most)
+    checks = next(one.checks for one in trade.questions if one.key == "regularised")
+    assert any("SciPy LSODA" in line for line in checks)
+    assert any("translational engine" in line for line in checks)
+
+
+def test_v_reg_is_a_model_error_that_falls_towards_the_peak_that_motion_resolves(trade: Trade) -> None:
+    own = [one for one in trade.of("exact") if "faster than v_reg" in one.method]
+    errors = np.array([one.most for one in own], dtype=float)
+    assert all(one.model_error and not any(one.front) for one in own)
+    assert (np.diff(errors[:, 1]) < 0.0).all(), "mu_2 is well conditioned: in proportion to v_reg"
+
+
+def test_truths_are_a_hundred_times_tighter_than_every_tolerance_held_against_them() -> None:
+    own = settings(load_scene("fig3-I"))
+    for question in QUESTIONS:
+        asked = [one.value for one in own if one.question == question.key and one.parameter == "tolerance of mu"]
+        side = "multibody" if question.key == "spatial" else "reference"
+        held = [one.value for one in own if one.question == question.key and one.controlled and side in one.function]
+        assert asked
+        assert question.truth[1]["tolerance"] <= 1.0001e-2 * min(held)
+
+
+def test_the_command_writes_what_the_report_reads(
+    trade: Trade, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = xr.Dataset({"mu": ("point", [1.0])})
+    monkeypatch.setattr(command, "watched", lambda *arguments: (trade, data))
+    assert command.main(["fig3-I", "--quick", "--out", str(tmp_path / "out")]) == 0
+    names = {file.name for file in (tmp_path / "out").iterdir()}
+    assert names == {FILE, "fig3-I-tradeoff.nc", "fig3-I-tradeoff.png", "fig3-I-tradeoff.pdf"}
+    again = read(tmp_path / "out")
+    assert again is not None
+    assert json.loads(json.dumps(again[0].__dict__, default=vars)) == json.loads(
+        json.dumps(trade.__dict__, default=vars)
+    )
+    assert "on the Pareto front" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [(["nowhere.toml"], "nowhere.toml"), (["--jobs", "0"], "--jobs = 0: must be a whole number from 1")],
+)
+def test_a_wrong_command_is_one_line(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert command.main(words) == 2
+    line = capsys.readouterr().err
+    assert said in line
+    assert line.count("\n") == 1
+
+
+def test_a_file_that_is_no_trade_is_refused_in_one_line(tmp_path: Path) -> None:
+    (tmp_path / FILE).write_text('{"schema": "another"}', encoding="utf-8")
+    with pytest.raises(ValueError, match="not a measured trade: its schema is 'another'"):
+        read(tmp_path)
+
+
+def test_a_model_that_raises_leaves_points_without_a_value(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(path: str) -> Callable[..., object]:
+        raise RuntimeError("the matrix is singular")
+
+    monkeypatch.setattr(measure, "imported", broken)
+    task = measure.Task(load_scene("fig3-I"), ("anything:at all", {}), 0, sample(2))
+    found = measure.solve(task)
+    assert np.isnan(found.mu).all()
+    assert "the matrix is singular" in found.fault
