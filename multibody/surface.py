@@ -14,7 +14,7 @@ from multibody.refine import refine
 from multibody.spatial import spatial
 from multibody.system import EngineModel
 from multibody.translational import translational
-from reference.problem import Amplification, Outcome, Scene, checked_phases, ground_peak, untilted
+from reference.problem import Amplification, Outcome, Scene, checked_phases, ground_peak, in_plane, planar, untilted
 
 BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": translational, "spatial": spatial}
 
@@ -26,8 +26,13 @@ def assembled(
     *,
     loading: str = "inertial",
     contact_force: bool = False,
+    **more: int,
 ) -> EngineModel:
-    """The engine's system of `scene`. Raises ValueError for an unknown model or loading, a wrong or missing v_reg."""
+    """
+    The engine's system of `scene`; more: what its builder takes besides.
+
+    Raises ValueError for an unknown model or loading, a wrong or missing v_reg.
+    """
     if loading not in LOADINGS:
         raise ValueError(f"loading: {loading!r}: must be one of {', '.join(LOADINGS)}")
     if model not in BUILDERS:
@@ -36,7 +41,7 @@ def assembled(
         checked("regularization", regularization)
     elif not scene.lubricated and scene.friction_coefficient > 0.0:
         raise ValueError("regularization: None: the engine's dry friction needs v_reg in m/s, greater than 0")
-    return BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force)
+    return BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **more)
 
 
 def checked(name: str, value: float) -> float:
@@ -74,15 +79,19 @@ def amplification(
     status, instant = np.full(len(pairs), Outcome.OK.value, dtype="U32"), np.full(len(pairs), np.nan)
     ground = ground_peak(scene, pairs)
     level = model == "spatial" and not full and untilted(scene).allowed
+    chosen = "translational" if level else model
+    flat = chosen == "translational" and not full and planar(scene).allowed
+    moving = in_plane(scene) if flat else scene
     with silence():
-        built = assembled(scene, "translational" if level else model, regularization, loading=loading)
+        more = {"axes": 1} if flat else {}
+        built = assembled(moving, chosen, regularization, loading=loading, contact_force=False, **more)
         for m, phase in enumerate(pairs):
             if ground[m] == 0.0:
                 status[m], instant[m] = Outcome.NO_GROUND_MOTION, 0.0
             elif not np.isfinite(ground[m]):
                 status[m], instant[m] = Outcome.NON_FINITE_LOAD, 0.0
             else:
-                point = refine(scene, built, phase, tolerance)
+                point = refine(moving, built, phase, tolerance)
                 if level and np.isnan(point.peaks).any():  # off its supports the model asked for goes on
                     whole = assembled(scene, model, regularization, loading=loading)
                     point = refine(scene, whole, phase, tolerance)

@@ -29,13 +29,19 @@ HOLLOW = 2.0  # R in units of rho; in translation only R - r matters
 
 
 def translational(
-    scene: Scene, regularization: float | None, *, loading: str = "inertial", contact_force: bool = False
+    scene: Scene,
+    regularization: float | None,
+    *,
+    loading: str = "inertial",
+    contact_force: bool = False,
+    axes: int = 2,
 ) -> EngineModel:
     """
     Assemble the translational model.
 
     regularization: v_reg, m/s, of dry friction; None where the contact is lubricated or frictionless. contact_force:
-    record it too. loading: "inertial" or "plate".
+    record it too. loading: "inertial" or "plate". axes: 1 for a motion in the plane of x and z, in which the bodies
+    above the platform have no coordinate along y (their y is the platform's, which stays zero).
     """
     units = units_of(scene)
     masses = scene.masses / units.mass
@@ -48,7 +54,7 @@ def translational(
     depression = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=platform))
     nodes = [platform_node]
     if len(masses) > 1:
-        nodes.append(_chain(mbs, platform_node, masses, link_stiffness(scene, units)))
+        nodes.append(_chain(mbs, platform_node, masses, link_stiffness(scene, units)[:, :axes]))
 
     ground = SymbolicGround(scene, units)
     plate = plate_for(mbs, loading, ground)
@@ -67,11 +73,13 @@ def translational(
             frictionProportionalZone=threshold,
         )
     )
-    expressions = _inertial_loads(mbs, ground, plate, masses, depression, nodes)
+    expressions = _inertial_loads(mbs, ground, plate, masses, depression, nodes, axes)
     recorders = recorded(mbs, nodes, [contact_node], [contact] if contact_force else [], plate.node)
     mbs.Assemble()
 
-    bodies = np.array([[0, 1, 2]] + [[COORDINATES + 2 * i, COORDINATES + 2 * i + 1, 2] for i in range(len(masses) - 1)])
+    count = COORDINATES + axes * (len(masses) - 1)
+    bodies = np.tile(np.arange(3), (len(masses), 1))
+    bodies[1:, :axes] = np.arange(COORDINATES, count).reshape(-1, axes)
 
     def stiffen(penetration: float) -> None:
         # closer by the static penetration, so that the pendulum at rest has length rho whatever the stiffness
@@ -80,10 +88,7 @@ def translational(
         mbs.SetObjectParameter(contact, "contactDamping", 2.0 * DAMPING / np.sqrt(penetration))
 
     def start(initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
-        coordinates, velocities = (
-            np.zeros(COORDINATES + 2 * len(masses) - 2),
-            np.zeros(COORDINATES + 2 * len(masses) - 2),
-        )
+        coordinates, velocities = np.zeros(count), np.zeros(count)
         if initial is not None:
             coordinates[bodies[:, :2]] = np.asarray(initial.position, float) / units.length
             velocities[bodies[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
@@ -118,8 +123,9 @@ def translational(
 
 
 def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array) -> Any:
-    """Bodies 2..N as one linear object on their x, y and the platform's x, y, z. Returns their node."""
-    count = 2 * (len(masses) - 1)
+    """Bodies 2..N as one linear object on their x, y (or x) and the platform's x, y, z. Returns their node."""
+    axes = stiffness.shape[1]
+    count = axes * (len(masses) - 1)
     node = mbs.AddNode(
         items.NodeGenericODE2(
             referenceCoordinates=[0.0] * count,
@@ -132,9 +138,9 @@ def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array) -> Any
     stiffness_matrix = np.zeros_like(mass_matrix)
     mass_matrix[2, 2] = masses[1:].sum()
     for link in range(len(masses) - 1):
-        for axis in range(2):
-            upper = COORDINATES + 2 * link + axis
-            lower = upper - 2 if link > 0 else axis
+        for axis in range(axes):
+            upper = COORDINATES + axes * link + axis
+            lower = upper - axes if link > 0 else axis
             mass_matrix[upper, upper] = masses[link + 1]
             pair = np.ix_([lower, upper], [lower, upper])
             stiffness_matrix[pair] += stiffness[link, axis] * np.array([[1.0, -1.0], [-1.0, 1.0]])
@@ -147,7 +153,7 @@ def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array) -> Any
 
 
 def _inertial_loads(
-    mbs: Any, ground: SymbolicGround, plate: Plate, masses: Array, depression: Any, nodes: list[Any]
+    mbs: Any, ground: SymbolicGround, plate: Plate, masses: Array, depression: Any, nodes: list[Any], axes: int
 ) -> list[Any]:
     """Weight and, unless the plate moves, -m times its acceleration on every body. Returns the expressions."""
 
@@ -164,8 +170,8 @@ def _inertial_loads(
     load = mbs.AddLoad(items.LoadForceVector(markerNumber=depression, loadVector=[0.0, 0.0, -1.0]))
     expressions = [symbolic_load(mbs, load, "loadVectorUserFunction", on_platform)]
     for i in range(1, len(masses)):
-        for axis in range(2):
-            coordinate = items.MarkerNodeCoordinate(nodeNumber=nodes[1], coordinate=2 * (i - 1) + axis)
+        for axis in range(axes):
+            coordinate = items.MarkerNodeCoordinate(nodeNumber=nodes[1], coordinate=axes * (i - 1) + axis)
             load = mbs.AddLoad(items.LoadCoordinate(markerNumber=mbs.AddMarker(coordinate)))
             expressions.append(symbolic_load(mbs, load, "loadUserFunction", on_body(i, axis)))
     return expressions

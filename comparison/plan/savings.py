@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from comparison.plan.ladder import Rung
-from reference.problem import Reduction, Scene, linear, untilted
+from reference.problem import Reduction, Scene, linear, planar, untilted
 
 
 @dataclass(frozen=True)
@@ -31,6 +31,7 @@ class LeftOut:
 
 LEFT_OUT: tuple[LeftOut, ...] = (
     LeftOut("every run but one per harmonic", linear, ("equations", "small"), 20.0),
+    LeftOut("motion across its plane, of the bodies", planar, ("model", "translational"), 1.15),
     LeftOut("rotations, all supports but one", untilted, ("model", "spatial"), 1.7),
 )
 

@@ -8,9 +8,11 @@ from reference.problem.reductions import (
     Reduction,
     even_ring,
     half_turn,
+    in_plane,
     linear,
     no_friction,
     own_axes,
+    planar,
     untilted,
     unused_harmonics,
 )
@@ -38,6 +40,7 @@ __all__ = [
     "ground_peak",
     "ground_velocity",
     "half_turn",
+    "in_plane",
     "linear",
     "load_family",
     "load_scene",
@@ -45,6 +48,7 @@ __all__ = [
     "own_axes",
     "parse_scene",
     "phase_grid",
+    "planar",
     "untilted",
     "unused_harmonics",
 ]

@@ -16,6 +16,8 @@ from reference.problem.scene import GRAVITY, Scene
 
 FASTEST = 2e5  # rad in the whole motion: links that vibrate more often are stepped over at less cost than summed up
 
+LARGEST = 1e300  # m/s^2
+
 
 @dataclass(frozen=True)
 class Reduction:
@@ -55,6 +57,39 @@ def untilted(scene: Scene) -> Reduction:
     if any(body.height is None or body.size is None or body.height > 0.0 for body in scene.bodies):
         return Reduction(False, "bodies above the depressions: inertia tilts and twists them")
     return Reduction(True, "every centre of mass is level with the depressions: equal supports, no body turns")
+
+
+def planar(scene: Scene) -> Reduction:
+    """The motion stays in one vertical plane (4.7): half of the horizontal coordinates are enough (`in_plane`)."""
+    if len(scene.bodies) == 1:
+        return Reduction(False, "one body: none above it whose coordinates could be left out")
+    x, y = scene.amplitudes[:2]
+    if not np.abs(scene.amplitudes).max() < LARGEST:
+        return Reduction(False, "loads that may overflow when turned")
+    if not (x.any() and y.any()):
+        return Reduction(True, "loading along one axis: the motion stays in its plane")
+    if (np.divide(x, np.abs(x).max()) * y[::-1] @ [1.0, -1.0]) != 0.0:
+        return Reduction(False, "the harmonics act in different directions")
+    if (scene.stiffness[:, 0] != scene.stiffness[:, 1]).any():
+        return Reduction(False, "loading across links that are not equally stiff in x and y")
+    return Reduction(
+        True, "(4.7): one direction of loading, links equally stiff in x and y: the motion stays in a plane"
+    )
+
+
+def in_plane(scene: Scene) -> Scene:
+    """A planar scene turned about the vertical so that its loading acts along x: the same mu for every body."""
+    table = scene.model_dump(exclude_none=True)
+    horizontal = scene.amplitudes[:2]
+    if not horizontal[0].any():  # along y: the links' y becomes their x
+        for body in table["bodies"][1:]:
+            key = "period" if "period" in body else "stiffness"
+            body[key] = body[key][::-1]
+    direction = horizontal[:, np.abs(horizontal).sum(axis=0).argmax()]
+    length = float(np.hypot(*direction))
+    along = direction @ horizontal / length if length > 0.0 else np.zeros(2)
+    table["excitation"]["amplitudes"] = [along.tolist(), [0.0, 0.0], scene.amplitudes[2].tolist()]
+    return Scene.model_validate(table)
 
 
 def even_ring(scene: Scene) -> Reduction:

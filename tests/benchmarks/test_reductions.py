@@ -1,0 +1,110 @@
+"""
+What is saved where a scene does not require all of a model: processor time in full over that of the reduced one.
+
+Run with `python -m pytest tests/benchmarks/test_reductions.py -m long -s`; reference/README.md has the figures, and
+comparison/plan/savings.py predicts with them. Both of a ratio are measured in turn, so that the load of others falls
+on both.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import multibody
+import reference
+from comparison.plan.ladder import SMALL, SPATIAL, TRANSLATIONAL
+from comparison.plan.savings import saving
+from reference.problem import Scene, load_scene, phase_grid
+
+ROUNDS = 3
+
+
+def scene_of(name: str, *more: dict[str, Any], height: float | None = None, **tables: Any) -> Scene:
+    """`name` with the tables changed, every centre of mass at `height`, and further bodies."""
+    table = load_scene(name).model_dump(exclude_none=True)
+    for key, change in tables.items():
+        table[key] |= change
+    table["bodies"] += more
+    if height is not None:
+        for body in table["bodies"]:
+            body["height"] = height
+    return Scene.model_validate(table)
+
+
+def seconds_per_point(answer: Callable[..., Any], scene: Scene, phases: np.ndarray, **options: Any) -> float:
+    begin = time.process_time()
+    assert (answer(scene, phases, **options).status == "ok").all()
+    return (time.process_time() - begin) / len(phases)
+
+
+def measured(answer: Callable[..., Any], scene: Scene, many: np.ndarray, few: np.ndarray, **options: Any) -> float:
+    """Cost of a point of `few` in full over that of one of `many` reduced: the median of ROUNDS."""
+    answer(scene, few[:1], **options, full=True)  # compiled and loaded
+    ratios = [
+        seconds_per_point(answer, scene, few, **options, full=True) / seconds_per_point(answer, scene, many, **options)
+        for _ in range(ROUNDS)
+    ]
+    print(f"\n{scene.title}, {options}: {np.median(ratios):.2f} times less, rounds {np.round(ratios, 2)}")
+    return float(np.median(ratios))
+
+
+FREE = {"friction": 0.0}
+RANDOM = np.random.default_rng(5).uniform(0.0, 2.0 * np.pi, (5, 2))
+LINK = {"mass": 0.5, "stiffness": [20.0, 20.0]}
+SUPERPOSED = {
+    "two bodies": scene_of("fig3-II", isolator=FREE),
+    "ten bodies": scene_of("fig3-II", *([LINK] * 8), isolator=FREE),
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", SUPERPOSED)
+def test_a_sum_of_motions_costs_less_than_its_prediction_says(name: str) -> None:
+    scene = SUPERPOSED[name]
+    found = measured(reference.amplification, scene, phase_grid(48), phase_grid(12), equations="small")
+    assert found > 0.5 * saving(scene, SMALL)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "scene", [scene_of("fig4-dry"), scene_of("fig4-viscous"), scene_of("fig4-dry", *([LINK] * 4))], ids=str
+)
+def test_a_plane_costs_less_than_space(scene: Scene) -> None:
+    found = measured(multibody.amplification, scene, RANDOM, RANDOM, model="translational")
+    assert found > 1.0
+    assert saving(scene, TRANSLATIONAL) > 1.0
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["fig3-I", "fig4-viscous"])
+def test_level_bodies_cost_less_than_bodies_that_turn(name: str) -> None:
+    scene = scene_of(name, height=0.0)
+    found = measured(multibody.amplification, scene, RANDOM, RANDOM, model="spatial")
+    assert found > 0.6 * saving(scene, SPATIAL) > 0.6
+
+
+@pytest.mark.long
+def test_no_vertical_loading_and_one_body_cost_what_they_must() -> None:
+    """Nothing is left out for them by a decision: terms of value zero are not worth one, a chain without links has no
+    loop."""
+    shaken = [[1.0, 1.0], [1.0, 1.0], [1e-12, 0.0]]
+    scenes = {
+        "vertical": scene_of("fig3-II", excitation={"amplitudes": shaken}),
+        "two": scene_of("fig3-II"),
+        "one": Scene.model_validate(load_scene("fig3-II").model_dump(exclude_none=True) | {"bodies": [{"mass": 2.0}]}),
+    }
+    for answer, phases in ((reference.amplification, phase_grid(12)), (multibody.amplification, RANDOM)):
+        answer(scenes["two"], phases[:1])
+        cost = {
+            name: np.median([seconds_per_point(answer, scene, phases) for _ in range(ROUNDS)])
+            for name, scene in scenes.items()
+        }
+        vertical, one = cost["vertical"] / cost["two"], cost["one"] / cost["two"]
+        print(f"\n{answer.__module__}: a vertical row costs {vertical:.2f}, one body {one:.2f} of two without it")
+        assert vertical < 1.5
+        assert one < 1.5
