@@ -39,6 +39,7 @@ from comparison.sweep.progress import wide_console
 from comparison.sweep.stopping import stoppable
 from comparison.sweep.tile_store import StoreError, TileStore, store_beside
 from comparison.terminal import print_differences, print_plan
+from comparison.tradeoff.trade import read as stored_trades
 from reference.problem import SceneError
 
 
@@ -126,7 +127,7 @@ def _run(
     further = further_findings(study, options.jobs, executor, console.print)
     console.print("Varying supports and heights to see how far the paper's assumptions carry.")
     assumptions = Reach.of(study, options.jobs, executor)
-    extremes = stored_extremes(options.out)
+    beside = {"extremes": stored_extremes(options.out), "tradeoff": stored_trades(options.out)}
     families = [family for family in options.families if len(family.scenes) > 1] or None
     titles = {rung.key: rung.title for rung in study.ladder}
     faults = sorted(
@@ -143,7 +144,7 @@ def _run(
         "jobs": options.jobs,
         "provenance": provenance(),
     }
-    more = {"motions": motions, "assumptions": assumptions, "families": families, "extremes": extremes, **further}
+    more = {"motions": motions, "assumptions": assumptions, "families": families, **beside, **further}
     found = findings(study, surfaces, effective, effects, faults, run, **more)
     console.print("Drawing the figures and writing the report.")
     with replaced_when_complete(options.out) as folder:

@@ -19,6 +19,7 @@ from comparison.assumptions.reach import Reach
 from comparison.claims.table import ClaimTable
 from comparison.extremes.matrix import Matrix
 from comparison.plan.study import Study
+from comparison.tradeoff.trade import Trade
 from reference.problem import Family
 
 
@@ -30,7 +31,8 @@ class Findings:
     each. faults: what solvers complained about. run: command, times, provenance. Fields that may be None are what only
     some commands compute. motions: see `stored_motions`. claims, scaling, convergence: see `further_findings`.
     assumptions: how far the paper's carry, see `Reach`. families: those of more than one scene. extremes: the
-    matrix that `python -m comparison.extremes` left beside the report.
+    matrix that `python -m comparison.extremes` left beside the report. tradeoff: what `python -m comparison.tradeoff`
+    left there.
     """
 
     study: Study
@@ -49,6 +51,7 @@ class Findings:
     assumptions: Reach | None = None
     families: Sequence[Family] | None = None
     extremes: Matrix | None = None
+    tradeoff: Sequence[Trade] | None = None
 
 
 def findings(

@@ -43,6 +43,7 @@ from comparison.report.page_data import packed, packed_motions, page_data
 from comparison.report.summary import outcome_counts, summary
 from comparison.report.summary_text import summary_text
 from comparison.report.verification import CHECKS
+from comparison.tradeoff.figure import draw_tradeoff, tradeoff_figure_name
 from comparison.wording import degrees, percent, scientific, significant, symbols
 from reference.problem import ADVICE, Outcome, Scene
 
@@ -73,6 +74,12 @@ def draw_all_assumptions(figures: Path, found: Findings) -> None:
     if found.assumptions:
         for scene in found.assumptions.scenes:
             draw_assumptions(figures / assumption_figure_name(scene), scene, found.assumptions.cells)
+
+
+def draw_all_trades(figures: Path, found: Findings) -> None:
+    """The diagrams of every scene that has them."""
+    for trade in found.tradeoff or ():
+        draw_tradeoff(figures / tradeoff_figure_name(trade.scene), trade)
 
 
 SECTIONS = (
@@ -110,6 +117,13 @@ SECTIONS = (
         "extremes",
         "python -m comparison.extremes makes it, beside the report; the next run of the study shows it",
         lambda figures, found: draw_extremes(figures / PICTURE, found.extremes) if found.extremes else None,
+    ),
+    Section(
+        "tradeoff",
+        "Speed for accuracy",
+        "tradeoff",
+        "python -m comparison.tradeoff SCENE makes it, beside the report; the next run of the study shows it",
+        draw_all_trades,
     ),
     Section("effective", "Effective values"),
     Section("verification", "What checks each side alone"),
@@ -175,6 +189,7 @@ def _page(figures: Path, found: Findings) -> str:
         claim_signs=SIGNS,
         verdicts=[(verdict.value, COLOURS[verdict], MEANING[verdict]) for verdict in Verdict],
         said=said,
+        digests={scene.digest() for scene in study.scenes},
         hump_share=SHARE,
         hump_shares=(LEAST_SHARE, MOST_SHARE),
         outcomes=_outcomes(study, found.surfaces),

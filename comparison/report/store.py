@@ -8,14 +8,17 @@ import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from fnmatch import fnmatchcase
 from pathlib import Path
 
-from comparison.extremes.matrix import read
+from comparison.extremes.matrix import read as stored_extremes
 from comparison.report.summary import SCHEMA
+from comparison.tradeoff.trade import read as stored_trades
 from reference.problem import SceneError
 
-BESIDE = {"extremes.json", "extremes.png"}  # what another command leaves there: the next report takes it up
-PARTS = {"index.html", "surfaces.nc", "summary.json", "summary.md", "junit.xml", "figures"} | BESIDE
+PARTS = {"index.html", "surfaces.nc", "summary.json", "summary.md", "junit.xml", "figures"}
+# what other commands leave there: the next report takes it up, and keeps it
+BESIDE = ("extremes.json", "extremes.png", "tradeoff.json", "*-tradeoff.png", "*-tradeoff.pdf", "*-tradeoff.nc")
 
 
 def refuse_foreign(out: Path) -> None:
@@ -31,12 +34,14 @@ def refuse_foreign(out: Path) -> None:
         if Path.cwd().resolve().is_relative_to(place):
             raise refusal("is the directory you work in: give one inside it")
         present = {entry.name for entry in place.iterdir()}
-        if present - BESIDE and not _is_report(place):
+        strangers = sorted(name for name in present if not _beside(name))
+        if strangers and not _is_report(place):
             raise refusal("exists and is not a report of this study: give another directory, or empty this one")
-        if strangers := sorted(present - PARTS):
-            raise refusal(f"the report there also holds {strangers[0]!r}, which would be lost: move it away")
+        if lost := [name for name in strangers if name not in PARTS]:
+            raise refusal(f"the report there also holds {lost[0]!r}, which would be lost: move it away")
         try:
-            read(place)
+            stored_extremes(place)
+            stored_trades(place)
         except ValueError as fault:
             raise refusal(f"the report cannot take up {fault}") from None
     try:
@@ -47,13 +52,20 @@ def refuse_foreign(out: Path) -> None:
 
 @contextmanager
 def replaced_when_complete(out: Path) -> Iterator[Path]:
-    """A new directory beside `out` to write into; it takes the place of `out` if the block ends without exception."""
+    """
+    A new directory beside `out` to write into; it takes the place of `out` if the block ends without exception.
+
+    What other commands left in `out` is in it already.
+    """
     place = out.resolve()
     made = _make_parents(place.parent)
     aside = Path(tempfile.mkdtemp(dir=place.parent, prefix=f".{place.name}-"))
     try:
         new = aside / "new"
         new.mkdir()
+        for entry in place.iterdir() if place.exists() else ():
+            if _beside(entry.name):
+                shutil.copy2(entry, new)
         yield new
         _swap(new, place, aside / "old")
     except BaseException:
@@ -74,6 +86,11 @@ def _swap(new: Path, place: Path, old: Path) -> None:
         if old.exists() and not place.exists():
             os.rename(old, place)
         raise
+
+
+def _beside(name: str) -> bool:
+    """Whether another command left a file of this name."""
+    return any(fnmatchcase(name, pattern) for pattern in BESIDE)
 
 
 def _is_report(place: Path) -> bool:

@@ -62,6 +62,7 @@ def summary(found: Findings) -> dict[str, Any]:
         "scaling": _finite(trends_summary(found.scaling)),
         "convergence": _finite(trends_summary(found.convergence)),
         "extremes": found.extremes and _finite(asdict(found.extremes)),
+        "tradeoff": found.tradeoff and [_finite(asdict(trade)) for trade in found.tradeoff],
         "broken": list(found.broken),
         "faults": list(found.faults),
     }

@@ -2,7 +2,8 @@
 Speed for accuracy: `python -m comparison.tradeoff [SCENE ...] [--quick] [--out DIR]`.
 
 Measures the error of mu_i against compute time per point, for every model and every numerical parameter, and writes
-tradeoff.json, SCENE-tradeoff.nc and SCENE-tradeoff.png. Exit codes: 0 done; 2 a wrong scene or option; 130 interrupted.
+tradeoff.json, in which other scenes stay, SCENE-tradeoff.nc and SCENE-tradeoff.png. Exit codes: 0 done; 2 a wrong scene
+or option; 130 interrupted.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from comparison.provenance import provenance
 from comparison.sweep.executors import Pool, cores, process_pool
 from comparison.sweep.progress import Stage, progress, wide_console
 from comparison.tradeoff.measure import Task, measured, tasks
-from comparison.tradeoff.trade import Trade, written
+from comparison.tradeoff.trade import Trade, read, written
 from reference.problem import Scene, SceneError, load_scene
 
 DEFAULT = "fig3-I"
@@ -44,13 +45,14 @@ def main(argv: Sequence[str] | None = None, executor: Pool = process_pool) -> in
     try:
         scenes = [load_scene(name) for name in given.scenes or [DEFAULT]]
         given.out.mkdir(parents=True, exist_ok=True)
+        before = {trade.scene: trade for trade in read(given.out) or []}
         trades = []
         for scene in scenes:
             trade, data = watched(scene, given.quick, given.jobs, console, words, executor)
             trades.append(trade)
             _kept(trade, data, given.out)
-        file = written(trades, given.out)
-    except SceneError as fault:
+        file = written(list((before | {trade.scene: trade for trade in trades}).values()), given.out)
+    except (SceneError, ValueError) as fault:
         print(fault, file=sys.stderr)
         return 2
     except KeyboardInterrupt:
