@@ -17,7 +17,7 @@ import numpy as np
 
 from multibody.system import EngineModel
 from multibody.units import link_stiffness
-from reference.problem import Scene
+from reference.problem import Scene, exponents
 
 LEVELS = 8
 STEPS_PER_PERIOD = 150  # of the fastest motion that matters, at level 0
@@ -56,7 +56,9 @@ class Level:
 
 def largest_step(scene: Scene, model: EngineModel) -> float:
     """Step of level 0 in units of the model, from the shortest period of the loading, the pendulum and the chain."""
-    slow = [period / model.units.time for period in scene.excitation.periods] + [2.0 * math.pi]
+    slow = [2.0 * math.pi]
+    if not scene.recorded:  # a record is linear within every step
+        slow += [2.0 * math.pi / (pace * model.units.time) for pace in exponents(scene).imag]
     masses = scene.masses / model.units.mass
     fastest = math.inf
     for axis in range(2):

@@ -18,6 +18,7 @@ from reference.problem import (
     State,
     Trajectory,
     builtin_scenes,
+    example_scenes,
     load_scene,
     phase_grid,
 )
@@ -38,6 +39,7 @@ __all__ = [
     "Trajectory",
     "amplification",
     "builtin_scenes",
+    "example_scenes",
     "load_scene",
     "modes",
     "phase_grid",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.problem import Outcome, Scene, State, Trajectory, checked_phases
+from reference.problem import Outcome, Scene, State, Trajectory, checked_phases, loading_period
 from reference.solver.runs import runs
 from reference.solver.samples import sampled
 from reference.solver.system import Array, Demand, Record, System, record_of
@@ -86,7 +86,7 @@ def _acceleration(system: System, x: Array, v: Array) -> float:
 
 def _checked_times(scene: Scene, times: ArrayLike | None) -> Array:
     if times is None:
-        samples = int(np.ceil(scene.duration / min(scene.excitation.periods) * SAMPLES_PER_PERIOD)) + 1
+        samples = int(np.ceil(scene.duration / loading_period(scene) * SAMPLES_PER_PERIOD)) + 1
         return np.linspace(0.0, scene.duration, min(samples, MOST_SAMPLES))
     instants = np.ascontiguousarray(times, dtype=float)
     inside = instants.ndim == 1 and np.all((instants >= 0.0) & (instants <= scene.duration))

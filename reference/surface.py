@@ -11,7 +11,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference.closed_form.frictionless import frictionless_peaks
-from reference.problem import GRAVITY, Amplification, Outcome, Scene, checked_phases, ground_peak, linear
+from reference.problem import (
+    GRAVITY,
+    Amplification,
+    Outcome,
+    Scene,
+    checked_phases,
+    exponents,
+    ground_peak,
+    linear,
+    loading_period,
+)
 from reference.solver.certified import NOT_MET, Peaks, certified_peaks
 from reference.solver.system import (
     OPEN,
@@ -36,6 +46,7 @@ OUTCOMES = {
     UNSOLVED: Outcome.SOLVER_FAILED,
 }
 STEPS_PER_PERIOD = 1000  # a run in trouble ends after so many steps per loading period, and FIRST_STEPS more
+STEPS_PER_KNOT = 10  # of a record, besides
 STEPS_PER_VIBRATION, MOST_FOR_VIBRATIONS = 30, 300_000  # of the chain's fastest, besides
 VIBRATIONS = 10.0  # of the chain during which forces hardly change: stiff links follow without swinging
 FIRST_STEPS = 20_000
@@ -143,16 +154,17 @@ def checked_demand(
     if cutoff is not None and regularization is not None:
         raise ValueError(f"cutoff = {cutoff!r}: belongs to the set-valued law; give no regularization with it")
     system = pack(scene, equations == "small", regularization, rest_condition == "printed")
-    period = min(scene.excitation.periods)
+    period, knots = loading_period(scene), STEPS_PER_KNOT * len(scene.record)
     vibrations = min(STEPS_PER_VIBRATION * scene.duration * system.fastest / (2.0 * np.pi), MOST_FOR_VIBRATIONS)
     with np.errstate(over="ignore"):  # refused by loads_are_finite
-        unit = float(np.sqrt((np.abs(scene.amplitudes).sum(axis=1) ** 2).sum()))
+        unit = float(np.sqrt((np.abs(system.amplitudes).sum(axis=1) ** 2).sum()))
+        unit += float(np.sqrt((system.record[:, 1:] ** 2).sum(axis=1)).max(initial=0.0))
     return system, Demand(
         tolerance=float(tolerance),
         unit=unit,
         period=time_scale(scene, unit, system.fastest),
         cutoff=0.0 if cutoff is None else float(cutoff),
-        step_limit=FIRST_STEPS + int(min(1e9, STEPS_PER_PERIOD * scene.duration / period + vibrations)),
+        step_limit=FIRST_STEPS + int(min(1e9, STEPS_PER_PERIOD * scene.duration / period + vibrations + knots)),
     )
 
 
@@ -163,8 +175,9 @@ def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
     The shortest of the loading's and the pendulum's periods, the softest link's, VIBRATIONS of the fastest, the decay
     of the loading, and the time in which it drives the platform across the cap.
     """
-    frequencies = [2.0 * np.pi / period for period in scene.excitation.periods]
-    frequencies += [*scene.excitation.decay, float(np.sqrt((GRAVITY + acceleration) / scene.radius))]
+    frequencies = [2.0 * np.pi / loading_period(scene), float(np.sqrt((GRAVITY + acceleration) / scene.radius))]
+    if not scene.recorded:
+        frequencies += (-exponents(scene).real).tolist()
     if len(scene.bodies) > 1:
         frequencies += [float(np.sqrt((scene.stiffness / scene.masses[1:, None]).min())), fastest / VIBRATIONS]
     return float(2.0 * np.pi / max(frequencies))
@@ -172,6 +185,8 @@ def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
 
 def loads_are_finite(system: System) -> bool:
     """Whether squares of accelerations, of which (5.1) is made, stay within double precision."""
-    largest = max(np.abs(part).max(initial=0.0) for part in (system.amplitudes, system.below, system.above))
+    largest = max(
+        np.abs(part).max(initial=0.0) for part in (system.amplitudes, system.record, system.below, system.above)
+    )
     with np.errstate(over="ignore"):
         return bool(np.isfinite(np.square(largest) * 1e8) and np.isfinite(np.square(system.mass_ratio)))

@@ -26,7 +26,7 @@ from multibody.integrate import Engine, silence
 from multibody.peak import Peaks
 from multibody.surface import assembled
 from reference import amplification
-from reference.problem import Outcome, Scene, ground_acceleration, ground_peak
+from reference.problem import Outcome, Scene, exponents, ground_acceleration, ground_peak, loading_period
 
 Array = NDArray[np.float64]
 Values = tuple[Array, Array]  # relative sizes and their errors, (P, S, N)
@@ -88,7 +88,8 @@ def _against(
 
 
 def _short(scene: Scene, periods: float) -> Scene:
-    return scene.model_copy(update={"duration": min(scene.duration, periods * max(scene.excitation.periods))})
+    longest = float(2.0 * np.pi / exponents(scene).imag.min())
+    return scene.model_copy(update={"duration": min(scene.duration, periods * longest)})
 
 
 def _stiffened(scene: Scene) -> Values:
@@ -111,7 +112,7 @@ def _at_constant_step(scene: Scene, v_reg: float | None, penetration: float, fac
     with silence():
         model = assembled(scene, "translational", v_reg)
         model.stiffen(penetration)
-        count = factor * min(MOST_STEPS, math.ceil(scene.duration / min(scene.excitation.periods) * STEPS_PER_PERIOD))
+        count = factor * min(MOST_STEPS, math.ceil(scene.duration / loading_period(scene) * STEPS_PER_PERIOD))
         for row, phase in enumerate(FEW):
             model.ground.set_phase(phase)
             start = model.start(None, ground_acceleration(scene, phase, [0.0])[0], penetration)

@@ -13,7 +13,7 @@ from comparison.account.budget import torus_distance
 from comparison.claims.evidence import Evidence
 from comparison.claims.humps import LEAST_SHARE, MOST_SHARE, SHARE, Counts, drawn, periodic, relief
 from reference import modes
-from reference.problem import load_scene
+from reference.problem import exponents, load_scene
 
 Array = NDArray[np.float64]
 
@@ -206,8 +206,8 @@ def near_resonance(case: str) -> Check:
 
     def check(evidence: Mapping[str, Evidence]) -> Verdict:
         scene = load_scene(case)
-        natural = modes(scene).period.ravel()
-        gaps = [float(np.abs(natural / period - 1.0).min()) for period in scene.excitation.periods]
+        natural, periods = modes(scene).period.ravel(), 2.0 * np.pi / exponents(scene).imag
+        gaps = [float(np.abs(natural / period - 1.0).min()) for period in periods]
         return judged(
             max(gaps) <= CLOSE, f"nearest natural period off by {' and '.join(f'{100.0 * g:.0f} %' for g in gaps)}"
         )

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.closed_form.phase_peaks import Series, largest, reached
 from reference.natural_modes import Modes, modes
-from reference.problem import Scene, checked_phases, exponents, ground_peak, linear
+from reference.problem import Scene, checked_phases, exponents, ground_peak, linear, loading_period
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -56,7 +56,7 @@ def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, NDArr
     _check(scene)
     natural = modes(scene)
     shortest = min(
-        *scene.excitation.periods, 2.0 * np.pi / max(float(natural.frequency.max()), *scene.excitation.decay)
+        loading_period(scene), 2.0 * np.pi / max(float(natural.frequency.max()), float(-exponents(scene).real.min()))
     )
     count = int(np.ceil(scene.duration / shortest * INTERVALS))
     half = 0.5 * scene.duration / count

@@ -1,7 +1,13 @@
 """The question both sides answer: scene, loading, measured quantity. The only thing they share."""
 
 from reference.problem.amplification import checked_phases, ground_peak, phase_grid
-from reference.problem.excitation import exponents, ground_acceleration, ground_displacement, ground_velocity
+from reference.problem.excitation import (
+    exponents,
+    ground_acceleration,
+    ground_displacement,
+    ground_velocity,
+    loading_period,
+)
 from reference.problem.family import Family, load_family
 from reference.problem.outcome import ADVICE, Outcome
 from reference.problem.reductions import (
@@ -17,7 +23,7 @@ from reference.problem.reductions import (
     unused_harmonics,
 )
 from reference.problem.result import Amplification, State, Trajectory
-from reference.problem.scene import GRAVITY, Scene, builtin_scenes, load_scene, parse_scene
+from reference.problem.scene import GRAVITY, Scene, builtin_scenes, example_scenes, load_scene, parse_scene
 from reference.problem.scene_error import SceneError
 
 __all__ = [
@@ -34,6 +40,7 @@ __all__ = [
     "builtin_scenes",
     "checked_phases",
     "even_ring",
+    "example_scenes",
     "exponents",
     "ground_acceleration",
     "ground_displacement",
@@ -44,6 +51,7 @@ __all__ = [
     "linear",
     "load_family",
     "load_scene",
+    "loading_period",
     "no_friction",
     "own_axes",
     "parse_scene",

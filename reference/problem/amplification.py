@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from reference.problem.excitation import exponents
+from reference.problem.excitation import exponents, ground_acceleration, loading_period
 from reference.problem.scene import Scene
 
 Array = NDArray[np.float64]
@@ -39,9 +39,20 @@ def phase_grid(points: int) -> Array:
 
 def ground_peak(scene: Scene, phases: ArrayLike) -> Array:
     """max_t |ground acceleration| over [0, duration] for each phase pair (M, 2): (M,), m/s^2, to rounding."""
+    pairs = checked_phases(phases)
+    if scene.recorded:
+        return np.full(len(pairs), _record_peak(scene))
     s = exponents(scene)
-    step = min(scene.excitation.periods) / SAMPLES_PER_PERIOD
-    return _ground_peaks(checked_phases(phases), scene.amplitudes, s, scene.duration, min(step, scene.duration / 8.0))
+    step = loading_period(scene) / SAMPLES_PER_PERIOD
+    return _ground_peaks(pairs, scene.amplitudes, s, scene.duration, min(step, scene.duration / 8.0))
+
+
+def _record_peak(scene: Scene) -> float:
+    """The norm of a vector that changes linearly is convex: it is largest at a knot, or where the motion ends."""
+    time = scene.record[:, 0]
+    instants = np.append(time[time < scene.duration], scene.duration)
+    with np.errstate(over="ignore"):
+        return float(np.sqrt((ground_acceleration(scene, (0.0, 0.0), instants) ** 2).sum(axis=1)).max())
 
 
 @njit(cache=True)

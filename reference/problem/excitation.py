@@ -1,9 +1,12 @@
 """
-Two-frequency damped ground motion (5.2)-(5.4), in closed form.
+Ground motion: two damped frequencies (5.2)-(5.4), in closed form, or a record, linear between its samples.
 
 Row k of the plate's acceleration is u_k(t) = sum_i a_ki exp(-lambda_i t) cos(nu_i t + alpha_i), the real part of
 sum_i a_ki exp(s_i t + i alpha_i) with s_i = -lambda_i + i nu_i; velocity and displacement integrate it from a plate
 at rest at t = 0.
+
+A recorded acceleration is linear from sample to sample in each direction and zero after its last knot
+(`Scene.record`); velocity and displacement are its exact integrals. It has no phases: those given are not looked at.
 """
 
 from __future__ import annotations
@@ -11,34 +14,52 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.problem.scene import Scene
+from reference.problem.scene import Excitation, Scene
 
 Array = NDArray[np.float64]
 
 
 def exponents(scene: Scene) -> NDArray[np.complex128]:
-    """Complex exponents s_i = -lambda_i + i nu_i of the harmonics, (2,), 1/s."""
-    return np.array(
-        [
-            complex(-decay, 2.0 * np.pi / period)
-            for decay, period in zip(scene.excitation.decay, scene.excitation.periods)
-        ]
-    )
+    """Complex exponents s_i = -lambda_i + i nu_i of the harmonics, (2,), 1/s. Raises ValueError for a record."""
+    load = scene.excitation
+    if not isinstance(load, Excitation):
+        raise ValueError(f"{scene.name}: a recorded motion has no harmonics")
+    return np.array([complex(-decay, 2.0 * np.pi / period) for decay, period in zip(load.decay, load.periods)])
+
+
+def loading_period(scene: Scene) -> float:
+    """
+    Time in which the ground acceleration changes, s: the shorter period, or 2 pi times the largest acceleration of the
+    record over its largest rate; the duration if a record is zero throughout.
+    """
+    if isinstance(scene.excitation, Excitation):
+        return min(scene.excitation.periods)
+    time, samples = scene.record[:, 0], scene.record[:, 1:]
+    with np.errstate(over="ignore"):
+        rate = np.abs(np.diff(samples, axis=0) / np.diff(time)[:, None]).max()
+    largest = np.abs(samples).max()
+    return float(2.0 * np.pi * largest / rate) if rate > 0.0 and np.isfinite(rate) else scene.duration
 
 
 def ground_acceleration(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """Plate acceleration (xi'', eta'', zeta'') (5.3) at `time` (T,), s, for one phase pair (2,), rad: (T, 3), m/s^2."""
+    if scene.recorded:
+        return _integrated(scene.record, time, 0)
     return _superpose(scene, phase, np.exp(np.multiply.outer(np.asarray(time, float), exponents(scene))))
 
 
 def ground_velocity(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """Plate velocity, (T, 3), m/s, zero at t = 0: the first integral of `ground_acceleration`."""
+    if scene.recorded:
+        return _integrated(scene.record, time, 1)
     s = exponents(scene)
     return _superpose(scene, phase, np.expm1(np.multiply.outer(np.asarray(time, float), s)) / s)
 
 
 def ground_displacement(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """Plate displacement, (T, 3), m, zero with zero velocity at t = 0: the second integral."""
+    if scene.recorded:
+        return _integrated(scene.record, time, 2)
     t = np.asarray(time, float)
     s = exponents(scene)
     st = np.multiply.outer(t, s)
@@ -52,3 +73,28 @@ def _superpose(scene: Scene, phase: ArrayLike, harmonics: NDArray[np.complex128]
     turned = harmonics * np.exp(1j * np.asarray(phase, float))
     result: Array = np.real(turned @ scene.amplitudes.T)
     return result
+
+
+def _integrated(knots: Array, time: ArrayLike, times: int) -> Array:
+    """The piecewise linear acceleration of a record (K, 4), integrated so many times from rest, at `time`: (T, 3)."""
+    t = np.asarray(time, float)
+    instant, start = knots[:, 0], knots[:, 1:]
+    span = np.diff(instant)[:, None]
+    slope = np.vstack([np.diff(start, axis=0) / span, np.zeros(3)])  # none behind the last knot
+    parts = [start]  # acceleration, velocity, displacement at the knots
+    if times > 0:
+        parts.append(_summed(span * (start[:-1] + 0.5 * span * slope[:-1])))
+    if times > 1:
+        parts.append(_summed(span * (parts[1][:-1] + span * (0.5 * start[:-1] + span / 6.0 * slope[:-1]))))
+    k = np.clip(np.searchsorted(instant, t, side="right") - 1, 0, len(instant) - 1)
+    since = (t - instant[k])[..., None]
+    result: Array = parts[-1][k]
+    power = np.ones_like(since)
+    for order, derivative in enumerate([*parts[-2::-1], slope], start=1):
+        power = power * since / order
+        result = result + power * derivative[k]
+    return np.where(t[..., None] < instant[0], 0.0, result)
+
+
+def _summed(gains: Array) -> Array:
+    return np.vstack([np.zeros(3), np.cumsum(gains, axis=0)])

@@ -1,7 +1,8 @@
 """
 A family of scenes that differ in one value: `friction = {range = [0.02, 0.2], steps = 10}` in place of a number.
 
-Any key of a scene file that holds one value may run: evenly over a range, or through `{values = [...]}`.
+Any key of a scene file that holds one value may run: evenly over a range, or through `{values = [...]}`, of a record
+also through its files: `record = {values = ["a.csv", "b.csv"]}` or `{values = [{x = "a.AT2"}, {x = "b.AT2"}]}`.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ RANGE, VALUES = {"range", "steps"}, {"values"}
 MOST = 1000  # scenes of one family
 
 Value = float | int | str
+Files = dict[str, str]  # of a record, by direction
 
 
 @dataclass(frozen=True)
@@ -59,10 +61,11 @@ def load_family(source: str | Path, amplitude: float | None = None) -> Family:
     for other, second in others:
         rule = f"only one key of a scene may run, and {key} does: give it a value, or write a file for each"
         raise SceneError(label, ".".join(map(str, other)), second, rule)
-    values = _values(label, key, table)
+    listed = _values(label, key, table)
+    values: Sequence[Value] = [_named(value) if isinstance(value, dict) else value for value in listed]
     short = key if any(isinstance(part, int) for part in path) else str(path[-1])
     scenes = []
-    for value, text in zip(values, _texts(label, key, values)):
+    for value, text in zip(listed, _texts(label, key, values)):
         member = validated_scene(_with(data, path, value), label, f"{name}[{short}={text}]")
         scenes.append(member if amplitude is None else member.with_amplitude(amplitude))
     return Family(name, tuple(scenes), key, tuple(values))
@@ -77,7 +80,7 @@ def _running(path: tuple[str | int, ...], value: Any) -> Iterator[tuple[tuple[st
             yield from _running((*path, key), part)
 
 
-def _values(label: str, key: str, table: dict[str, Any]) -> Sequence[Value]:
+def _values(label: str, key: str, table: dict[str, Any]) -> Sequence[Value | Files]:
     if set(table) == VALUES:
         return _listed(label, f"{key}.values", table["values"])
     if set(table) != RANGE:
@@ -96,11 +99,22 @@ def _values(label: str, key: str, table: dict[str, Any]) -> Sequence[Value]:
     return [int(value) for value in spaced] if whole else spaced
 
 
-def _listed(label: str, key: str, values: Any) -> Sequence[Value]:
-    alike = isinstance(values, list) and (all(map(_is_number, values)) or all(isinstance(v, str) for v in values))
+def _listed(label: str, key: str, values: Any) -> Sequence[Value | Files]:
+    kinds = (_is_number, lambda value: isinstance(value, str), _is_files)
+    alike = isinstance(values, list) and any(all(map(is_kind, values)) for is_kind in kinds)
     if not (alike and 1 <= len(values) <= MOST):
-        raise SceneError(label, key, values, f"must be a list of 1 to {MOST} finite numbers, or of texts")
+        rule = f"must be a list of 1 to {MOST} finite numbers, or of texts, or of tables of files"
+        raise SceneError(label, key, values, rule)
     return list(values)
+
+
+def _is_files(value: Any) -> bool:
+    return isinstance(value, dict) and len(value) > 0 and all(isinstance(name, str) for name in value.values())
+
+
+def _named(files: Files) -> str:
+    """The files of one record as one text."""
+    return "+".join(Path(name).stem for name in files.values())
 
 
 def _is_number(value: Any) -> bool:
@@ -117,7 +131,7 @@ def _texts(label: str, key: str, values: Sequence[Value]) -> list[str]:
     raise SceneError(label, key, twice, "is there twice, and the scenes are named by it: leave one away")
 
 
-def _with(data: dict[str, Any], path: tuple[str | int, ...], value: Value) -> dict[str, Any]:
+def _with(data: dict[str, Any], path: tuple[str | int, ...], value: Value | Files) -> dict[str, Any]:
     changed: Any = copy.deepcopy(data)
     place = changed
     for part in path[:-1]:

@@ -12,9 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from reference.problem.excitation import exponents
 from reference.problem.scene import GRAVITY, Scene
 
 FASTEST = 2e5  # rad in the whole motion: links that vibrate more often are stepped over at less cost than summed up
+RECORDED = "a recorded motion: no harmonics, no phases"
 
 LARGEST = 1e300  # m/s^2
 
@@ -32,6 +34,8 @@ class Reduction:
 
 def half_turn(scene: Scene) -> Reduction:
     """Adding pi to both phases turns the motion by half a turn about the vertical: same mu."""
+    if scene.recorded:
+        return Reduction(False, RECORDED)
     if scene.amplitudes[2].any():
         return Reduction(False, "vertical loading: every phase pair is its own")
     return Reduction(True, "no vertical loading: adding pi to both phases turns the motion by half a turn")
@@ -39,9 +43,9 @@ def half_turn(scene: Scene) -> Reduction:
 
 def own_axes(scene: Scene) -> Reduction:
     """Adding pi to either phase alone mirrors the motion: same mu."""
-    used = scene.amplitudes[:2] != 0.0
     if not half_turn(scene):
         return half_turn(scene)
+    used = scene.amplitudes[:2] != 0.0
     if (used.sum(axis=0) <= 1).all() and (used.sum(axis=1) <= 1).all():
         return Reduction(
             True, "each harmonic has its own axis and none is vertical: adding pi to either phase mirrors the motion"
@@ -103,7 +107,9 @@ def even_ring(scene: Scene) -> Reduction:
 
 
 def unused_harmonics(scene: Scene) -> list[int]:
-    """Harmonics without any amplitude (0, 1): their phase changes nothing."""
+    """Harmonics without any amplitude (0, 1): their phase changes nothing. Of a record none is left."""
+    if scene.recorded:
+        return [0, 1]
     return [int(harmonic) for harmonic in np.flatnonzero(~scene.amplitudes.any(axis=0))]
 
 
@@ -124,6 +130,8 @@ def linear(scene: Scene) -> Reduction:
         return Reduction(False, "lubricated: (4.3) keeps friction terms with xi'' x1 x1', which are not linear")
     if scene.friction_coefficient > 0.0:
         return Reduction(False, "dry friction is not linear")
+    if scene.recorded:
+        return Reduction(False, RECORDED)
     if scene.amplitudes[2].any():
         return Reduction(False, "vertical loading makes the pendulum's stiffness depend on time and phases")
     if not fastest(scene) * scene.duration <= FASTEST:
@@ -136,4 +144,5 @@ def fastest(scene: Scene) -> float:
     below = np.vstack([np.full((1, 2), scene.total_mass * GRAVITY / scene.radius), scene.stiffness])
     above = np.vstack([scene.stiffness, np.zeros((1, 2))])
     natural = math.sqrt(float((2.0 * (below + above) / scene.masses[:, None]).max()))  # Gershgorin
-    return max(natural, 2.0 * math.pi / min(scene.excitation.periods), *scene.excitation.decay)
+    load = exponents(scene)
+    return max(natural, float(load.imag.max()), float(-load.real.min()))

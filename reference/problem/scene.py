@@ -12,11 +12,11 @@ from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, ValidationError, model_validator
 
-from reference.problem.scene_error import MisfitError, SceneError, first_fault
-
-GRAVITY = 9.81  # m/s^2, the paper's value (section 5)
+from reference.problem.record_files import GRAVITY as GRAVITY
+from reference.problem.recorded import EXAMPLES, with_samples
+from reference.problem.scene_error import EXCITATIONS, MisfitError, SceneError, first_fault
 
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
@@ -72,6 +72,26 @@ class Excitation(Table):
     decay: Annotated[list[NonNegative], Field(min_length=2, max_length=2)]  # 1/s, lambda_i
 
 
+class Record(Table):
+    """Recorded ground acceleration in place of the two frequencies: its files, and the samples read from them."""
+
+    record: str | dict[str, str]  # a CSV file, or .AT2 files by direction, as written in the scene
+    scale: Positive = 1.0  # factor of every acceleration
+    samples: list[Annotated[list[float], Field(min_length=4, max_length=4)]]  # s and m/s^2 along x, y, z, unscaled
+
+    @property
+    def files(self) -> str:
+        """The files as they are called in texts."""
+        named = self.record.values() if isinstance(self.record, dict) else [self.record]
+        return ", ".join(Path(name).name for name in named)
+
+
+def _kind(excitation: Any) -> str:
+    """Which of the two an excitation is meant to be."""
+    recorded = "record" in excitation if isinstance(excitation, dict) else isinstance(excitation, Record)
+    return EXCITATIONS[int(recorded)]
+
+
 class Acceptance(Table):
     """Limits for `--check`: exact equations against the translational engine model, same v_reg."""
 
@@ -89,7 +109,9 @@ class Scene(Table):
     duration: Positive  # s
     isolator: Isolator
     bodies: Annotated[list[Body], Field(min_length=1)]
-    excitation: Excitation
+    excitation: Annotated[
+        Annotated[Excitation, Tag(EXCITATIONS[0])] | Annotated[Record, Tag(EXCITATIONS[1])], Discriminator(_kind)
+    ]
     acceptance: Acceptance = Acceptance()
     name: str = "scene"  # file stem or built-in name; set by load_scene
 
@@ -111,6 +133,8 @@ class Scene(Table):
         for key, value in derived.items():
             if not (math.isfinite(value) and value > 0.0):
                 raise MisfitError(key, value, "must be finite and positive in double precision")
+        if isinstance(self.excitation, Record) and not np.isfinite(self.record).all():
+            raise MisfitError("excitation.scale", self.excitation.scale, "must leave every sample finite")
         return self
 
     def __eq__(self, other: object) -> bool:
@@ -158,28 +182,64 @@ class Scene(Table):
         assert value is not None
         return value
 
+    @property
+    def recorded(self) -> bool:
+        """Whether a recorded motion takes the place of the two frequencies: then there are no phases."""
+        return isinstance(self.excitation, Record)
+
     @cached_property
     def amplitudes(self) -> NDArray[np.float64]:
-        """Amplitude matrix a_ki of (5.4), (3, 2), m/s^2, rows x, y, z; zero vertical row if none is given."""
+        """
+        Amplitude matrix a_ki of (5.4), (3, 2), m/s^2, rows x, y, z; zero vertical row if none is given.
+
+        Raises ValueError for a record, which has none: to call its loading zero would be a wrong answer.
+        """
+        if not isinstance(self.excitation, Excitation):
+            raise ValueError(f"{self.name}: a recorded motion has no amplitudes, periods, decay or phases")
         matrix = np.zeros((3, 2))
         matrix[: len(self.excitation.amplitudes)] = self.excitation.amplitudes
         return matrix
 
+    @cached_property
+    def record(self) -> NDArray[np.float64]:
+        """
+        Knots of a recorded motion, (K, 4): s from 0 on, and xi'', eta'', zeta'', m/s^2, scaled; (0, 4) without one.
+
+        A last sample that is not zero is followed by a knot at zero, as far behind it as the sample before.
+        """
+        if not isinstance(self.excitation, Record):
+            return np.zeros((0, 4))
+        knots = np.array(self.excitation.samples)
+        with np.errstate(over="ignore"):  # refused by validation
+            knots[:, 1:] *= self.excitation.scale
+        if knots[-1, 1:].any():
+            knots = np.vstack([knots, [2.0 * knots[-1, 0] - knots[-2, 0], 0.0, 0.0, 0.0]])
+        return knots
+
     def with_amplitude(self, amplitude: float) -> Scene:
-        """The same scene with the amplitude matrix scaled so that its largest entry is `amplitude`, m/s^2."""
-        largest = float(np.abs(self.amplitudes).max())
+        """
+        The same scene, its loading scaled so that the largest entry of the amplitude matrix, or the largest sample of a
+        record along any axis, is `amplitude`, m/s^2.
+        """
+        samples = self.record[:, 1:] if self.recorded else self.amplitudes
+        largest = float(np.abs(samples).max())
         if not (math.isfinite(amplitude) and amplitude > 0.0):
             raise SceneError(self.name, "amplitude", amplitude, "must be finite and greater than 0 m/s^2")
         if largest == 0.0:
-            raise SceneError(self.name, "excitation.amplitudes", 0.0, "all entries are 0: nothing to scale")
+            key = "record" if self.recorded else "amplitudes"
+            raise SceneError(self.name, f"excitation.{key}", 0.0, "all entries are 0: nothing to scale")
         data = self.model_dump(exclude_none=True)
-        scaled = (self.amplitudes / largest) * amplitude
-        data["excitation"]["amplitudes"] = scaled.tolist()
+        if self.recorded:
+            data["excitation"]["scale"] *= amplitude / largest
+        else:
+            data["excitation"]["amplitudes"] = ((self.amplitudes / largest) * amplitude).tolist()
         return Scene.model_validate(data)
 
     def digest(self) -> str:
         """Hash of everything that enters a result, for stores of results and for provenance."""
-        content = self.model_dump_json(exclude={"title", "name", "acceptance"})
+        content = self.model_dump_json(
+            exclude={"title": True, "name": True, "acceptance": True, "excitation": {"record": True}}
+        )
         return hashlib.sha256(content.encode()).hexdigest()[:16]
 
 
@@ -189,11 +249,16 @@ def builtin_scenes() -> list[str]:
     return sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
 
 
+def example_scenes() -> list[str]:
+    """Names of the scenes with a recorded motion that are shipped as examples."""
+    return sorted(entry.name.removesuffix(".toml") for entry in EXAMPLES.iterdir() if entry.name.endswith(".toml"))
+
+
 def load_scene(source: str | Path, amplitude: float | None = None) -> Scene:
     """
-    Read a scene: a built-in name (`builtin_scenes()`) or a path to a TOML file.
+    Read a scene: a built-in name (`builtin_scenes()`, `example_scenes()`) or a path to a TOML file.
 
-    `amplitude`, m/s^2, scales the amplitude matrix so that its largest entry has this value.
+    `amplitude`, m/s^2, scales the amplitude matrix, or the record, so that its largest entry has this value.
     Raises SceneError (file, key, value, rule) when anything in it is wrong.
     """
     scene = parse_scene(scene_text(source), str(source))
@@ -203,13 +268,15 @@ def load_scene(source: str | Path, amplitude: float | None = None) -> Scene:
 def scene_text(source: str | Path) -> bytes:
     """What is written in a built-in scene or a file. Raises SceneError if there is none."""
     label = str(source)
+    if label in example_scenes():
+        return (EXAMPLES / f"{label}.toml").read_bytes()
     if label in builtin_scenes():
         return (resources.files("reference.problem") / "scenes" / f"{label}.toml").read_bytes()
     try:
         return Path(source).read_bytes()
     except (OSError, ValueError) as fault:  # ValueError: no path at all, such as one with a null byte
         reason = getattr(fault, "strerror", None) or fault
-        rule = f"{reason}; give a TOML file or one of {', '.join(builtin_scenes())}"
+        rule = f"{reason}; give a TOML file or one of {', '.join(builtin_scenes() + example_scenes())}"
         raise SceneError(label, "scene", label, rule) from None
 
 
@@ -230,8 +297,8 @@ def scene_tables(text: bytes, label: str) -> dict[str, Any]:
 
 
 def validated_scene(data: dict[str, Any], label: str, name: str) -> Scene:
-    """The scene of these tables under this name; `label` names it in errors. Raises SceneError."""
+    """The scene of these tables under this name, its record read; `label` names it in errors. Raises SceneError."""
     try:
-        return Scene.model_validate({**data, "name": name})
+        return Scene.model_validate({**with_samples(data, label), "name": name})
     except ValidationError as fault:
         raise first_fault(label, fault) from None

@@ -6,6 +6,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
+EXCITATIONS = ("two frequencies", "recorded motion")  # pydantic puts which was meant into the place of a fault
+
 
 class SceneError(ValueError):
     """A scene that cannot be used. `str(error)` is one line: file, key, value, rule."""
@@ -44,7 +46,7 @@ def first_fault(file: str, fault: ValidationError) -> SceneError:
     misfit = error.get("ctx", {}).get("error")
     if isinstance(misfit, MisfitError):
         return SceneError(file, misfit.key, misfit.value, misfit.rule)
-    key = ".".join(str(part) for part in error["loc"]) or "scene"
+    key = ".".join(str(part) for part in error["loc"] if part not in EXCITATIONS) or "scene"
     if error["type"] == "extra_forbidden":
         return SceneError(file, key, error["input"], "unknown key; remove it or correct its spelling")
     if error["type"] == "missing":

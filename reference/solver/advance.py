@@ -7,7 +7,7 @@ from math import sqrt
 from reference.solver.chain import chain_acceleration
 from reference.solver.collocation import MONOMIALS, NODES, STAGES
 from reference.solver.compiled import compiled
-from reference.solver.ground import ground_at
+from reference.solver.ground import ground_at, knot_after
 from reference.solver.peaks import take_peaks
 from reference.solver.platform import moving
 from reference.solver.record import record_step
@@ -92,6 +92,22 @@ def remaining(system: System, work: Work, demand: Demand) -> float:
     """Time left, s; 0 when it is so little that nothing changes."""
     left = system.duration - work.run[TIME]
     return left if left > LAST * min(demand.period, system.duration) else 0.0
+
+
+@compiled
+def next_break(system: System, work: Work, demand: Demand) -> float:
+    """Where the loading has its next kink, s, or the motion ends: a step beyond it would lose its order."""
+    if system.record.shape[0] > 0:
+        k = knot_after(system.record, work.run[TIME] + LAST * min(demand.period, system.duration))
+        if k < system.record.shape[0]:
+            return min(system.record[k, 0], system.duration)
+    return system.duration
+
+
+@compiled
+def unbroken(system: System, work: Work, demand: Demand) -> float:
+    """Time that a step may take, s: to the loading's next kink, or what remains."""
+    return min(remaining(system, work, demand), next_break(system, work, demand) - work.run[TIME])
 
 
 @compiled

@@ -2,7 +2,17 @@
 
 from __future__ import annotations
 
-from reference.solver.advance import FATAL, adapt, begin, commit, length_factor, next_step, remaining, shortened
+from reference.solver.advance import (
+    FATAL,
+    adapt,
+    begin,
+    commit,
+    length_factor,
+    next_step,
+    remaining,
+    shortened,
+    unbroken,
+)
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled, merged
 from reference.solver.events import excess_at, expand, first_onset, lowest
@@ -59,7 +69,7 @@ def rest_phase(system: System, phase: Array, work: Work, demand: Demand, record:
     while remaining(system, work, demand) > 0.0:
         if not next_step(work, demand):
             return STEP_LIMIT, REST
-        h = min(run[LENGTH], remaining(system, work, demand))
+        h = min(run[LENGTH], unbroken(system, work, demand))
         if run[HELD] > 0.0:
             h = min(h, run[HELD])
         rest_step(system, phase, work, run[TIME], h)

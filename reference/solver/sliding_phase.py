@@ -18,6 +18,7 @@ from reference.solver.advance import (
     remaining,
     shortened,
     too_short,
+    unbroken,
 )
 from reference.solver.arc import settled_direction, squared_total
 from reference.solver.chain import eliminate_chain, load_chain
@@ -145,7 +146,7 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
     while remaining(system, work, demand) > 0.0:
         if not next_step(work, demand):
             return STEP_LIMIT, SLIDING
-        h = min(run[LENGTH], remaining(system, work, demand))
+        h = min(run[LENGTH], unbroken(system, work, demand))
         vx, vy = work.v[0, 0], work.v[0, 1]
         speed = sqrt(vx * vx + vy * vy)
         braking = -(vx * work.a0[0, 0] + vy * work.a0[0, 1]) / speed if speed > 0.0 else 0.0

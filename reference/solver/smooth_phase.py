@@ -13,6 +13,7 @@ from reference.solver.advance import (
     remaining,
     shortened,
     too_short,
+    unbroken,
 )
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import merged
@@ -56,7 +57,7 @@ def smooth_phase(
     while remaining(system, work, demand) > 0.0:
         if not next_step(work, demand):
             return STEP_LIMIT, contact
-        h = min(run[LENGTH], remaining(system, work, demand))
+        h = min(run[LENGTH], unbroken(system, work, demand))
         if run[HELD] > 0.0:
             h = min(h, run[HELD])
         first_guess(work, h)

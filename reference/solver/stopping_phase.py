@@ -6,7 +6,7 @@ from math import cos, exp, log, pi, sin
 
 import numpy as np
 
-from reference.solver.advance import FATAL, SHORTEST, begin_with, commit, drive, length_factor, next_step
+from reference.solver.advance import FATAL, SHORTEST, begin_with, commit, drive, length_factor, next_break, next_step
 from reference.solver.arc import arc_peak
 from reference.solver.chain import chain_acceleration
 from reference.solver.collocation import STAGES
@@ -134,8 +134,9 @@ def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, rec
             h *= min(0.7, factor)
             continue
         end = work.turning[CLOCK, STAGES - 1]
-        if end > system.duration + SHORTEST * demand.period:
-            portion = first_crossing(work.turning[CLOCK], run[TIME], system.duration)
+        limit = next_break(system, work, demand)
+        if end > limit + SHORTEST * demand.period:
+            portion = first_crossing(work.turning[CLOCK], run[TIME], limit)
             if portion < 1.0 - 1e-9:
                 h *= portion
                 continue

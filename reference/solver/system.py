@@ -44,6 +44,7 @@ class System(NamedTuple):
     above: Array  # (N, 2), k_{i+1,i} / m_i, zero for the last body
     amplitudes: Array  # (3, 2), m/s^2
     exponents: Complex  # (2,), 1/s
+    record: Array  # (K, 4), s and m/s^2, knots of a recorded motion, between which it is linear; (0, 4) without one
     duration: float  # s
     fastest: float  # rad/s, bound of the chain's natural frequencies
 
@@ -141,8 +142,9 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
         gravity=GRAVITY,
         below=below,
         above=above,
-        amplitudes=scene.amplitudes,
-        exponents=exponents(scene),
+        amplitudes=np.zeros((3, 2)) if scene.recorded else scene.amplitudes,
+        exponents=np.zeros(2, np.complex128) if scene.recorded else exponents(scene),
+        record=scene.record,
         duration=float(scene.duration),
         fastest=float(np.sqrt(2.0 * (below + above).max())),  # Gershgorin's bound
     )

@@ -79,7 +79,7 @@ def smooth_run(
     while t < law.duration:
         stiff = zones and inside and v_reg is not None and v_reg < CREEP_IS_STIFF
         kinks = [kink] if zones else []
-        t, state, number = march(rhs, t, state, law.duration, kinks, observe, peaks, tolerance, stiff, floor)
+        t, state, number = march(rhs, t, state, law.next_break(t), kinks, observe, peaks, tolerance, stiff, floor)
         if number is not None:
             inside = not inside
     return Answer(_factors(scene, phase, peaks), state[: 2 * n].reshape(n, 2), law.swing)
@@ -147,7 +147,10 @@ class _SetValued:
 
         end = law.duration if until is None else until
         peaks = self.peaks if events else Peaks([0.0], n)
-        t, y, _ = march(rhs, t, y, end, [onset] if events else [], observe, peaks, self.tolerance)
+        number = None
+        while t < end and number is None:
+            stop = min(end, law.next_break(t))
+            t, y, number = march(rhs, t, y, stop, [onset] if events else [], observe, peaks, self.tolerance)
         return t, y
 
     # onset -----------------------------------------------------------------------------------------------------------
@@ -223,17 +226,24 @@ class _SetValued:
             return law.absolute_squares(t, force, (ax, ay, az)), speed * law.stretch(q[0], q[1], ex, ey)
 
         over, still, fast = 0, 1, 2
+        stop = law.next_break(t)
         events = [
-            lambda _, z: z[0] - law.duration,
+            lambda _, z: z[0] - stop,
             lambda _, z: math.log(STILL) - 0.01 - z[1],
             lambda _, z: z[1] - math.log(STIFF_BELOW),
         ]
         z = np.concatenate([[t, log_speed, ex, ey], y[: 2 * n], y[2 * n + 2 :]])
-        number: int | None = None
-        if stiff and log_speed < math.log(STIFF_BELOW):
-            _, z, number = march(rhs, 0.0, z, math.inf, events, observe, self.peaks, 10.0 * self.tolerance, stiff=True)
-        if number in (None, fast):
-            _, z, number = march(rhs, 0.0, z, math.inf, events[:2], observe, self.peaks, self.tolerance)
+        number: int | None = over
+        while number == over and t < law.duration:
+            stop, number = law.next_break(t), None
+            if stiff and z[1] < math.log(STIFF_BELOW):
+                _, z, number = march(
+                    rhs, 0.0, z, math.inf, events, observe, self.peaks, 10.0 * self.tolerance, stiff=True
+                )
+            if number in (None, fast):
+                _, z, number = march(rhs, 0.0, z, math.inf, events[:2], observe, self.peaks, self.tolerance)
+            if number == over:
+                t = z[0] = stop
         t, speed, q, _, ex, ey = parts(z)
         if number == over:
             return law.duration, np.concatenate([q, [speed * ex, speed * ey], z[4 + 2 * n :]])

@@ -5,6 +5,8 @@ from __future__ import annotations
 import cmath
 import math
 
+import numpy as np
+
 from reference.problem import GRAVITY, Scene
 
 
@@ -34,6 +36,11 @@ class Law:
         self.swing = 0.0  # largest sqrt(x1^2 + y1^2)/rho and smallest normal force of the states accepted so far
         self.least_normal = math.inf
         load = scene.excitation
+        self.breaks = [scene.duration]  # s, where the ground acceleration has a kink, and the end
+        self.record = scene.record if scene.recorded else None
+        if self.record is not None:
+            self.breaks = [float(t) for t in self.record[:, 0] if 0.0 < t < scene.duration] + self.breaks
+            return
         exponents = [complex(-load.decay[i], 2.0 * math.pi / load.periods[i]) for i in range(2)]
         self.waves = [(exponents[i], phase[i], scene.amplitudes[:, i].tolist()) for i in range(2)]
 
@@ -43,7 +50,13 @@ class Law:
         self.swing = max(self.swing, math.hypot(x, y) / self.rho)
         self.least_normal = min(self.least_normal, normal)
 
+    def next_break(self, t: float) -> float:
+        return next((instant for instant in self.breaks if instant > t), self.duration)
+
     def ground(self, t: float) -> tuple[float, float, float]:
+        if self.record is not None:
+            x, y, z = (float(np.interp(t, self.record[:, 0], self.record[:, k], right=0.0)) for k in (1, 2, 3))
+            return x, y, z
         first, second = (cmath.exp(s * t + 1j * alpha).real for s, alpha, _ in self.waves)
         a, b = self.waves[0][2], self.waves[1][2]
         return a[0] * first + b[0] * second, a[1] * first + b[1] * second, a[2] * first + b[2] * second

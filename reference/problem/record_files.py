@@ -1,0 +1,145 @@
+"""
+Recorded accelerograms: CSV, all directions in one file, and PEER NGA .AT2, one direction per file.
+
+Both end as samples (K, 4): time from the first sample on, s, and acceleration along x, y, z, m/s^2, zero along a
+direction that was not recorded. What is between samples is said by `excitation.py`.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Mapping
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+GRAVITY = 9.81  # m/s^2, the paper's value (section 5): a record in g keeps its ratio to the weight
+AXES = ("x", "y", "z")
+COLUMNS = ("time", "ax", "ay", "az")
+UNITS = {"m/s^2": 1.0, "m/s2": 1.0, "m/s²": 1.0, "m/s/s": 1.0, "g": GRAVITY, "cm/s^2": 0.01, "cm/s2": 0.01}
+UNITS |= {"cm/s²": 0.01, "gal": 0.01}
+
+COLUMN = re.compile(r"(\w+)\s*(?:[\[(]\s*(.*?)\s*[\])])?")
+NEW_HEADER = re.compile(r"NPTS\s*=\s*([^\s,]+)[\s,]+DT\s*=\s*([^\s,]+)", re.IGNORECASE)
+OLD_HEADER = re.compile(r"([^\s,]+)[\s,]+([^\s,]+)[\s,]+NPTS[\s,]+DT", re.IGNORECASE)
+HEADER_LINES = 4
+SAME_STEP = 1e-6  # relative: DT is printed with four to six digits
+
+
+class RecordError(ValueError):
+    """A file that is no record: one line with the place in it, what stands there, and the rule."""
+
+
+def csv_samples(text: str) -> Array:
+    """
+    Samples (K, 4) of a CSV file: lines that begin with # are comments, the first other one names columns and units.
+
+    Columns: time [s] and at least one of ax, ay, az in [m/s^2], [g] or [cm/s^2] ([gal]). Raises RecordError.
+    """
+    lines = ((number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip())
+    rows = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
+    if not rows:
+        raise RecordError("empty: must have a header, as time [s], ax [m/s^2], ay [m/s^2], and samples")
+    head, header = rows[0]
+    columns = [_column(head, cell) for cell in _cells(header)]
+    names = [name for name, _ in columns]
+    for name in names:
+        if names.count(name) > 1:
+            raise RecordError(f"line {head}: column {name} is there twice")
+    if "time" not in names or len(names) < 2:
+        raise RecordError(f"line {head}: {header.strip()!r}: must have time and at least one of ax, ay, az")
+    samples = np.zeros((len(rows) - 1, 4))
+    for row, (number, line) in enumerate(rows[1:]):
+        cells = _cells(line)
+        if len(cells) != len(columns):
+            raise RecordError(f"line {number}: {len(cells)} values: the header names {len(columns)} columns")
+        for (name, unit), cell in zip(columns, cells):
+            samples[row, COLUMNS.index(name)] = unit * _number(number, cell)
+        if row and samples[row, 0] <= samples[row - 1, 0]:
+            raise RecordError(f"line {number}: time {samples[row, 0]:g} s after {samples[row - 1, 0]:g} s: must rise")
+    return _checked(samples)
+
+
+def at2_samples(texts: Mapping[str, str]) -> Array:
+    """
+    Samples (K, 4) of PEER NGA .AT2 files, by the axis each is recorded along.
+
+    All must have the same DT; the ground is at rest along an axis whose file ends before the others. RecordError.
+    """
+    steps, values = {}, {}
+    for axis, text in texts.items():
+        steps[axis], values[axis] = _at2(axis, text)
+    for (first, step), (second, other) in pairwise(steps.items()):
+        if abs(step - other) > SAME_STEP * step:
+            raise RecordError(f"DT = {step:g} s along {first} and {other:g} s along {second}: must be the same")
+    samples = np.zeros((max(map(len, values.values())), 4))
+    samples[:, 0] = next(iter(steps.values())) * np.arange(len(samples))
+    for axis, column in values.items():
+        samples[: len(column), 1 + AXES.index(axis)] = GRAVITY * column
+    return _checked(samples)
+
+
+def _at2(axis: str, text: str) -> tuple[float, Array]:
+    """DT, s, and the accelerations of one file, in g."""
+    lines = text.splitlines()
+    head = "\n".join(lines[:HEADER_LINES])
+    if not re.search(r"UNITS OF G\b", head, re.IGNORECASE):
+        raise RecordError(f"{axis}: the header names no unit: one of its four lines must say 'IN UNITS OF G'")
+    found = next((match for line in lines[:HEADER_LINES] if (match := _sizes(line))), None)
+    if found is None:
+        raise RecordError(f"{axis}: the header must have a line 'NPTS= 1000, DT= .0100 SEC'")
+    count, step = found.groups()
+    if not (count.isdecimal() and int(count) > 0):
+        raise RecordError(f"{axis}: NPTS = {count!r}: must be a whole number greater than 0")
+    spacing = _number(HEADER_LINES, step)
+    if spacing <= 0.0:
+        raise RecordError(f"{axis}: DT = {step} s: must be greater than 0")
+    values = [_number(number, cell) for number, line in enumerate(lines, 1) if number > HEADER_LINES
+              for cell in line.split()]  # fmt: skip
+    if len(values) != int(count):
+        raise RecordError(f"{axis}: {len(values)} values: the header says NPTS = {count}")
+    return spacing, np.array(values)
+
+
+def _sizes(line: str) -> re.Match[str] | None:
+    return NEW_HEADER.search(line) or OLD_HEADER.search(line)
+
+
+def _cells(line: str) -> list[str]:
+    return [cell.strip() for cell in next(csv.reader(io.StringIO(line)))]
+
+
+def _column(line: int, cell: str) -> tuple[str, float]:
+    """Name of a column and its unit in SI."""
+    match = COLUMN.fullmatch(cell)
+    if match is None or match[1].lower() not in COLUMNS:
+        raise RecordError(f"line {line}: column {cell!r}: must be one of time, ax, ay, az with its unit")
+    name, unit = match[1].lower(), (match[2] or "").lower()
+    units = {"s": 1.0} if name == "time" else UNITS
+    allowed = "time [s]" if name == "time" else f"{name} [m/s^2], {name} [g] or {name} [cm/s^2]"
+    if unit not in units:
+        said = f"unknown unit {match[2]!r}" if unit else "no unit"
+        raise RecordError(f"line {line}: column {cell!r}: {said}: write {allowed}")
+    return name, units[unit]
+
+
+def _number(line: int, cell: str) -> float:
+    try:
+        value = float(cell)
+    except ValueError:
+        raise RecordError(f"line {line}: {cell!r}: must be a number") from None
+    if not np.isfinite(value):
+        raise RecordError(f"line {line}: {cell}: must be finite")
+    return value
+
+
+def _checked(samples: Array) -> Array:
+    if len(samples) < 2:
+        raise RecordError(f"{len(samples)} samples: must have at least 2")
+    samples[:, 0] -= samples[0, 0]
+    return samples

@@ -1,0 +1,132 @@
+"""Readers of recorded accelerograms: what is written is read, in SI, and what is wrong is refused in one line."""
+
+from __future__ import annotations
+
+from importlib import resources
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from reference.problem import GRAVITY
+from reference.problem.record_files import RecordError, at2_samples, csv_samples
+from reference.problem.synthetic import texts
+
+finite = st.floats(-1e3, 1e3)
+PLAIN = "time [s],ax [g]\n0,0.1\n0.01,0.2\n"
+
+
+def at2(values, step=0.01, count=None, unit="UNITS OF G", sizes="NPTS= {:6d}, DT= {:g} SEC,") -> str:
+    rows = [" ".join(repr(float(v)) for v in values[i : i + 5]) for i in range(0, len(values), 5)]
+    head = ["PEER", "somewhere", f"ACCELERATION TIME SERIES IN {unit}"]
+    return "\n".join([*head, sizes.format(len(values) if count is None else count, step), *rows])
+
+
+@given(
+    st.lists(st.tuples(st.floats(1e-3, 1.0), finite, finite, finite), min_size=2, max_size=30),
+    st.sets(st.sampled_from(["ax", "ay", "az"]), min_size=1),
+    st.permutations([0, 1, 2, 3]),
+    st.sampled_from(["[{}]", "({})", " [ {} ] "]),
+)
+def test_csv_reads_what_was_written(rows, axes, order, brackets):
+    """repr keeps every bit; columns in any order, any of the three axes absent, times from the first on."""
+    time = np.cumsum([row[0] for row in rows])
+    table = np.column_stack([time, np.array(rows)[:, 1:]])
+    names = ["time", "ax", "ay", "az"]
+    kept = [i for i in order if names[i] in axes or i == 0]
+    header = ",".join(names[i] + brackets.format("s" if i == 0 else "m/s^2") for i in kept)
+    lines = [",".join(repr(float(row[i])) for i in kept) for row in table]
+    samples = csv_samples("# made up\n" + header + "\n" + "\n".join(lines))
+    for i, name in enumerate(names[1:], start=1):
+        assert (samples[:, i] == (table[:, i] if name in axes else 0.0)).all()
+    assert (samples[:, 0] == time - time[0]).all()
+
+
+@given(st.lists(finite, min_size=2, max_size=40), st.floats(1e-3, 0.1), st.booleans())
+def test_at2_reads_what_was_written_under_either_header(values, step, old):
+    """repr keeps every bit of the values; %g six digits of DT."""
+    sizes = "{:6d}  {:g}  NPTS, DT" if old else "NPTS= {:6d}, DT= {:g} SEC,"
+    samples = at2_samples({"y": at2(values, step, sizes=sizes)})
+    assert (samples[:, 2] == GRAVITY * np.array(values)).all()
+    assert not samples[:, [1, 3]].any()
+    assert samples[:, 0] == pytest.approx(step * np.arange(len(values)), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"), [("m/s^2", 1.0), ("m/s2", 1.0), ("g", GRAVITY), ("cm/s^2", 0.01), ("gal", 0.01), ("Gal", 0.01)]
+)
+def test_units_become_si(unit, factor):
+    samples = csv_samples(PLAIN.replace("[g]", f"[{unit}]"))
+    assert samples[:, 1] == pytest.approx([0.1 * factor, 0.2 * factor], rel=1e-15)
+
+
+def test_a_direction_that_ends_early_is_at_rest_then():
+    samples = at2_samples({"x": at2([1.0, 2.0, 3.0]), "z": at2([4.0, 5.0])})
+    assert samples[:, [1, 3]] == pytest.approx(GRAVITY * np.array([[1.0, 4.0], [2.0, 5.0], [3.0, 0.0]]))
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "empty"),
+        ("# only a comment\n", "empty"),
+        ("time [s],ax [g]\n", "0 samples"),
+        ("time [s],ax [g]\n0,1\n", "1 samples"),
+        (PLAIN.replace(" [g]", ""), "no unit"),
+        (PLAIN.replace(" [s]", ""), "no unit"),
+        (PLAIN.replace("[g]", "[ft/s^2]"), "unknown unit 'ft/s^2'"),
+        (PLAIN.replace("[s]", "[ms]"), "unknown unit 'ms'"),
+        (PLAIN.replace("ax", "vx"), "column 'vx [g]'"),
+        (PLAIN.replace("time [s]", "ay [g]"), "must have time"),
+        (PLAIN.replace("time [s],ax", "time [s],ax [g],ax"), "column ax is there twice"),
+        (PLAIN.replace("0.2", "nan"), "line 3: nan: must be finite"),
+        (PLAIN.replace("0.2", "inf"), "line 3: inf: must be finite"),
+        (PLAIN.replace("0.2", "x"), "line 3: 'x': must be a number"),
+        (PLAIN.replace("0.2", "0.2,3"), "line 3: 3 values"),
+        (PLAIN + "0.01,0.3\n", "line 4: time 0.01 s after 0.01 s: must rise"),
+        (PLAIN + "0.005,0.3\n", "line 4: time 0.005 s after 0.01 s: must rise"),
+    ],
+)
+def test_csv_that_is_none_is_refused_in_one_line(text, said):
+    with pytest.raises(RecordError) as refusal:
+        csv_samples(text)
+    assert said in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("files", "said"),
+    [
+        ({"x": ""}, "names no unit"),
+        ({"x": at2([1.0, 2.0], unit="UNITS OF CM/SEC/SEC")}, "names no unit"),
+        ({"x": at2([1.0, 2.0], sizes="{} values, {} s")}, "must have a line 'NPTS"),
+        ({"x": at2([1.0, 2.0], count=3)}, "2 values: the header says NPTS = 3"),
+        ({"x": at2([1.0, 2.0], count=0)}, "NPTS = '0'"),
+        ({"x": at2([1.0, 2.0], step=-0.01)}, "DT = -0.01 s"),
+        ({"x": at2([1.0, float("nan")])}, "line 5: nan: must be finite"),
+        ({"x": at2([1.0, 2.0]), "y": at2([1.0, 2.0], step=0.02)}, "DT = 0.01 s along x and 0.02 s along y"),
+        ({"x": at2([1.0])}, "1 samples"),
+    ],
+)
+def test_at2_that_is_none_is_refused_in_one_line(files, said):
+    with pytest.raises(RecordError) as refusal:
+        at2_samples(files)
+    assert said in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def test_shipped_records_are_those_of_their_formula():
+    """To the digits printed: a machine's sine may differ in the last bit."""
+    folder = resources.files("reference.problem") / "examples"
+    made = texts()
+    assert sorted(made) == sorted(entry.name for entry in folder.iterdir() if not entry.name.endswith(".toml"))
+    for name, text in made.items():
+        there = (folder / name).read_text()
+        if name.endswith(".csv"):
+            read = csv_samples(there), csv_samples(text)
+        else:
+            read = at2_samples({"x": there}), at2_samples({"x": text})
+        assert read[0] == pytest.approx(read[1], rel=1e-5, abs=1e-9), name
+        assert "Synthetic" in there.splitlines()[0]
+        assert 600 <= len(read[0]) <= 1000

@@ -1,0 +1,174 @@
+"""A scene with a recorded motion: its samples, what is between and behind them, and how it is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from scipy.integrate import quad
+
+from reference.problem import (
+    Scene,
+    SceneError,
+    builtin_scenes,
+    example_scenes,
+    ground_acceleration,
+    ground_displacement,
+    ground_peak,
+    ground_velocity,
+    load_family,
+    load_scene,
+    loading_period,
+)
+
+HEAD = """title = "recorded"
+[isolator]
+period = 1.0
+friction = 0.1
+[[bodies]]
+mass = 1.0
+[excitation]
+"""
+CSV = "time [s],ax [m/s^2],ay [m/s^2]\n0,0.5,0\n0.1,1,-2\n0.3,-3,1\n0.4,2,4\n"
+AT2 = "A\nB\nIN UNITS OF G\nNPTS= 3, DT= .0200 SEC\n 0.0 0.1 0.0\n"
+KNOTS = [[0.0, 0.5, 0.0, 0.0], [0.1, 1.0, -2.0, 0.0], [0.3, -3.0, 1.0, 0.0], [0.4, 2.0, 4.0, 0.0], [0.5, 0, 0, 0]]
+ANY = (0.0, 0.0)  # a record has no phases
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "a.csv").write_text(CSV)
+    (tmp_path / "b.csv").write_text(CSV.replace("-3", "-6"))
+    (tmp_path / "x.AT2").write_text(AT2)
+    (tmp_path / "slow.AT2").write_text(AT2.replace(".0200", ".0300"))
+    return tmp_path
+
+
+def written(folder, excitation: str, top: str = "duration = 0.8\n"):
+    path = folder / "scene.toml"
+    path.write_text(top + HEAD + excitation + "\n")
+    return path
+
+
+def test_paths_are_relative_to_the_scene_and_the_last_sample_falls_to_zero_in_its_own_interval(folder, monkeypatch):
+    scene = load_scene(written(folder, 'record = "a.csv"'))
+    assert scene.recorded
+    assert scene.record == pytest.approx(np.array(KNOTS))
+    monkeypatch.chdir(folder)
+    assert load_scene("scene.toml").record == pytest.approx(np.array(KNOTS))
+
+
+def test_at2_files_by_direction_and_their_scale(folder):
+    scene = load_scene(written(folder, 'record = {z = "x.AT2"}\nscale = 2.0'))
+    assert scene.record[:, 3] == pytest.approx([0.0, 2.0 * 0.981, 0.0])
+
+
+def test_without_a_duration_a_scene_lasts_as_long_as_its_record(folder):
+    assert load_scene(written(folder, 'record = "a.csv"', top="")).duration == pytest.approx(0.4)
+
+
+def test_between_samples_the_acceleration_is_linear_and_behind_them_zero(folder):
+    scene = load_scene(written(folder, 'record = "a.csv"'))
+    time = np.linspace(0.0, 0.8, 33)
+    knots = np.array(KNOTS)
+    expected = np.column_stack([np.interp(time, knots[:, 0], knots[:, k], left=0.0, right=0.0) for k in (1, 2, 3)])
+    assert ground_acceleration(scene, ANY, time) == pytest.approx(expected, abs=1e-14)
+    assert (ground_acceleration(scene, (1.0, 2.0), time) == ground_acceleration(scene, ANY, time)).all()
+
+
+@pytest.mark.parametrize("end", [0.05, 0.1, 0.37, 0.47, 0.8])
+def test_velocity_and_displacement_integrate_the_record_exactly(folder, end):
+    """Against quadrature that knows the knots, to its own 1e-13."""
+    scene = load_scene(written(folder, 'record = "a.csv"'))
+    for axis in range(2):
+        inside = [t for t, *_ in KNOTS if 0.0 < t < end]
+
+        def pace(t, axis=axis):
+            return float(ground_acceleration(scene, ANY, [t])[0, axis])
+
+        gained, _ = quad(pace, 0.0, end, points=inside)
+        covered, _ = quad(lambda t, pace=pace: (end - t) * pace(t), 0.0, end, points=inside)
+        assert ground_velocity(scene, ANY, [end])[0, axis] == pytest.approx(gained, abs=1e-13)
+        assert ground_displacement(scene, ANY, [end])[0, axis] == pytest.approx(covered, abs=1e-13)
+
+
+@given(arrays(float, (6, 3), elements=st.floats(-5.0, 5.0)), st.floats(0.05, 1.2))
+def test_the_peak_is_at_a_knot_or_at_the_end(values, duration):
+    """No dense sampling finds more, and it finds as much to the spacing times the largest rate."""
+    table = {
+        "title": "record",
+        "duration": duration,
+        "isolator": {"period": 1.0, "friction": 0.1},
+        "bodies": [{"mass": 1.0}],
+        "excitation": {"record": "x.csv", "samples": np.column_stack([0.2 * np.arange(6), values]).tolist()},
+    }
+    scene = Scene.model_validate(table)
+    dense = np.linalg.norm(ground_acceleration(scene, ANY, np.linspace(0.0, duration, 2001)), axis=1).max()
+    (peak,) = ground_peak(scene, [ANY])
+    assert dense <= peak * (1.0 + 1e-12)
+    assert dense >= peak - duration / 2000 * 10.0 * np.sqrt(3.0) / 0.2
+
+
+def test_the_amplitude_is_the_largest_sample(folder):
+    scene = load_scene(written(folder, 'record = "a.csv"'), amplitude=8.0)
+    assert np.abs(scene.record[:, 1:]).max() == pytest.approx(8.0, rel=1e-15)
+    assert loading_period(scene) == pytest.approx(2.0 * np.pi * 4.0 / 50.0)
+
+
+def test_the_hash_is_of_the_samples_not_of_their_file(folder):
+    (folder / "copy.csv").write_text("# another name\n" + CSV)
+    one, same, other = (load_scene(written(folder, f'record = "{name}.csv"')) for name in ("a", "copy", "b"))
+    assert one.digest() == same.digest() != other.digest()
+
+
+@pytest.mark.parametrize(
+    ("excitation", "key", "said"),
+    [
+        ('record = "none.csv"', "excitation.record", "No such file or directory; paths are relative to the scene file"),
+        ('record = "a.txt"', "excitation.record", "must be a CSV file"),
+        ("record = 3", "excitation.record", "must be a CSV file"),
+        ('record = ""', "excitation.record", "must be a CSV file"),
+        ("record = {}", "excitation.record", "must be a CSV file"),
+        ('record = {x = "a.csv"}', "excitation.record", "must be a CSV file"),
+        ('record = {w = "x.AT2"}', "excitation.record", "must be a CSV file"),
+        ('record = {x = "x.AT2", y = "gone.AT2"}', "excitation.record.y", "No such file or directory"),
+        ('record = {x = "x.AT2", y = "slow.AT2"}', "excitation.record", "must be the same"),
+        ('record = "a.csv"\nperiods = [1.0, 2.0]', "excitation.periods", "a record takes the place"),
+        ('record = "a.csv"\nsamples = [[0.0, 0.0, 0.0, 0.0]]', "excitation.samples", "unknown key"),
+        ('record = "a.csv"\nscale = 0.0', "excitation.scale", "greater than 0"),
+        ('record = "a.csv"\nscale = 1e308', "excitation.scale", "must leave every sample finite"),
+        ('record = "a.csv"\nscales = 2.0', "excitation.scales", "unknown key"),
+        ("scale = 2.0", "excitation.scale", "unknown key"),
+    ],
+)
+def test_a_wrong_record_is_refused_in_one_line(folder, excitation, key, said):
+    with pytest.raises(SceneError) as refusal:
+        load_scene(written(folder, excitation))
+    assert (refusal.value.key, "\n" in str(refusal.value)) == (key, False)
+    assert said in str(refusal.value)
+
+
+def test_families_run_over_records_and_over_scales(folder):
+    files = load_family(written(folder, 'record = {values = ["a.csv", "b.csv"]}'))
+    assert [scene.name for scene in files.scenes] == ["scene[record=a]", "scene[record=b]"]
+    assert [float(scene.record[2, 1]) for scene in files.scenes] == [-3.0, -6.0]
+    tables = load_family(written(folder, 'record = {values = [{x = "x.AT2"}, {x = "x.AT2", y = "x.AT2"}]}'))
+    assert tables.values == ("x", "x+x")
+    scales = load_family(written(folder, 'record = "a.csv"\nscale = {range = [0.5, 2.0], steps = 4}'))
+    assert [float(scene.record[1, 1]) for scene in scales.scenes] == [0.5, 1.0, 1.5, 2.0]
+
+
+def test_examples_are_reached_by_name_and_are_no_part_of_the_papers_cases(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    (folder / "synthetic-pair.csv").write_text(CSV)  # a file of that name elsewhere changes nothing
+    assert example_scenes() == ["synthetic-pair", "synthetic-triple"]
+    assert not set(example_scenes()) & set(builtin_scenes())
+    pair, triple = map(load_scene, example_scenes())
+    assert (len(pair.record), len(triple.record)) == (801, 601)
+    assert triple.record[:, 3].any()
+
+
+def test_a_scene_of_ones_own_may_use_a_shipped_record(folder):
+    assert len(load_scene(written(folder, 'record = "synthetic-pair.csv"')).record) == 801

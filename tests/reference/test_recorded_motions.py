@@ -1,0 +1,134 @@
+"""The equations under a recorded motion: kinks of the loading cost neither accuracy nor the error estimate."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from oracle import set_valued_run, smooth_run
+
+import reference
+from reference.problem import Scene, ground_acceleration, ground_peak
+from reference.solver.certified import peaks_at
+from reference.surface import checked_demand
+
+ANY = (0.0, 0.0)  # a record has no phases
+EXAMPLES = {name: reference.load_scene(name) for name in reference.example_scenes()}
+LAWS = {
+    "exact": {"equations": "exact"},
+    "small": {"equations": "small"},
+    "regularised": {"regularization": 1e-3},
+    "resolved": {"cutoff": 1e-3},
+}
+ORACLE = 5e-9  # what the independent code leaves at the tolerance it is given
+
+
+def recorded(scene: Scene, samples: np.ndarray, **changes: object) -> Scene:
+    data = scene.model_dump(exclude_none=True) | changes
+    data["excitation"] = {"record": "made.csv", "samples": samples.tolist()}
+    return Scene.model_validate(data)
+
+
+def scaled(scene: Scene, factor: float, duration: float) -> Scene:
+    data = scene.model_dump(exclude_none=True) | {"duration": duration}
+    data["excitation"]["scale"] = factor
+    return Scene.model_validate(data)
+
+
+def random_record(spacing: float, duration: float = 8.0) -> np.ndarray:
+    generator = np.random.default_rng(3)
+    count = int(duration / spacing) + 1
+    values = generator.normal(size=(count, 3)) * [1.0, 1.0, 0.2]
+    return np.column_stack([spacing * np.arange(count), values])
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("scale", [0.3, 1.0, 1.7])
+def test_mu_is_within_its_error_of_a_run_a_hundred_times_tighter(name, law, scale):
+    scene = scaled(EXAMPLES[name], scale, EXAMPLES[name].duration)
+    coarse = reference.amplification(scene, [ANY], tolerance=1e-5, **LAWS[law])
+    fine = reference.amplification(scene, [ANY], tolerance=1e-7, **LAWS[law])
+    assert list(coarse.status) == list(fine.status) == ["ok"]
+    assert np.all(coarse.error <= 1e-5 * coarse.mu)
+    assert np.all(np.abs(coarse.mu - fine.mu) <= coarse.error + fine.error)
+
+
+@pytest.mark.parametrize(
+    ("name", "equations"),
+    [
+        ("synthetic-pair", "exact"),
+        pytest.param("synthetic-pair", "small", marks=pytest.mark.long),
+        pytest.param("synthetic-triple", "exact", marks=pytest.mark.long),
+        ("synthetic-triple", "small"),
+    ],
+)
+def test_mu_is_that_of_scipys_integrators_which_stop_at_every_knot(name, equations):
+    """Twice as strong, so that slides begin early; creep below 5 mm/s, and the set-valued law with its limits."""
+    scene = scaled(EXAMPLES[name], 2.0, 2.25)
+    assert len(reference.trajectory(scene, ANY).stick) > 1
+    creeping = reference.amplification(scene, [ANY], equations, regularization=5e-3, tolerance=1e-7)
+    found = smooth_run(scene, ANY, equations, 5e-3, 1e-9).mu
+    assert np.all(np.abs(creeping.mu - found) <= creeping.error + ORACLE)
+    supremum = reference.amplification(scene, [ANY], equations, tolerance=1e-7)
+    resolved = reference.amplification(scene, [ANY], equations, cutoff=1e-3, tolerance=1e-7)
+    for answer, found in zip((supremum, resolved), set_valued_run(scene, ANY, equations, [0.0, 1e-3], 1e-9).mu):
+        assert np.all(np.abs(answer.mu[0] - found) <= answer.error[0] + ORACLE)
+
+
+@pytest.mark.parametrize("law", [{"friction": 0.0}, {"lubrication": 0.5}])
+@pytest.mark.parametrize("spacing", [0.8, 0.37])
+def test_kinks_do_not_lower_the_order_of_convergence(law, spacing):
+    """
+    Error of the peaks against steps made, between knots far enough apart for several steps: the error estimate of a
+    step is of order 7 and what is left of the run behind it falls at least as fast. A step over a kink has order 2.
+    """
+    scene = recorded(EXAMPLES["synthetic-pair"], random_record(spacing), duration=8.0, isolator={"period": 1.0, **law})
+    system, demand = checked_demand(scene, "exact", None, 1e-6, None, "consistent")
+    point = np.array([ANY])
+    truth = peaks_at(system, point, demand, 1e-11).value
+    runs = [peaks_at(system, point, demand, tolerance) for tolerance in 10.0 ** -np.arange(3.0, 8.1)]
+    errors = [np.abs(run.value - truth).max() for run in runs]
+    order = -np.polyfit(np.log([run.steps[0] for run in runs]), np.log(errors), 1)[0]
+    assert order >= 7.0
+
+
+@pytest.mark.parametrize("phase", [(4.0, 5.5), (2.0, 0.7)])
+def test_samples_of_two_frequencies_tend_to_them_at_second_order(phase):
+    """
+    The chord of a curve is off by h^2/12 of its curvature in the mean, so halving the sampling interval divides the
+    change of every peak by four. Below v_reg a motion is smooth; the peaks, not mu: the largest sample jumps about.
+    """
+    scene = reference.load_scene("fig3-I")
+    asked = {"regularization": 1e-3, "tolerance": 1e-8}
+    truth = reference.amplification(scene, [phase], **asked).mu * ground_peak(scene, [phase])[0]
+    changes = []
+    for spacing in (0.04, 0.02, 0.01, 0.005):
+        time = spacing * np.arange(round(scene.duration / spacing) + 1)
+        sampled = recorded(scene, np.column_stack([time, ground_acceleration(scene, phase, time)]))
+        peaks = reference.amplification(sampled, [ANY], **asked).mu * ground_peak(sampled, [ANY])[0]
+        changes.append((peaks - truth)[0])
+    ratios = np.array(changes[:-1]) / np.array(changes[1:])
+    assert ratios == pytest.approx(4.0, rel=0.05)
+    assert np.abs(changes[-1]).max() < 1e-4
+
+
+def test_phases_change_nothing():
+    one, other = reference.amplification(EXAMPLES["synthetic-triple"], [ANY, (1.0, 2.0)]).mu
+    assert (one == other).all()
+
+
+def test_a_motion_is_sampled_through_its_kinks():
+    """At rest the absolute acceleration of the platform is the ground's, at knots and between them."""
+    scene = EXAMPLES["synthetic-pair"]
+    motion = reference.trajectory(scene, ANY)
+    assert motion.status == "ok"
+    start, end = max(motion.stick, key=lambda interval: interval[1] - interval[0])
+    inside = (motion.time > start) & (motion.time < end)
+    ground = ground_acceleration(scene, ANY, motion.time[inside])
+    assert inside.sum() > 20
+    assert motion.absolute_acceleration[inside, 0] == pytest.approx(ground, abs=1e-9)
+
+
+def test_a_record_of_zeros_has_no_factor():
+    still = recorded(EXAMPLES["synthetic-pair"], np.column_stack([[0.0, 1.0], np.zeros((2, 3))]))
+    assert list(reference.amplification(still, [ANY]).status) == ["no ground motion"]
