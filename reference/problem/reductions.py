@@ -67,6 +67,8 @@ def planar(scene: Scene) -> Reduction:
     """The motion stays in one vertical plane (4.7): half of the horizontal coordinates are enough (`in_plane`)."""
     if len(scene.bodies) == 1:
         return Reduction(False, "one body: none above it whose coordinates could be left out")
+    if scene.recorded:
+        return Reduction(False, RECORDED)
     x, y = scene.amplitudes[:2]
     if not np.abs(scene.amplitudes).max() < LARGEST:
         return Reduction(False, "loads that may overflow when turned")

@@ -14,13 +14,18 @@ from reference.problem import (
     SceneError,
     builtin_scenes,
     example_scenes,
+    exponents,
     ground_acceleration,
     ground_displacement,
     ground_peak,
     ground_velocity,
+    half_turn,
+    linear,
     load_family,
     load_scene,
     loading_period,
+    own_axes,
+    planar,
 )
 
 HEAD = """title = "recorded"
@@ -172,3 +177,14 @@ def test_examples_are_reached_by_name_and_are_no_part_of_the_papers_cases(folder
 
 def test_a_scene_of_ones_own_may_use_a_shipped_record(folder):
     assert len(load_scene(written(folder, 'record = "synthetic-pair.csv"')).record) == 801
+
+
+def test_nothing_of_the_harmonics_is_left_out_of_a_record_and_asking_for_them_is_an_error():
+    """Reductions decide by amplitudes; a record taken for loading without any would be solved as if at rest."""
+    data = load_scene("synthetic-pair").model_dump(exclude_none=True)
+    scene = Scene.model_validate(data | {"isolator": {"period": 1.0, "friction": 0.0}})
+    for reduction in (half_turn, own_axes, planar, linear):
+        assert not reduction(scene), reduction.__name__
+    for asked in (lambda: scene.amplitudes, lambda: exponents(scene)):
+        with pytest.raises(ValueError, match="recorded motion"):
+            asked()
