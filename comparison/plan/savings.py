@@ -30,7 +30,7 @@ class LeftOut:
 
 
 LEFT_OUT: tuple[LeftOut, ...] = (
-    LeftOut("every run but one per harmonic", linear, ("equations", "small"), 20.0),
+    LeftOut("every run but one per harmonic", linear, ("equations", "small"), 40.0),
     LeftOut("motion across its plane, of the bodies", planar, ("model", "translational"), 1.15),
     LeftOut("rotations, all supports but one", untilted, ("model", "spatial"), 1.7),
 )

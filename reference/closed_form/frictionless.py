@@ -20,8 +20,8 @@ from reference.problem import Scene, checked_phases, exponents, ground_peak, lin
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-INTERVALS = 16  # per shortest period: the terms left out of a series of ORDERS are below 1e-14 of the motion
-ORDERS = 11
+INTERVALS = 12  # per shortest period: the terms left out of a series of ORDERS are below 1e-14 of the motion
+ORDERS = 12
 ROUNDING = 1e-13  # relative error of a frequency and of an operation
 
 
@@ -62,7 +62,7 @@ def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, NDArr
     half = 0.5 * scene.duration / count
     centres: Array = half * (2.0 * np.arange(count, dtype=float) + 1.0)
     series = Series.of(_responses(scene, natural, centres, ORDERS, absolute=True), half)
-    path = Series.of([part[:, :1] for part in _responses(scene, natural, centres, ORDERS, absolute=False)], half)
+    path = Series.of(_responses(scene, natural, centres, ORDERS, absolute=False, bodies=1), half)
     peaks, doubt = largest(series, phases)
     uncertain = ROUNDING * (10.0 + float(natural.frequency.max()) * scene.duration)
     return peaks, doubt + uncertain * series.envelope, reached(path, phases, scene.radius)
@@ -73,21 +73,26 @@ def _check(scene: Scene) -> None:
         raise ValueError(f"{scene.name}: {allowed.reason}: no closed form")
 
 
-def _responses(scene: Scene, natural: Modes, time: Array, orders: int, *, absolute: bool) -> list[Complex]:
+def _responses(
+    scene: Scene, natural: Modes, time: Array, orders: int, *, absolute: bool, bodies: int | None = None
+) -> list[Complex]:
     """
     Complex response per harmonic and its derivatives up to order `orders` - 1: (T, N, 2 axes, 2 harmonics) each.
 
-    absolute: of the absolute acceleration, else of the displacement.
+    absolute: of the absolute acceleration, else of the displacement. bodies: of the first so many only.
     """
-    parts = [np.empty((len(time), len(scene.masses), 2, 2), dtype=complex) for _ in range(orders)]
+    shape = natural.shape[:, :bodies]
+    parts = [np.zeros((len(time), shape.shape[1], 2, 2), dtype=complex) for _ in range(orders)]
     for axis in range(2):
         omega = natural.frequency[axis]
         weight = natural.participation[axis] / (2j * omega) * (omega**2 if absolute else -1.0)
         for k, s in enumerate(exponents(scene)):
+            if scene.amplitudes[axis, k] == 0.0:
+                continue
             forced = np.exp(s * time)[:, None]
             rising, falling = (_divided(s, root, time) for root in (1j * omega, -1j * omega))
             for part in parts:
-                part[:, :, axis, k] = (weight * (rising - falling)) @ natural.shape[axis].T * scene.amplitudes[axis, k]
+                part[:, :, axis, k] = (weight * (rising - falling)) @ shape[axis].T * scene.amplitudes[axis, k]
                 rising, falling = 1j * omega * rising + forced, -1j * omega * falling + forced
                 forced = s * forced
     return parts

@@ -10,15 +10,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import factorial
+from math import factorial, sqrt
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-AT_ONCE = 2**17  # values held for one axis at a time: they stay close to the processor
 GUESSES = np.linspace(-1.0, 1.0, 5)
 NEWTON = 5
 TAIL = 1e-14  # relative: what the series leaves out
@@ -49,33 +49,21 @@ class Series:
 
 def largest(series: Series, phases: Array) -> tuple[Array, Array]:
     """max_t |v| of every body for phase pairs (M, 2), rad, and the error of finding it: (M, N) each."""
-    peaks, doubts = np.empty((len(phases), len(series.envelope))), np.empty((len(phases), len(series.envelope)))
-    for part in _parts(series, len(phases)):
-        turns = _turns(phases[part])
-        for body in range(len(series.envelope)):
-            least, most = _bounds(series, turns, body)
-            rows, places = np.nonzero(most >= least.max(axis=1, keepdims=True))
-            value, error = _searched(np.einsum("pact,tc->pta", series.terms[:, body][..., places], turns[rows]))
-            best = np.zeros(len(turns))
-            np.maximum.at(best, rows, value)
-            peaks[part, body] = np.sqrt(best)
-            np.maximum.at(best, rows, value + error)
-            doubts[part, body] = np.sqrt(best) - peaks[part, body] + TAIL * series.envelope[body]
-    return peaks, doubts
+    peaks, doubts = np.empty((2, len(phases), len(series.envelope)))
+    _largest(series.terms, series.rest, _turns(phases), peaks, doubts)
+    return peaks, doubts + TAIL * series.envelope
 
 
 def reached(series: Series, phases: Array, bound: float) -> NDArray[np.bool_]:
     """At which phase pairs (M, 2), rad, the first body's |v| may reach `bound`: (M,)."""
     if series.envelope[0] < bound:
         return np.zeros(len(phases), dtype=bool)
-    return np.concatenate(
-        [(_bounds(series, _turns(phases[part]), 0)[1] >= bound**2).any(axis=1) for part in _parts(series, len(phases))]
-    )
-
-
-def _parts(series: Series, count: int) -> list[slice]:
-    size = max(1, AT_ONCE // series.terms.shape[-1])
-    return [slice(first, first + size) for first in range(0, count, size)]
+    least, most = np.empty((2, series.terms.shape[-1]))
+    found = np.empty(len(phases), dtype=bool)
+    for m, turn in enumerate(_turns(phases)):
+        _bounds(series.terms, series.rest, turn, 0, least, most)
+        found[m] = most.max() >= bound * bound
+    return found
 
 
 def _turns(phases: Array) -> Array:
@@ -83,40 +71,78 @@ def _turns(phases: Array) -> Array:
     return np.stack([np.cos(phases), -np.sin(phases)], axis=-1).reshape(-1, 4)
 
 
-def _bounds(series: Series, turns: Array, body: int) -> tuple[Array, Array]:
-    """|v|^2 in the middle of each interval, and what it cannot exceed on it: (M, T) each."""
-    least, most = np.zeros((2, len(turns), series.terms.shape[-1]))
-    for axis in range(series.terms.shape[2]):
-        value = turns @ series.terms[0, body, axis]
-        size = np.abs(value)
-        size += np.abs(turns @ series.terms[1, body, axis])
-        size += series.rest[body, axis]
-        least += np.square(value, out=value)
-        most += np.square(size, out=size)
-    return least, most
+@njit(cache=True)
+def _bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array, most: Array) -> None:
+    """Fills |v|^2 in the middle of each interval, and what it cannot exceed on it, (T,) each."""
+    a, b, c, d = turn
+    least[:] = 0.0
+    most[:] = 0.0
+    for axis in range(terms.shape[2]):
+        value, slope, more = terms[0, body, axis], terms[1, body, axis], rest[body, axis]
+        for n in range(len(least)):
+            v = a * value[0, n] + b * value[1, n] + c * value[2, n] + d * value[3, n]
+            s = a * slope[0, n] + b * slope[1, n] + c * slope[2, n] + d * slope[3, n]
+            size = abs(v) + abs(s) + more[n]
+            least[n] += v * v
+            most[n] += size * size
 
 
-def _searched(terms: Array) -> tuple[Array, Array]:
-    """Largest |v|^2 on intervals with these coefficients (P, K, axes), and what Newton's method leaves: (K,) each."""
-    guesses = np.stack([_squares(terms, np.full(terms.shape[1], x))[0] for x in GUESSES])
-    place = GUESSES[guesses.argmax(axis=0)]
-    best, left = guesses.max(axis=0), np.zeros(terms.shape[1])
+@njit(cache=True, nogil=True)
+def _largest(terms: Array, rest: Array, turns: Array, peaks: Array, doubts: Array) -> None:
+    orders, bodies, axes, _, intervals = terms.shape
+    least, most = np.empty(intervals), np.empty(intervals)
+    series = np.empty((axes, orders))
+    for m in range(len(turns)):
+        for body in range(bodies):
+            _bounds(terms, rest, turns[m], body, least, most)
+            best = least.max()
+            possible = best
+            for n in range(intervals):
+                if most[n] < best:
+                    continue
+                for axis in range(axes):
+                    for order in range(orders):
+                        series[axis, order] = (turns[m] * terms[order, body, axis, :, n]).sum()
+                value, doubt = _searched(series)
+                best = max(best, value)
+                possible = max(possible, value + doubt)
+            peaks[m, body] = sqrt(best)
+            doubts[m, body] = sqrt(max(best, possible)) - sqrt(best)
+
+
+@njit(cache=True)
+def _searched(series: Array) -> tuple[float, float]:
+    """Largest |v|^2 on an interval with these coefficients (axes, P), and what Newton's method leaves."""
+    best, place = -1.0, 0.0
+    for x in GUESSES:
+        value, _, _ = _squares(series, x)
+        if value > best:
+            best, place = value, x
+    left = 0.0
     for _ in range(NEWTON):
-        value, slope, curvature = _squares(terms, place)
-        best = np.maximum(best, value)
-        step = np.where(curvature < 0.0, -slope / np.where(curvature < 0.0, curvature, 1.0), np.sign(slope))
-        target = np.clip(place + step, -1.0, 1.0)
-        left = np.abs(slope * (target - place))
+        _, slope, curvature = _squares(series, place)
+        step = -slope / curvature if curvature < 0.0 else np.sign(slope)
+        target = min(max(place + step, -1.0), 1.0)
+        left = abs(slope * (target - place))
+        if target == place:
+            break
         place = target
-    return np.maximum(best, _squares(terms, place)[0]), left
+        value, _, _ = _squares(series, place)
+        best = max(best, value)
+    return best, left
 
 
-def _squares(terms: Array, x: Array) -> tuple[Array, Array, Array]:
-    """|v|^2 at x (K,) and its first two derivatives."""
-    value = slope = curvature = np.zeros(terms.shape[1:])
-    for term in terms[::-1]:
-        curvature = curvature * x[:, None] + 2.0 * slope
-        slope = slope * x[:, None] + value
-        value = value * x[:, None] + term
-    first = 2.0 * (value * slope).sum(axis=1)
-    return (value**2).sum(axis=1), first, 2.0 * (slope**2 + value * curvature).sum(axis=1)
+@njit(cache=True)
+def _squares(series: Array, x: float) -> tuple[float, float, float]:
+    """|v|^2 at x and its first two derivatives."""
+    total = first = second = 0.0
+    for axis in range(series.shape[0]):
+        value = slope = curvature = 0.0
+        for order in range(series.shape[1] - 1, -1, -1):
+            curvature = curvature * x + 2.0 * slope
+            slope = slope * x + value
+            value = value * x + series[axis, order]
+        total += value * value
+        first += 2.0 * value * slope
+        second += 2.0 * (slope * slope + value * curvature)
+    return total, first, second
