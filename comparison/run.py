@@ -20,6 +20,7 @@ from rich.console import Console
 
 from comparison.account.surfaces import labelled_surfaces
 from comparison.analyses.effective import effective_values
+from comparison.analyses.errands import errands, motion_errands
 from comparison.analyses.further import further_findings
 from comparison.analyses.slips import slip_effects
 from comparison.analyses.trajectories import stored_motions
@@ -31,8 +32,9 @@ from comparison.plan.study import Study
 from comparison.provenance import provenance
 from comparison.report.findings import findings
 from comparison.report.store import replaced_when_complete
+from comparison.sweep.answers import Answers
 from comparison.sweep.cluster import cluster
-from comparison.sweep.compute import computed
+from comparison.sweep.compute import computed, fetched
 from comparison.sweep.executors import ExecutorLostError, Pool, factory, process_pool
 from comparison.sweep.going_on import command_line, going_on, here
 from comparison.sweep.progress import wide_console
@@ -115,17 +117,17 @@ def _run(
     store.trim(tiles)
     if options.fresh:
         store.forget(tiles)
-    done = computed(study, store, console, options.jobs, executor)
+    known = Answers(store, options.fresh)
+    done = computed(study, store, console, options.jobs, executor, errands(study), known)
     seconds, answers = time.monotonic() - begin, done.answers
     surfaces = labelled_surfaces(study, tiles, answers)
-    console.print("Reading the effective values back from one motion of every model.")
-    effective = effective_values(study, options.jobs, executor)
-    console.print("Measuring what the slips of the print do to the surfaces.")
-    effects = slip_effects(study, options.jobs, executor)
     console.print("Keeping a few motions of every scene for the report.")
+    fetched(motion_errands(study, surfaces), known, console, options.jobs, executor)
+    executor = known.on(executor)  # what the analyses ask has been fetched
+    effective = effective_values(study, options.jobs, executor)
+    effects = slip_effects(study, options.jobs, executor)
     motions = stored_motions(study, surfaces, options.jobs, executor)
-    further = further_findings(study, options.jobs, executor, console.print)
-    console.print("Varying supports and heights to see how far the paper's assumptions carry.")
+    further = further_findings(study, options.jobs, executor)
     assumptions = Reach.of(study, options.jobs, executor)
     beside = {"extremes": stored_extremes(options.out), "tradeoff": stored_trades(options.out)}
     families = [family for family in options.families if len(family.scenes) > 1] or None
@@ -141,6 +143,10 @@ def _run(
         "predicted_compute_seconds": round(sum(study.seconds(rung) for rung in study.ladder), 1),
         "tiles": len(tiles),
         "tiles_stored_before": done.stored,
+        "parts": {
+            stage: {"tasks": part.tasks, "stored_before": part.stored, "seconds": round(part.seconds, 2)}
+            for stage, part in known.parts.items()
+        },
         "jobs": options.jobs,
         "provenance": provenance(),
     }

@@ -147,15 +147,19 @@ LIMITS = (
 Task = tuple[Scene, int]  # and the number of the limit
 
 
-def convergence_trends(study: Study, jobs: int, executor: Pool = process_pool) -> list[Trend]:
-    """Every limit in every scene that has it, for each body, computed on `executor`; in the order of LIMITS."""
-    asked: list[Task] = [
+def convergence_tasks(study: Study) -> list[Task]:
+    """Every limit with every scene that has it, in the order of LIMITS."""
+    return [
         (scene, number)
         for number, limit in enumerate(LIMITS)
         for scene in study.scenes
         if not limit.dry_only or (not scene.lubricated and scene.friction_coefficient > 0.0)
     ]
-    found = sweep(asked, limit_trends, _lost, lambda task, trends: None, jobs, executor)
+
+
+def convergence_trends(study: Study, jobs: int, executor: Pool = process_pool) -> list[Trend]:
+    """Every limit in every scene that has it, for each body, computed on `executor`; in the order of LIMITS."""
+    found = sweep(convergence_tasks(study), limit_trends, _lost, lambda task, trends: None, jobs, executor)
     return [one for trends in found for one in trends]
 
 

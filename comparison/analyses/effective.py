@@ -64,10 +64,14 @@ def stated(scene: Scene) -> Effective:
     )
 
 
+def effective_tasks(study: Study) -> list[tuple[Scene, Rung]]:
+    """Every model of every scene."""
+    return [(scene, rung) for scene in study.scenes for rung in rungs_of(scene, study.ladder)]
+
+
 def effective_values(study: Study, jobs: int, executor: Callable[[int], Executor]) -> list[Effective]:
     """For every scene what it states, then what the motion of every model shows, computed on `executor(jobs)`."""
-    asked = [(scene, rung) for scene in study.scenes for rung in rungs_of(scene, study.ladder)]
-    found = sweep(asked, read_back, _lost, lambda task, value: None, jobs, executor)
+    found = sweep(effective_tasks(study), read_back, _lost, lambda task, value: None, jobs, executor)
     return [
         value for scene in study.scenes for value in (stated(scene), *(one for one in found if one.scene == scene.name))
     ]

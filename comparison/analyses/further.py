@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from comparison.analyses.convergence import convergence_trends
+from comparison.analyses.errands import paper_complete
 from comparison.analyses.scaling import scaling_trends
 from comparison.analyses.trends import Trend
 from comparison.claims.table import ClaimTable, claims_tested
 from comparison.plan.study import Study
 from comparison.sweep.executors import Pool
-from reference.problem import builtin_scenes
 
 
-def further_findings(study: Study, jobs: int, executor: Pool, say: Callable[[str], None]) -> dict[str, Any]:
+def further_findings(study: Study, jobs: int, executor: Pool) -> dict[str, Any]:
     """Fields of `Findings`: claims (None unless the study has every scene of the paper), scaling, convergence."""
-    claims: ClaimTable | None = None
-    if {scene.name for scene in study.scenes} >= set(builtin_scenes()):
-        say("Testing the paper's claims under readings of what it leaves open.")
-        claims = claims_tested(jobs, executor)
-    say("Scaling loading and friction down, and letting regularisation and compliance vanish.")
+    claims = claims_tested(jobs, executor) if paper_complete(study) else None
     scaling = scaling_trends(study, jobs, executor)
     convergence = convergence_trends(study, jobs, executor)
     return {"claims": claims, "scaling": scaling, "convergence": convergence}

@@ -40,10 +40,14 @@ def scaled(scene: Scene, s: float) -> Scene:
     return Scene.model_validate(table)
 
 
+def scaling_tasks(study: Study) -> list[Task]:
+    """Every scene with its supremum and, where that differs, its resolved peak."""
+    return [(scene, peak) for scene in study.scenes for peak in (True, False) if peak or _dry(scene)]
+
+
 def scaling_trends(study: Study, jobs: int, executor: Pool = process_pool) -> list[Trend]:
     """The trends of every scene and body, for the supremum and the resolved peak, computed on `executor`."""
-    asked: list[Task] = [(scene, peak) for scene in study.scenes for peak in (True, False) if peak or _dry(scene)]
-    found = sweep(asked, scene_trends, _lost, lambda task, trends: None, jobs, executor)
+    found = sweep(scaling_tasks(study), scene_trends, _lost, lambda task, trends: None, jobs, executor)
     return [one for trends in found for one in trends]
 
 

@@ -160,12 +160,16 @@ class Effect:
     fault: str = ""
 
 
+def slip_tasks(study: Study, slips: Sequence[Slip] = SLIPS) -> list[tuple[Scene, int]]:
+    """Every measurable slip in every scene, in the order scene, slip."""
+    return [(scene, number) for scene in study.scenes for number, slip in enumerate(slips) if slip.measure]
+
+
 def slip_effects(
     study: Study, jobs: int, executor: Callable[[int], Executor], slips: Sequence[Slip] = SLIPS
 ) -> list[Effect]:
     """Every measurable slip in every scene, computed on `executor(jobs)`, in the order scene, slip."""
-    asked = [(scene, number) for scene in study.scenes for number, slip in enumerate(slips) if slip.measure]
-    return sweep(asked, measured, _lost, lambda task, effect: None, jobs, executor)
+    return sweep(slip_tasks(study, slips), measured, _lost, lambda task, effect: None, jobs, executor)
 
 
 def measured(task: tuple[Scene, int]) -> Effect:

@@ -55,6 +55,9 @@ class StoredMotion:
     fault: str = ""
 
 
+Task = tuple[Scene, Rung, float, Place, tuple[float, float]]
+
+
 def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Place]:
     """Where the total difference of each body is largest, then an even spread over the phases; no place twice."""
     places: dict[tuple[int, int], str] = {}
@@ -68,31 +71,32 @@ def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Plac
     return [Place(scene.name, row, column, why) for (row, column), why in places.items()]
 
 
-def stored_motions(
-    study: Study, surfaces: xr.Dataset, jobs: int, executor: Callable[[int], Executor]
-) -> list[StoredMotion]:
+def motion_tasks(study: Study, surfaces: xr.Dataset) -> list[Task]:
     """
-    The motions of every scene, computed on `executor(jobs)`, in the order scene, place, model.
+    Every place of every scene with every model, in the order scene, place, model.
 
     A model too expensive for every phase of the study moves at its own phases only.
     """
     axes = np.asarray(surfaces["alpha1"]), np.asarray(surfaces["alpha2"])
-    asked = [
+    return [
         (scene, rung, rung.tolerance(study.tolerance), place, (axes[0][place.row], axes[1][place.column]))
         for scene in study.scenes
         for place in chosen_places(study, surfaces, scene)
         for rung in shown_rungs(scene, study.ladder)
         if place.row % study.strides[rung.key] == place.column % study.strides[rung.key] == 0
     ]
-    return sweep(asked, moved, _lost, lambda task, motion: None, jobs, executor)
+
+
+def stored_motions(
+    study: Study, surfaces: xr.Dataset, jobs: int, executor: Callable[[int], Executor]
+) -> list[StoredMotion]:
+    """The motions of every scene, computed on `executor(jobs)`, in the order of `motion_tasks`."""
+    return sweep(motion_tasks(study, surfaces), moved, _lost, lambda task, motion: None, jobs, executor)
 
 
 def shown_rungs(scene: Scene, ladder: Sequence[Rung]) -> list[Rung]:
     """The models whose surfaces the page shows, each once."""
     return list({rung.key: rung for pair in pairs_of(scene, ladder) for rung in (pair.first, pair.second)}.values())
-
-
-Task = tuple[Scene, Rung, float, Place, tuple[float, float]]
 
 
 def moved(task: Task) -> StoredMotion:

@@ -104,7 +104,30 @@ class Range:
 
 
 Task = tuple[Scene, Rung, Variation | None, float]
-Solved = tuple[Array, Array, tuple[str, ...], str, float]
+
+
+@dataclass(frozen=True)
+class Solved:
+    """mu (M, N) at PHASES, its errors, the statuses, what went wrong, or "", and the cost, s."""
+
+    mu: Array
+    error: Array
+    status: tuple[str, ...]
+    fault: str
+    cost: float
+
+
+def variation_tasks(study: Study, variations: Sequence[Variation] = FEW) -> list[Task]:
+    """The translational model and every variation of the spatial one, for every scene to which both apply."""
+    asked: list[Task] = []
+    for scene in study.scenes:
+        engines = [rung for rung in rungs_of(scene, study.ladder) if rung.side == "engine"]
+        if len(engines) == 2:
+            plain, spatial = engines
+            asked.append((scene, plain, None, plain.tolerance(study.tolerance)))
+            tolerance = spatial.tolerance(study.tolerance)
+            asked += [(scene, spatial, variation, tolerance) for variation in variations]
+    return asked
 
 
 def assumption_cells(
@@ -119,21 +142,14 @@ def assumption_cells(
 
     `done` is called as each is finished, and once more per scene for the translational model.
     """
-    asked: list[Task] = []
-    for scene in study.scenes:
-        engines = [rung for rung in rungs_of(scene, study.ladder) if rung.side == "engine"]
-        if len(engines) == 2:
-            plain, spatial = engines
-            asked.append((scene, plain, None, plain.tolerance(study.tolerance)))
-            tolerance = spatial.tolerance(study.tolerance)
-            asked += [(scene, spatial, variation, tolerance) for variation in variations]
+    asked = variation_tasks(study, variations)
     solved = sweep(asked, varied, _lost, lambda task, found: done(), jobs, executor)
     held_against = {task[0].name: found for task, found in zip(asked, solved) if task[2] is None}
     return [_cell(task[0], task[2], found, held_against[task[0].name]) for task, found in zip(asked, solved) if task[2]]
 
 
 def varied(task: Task) -> Solved:
-    """mu (M, N), its errors, the statuses, what went wrong and the cost, of one task at PHASES."""
+    """One task at PHASES."""
     scene, rung, variation, tolerance = task
     short = scene.model_copy(update={"duration": min(scene.duration, DURATION)})
     model = short if variation is None else variation.of(short)
@@ -141,20 +157,19 @@ def varied(task: Task) -> Solved:
         found = imported(rung.amplification)(model, PHASES, **rung.settings, tolerance=tolerance)
     except Exception as fault:
         return _lost(task, Outcome.SOLVER_FAILED, f"{type(fault).__name__}: {fault}")
-    return found.mu, found.error, tuple(str(one) for one in found.status), "", float(found.cost)
+    return Solved(found.mu, found.error, tuple(str(one) for one in found.status), "", float(found.cost))
 
 
 def _lost(task: Task, outcome: Outcome, fault: str) -> Solved:
     nothing = np.full((len(PHASES), len(task[0].bodies)), np.nan)
-    return nothing, nothing, (outcome.value,) * len(PHASES), fault, 0.0
+    return Solved(nothing, nothing, (outcome.value,) * len(PHASES), fault, 0.0)
 
 
 def _cell(scene: Scene, variation: Variation, spatial: Solved, plain: Solved) -> Cell:
-    change = spatial[0] / plain[0] - 1.0
-    uncertainty = np.hypot(spatial[1], plain[1]) / plain[0]
-    return Cell(
-        scene.name, variation, _rows(change), _rows(uncertainty), spatial[2], spatial[3] or plain[3], spatial[4]
-    )
+    change = spatial.mu / plain.mu - 1.0
+    uncertainty = np.hypot(spatial.error, plain.error) / plain.mu
+    fault = spatial.fault or plain.fault
+    return Cell(scene.name, variation, _rows(change), _rows(uncertainty), spatial.status, fault, spatial.cost)
 
 
 def _rows(array: Array) -> tuple[tuple[float, ...], ...]:

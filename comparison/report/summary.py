@@ -63,6 +63,16 @@ def summary(found: Findings) -> dict[str, Any]:
         "convergence": _finite(trends_summary(found.convergence)),
         "extremes": found.extremes and _finite(asdict(found.extremes)),
         "tradeoff": found.tradeoff and [_finite(asdict(trade)) for trade in found.tradeoff],
+        "families": found.families
+        and [
+            {
+                "name": family.name,
+                "key": family.key,
+                "values": list(family.values),
+                "scenes": [scene.name for scene in family.scenes],
+            }
+            for family in found.families
+        ],
         "broken": list(found.broken),
         "faults": list(found.faults),
     }

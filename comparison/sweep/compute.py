@@ -1,4 +1,6 @@
-"""The tiles of a study, each from the store if it is there, else computed, stored at once, and shown as progress."""
+"""
+The tiles and errands of a study, each from the store if it is there, else computed, stored at once, shown as progress.
+"""
 
 from __future__ import annotations
 
@@ -9,12 +11,15 @@ from rich.console import Console
 
 from comparison.plan.study import Study
 from comparison.plan.tiles import Answer, Tile, solve_tile, unanswered
+from comparison.sweep.answers import Answers
+from comparison.sweep.errands import Errand, Fetched, run_errand
 from comparison.sweep.executors import Pool
 from comparison.sweep.halves import halves, joined
 from comparison.sweep.progress import Stage, progress
 from comparison.sweep.sweep import sweep
 from comparison.sweep.tile_store import TileStore
 from comparison.sweep.warm_up import START_UP, WARM_UP, warm_up
+from reference.problem import Outcome
 
 COMPILING = "compiling the reference"
 
@@ -28,36 +33,78 @@ class Computed:
     stored: int
 
 
-def computed(study: Study, store: TileStore, console: Console, jobs: int, executor: Pool) -> Computed:
-    """Every tile of the study, the missing ones computed on `executor`. Raises StoreError and ExecutorLostError."""
+def computed(
+    study: Study,
+    store: TileStore,
+    console: Console,
+    jobs: int,
+    executor: Pool,
+    errands: Sequence[Errand] = (),
+    answers: Answers | None = None,
+) -> Computed:
+    """
+    Every tile of the study and every errand, the missing ones computed on `executor` in one sweep.
+
+    What errands gave is in `answers`. Raises StoreError and ExecutorLostError.
+    """
+    answers = Answers(store) if answers is None else answers
     tiles = study.tiles()
     found = {place: answer for place, tile in enumerate(tiles) if (answer := store.get(tile)) is not None}
     missing = [place for place in range(len(tiles)) if place not in found]
-    stages = _stages(study, tiles, missing)
+    open_ = answers.missing(errands)
+    stages = _stages(study, tiles, missing, errands, open_)
     if found:
-        stored = f"{len(found)} of {len(tiles)} tiles are in {store.folder}: only the others are computed."
+        others = f", {len(errands) - len(open_)} of {len(errands)} analyses" if errands else ""
+        stored = f"{len(found)} of {len(tiles)} tiles{others} are in {store.folder}: only the others are computed."
         console.print(stored, soft_wrap=True)  # a path is copied whole
-    if missing:
+    if missing or open_:
         rest = [tiles[place] for place in missing]
-        found |= zip(missing, _solved(study, rest, store, console, stages, jobs, executor))
+        found |= zip(missing, _solved(study, rest, open_, store, answers, console, stages, jobs, executor))
     return Computed(tiles, [found[place] for place in range(len(tiles))], len(tiles) - len(missing))
 
 
-def _stages(study: Study, tiles: Sequence[Tile], missing: Sequence[int]) -> dict[str, Stage]:
-    stages = {COMPILING: Stage(1, START_UP)} if missing else {}
+def fetched(errands: Sequence[Errand], answers: Answers, console: Console, jobs: int, executor: Pool) -> None:
+    """Every errand, the missing ones computed on `executor`; what they gave is in `answers`. Raises as `computed`."""
+    open_ = sorted(answers.missing(errands), key=lambda errand: -errand.seconds)
+    if not open_:
+        return
+    with progress(console, _errand_stages(errands, open_), jobs) as display:
+
+        def done(errand: Errand, found: Fetched | None) -> None:
+            answers.put(errand, found)
+            display.advance(errand.stage, 1)
+
+        sweep(open_, run_errand, _nothing, done, jobs, executor)
+
+
+def _stages(
+    study: Study, tiles: Sequence[Tile], missing: Sequence[int], errands: Sequence[Errand], open_: Sequence[Errand]
+) -> dict[str, Stage]:
+    stages = {COMPILING: Stage(1, START_UP)} if missing or open_ else {}
     for rung in study.ladder:
         own = {place: len(tile.phases) for place, tile in enumerate(tiles) if tile.rung == rung.key}
         if own:
             points = sum(own.values())
             left = sum(own[place] for place in missing if place in own)
             stages[rung.title] = Stage(points, study.seconds(rung), points - left)
+    return stages | _errand_stages(errands, open_)
+
+
+def _errand_stages(errands: Sequence[Errand], open_: Sequence[Errand]) -> dict[str, Stage]:
+    stages = {}
+    for name in dict.fromkeys(errand.stage for errand in errands):
+        own = [errand.seconds for errand in errands if errand.stage == name]
+        left = sum(errand.stage == name for errand in open_)
+        stages[name] = Stage(len(own), sum(own), len(own) - left)
     return stages
 
 
 def _solved(
     study: Study,
     tiles: Sequence[Tile],
+    errands: Sequence[Errand],
     store: TileStore,
+    answers: Answers,
     console: Console,
     stages: dict[str, Stage],
     jobs: int,
@@ -69,14 +116,48 @@ def _solved(
     console.print("On a new installation the reference is compiled first, once: that takes minutes.")
     with progress(console, stages, jobs) as display:
 
-        def done(tile: Tile, answer: Answer) -> None:
-            if tile.rung != WARM_UP:
-                store.put(tile, answer)
-            pending.discard(tile.rung)
-            display.advance(titles[tile.rung], len(tile.phases))
+        def done(piece: Piece, answer: Answer | Fetched | None) -> None:
+            if isinstance(piece, Errand):
+                assert not isinstance(answer, Answer)
+                answers.put(piece, answer)
+                display.advance(piece.stage, 1)
+                return
+            assert isinstance(answer, Answer)
+            if piece.rung != WARM_UP:
+                store.put(piece, answer)
+            pending.discard(piece.rung)
+            display.advance(titles[piece.rung], len(piece.phases))
 
-        def ready(tile: Tile) -> bool:
-            return not pending or tile.rung not in compiled
+        def ready(piece: Piece) -> bool:
+            needs = piece.compiled if isinstance(piece, Errand) else piece.rung in compiled
+            return not (pending and needs)
 
-        asked = [warm_up(study), *tiles]
-        return sweep(asked, solve_tile, unanswered, done, jobs, executor, ready, halves, joined)[1:]
+        # the longest first, so that no worker is left with one when the others are done
+        asked: list[Piece] = [warm_up(study), *sorted(errands, key=lambda errand: -errand.seconds), *tiles]
+        found = sweep(asked, _run, _lost, done, jobs, executor, ready, _split, _join)
+        return [answer for answer in found if isinstance(answer, Answer)][1:]  # without the warm-up
+
+
+Piece = Tile | Errand
+
+
+def _run(piece: Piece) -> Answer | Fetched | None:
+    return run_errand(piece) if isinstance(piece, Errand) else solve_tile(piece)
+
+
+def _lost(piece: Piece, outcome: Outcome, fault: str) -> Answer | Fetched | None:
+    return None if isinstance(piece, Errand) else unanswered(piece, outcome, fault)
+
+
+def _nothing(errand: Errand, outcome: Outcome, fault: str) -> Fetched | None:
+    """The analysis asks again by itself and says in its own way that there is no answer."""
+    return None
+
+
+def _split(piece: Piece) -> Sequence[Piece]:
+    return () if isinstance(piece, Errand) else halves(piece)
+
+
+def _join(piece: Piece, answers: Sequence[Answer | Fetched | None]) -> Answer | Fetched | None:
+    assert isinstance(piece, Tile), "errands are not split"
+    return joined(piece, [answer for answer in answers if isinstance(answer, Answer)])

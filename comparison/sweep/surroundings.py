@@ -11,6 +11,8 @@ from pathlib import Path
 
 PACKAGES = ("exudyn", "llvmlite", "numba", "numpy", "scipy")
 SHARED = ("reference.problem", "comparison.plan.tiles")  # what every model is asked through
+DRAWING = ("matplotlib", "pillow", "xarray")
+ANSWERING = ("reference", "multibody", "comparison.plan", "comparison.account", "comparison.wording")
 
 
 def surroundings(model: str) -> dict[str, str]:
@@ -20,6 +22,17 @@ def surroundings(model: str) -> dict[str, str]:
         "python": platform.python_version(),
         "machine": platform.machine(),
         **{name: _version(name) for name in PACKAGES},
+        **{f"source of {name}": source_digest(name) for name in sources},
+    }
+
+
+def answer_surroundings(module: str) -> dict[str, str]:
+    """The same for what the module computes beside the surfaces: it asks both sides and may draw."""
+    sources = (*ANSWERING, module.rpartition(".")[0] or module)
+    return {
+        "python": platform.python_version(),
+        "machine": platform.machine(),
+        **{name: _version(name) for name in (*PACKAGES, *DRAWING)},
         **{f"source of {name}": source_digest(name) for name in sources},
     }
 

@@ -3,8 +3,9 @@ Every finished tile of a study on disk, so that a run that was ended goes on whe
 
 One directory per surface, named by a hash of scene, model, settings, versions and the models' source
 (`surroundings`), with a `surface.json` that says so in words; in it one file per tile, named by a hash of its phases.
-A file is written aside and renamed, and begins with a hash of its name and what follows: one that is torn or damaged
-is computed again, which also covers a power cut without waiting for the disk at every tile.
+What else a study computes is kept in directories of its own by the same rules (`answers.py`). A file is written aside
+and renamed, and begins with a hash of its name and what follows: one that is torn or damaged is computed again, which
+also covers a power cut without waiting for the disk at every tile.
 """
 
 from __future__ import annotations
@@ -39,17 +40,20 @@ class StoreError(OSError):
 
 
 class TileStore:
-    """The tiles below `folder`, which is made with the first of them. `kept` counts those read or written here."""
+    """
+    The tiles below `folder`, which is made with the first of them. `kept` counts those read or written here, `others`
+    the stored answers to other questions.
+    """
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.kept = 0
+        self.others = 0
 
     def get(self, tile: Tile) -> Answer | None:
         """The stored answer to the last bit, or None if there is none or it is damaged."""
-        place = self._place(tile)
         try:
-            answer = _unpacked(place.read_bytes(), _name(place), tile)
+            answer = _unpacked(self.read(self._place(tile)), tile)
         except (OSError, ValueError, KeyError):
             return None
         self.kept += 1
@@ -67,15 +71,26 @@ class TileStore:
         """
         if answer.fault:
             return
-        place = self._place(tile)
+        self.write(self._place(tile), _packed(answer), _described(tile), "a finished tile")
+        self.kept += 1
+
+    def read(self, place: Path) -> bytes:
+        """What was written to a file of the store. Raises OSError, or ValueError if it is damaged."""
+        text, name = place.read_bytes(), _name(place)
+        digest, content = text[:32], text[32:]
+        if hashlib.sha256(name + content).digest() != digest:
+            raise ValueError("damaged, or of another question")
+        return content
+
+    def write(self, place: Path, content: bytes, described: str, what: str) -> None:
+        """Write a file of the store, and what its directory is about. Raises StoreError, which says `what` it was."""
         try:
             if not (place.parent / DESCRIPTION).exists():
                 place.parent.mkdir(parents=True, exist_ok=True)
-                _write(place.parent / DESCRIPTION, _described(tile).encode())
-            _write(place, _packed(answer, _name(place)))
+                _write(place.parent / DESCRIPTION, described.encode())
+            _write(place, hashlib.sha256(_name(place) + content).digest() + content)
         except OSError as fault:
-            raise StoreError(f"{str(self.folder)!r}: a finished tile could not be stored: {fault.strerror}") from None
-        self.kept += 1
+            raise StoreError(f"{str(self.folder)!r}: {what} could not be stored: {fault.strerror}") from None
 
     def forget(self, tiles: Iterable[Tile]) -> None:
         """Drop what is stored of these surfaces."""
@@ -116,11 +131,12 @@ def refuse_foreign_store(out: Path) -> None:
 
 def surface_key(tile: Tile) -> str:
     """Hash of all that the numbers of a tile depend on, except its phases."""
-    return _key(_described(tile))
+    return key_of(_described(tile))
 
 
 @cache
-def _key(text: str) -> str:
+def key_of(text: str) -> str:
+    """Name of a directory of the store, from the text that describes it."""
     return hashlib.sha256(text.encode()).hexdigest()[:24]
 
 
@@ -137,11 +153,11 @@ def _described(tile: Tile) -> str:
 
 
 def _name(place: Path) -> bytes:
-    """What a tile's file is about: surface and phases, as its name has them."""
+    """What a file is about: surface and phases, as its name has them."""
     return f"{place.parent.name}/{place.name}".encode()
 
 
-def _packed(answer: Answer, name: bytes) -> bytes:
+def _packed(answer: Answer) -> bytes:
     content = io.BytesIO()
     np.savez(
         content,
@@ -151,14 +167,11 @@ def _packed(answer: Answer, name: bytes) -> bytes:
         status=np.array(answer.status, dtype=np.str_),
         cost=np.array(answer.cost),
     )
-    return hashlib.sha256(name + content.getvalue()).digest() + content.getvalue()
+    return content.getvalue()
 
 
-def _unpacked(text: bytes, name: bytes, tile: Tile) -> Answer:
+def _unpacked(content: bytes, tile: Tile) -> Answer:
     """The answer written in a tile's file. Raises ValueError or KeyError if that is not what it holds."""
-    digest, content = text[:32], text[32:]
-    if hashlib.sha256(name + content).digest() != digest:
-        raise ValueError("damaged, or of another tile")
     with np.load(io.BytesIO(content), allow_pickle=False) as parts:
         mu, error, instant, status = (parts[part] for part in ("mu", "error", "instant", "status"))
         if mu.shape != (len(tile.phases), len(tile.scene.bodies)):

@@ -34,6 +34,12 @@ def quick_figure(path: Path, *rest: object) -> None:
     Image.new("RGB", (1, 1)).save(path, "PNG")
 
 
+def without_errands(patch: pytest.MonkeyPatch) -> None:
+    """Nothing beside the surfaces is computed ahead: what the analyses need they ask for themselves."""
+    patch.setattr(comparison.run, "errands", lambda study: [])
+    patch.setattr(comparison.run, "motion_errands", lambda study, surfaces: [])
+
+
 @pytest.fixture
 def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Run]:
     """The command line with fake models in threads of this process and quick figures; --out in an empty directory."""
@@ -42,6 +48,7 @@ def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pyte
     monkeypatch.setattr(comparison.run, "slip_effects", lambda *rest: [])  # it asks no model of the ladder
     monkeypatch.setattr(comparison.run, "stored_motions", lambda *rest: [])
     monkeypatch.setattr(comparison.run, "further_findings", lambda *rest: {})
+    without_errands(monkeypatch)
 
     def run(
         *words: str, ladder: Sequence[Rung] | None = None, executor: Callable[[int], Executor] = ThreadPoolExecutor
@@ -61,6 +68,7 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     effects = [Effect("fig3-I", 0, ((0.5, -0.25), (float("nan"), 0.125))), Effect("fig3-I", 1, fault="it broke")]
     words = ["fig3-I", "fig4-viscous", "--grid", "4", "--jobs", "2", "--out", str(place)]
     with pytest.MonkeyPatch.context() as patch:
+        without_errands(patch)
         patch.setattr(comparison.run, "slip_effects", lambda *rest: effects)
         patch.setattr(comparison.run, "stored_motions", known_motions)
         patch.setattr(comparison.run, "further_findings", known_further)

@@ -7,18 +7,23 @@ import json
 import os
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import Run
 from fake_models import fake_ladder
 from rich.console import Console
 
+from comparison.analyses.trajectories import Place, StoredMotion
 from comparison.plan.study import Study
 from comparison.plan.tiles import Answer
-from comparison.sweep.compute import computed
+from comparison.sweep.answers import Answers
+from comparison.sweep.compute import computed, fetched
+from comparison.sweep.errands import Errand
 from comparison.sweep.tile_store import TileStore, store_beside
 from reference.problem import load_scene
 
@@ -33,21 +38,17 @@ sys.path[:0] = [{here!r}, {root!r}]
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from rich.console import Console
-from comparison.sweep.compute import computed
-from comparison.sweep.tile_store import TileStore
-
-from test_killed import study
+from test_killed import whole_run
 
 def run(place):
-    quiet = Console(file=open(os.devnull, "w"))
-    computed(study(), TileStore(place), quiet, 2, ThreadPoolExecutor)
+    whole_run(place, Console(file=open(os.devnull, "w")))
 
 def killed(place, tiles, seconds):
     child = os.fork()
     if child == 0:
         run(place)
         os._exit(0)
-    while len(list(place.glob("*/*.tile"))) < tiles:
+    while len(list(place.glob("*/*.tile")) + list(place.glob("*/*.answer"))) < tiles:
         time.sleep(0.0005)
     time.sleep(seconds)
     os.kill(child, signal.SIGKILL)
@@ -57,7 +58,8 @@ run(Path("whole"))
 draw, count = random.Random(7), 0
 while count < {instants}:
     place = Path(f"killed{{count}}")
-    if killed(place, draw.randrange(72), draw.uniform(0.0, 0.003)):
+    late = count % 3 == 0  # a third of them after the surfaces
+    if killed(place, 96 + draw.randrange(24) if late else draw.randrange(96), draw.uniform(0.0, 0.003)):
         count += 1
     else:  # it was done before its end
         shutil.rmtree(place)
@@ -68,6 +70,34 @@ def study() -> Study:
     """Two models, a file for every point of them."""
     ladder = [rung for rung in fake_ladder(tile=1) if rung.key in ("small", "translational")]
     return Study((load_scene("fig3-I"),), 6, 1e-3, ladder)
+
+
+def _errands(first: int, count: int) -> list[Errand]:
+    return [Errand("motions", motion, number, 0.01, "about") for number in range(first, first + count)]
+
+
+def motion(number: int) -> StoredMotion:
+    """A motion like no other."""
+    time.sleep(0.001)
+    draw = np.random.default_rng(number)
+    place = Place("fig3-I", number, 0, "why")
+    return StoredMotion(place, "small", draw.random(7), draw.random((7, 2, 2)), draw.random((7, 2, 2)), ((0.1, 0.2),))
+
+
+def whole_run(folder: Path, console: Console) -> tuple[list[Answer], list[object], int, int]:
+    """Tiles with 24 errands beside them and 24 after them; what was found, and how much of either was there before."""
+    store = TileStore(folder)
+    answers = Answers(store)
+    found = computed(study(), store, console, 2, ThreadPoolExecutor, _errands(0, 24), answers)
+    fetched(_errands(24, 24), answers, console, 2, ThreadPoolExecutor)
+    executor = answers.on(ThreadPoolExecutor)(1)
+    motions = [executor.submit(motion, number).result() for number in range(48)]
+    return (
+        list(found.answers),
+        [(m.place, m.stick, *(x.tobytes() for x in (m.time, m.position, m.acceleration))) for m in motions],
+        found.stored,
+        answers.parts["motions"].stored,
+    )
 
 
 def _computed(study: Study, store: TileStore) -> tuple[list[Answer], int]:
@@ -84,16 +114,18 @@ def _bytes(answers: list[Answer]) -> list[object]:
 def test_a_run_killed_at_random_instants_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
     script = SCRIPT.format(here=str(HERE), root=str(HERE.parents[1]), instants=INSTANTS)
     subprocess.run([sys.executable, "-c", script], cwd=tmp_path, check=True)
-    whole, stored = _computed(study(), TileStore(tmp_path / "whole"))
-    assert stored == len(whole) == 72, "the run that was not killed"
-    anew, _ = _computed(study(), TileStore(tmp_path / "new"))
-    assert _bytes(anew) == _bytes(whole)
+    quiet = Console(quiet=True)
+    whole, motions, *stored = whole_run(tmp_path / "whole", quiet)
+    assert stored == [len(whole), len(motions)] == [72, 48], "the run that was not killed"
+    anew, same, *stored = whole_run(tmp_path / "new", quiet)
+    assert (_bytes(anew), same, stored) == (_bytes(whole), motions, [0, 0])
     before = []
     for count in range(INSTANTS):
-        resumed, stored = _computed(study(), TileStore(tmp_path / f"killed{count}"))
-        assert _bytes(resumed) == _bytes(whole)
-        before.append(stored)
-    assert len(set(before)) > 8, "killed at different stages"
+        resumed, same, *stored = whole_run(tmp_path / f"killed{count}", quiet)
+        assert (_bytes(resumed), same) == (_bytes(whole), motions)
+        before.append(tuple(stored))
+    assert len({tiles for tiles, _ in before}) > 8, "killed at different stages"
+    assert sum(tiles == 72 and 0 < others < 48 for tiles, others in before) > 3, "of these some after the surfaces"
 
 
 def test_the_same_command_computes_nothing_twice_and_fresh_computes_all(command: Callable[..., Run]) -> None:

@@ -1,0 +1,55 @@
+"""All that a study computes beside its surfaces, as errands for the workers, with what each is predicted to cost."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+from comparison.analyses.convergence import LIMITS, convergence_tasks, limit_trends
+from comparison.analyses.effective import effective_tasks, read_back
+from comparison.analyses.scaling import scaling_tasks, scene_trends
+from comparison.analyses.slips import measured, slip_tasks
+from comparison.analyses.trajectories import motion_tasks, moved
+from comparison.assumptions.variations import variation_tasks, varied
+from comparison.claims.claims import CLAIMS
+from comparison.claims.evidence import gathered
+from comparison.claims.readings import READINGS
+from comparison.claims.table import GRID, SECONDS, questions
+from comparison.plan.study import Study
+from comparison.sweep.errands import Errand
+from reference.problem import builtin_scenes
+
+# s of one task, recorded on `plan.ladder.RECORDED_ON` for the built-in scenes
+EFFECTIVE = {"reference": 0.02, "engine": 0.2}
+SLIP, SCALING = 0.3, 0.12
+CONVERGENCE = dict(zip((limit.what for limit in LIMITS), (0.15, 0.15, 0.7, 2.4)))
+VARIATION = {"translational": 0.5, "spatial": 1.1}
+MOTION = {"reference": 0.12, "engine": 0.5}
+
+
+def errands(study: Study) -> list[Errand]:
+    """What can be computed without knowing the surfaces."""
+    found = [
+        Errand("effective values", read_back, (scene, rung), EFFECTIVE[rung.side], scene)
+        for scene, rung in effective_tasks(study)
+    ]
+    found += [Errand("slips", measured, task, SLIP, task[0]) for task in slip_tasks(study)]
+    found += [Errand("scaling test", scene_trends, task, SCALING, task[0]) for task in scaling_tasks(study)]
+    for scene, number in convergence_tasks(study):
+        seconds = CONVERGENCE[LIMITS[number].what]
+        found.append(Errand("convergence", limit_trends, (scene, number), seconds, scene))
+    if paper_complete(study):
+        found += [Errand("claims", gathered, question, SECONDS) for question in questions(READINGS, CLAIMS, GRID)]
+    for task in variation_tasks(study):
+        seconds = VARIATION["translational" if task[2] is None else "spatial"]
+        found.append(Errand("assumptions", varied, task, seconds, task[0], compiled=False))
+    return found
+
+
+def motion_errands(study: Study, surfaces: xr.Dataset) -> list[Errand]:
+    """The motions kept for the report, which are chosen by what the surfaces show."""
+    return [Errand("motions", moved, task, MOTION[task[1].side], task[0]) for task in motion_tasks(study, surfaces)]
+
+
+def paper_complete(study: Study) -> bool:
+    """Whether the study has every scene of the paper, whose claims speak about all of them."""
+    return {scene.name for scene in study.scenes} >= set(builtin_scenes())

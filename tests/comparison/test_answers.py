@@ -1,0 +1,158 @@
+"""What a study computes beside its surfaces is kept like these: for the very question, to the last bit, mended."""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+from collections.abc import Callable
+from concurrent.futures import Executor, ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from fake_models import fake_ladder
+from rich.console import Console
+
+from comparison.analyses.effective import Effective
+from comparison.analyses.errands import errands, paper_complete
+from comparison.analyses.slips import Effect
+from comparison.analyses.trajectories import Place, StoredMotion
+from comparison.plan.study import Study
+from comparison.sweep.answers import Answers
+from comparison.sweep.compute import fetched
+from comparison.sweep.errands import Errand, Fetched, fingerprint
+from comparison.sweep.sweep import sweep
+from comparison.sweep.tile_store import TileStore
+from reference.problem import Outcome, builtin_scenes, load_scene
+
+QUIET = Console(quiet=True)
+calls: list[object] = []
+
+
+def motion(task: tuple[object, ...]) -> StoredMotion:
+    calls.append(task)
+    numbers = np.array([0.1, np.nan, -0.0, 1e-300])
+    return StoredMotion(Place("s", 1, 2, ""), "small", numbers, numbers.reshape(2, 1, 2), numbers.reshape(2, 1, 2))
+
+
+def another(task: tuple[object, ...]) -> StoredMotion:
+    return motion(task)
+
+
+def broken(task: object) -> tuple[Effect, ...]:
+    calls.append(task)
+    return Effect("s", 0), Effect("s", 1, fault="it broke")
+
+
+def forbidden(jobs: int) -> Executor:
+    raise AssertionError("nothing should have been computed")
+
+
+def _errand(task: tuple[Any, ...] = (load_scene("fig3-I"), 1, 0.5, np.arange(3.0))) -> Errand:
+    return Errand("motions", motion, task, 0.1, task[0])
+
+
+def _fetched(errand: Errand, folder: Path, make: Callable[[int], Executor] = ThreadPoolExecutor) -> Answers:
+    answers = Answers(TileStore(folder))
+    fetched([errand], answers, QUIET, 1, make)
+    return answers
+
+
+def test_an_answer_comes_back_to_the_last_bit_and_is_not_computed_twice(tmp_path: Path) -> None:
+    errand = _errand()
+    found = [_fetched(errand, tmp_path), _fetched(errand, tmp_path, forbidden)]
+    assert [answers.parts["motions"].stored for answers in found] == [0, 1]
+    first, second = (answers.on(forbidden)(1).submit(motion, errand.task).result() for answers in found)
+    assert pickle.dumps(first) == pickle.dumps(second) == pickle.dumps(motion(errand.task))
+    assert Answers(TileStore(tmp_path)).holds(errand)
+    assert not Answers(TileStore(tmp_path), fresh=True).holds(errand)
+    assert Answers(TileStore(tmp_path), fresh=True).missing([errand]) == [errand]
+
+
+def test_it_belongs_to_function_task_versions_and_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    errand = _errand()
+    _fetched(errand, tmp_path)
+    scene, *rest = errand.task
+    others = {
+        "function": replace(errand, solve=another),
+        "scene": _errand((scene.model_copy(update={"duration": 3.0}), *rest)),
+        "name, which the answer may hold": _errand((scene.model_copy(update={"name": "other"}), *rest)),
+        "number": _errand((scene, 2, *rest[1:])),
+        "last bit": _errand((scene, 1, np.nextafter(0.5, 1.0), rest[2])),
+        "array": _errand((scene, 1, 0.5, np.arange(3.0) + 1e-16 * np.array([1.0, 0.0, 0.0]))),
+        "shape": _errand((scene, 1, 0.5, np.arange(3.0)[None])),
+    }
+    for name, other in others.items():
+        assert Answers(TileStore(tmp_path)).missing([other]), name
+    for name in ("_version", "source_digest"):
+        with monkeypatch.context() as patch:
+            patch.setattr(f"comparison.sweep.surroundings.{name}", lambda package: "changed")
+            assert Answers(TileStore(tmp_path)).missing([errand]), name
+    assert not Answers(TileStore(tmp_path)).missing([errand])
+
+
+def test_a_model_is_known_by_its_source_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    rung = fake_ladder()[0]
+    before = fingerprint(rung)
+    assert fingerprint(replace(rung, settings={"gap": 2.0})) != before
+    monkeypatch.setattr("comparison.sweep.surroundings.source_digest", lambda name: "changed")
+    assert fingerprint(rung) != before
+
+
+def test_what_names_a_fault_serves_the_run_and_is_tried_again_by_the_next(tmp_path: Path) -> None:
+    errand = Errand("slips", broken, 1, 0.1)
+    calls.clear()
+    answers = _fetched(errand, tmp_path)
+    assert answers.on(forbidden)(1).submit(broken, 1).result()[1].fault == "it broke"
+    _fetched(errand, tmp_path)
+    assert calls == [1, 1]
+
+
+@pytest.mark.parametrize("damage", ["torn", "one bit", "a foreign class"])
+def test_what_is_damaged_or_would_run_foreign_code_is_computed_again(tmp_path: Path, damage: str) -> None:
+    errand = _errand()
+    _fetched(errand, tmp_path)
+    (file,) = tmp_path.glob("*/*.answer")
+    text = file.read_bytes()
+    if damage == "a foreign class":
+        content = pickle.dumps(Path("reports"), protocol=4)
+        text = hashlib.sha256(f"{file.parent.name}/{file.name}".encode() + content).digest() + content
+    file.write_bytes({"torn": text[:-9], "one bit": text[:-1] + bytes([text[-1] ^ 1])}.get(damage, text))
+    assert _fetched(errand, tmp_path).parts["motions"].stored == 0
+    assert _fetched(errand, tmp_path, forbidden).parts["motions"].stored == 1, "and mended"
+
+
+def test_an_analysis_asks_itself_for_what_was_not_fetched(tmp_path: Path) -> None:
+    answers = _fetched(_errand(), tmp_path)
+    calls.clear()
+    tasks = [_errand().task, (1,)]
+    found = sweep(tasks, motion, lambda *rest: None, lambda *rest: None, 2, answers.on(ThreadPoolExecutor))
+    assert len(found) == 2
+    assert calls == [(1,)]
+
+
+def test_an_errand_whose_worker_died_is_left_to_its_analysis() -> None:
+    answers = Answers(TileStore(Path("unused")))
+    answers.put(_errand(), None)
+    assert answers.missing([_errand()])
+    answers.put(Errand("slips", broken, 1, 0.1), Fetched(Effect("s", 1, fault=str(Outcome.WORKER_DIED)), 0.0))
+    assert answers.parts["slips"].tasks == 1
+
+
+def test_every_errand_of_a_study_has_a_place_of_its_own() -> None:
+    study = Study(tuple(map(load_scene, builtin_scenes())), 6, 1e-3)
+    found = errands(study)
+    assert paper_complete(study)
+    assert len({errand.key for errand in found}) == len(found)
+    assert {errand.stage for errand in found} == {
+        "effective values", "slips", "scaling test", "convergence", "claims", "assumptions",
+    }  # fmt: skip
+    assert not paper_complete(Study(study.scenes[:1], 6, 1e-3))
+
+
+def test_effective_values_without_a_motion_are_not_kept_for_good(tmp_path: Path) -> None:
+    answers = Answers(TileStore(tmp_path))
+    answers.put(Errand("effective values", broken, 1, 0.1), Fetched(Effective("s", "small", fault="it ended"), 0.1))
+    assert not list(tmp_path.glob("*/*"))
