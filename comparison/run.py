@@ -110,7 +110,9 @@ def _run(
     executor: Callable[[int], Executor],
     store: TileStore,
 ) -> int:
-    from comparison.report.report import write_report  # plotting libraries: not needed to refuse a command or to plan
+    # plotting libraries: not needed to refuse a command or to plan
+    from comparison.drawing import pictures as drawing
+    from comparison.report.report import write_report
 
     begin, began = time.monotonic(), datetime.now(UTC)
     tiles = study.tiles()
@@ -121,9 +123,11 @@ def _run(
     done = computed(study, store, console, options.jobs, executor, errands(study), known)
     seconds, answers = time.monotonic() - begin, done.answers
     surfaces = labelled_surfaces(study, tiles, answers)
-    console.print("Keeping a few motions of every scene for the report.")
-    fetched(motion_errands(study, surfaces), known, console, options.jobs, executor)
+    console.print("Keeping a few motions of every scene for the report, and drawing the surfaces.")
+    chosen = [*motion_errands(study, surfaces), *drawing.picture_errands(study, surfaces)]
+    fetched(chosen, known, console, options.jobs, executor)
     executor = known.on(executor)  # what the analyses ask has been fetched
+    pictures = drawing.all_drawn(study, surfaces, options.jobs, executor)
     effective = effective_values(study, options.jobs, executor)
     effects = slip_effects(study, options.jobs, executor)
     motions = stored_motions(study, surfaces, options.jobs, executor)
@@ -150,9 +154,9 @@ def _run(
         "jobs": options.jobs,
         "provenance": provenance(),
     }
-    more = {"motions": motions, "assumptions": assumptions, "families": families, **beside, **further}
-    found = findings(study, surfaces, effective, effects, faults, run, **more)
-    console.print("Drawing the figures and writing the report.")
+    of_run = {"motions": motions, "assumptions": assumptions, "families": families, "pictures": pictures}
+    found = findings(study, surfaces, effective, effects, faults, run, **of_run, **beside, **further)
+    console.print("Writing the report.")
     with replaced_when_complete(options.out) as folder:
         write_report(folder, found)
     for line in faults:

@@ -52,7 +52,7 @@ def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, bo
 def _map(axes: Axes, step: Step, norm: SymLogNorm) -> QuadMesh:
     phase, size = closed(step.alpha1, 100.0 * step.size)
     axes.set_facecolor("0.75")
-    image = axes.pcolormesh(phase, phase, size.T, cmap=SIGN_COLOURS, norm=norm, shading="nearest")
+    image = axes.pcolormesh(phase, phase, size.T, cmap=SIGN_COLOURS, norm=norm, shading="nearest", rasterized=True)
     row, column = np.nonzero(step.known & ~step.real)
     axes.plot(phase[row], phase[column], ".", color="0.35", markersize=160.0 / len(phase) / 4.0, markeredgewidth=0.0)
     axes.set_xlim(0.0, 2.0 * np.pi)

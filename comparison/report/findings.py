@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import xarray as xr
@@ -28,8 +28,9 @@ class Findings:
     """
     surfaces: see `labelled_surfaces`. rows: differences of pairs of models. budget: what every rung adds. effective:
     values read back from each model. effects: what slips of the print do to mu. broken: acceptance limits, one line
-    each. faults: what solvers complained about. run: command, times, provenance. Fields that may be None are what only
-    some commands compute. motions: see `stored_motions`. claims, scaling, convergence: see `further_findings`.
+    each. faults: what solvers complained about. run: command, times, provenance. pictures: files of the surfaces' by
+    name. Fields that may be None are what only some commands compute. motions: see `stored_motions`. claims, scaling,
+    convergence: see `further_findings`.
     assumptions: how far the paper's carry, see `Reach`. families: those of more than one scene. extremes: the
     matrix that `python -m comparison.extremes` left beside the report. tradeoff: what `python -m comparison.tradeoff`
     left there.
@@ -44,6 +45,7 @@ class Findings:
     broken: Sequence[str]
     faults: Sequence[str]
     run: Mapping[str, Any]
+    pictures: Mapping[str, bytes] = field(default_factory=dict)
     motions: Sequence[StoredMotion] | None = None
     claims: ClaimTable | None = None
     scaling: Sequence[Trend] | None = None

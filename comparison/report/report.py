@@ -28,9 +28,8 @@ from comparison.analyses.slips import SLIPS, Effect
 from comparison.assumptions.figure import assumption_figure_name, draw_assumptions
 from comparison.claims.humps import LEAST_SHARE, MOST_SHARE, SHARE
 from comparison.claims.table import SIGNS
-from comparison.drawing.budget_figure import budget_figure_name, draw_budget
-from comparison.drawing.figures import draw_pair, figure_name
-from comparison.drawing.paper_figures import draw_paper_figure, paper_figure_name
+from comparison.drawing.budget_figure import budget_figure_name
+from comparison.drawing.figures import figure_name
 from comparison.extremes.figure import COLOURS, MEANING, PICTURE, draw_extremes, said
 from comparison.extremes.matrix import written
 from comparison.extremes.verdicts import Verdict
@@ -134,7 +133,7 @@ SCRIPTS = ("motions.js", "surfaces.js", "report.js")
 
 def write_report(folder: Path, found: Findings) -> None:
     """Write every file of the report into `folder`, which exists and is empty."""
-    study, run = found.study, found.run
+    run = found.run
     stamped = found.surfaces.assign_attrs(command=run["command"], **run["provenance"])
     stamped.to_netcdf(folder / "surfaces.nc", engine="h5netcdf")
     text = json.dumps(summary(found), indent=1, ensure_ascii=False, allow_nan=False)
@@ -145,12 +144,8 @@ def write_report(folder: Path, found: Findings) -> None:
         written(found.extremes, folder)
     figures = folder / "figures"
     figures.mkdir()
-    for scene in study.scenes:
-        for body in range(1, len(scene.bodies) + 1):
-            for pair in pairs_of(scene, study.ladder):
-                draw_pair(figures / figure_name(scene, body, pair), found.surfaces, scene, body, pair)
-            draw_budget(figures / budget_figure_name(scene, body), study, found.surfaces, scene, body)
-        draw_paper_figure(figures / paper_figure_name(scene), study, found.surfaces, scene)
+    for name, content in found.pictures.items():
+        (figures / name).write_bytes(content)
     for section in SECTIONS:
         if section.draw and section.present(found):
             section.draw(figures, found)

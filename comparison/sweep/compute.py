@@ -132,8 +132,8 @@ def _solved(
             needs = piece.compiled if isinstance(piece, Errand) else piece.rung in compiled
             return not (pending and needs)
 
-        # the longest first, so that no worker is left with one when the others are done
-        asked: list[Piece] = [warm_up(study), *sorted(errands, key=lambda errand: -errand.seconds), *tiles]
+        # the longest errands first: no worker is left with one when the others are done
+        asked: list[Piece] = [warm_up(study), *tiles, *sorted(errands, key=lambda errand: -errand.seconds)]
         found = sweep(asked, _run, _lost, done, jobs, executor, ready, _split, _join)
         return [answer for answer in found if isinstance(answer, Answer)][1:]  # without the warm-up
 

@@ -17,7 +17,8 @@ def command_line(words: Sequence[str]) -> str:
 def going_on(store: TileStore, study: Study, words: Sequence[str]) -> str:
     """How much is kept where, and the command for the rest: the same one, without what would throw it away."""
     rest = [word for word in words if word != "--fresh"]
-    kept = f"{store.kept} of {len(study.tiles())} tiles are kept in {str(store.folder)!r}"
+    others = f" and {store.others} analyses" if store.others else ""
+    kept = f"{store.kept} of {len(study.tiles())} tiles{others} are kept in {str(store.folder)!r}"
     return f"{kept}; go on with: {command_line(rest)}"
 
 

@@ -14,6 +14,7 @@ from PIL import Image
 
 import comparison.run
 from comparison.analyses.slips import Effect
+from comparison.drawing import pictures
 from comparison.plan.ladder import Rung
 from comparison.report import report
 from comparison.run import main
@@ -35,16 +36,18 @@ def quick_figure(path: Path, *rest: object) -> None:
 
 
 def without_errands(patch: pytest.MonkeyPatch) -> None:
-    """Nothing beside the surfaces is computed ahead: what the analyses need they ask for themselves."""
+    """Nothing beside the surfaces is computed ahead or kept: what the analyses need they ask for themselves."""
     patch.setattr(comparison.run, "errands", lambda study: [])
     patch.setattr(comparison.run, "motion_errands", lambda study, surfaces: [])
+    patch.setattr(pictures, "picture_errands", lambda study, surfaces: [])
 
 
 @pytest.fixture
 def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Run]:
     """The command line with fake models in threads of this process and quick figures; --out in an empty directory."""
-    for name in ("draw_pair", "draw_budget", "draw_assumptions", "draw_paper_figure"):
-        monkeypatch.setattr(report, name, quick_figure)
+    monkeypatch.setattr(report, "draw_assumptions", quick_figure)
+    for name in ("draw_pair", "draw_budget", "draw_paper_figure"):
+        monkeypatch.setattr(pictures, name, quick_figure)
     monkeypatch.setattr(comparison.run, "slip_effects", lambda *rest: [])  # it asks no model of the ladder
     monkeypatch.setattr(comparison.run, "stored_motions", lambda *rest: [])
     monkeypatch.setattr(comparison.run, "further_findings", lambda *rest: {})

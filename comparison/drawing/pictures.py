@@ -1,0 +1,94 @@
+"""All pictures of a study's surfaces, each drawn by whoever has time, and handed back as files."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import xarray as xr
+
+from comparison.drawing.budget_figure import budget_figure_name, draw_budget
+from comparison.drawing.figures import draw_pair, figure_name
+from comparison.drawing.paper_figures import draw_paper_figure, paper_figure_name
+from comparison.plan.ladder import Pair, pairs_of
+from comparison.plan.study import Study
+from comparison.sweep.errands import Errand, fingerprint
+from comparison.sweep.sweep import sweep
+from reference.problem import Outcome, Scene
+
+SECONDS = {"pair": 0.8, "budget": 0.8, "paper": 1.3}  # of drawing one, recorded beside `Rung.seconds_per_point`
+SHOWN = ["mu", "error", "stride"]  # of the surfaces: what pictures are made of
+
+
+@dataclass(frozen=True)
+class Picture:
+    """
+    One picture of a scene: a pair of models or the budget, of one body; or all bodies in the manner of the paper.
+
+    study, surfaces: those of the scene alone.
+    """
+
+    kind: Literal["pair", "budget", "paper"]
+    study: Study
+    surfaces: xr.Dataset
+    body: int = 0
+    pair: Pair | None = None
+
+    @property
+    def scene(self) -> Scene:
+        return self.study.scenes[0]
+
+
+Files = tuple[tuple[str, bytes], ...]  # names and contents
+
+
+def pictures(study: Study, surfaces: xr.Dataset) -> list[Picture]:
+    """Every picture of the study."""
+    found = []
+    for scene in study.scenes:
+        own = Study((scene,), study.grid, study.tolerance, study.ladder, study.full)
+        shown = surfaces[SHOWN].sel(scene=[scene.name])
+        found.append(Picture("paper", own, shown))
+        for body in range(1, len(scene.bodies) + 1):
+            found += [Picture("pair", own, shown, body, pair) for pair in pairs_of(scene, study.ladder)]
+            found.append(Picture("budget", own, shown, body))
+    return found
+
+
+def picture_errands(study: Study, surfaces: xr.Dataset) -> list[Errand]:
+    """The same as errands for the workers."""
+    about = {scene.name: fingerprint(surfaces[SHOWN].sel(scene=[scene.name])) for scene in study.scenes}
+    return [
+        Errand("pictures", drawn, picture, SECONDS[picture.kind], about[picture.scene.name], compiled=False)
+        for picture in pictures(study, surfaces)
+    ]
+
+
+def drawn(picture: Picture) -> Files:
+    """The files of one picture, PNG and PDF. Runs inside a worker process."""
+    study, surfaces, scene, body = picture.study, picture.surfaces, picture.scene, picture.body
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        if picture.kind == "paper":
+            draw_paper_figure(folder / paper_figure_name(scene), study, surfaces, scene)
+        elif picture.kind == "budget":
+            draw_budget(folder / budget_figure_name(scene, body), study, surfaces, scene, body)
+        else:
+            assert picture.pair is not None
+            draw_pair(folder / figure_name(scene, body, picture.pair), surfaces, scene, body, picture.pair)
+        return tuple((file.name, file.read_bytes()) for file in sorted(folder.iterdir()))
+
+
+def all_drawn(study: Study, surfaces: xr.Dataset, jobs: int, executor: Callable[[int], Executor]) -> dict[str, bytes]:
+    """Every file of every picture by its name, drawn on `executor(jobs)`; what fails there is drawn here."""
+    asked = pictures(study, surfaces)
+    found = sweep(asked, drawn, _lost, lambda picture, files: None, jobs, executor)
+    return {name: content for picture, files in zip(asked, found) for name, content in files or drawn(picture)}
+
+
+def _lost(picture: Picture, outcome: Outcome, fault: str) -> Files:
+    return ()
