@@ -1,4 +1,7 @@
-"""Models with a known answer, and models that fail in known ways. Workers import them by name."""
+"""Models with a known answer, and models that fail in known ways. Workers import them by name.
+
+`full` asks a model for all that a scene does not require: these leave nothing out.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,9 @@ from reference.problem import GRAVITY, Amplification, Outcome, Scene, Trajectory
 DEADLY = 2.0 * np.pi * 3 / 4  # alpha1, alpha2 of the one point of a 4 x 4 grid that a failing model fails at
 
 
-def smooth(scene: Scene, phases: NDArray[np.float64], tolerance: float, gap: float = 0.0) -> Amplification:
+def smooth(
+    scene: Scene, phases: NDArray[np.float64], tolerance: float, gap: float = 0.0, full: bool = False
+) -> Amplification:
     """mu_i = (i + 2 + cos a1 + sin a2) (1 + gap), known to `tolerance`."""
     shape = 2.0 + np.cos(phases[:, 0]) + np.sin(phases[:, 1])
     mu = (shape[:, None] + np.arange(1, len(scene.bodies) + 1)) * (1.0 + gap)
@@ -32,7 +37,7 @@ def deadly(phases: NDArray[np.float64]) -> NDArray[np.bool_]:
     return np.isclose(phases, DEADLY).all(axis=1)
 
 
-def failing_point(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+def failing_point(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
     """One point has no answer and says why."""
     answer = smooth(scene, phases, tolerance)
     mu, status = answer.mu.copy(), answer.status.astype("U32")
@@ -40,40 +45,40 @@ def failing_point(scene: Scene, phases: NDArray[np.float64], tolerance: float) -
     return replace(answer, mu=mu, status=status)
 
 
-def silent_nan(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+def silent_nan(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
     """Calls a point without a number ok."""
     return replace(failing_point(scene, phases, tolerance), status=np.full(len(phases), "ok"))
 
 
-def raising(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+def raising(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
     if deadly(phases).any():
         raise RuntimeError("the matrix is singular")
     return smooth(scene, phases, tolerance)
 
 
-def always_raising(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+def always_raising(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
     raise RuntimeError("the matrix is singular")
 
 
-def misshapen_there(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+def misshapen_there(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
     """Answers a deadly phase with a point too few."""
     answer = smooth(scene, phases, tolerance)
     return replace(answer, mu=answer.mu[:-1]) if deadly(phases).any() else answer
 
 
-def killing(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+def killing(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
     """Takes its process with it, as a fault in a native library does."""
     if deadly(phases).any():
         os.kill(os.getpid(), signal.SIGKILL)
     return smooth(scene, phases, tolerance)
 
 
-def slow(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+def slow(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
     time.sleep(60.0)
     return smooth(scene, phases, tolerance)
 
 
-def uneven(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+def uneven(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
     """The later in the grid, the sooner it is done."""
     time.sleep(0.01 * (4.0 * np.pi - float(phases.sum(axis=1).max())) / np.pi)
     return smooth(scene, phases, tolerance)

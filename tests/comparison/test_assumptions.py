@@ -139,6 +139,7 @@ def test_with_all_heights_zero_the_real_models_agree_within_their_errors() -> No
     (cell,) = _turning(load_scene("fig3-II"), [Variation(height=0.0)])
     assert set(cell.status) == {"ok"}
     assert (np.abs(cell.change) <= cell.uncertainty).all()
+    assert np.abs(cell.change).max() > 0.0, "the model that turns has answered, not the one it is held against"
 
 
 def test_a_wider_ring_turns_the_real_platform_less() -> None:
