@@ -103,6 +103,7 @@ class Engine:
     def run(self, state: EngineState, begin: float, step: float, count: int) -> Motion | None:
         """`count` steps from `state` at time `begin`; None if the engine could not solve one of them."""
         place(self.model, state)
+        self.model.ground.begin(begin)
         self.settings.timeIntegration.startTime = begin
         self.settings.timeIntegration.endTime = begin + count * step
         self.settings.timeIntegration.numberOfSteps = count

@@ -1,17 +1,26 @@
-"""Ground acceleration (5.2)-(5.4) as an expression that the engine evaluates without calling Python."""
+"""Ground acceleration as an expression that the engine evaluates: (5.2)-(5.4), or a record (`recorded.py`)."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from multibody.engine import exudyn, symbolic_function
+from multibody.recorded import RecordedGround
 from multibody.units import Units
 from reference.problem import Scene, exponents
 
 
 class SymbolicGround:
-    """The plate's acceleration in units of the model; its two phases can be changed between runs."""
+    """
+    The plate's acceleration in units of the model; its two phases can be changed between runs.
+
+    knots: instants at which steps must end, none; near: how close to one is on it.
+    """
+
+    knots, near = np.empty(0), 0.0
 
     def __init__(self, scene: Scene, units: Units) -> None:
         self.amplitudes = scene.amplitudes / units.acceleration
@@ -28,6 +37,9 @@ class SymbolicGround:
         """What the runs that follow add to the engine's time, in units of time."""
         self.shift.SetValue(shift)
 
+    def begin(self, time: float) -> None:
+        """Nothing: the expression holds at any time."""
+
     def along(self, axis: int, time: Any) -> Any:
         """Expression of the acceleration along `axis` at the symbolic instant `time`."""
         total, time = exudyn.symbolic.Real(0.0), time + self.shift
@@ -36,6 +48,14 @@ class SymbolicGround:
                 decay = exudyn.symbolic.exp(exponent.real * time)
                 total = total + amplitude * decay * exudyn.symbolic.cos(exponent.imag * time + phase)
         return total
+
+
+Ground = SymbolicGround | RecordedGround
+
+
+def ground_of(mbs: Any, scene: Scene, units: Units) -> Ground:
+    """The loading of the scene as the engine's."""
+    return RecordedGround(mbs, scene, units) if scene.recorded else SymbolicGround(scene, units)
 
 
 def symbolic_load(mbs: Any, load: Any, parameter: str, function: Callable[..., Any]) -> Any:

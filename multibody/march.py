@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from multibody.integrate import Engine, Motion
 from multibody.level import RATIO, Level
-from multibody.peak import Peaks
+from multibody.peak import NEAR, Peaks, kinks
+from multibody.recorded import aligned
 from multibody.system import EngineState
 from reference.problem import Outcome
 
@@ -28,6 +29,7 @@ Array = NDArray[np.float64]
 SETTLING = 2  # depth of the first chunk: the contact settles
 LONG, SHORT = 256, 32  # steps in a chunk at the largest step at most, at smaller ones
 STEPS_OF_RATE = 4  # over which the rate of a gap is taken
+BEHIND = 4.0  # allowed turns times the relaxation of friction: first step behind a kink of the loading
 LATEST = 8  # rows at the end of a chunk that decide whether the step may grow
 
 
@@ -62,7 +64,7 @@ def march(
 ) -> March:
     """Run from `start` at time 0 to `end`; ground: plate's acceleration (T, 3) at times (T,), in units of the model."""
     model = engine.model
-    result = March(Peaks(len(model.bodies), model.corner))
+    result = March(Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near))
     if budget.left * level.step < end:
         return _ended(result, Outcome.STEP_LIMIT, 0.0)
     state, time, depth, ahead = start, 0.0, SETTLING, LONG
@@ -70,7 +72,7 @@ def march(
         step = level.step / RATIO**depth
         count = ahead if depth == 0 else SHORT
         count = min(count, math.ceil((end - time) / step * (1.0 - 1e-12)))
-        step = min(step, (end - time) / count)
+        step, count = aligned(model.ground.knots, model.ground.near, time, min(step, (end - time) / count), count)
         motion = engine.run(state, time, step, count)
         result.runs += 1
         result.steps += count
@@ -82,7 +84,12 @@ def march(
                 return _ended(result, Outcome.SOLVER_FAILED, time)
             depth += 1
             continue
-        excess = _excess(motion, engine, step / level.turn)
+        below = motion.plate[:, 2] if model.moving_plate else ground(motion.time)
+        absolute = motion.accelerations[:, model.bodies] + below[:, None, :]
+        excess = np.maximum(
+            _excess(motion, engine, step / level.turn),
+            _behind_kinks(motion, absolute[:, 0], engine, float(result.peaks.value[0]), step / level.turn),
+        )
         last = len(motion.time) - 1
         failing = np.flatnonzero(excess > 1.0)
         refused = depth < level.deepest and len(failing) > 0
@@ -95,9 +102,7 @@ def march(
                 result.chunks.append(kept.upto(row))
             if outcome != Outcome.OK:
                 return _ended(result, outcome, float(kept.time[row]))
-            below = kept.plate[:, 2] if model.moving_plate else ground(kept.time)
-            absolute = kept.accelerations[:, model.bodies] + below[:, None, :]
-            result.peaks.add(kept.time, absolute, kept.slip)
+            result.peaks.add(kept.time, absolute[: last + 1], kept.slip)
             state, time = kept.state(last), float(kept.time[last])
             ahead = _steps_ahead(kept, engine, level)
             if refused:
@@ -125,6 +130,22 @@ def _excess(motion: Motion, engine: Engine, per_turn: float) -> Array:
     # an acceleration that changes within a step counts twice: it says more about the steps that follow
     size[1:] = np.maximum(size[1:], 2.0 * np.linalg.norm(np.diff(acceleration, axis=0), axis=-1))
     excess: Array = per_turn * size / np.maximum(motion.slip.min(axis=1), corner)
+    return excess
+
+
+def _behind_kinks(motion: Motion, platform: Array, engine: Engine, peak: float, per_turn: float) -> Array:
+    """
+    First step behind a kink of the loading over what is allowed, (T,), where the peak may be: zero elsewhere.
+
+    While the platform creeps its acceleration follows the ground's with the relaxation of regularised friction, whose
+    change of slope behind a kink longer steps would take for a swing.
+    """
+    excess, model = np.zeros(len(motion.time)), engine.model
+    rows = kinks(motion.time, model.ground.knots, model.ground.near)
+    if len(rows) and np.isfinite(model.corner):
+        size = np.linalg.norm(platform, axis=-1)
+        rows = rows[(size[rows] > NEAR * max(peak, float(size.max()))) & (motion.slip[rows].min(axis=1) < model.corner)]
+        excess[np.minimum(rows + 1, len(excess) - 1)] = per_turn / (BEHIND * model.relaxation)
     return excess
 
 

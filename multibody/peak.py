@@ -3,16 +3,21 @@ Largest absolute acceleration of each body between recorded instants, with the e
 
 The regularised law has a corner where the slip speed passes v_reg: accelerations are continuous there and their slopes
 jump. The largest acceleration of a platform that comes to a stop is often that corner, between two samples, so it is
-read from each side by itself, at the instant at which the slip speed passes v_reg.
+read from each side by itself, at the instant at which the slip speed passes v_reg. Recorded loading has kinks, too, but
+at samples: nothing is read across them.
 """
 
 from __future__ import annotations
+
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.intp]
 
+NO_KNOTS, NO_ROWS = np.empty(0), np.empty(0, np.intp)
 KEPT = 6  # samples carried over to the next chunk: what the readings from both sides of an instant need
 AFTER = 3  # samples behind a corner, from which it is read
 NEAR = 0.97  # of the peak: samples below it cannot be raised above it by interpolation at a resolved step
@@ -22,15 +27,16 @@ class Peaks:
     """
     Running maximum over t of |absolute acceleration| per body, fed chunk by chunk; nothing else is kept.
 
-    threshold: slip speed v_reg at which the friction law has its corner; inf if it has none.
+    threshold: slip speed v_reg at which the friction law has its corner; inf if it has none. knots: (K,), rising, where
+    the loading has a kink, each a sample within `near`.
     value: (N,). sampling: (N,), estimated error of the reading between samples. instant: (N,), where.
     """
 
-    def __init__(self, bodies: int, threshold: float) -> None:
+    def __init__(self, bodies: int, threshold: float, knots: Array = NO_KNOTS, near: float = 0.0) -> None:
         self.value = np.zeros(bodies)
         self.sampling = np.zeros(bodies)
         self.instant = np.zeros(bodies)
-        self._threshold = threshold
+        self._threshold, self._knots, self._near = threshold, knots, near
         self._read = -np.inf  # start of the last interval whose corner was read
         self._time = np.empty(0)
         self._size = np.empty((0, bodies))
@@ -47,19 +53,21 @@ class Peaks:
         corners = np.flatnonzero((beyond[1:] != beyond[:-1]).any(axis=1))
         # each corner is read once, as soon as there are samples behind it
         ready = [int(left) for left in corners if left + AFTER < len(time) and time[left] > self._read]
+        bends = kinks(time, self._knots, self._near)
         for body in range(size.shape[1]):
-            self._scan(body, time, size[:, body], slip, corners, ready)
+            self._scan(body, time, size[:, body], slip, corners, bends, ready)
         if ready:
             self._read = float(time[ready[-1]])
         self._time, self._size, self._slip = time[-KEPT:], size[-KEPT:], slip[-KEPT:]
 
     def _scan(
-        self, body: int, time: Array, size: Array, slip: Array, corners: NDArray[np.intp], ready: list[int]
+        self, body: int, time: Array, size: Array, slip: Array, corners: Rows, bends: Rows, ready: list[int]
     ) -> None:
         row = int(size.argmax())
         if size[row] <= NEAR * self.value[body]:
             return
-        self._offer(body, *_smooth(time, size, row, corners))
+        for stretch in _neighbours(row, len(size), corners, bends):
+            self._offer(body, *_smooth(time, size, row, *stretch))
         for left in ready:
             if max(size[left], size[left + 1]) > NEAR * self.value[body]:
                 self._offer(body, *_corner(time, size, slip, left, self._threshold, corners))
@@ -73,35 +81,44 @@ class Peaks:
             self.sampling[body] = possible - self.value[body]
 
 
-def _smooth(time: Array, size: Array, row: int, corners: NDArray[np.intp]) -> tuple[float, float, float]:
-    """
-    Top of the parabola through the highest sample and its neighbours; its error from a cubic through one more sample.
+def kinks(time: Array, knots: Array, near: float) -> Rows:
+    """The rows of `time` that lie on one of the knots, both rising."""
+    if not len(knots):
+        return NO_ROWS
+    return np.flatnonzero(np.abs(knots[np.searchsorted(knots[:-1], time - near)] - time) <= near)
 
-    The sample itself where a neighbour is missing or a corner lies in between.
+
+def _smooth(
+    time: Array, size: Array, row: int, first: int, last: int, others: tuple[int, int]
+) -> tuple[float, float, float]:
+    """
+    Top of the parabola through the highest sample and two others; its error from a cubic through one more sample.
+
+    The sample itself where one of the others is not between `first` and `last`: a corner or a kink lies in between.
     """
     sample = float(size[row]), 0.0, float(time[row])
-    first, last = _side(row, len(size), corners)
-    if row - 1 < first or row + 1 > last:
+    if not (first <= min(others) and max(others) <= last):
         return sample
-    t, f = time[row - 1 : row + 2] - time[row], size[row - 1 : row + 2] - size[row]
-    left, right = f[0] / t[0], f[2] / t[2]
-    curvature = (right - left) / (t[2] - t[0])
+    t, f = time[list(others)] - time[row], size[list(others)] - size[row]
+    left, right = f[0] / t[0], f[1] / t[1]
+    curvature = (right - left) / (t[1] - t[0])
     slope = left - curvature * t[0]
     if curvature >= 0.0:
         return sample
-    summit = float(np.clip(-0.5 * slope / curvature, t[0], t[2]))
+    around = others[0] < row < others[1]
+    summit = float(np.clip(-0.5 * slope / curvature, min(t[0], 0.0), t[1] if around else max(t[0], 0.0)))
     rise = (slope + curvature * summit) * summit
     error = 0.0
-    for extra in (row - 2, row + 2):
+    for extra in (row - 2, row + 2) if around else (2 * others[1] - others[0],):
         if first <= extra <= last:
             s = time[extra] - time[row]
-            third = (size[extra] - size[row] - (slope + curvature * s) * s) / (s * (s - t[0]) * (s - t[2]))
-            error = max(error, abs(third * summit * (summit - t[0]) * (summit - t[2])))
+            third = (size[extra] - size[row] - (slope + curvature * s) * s) / (s * (s - t[0]) * (s - t[1]))
+            error = max(error, abs(third * summit * (summit - t[0]) * (summit - t[1])))
     return float(size[row] + rise), float(error), float(time[row] + summit)
 
 
 def _corner(
-    time: Array, size: Array, slip: Array, left: int, threshold: float, corners: NDArray[np.intp]
+    time: Array, size: Array, slip: Array, left: int, threshold: float, corners: Rows
 ) -> tuple[float, float, float]:
     """
     Value at a corner between rows `left` and `left + 1`, extrapolated from both sides.
@@ -130,7 +147,20 @@ def _corner(
     return 0.5 * (readings[0] + readings[1]), error, instant
 
 
-def _side(row: int, count: int, corners: NDArray[np.intp]) -> tuple[int, int]:
+def _neighbours(row: int, count: int, corners: Rows, bends: Rows) -> Iterator[tuple[int, int, tuple[int, int]]]:
+    """First and last row of every smooth stretch that `row` belongs to, and the two rows nearest to it there."""
+    first, last = _side(row, count, corners)
+    place = int(np.searchsorted(bends, row))
+    before, here = [first, *bends[:place]], place < len(bends) and bends[place] == row
+    after = [*bends[place + here :], last]
+    if here:
+        yield max(first, int(before[-1])), row, (row - 1, row - 2)
+        yield row, min(last, int(after[0])), (row + 1, row + 2)
+    else:
+        yield max(first, int(before[-1])), min(last, int(after[0])), (row - 1, row + 1)
+
+
+def _side(row: int, count: int, corners: Rows) -> tuple[int, int]:
     """First and last row on the same side of all corners as `row`."""
     place = int(np.searchsorted(corners, row))
     first = int(corners[place - 1]) + 1 if place > 0 else 0

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from multibody.engine import items
-from multibody.loading import SymbolicGround, symbolic_load
+from multibody.loading import Ground, symbolic_load
 
 LOADINGS = ("inertial", "plate")
 HEAVY = 1e6  # mass of the plate over that of all bodies: what they do to it is a millionth of what it does to them
@@ -31,7 +31,7 @@ class Plate:
     expressions: tuple[Any, ...] = ()
 
 
-def plate_for(mbs: Any, loading: str, ground: SymbolicGround) -> Plate:
+def plate_for(mbs: Any, loading: str, ground: Ground) -> Plate:
     """Add the plate, after all other coordinates, at the origin."""
     if loading == "inertial":
         return Plate(mbs.AddObject(items.ObjectGround()), moves=False)

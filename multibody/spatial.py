@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from multibody.contact import DAMPING, ROUNDING, contact_law, corner_and_relaxation, pressed_in
 from multibody.engine import exudyn, items
-from multibody.loading import SymbolicGround, symbolic_load
+from multibody.loading import Ground, ground_of, symbolic_load
 from multibody.plate import plate_for
 from multibody.recorders import recorded
 from multibody.system import EngineModel, EngineState
@@ -60,7 +60,7 @@ def spatial(
         twist = float(np.hypot(*ring[0])) ** 2 * stiffness.mean()
         links.append((bars, carried, stiffness, twist))
 
-    ground = SymbolicGround(scene, units)
+    ground = ground_of(mbs, scene, units)
     plate = plate_for(mbs, loading, ground)
     friction, threshold = contact_law(scene, regularization, units)
     contacts, contact_nodes = [], []
@@ -184,7 +184,7 @@ def _stiffen_bars(mbs: Any, bars: Any, carried: float, shear: Array, twist: floa
     mbs.SetObjectParameter(bars, "offset", [0.0, 0.0, carried / stiff, 0.0, 0.0, 0.0])
 
 
-def _inertial(ground: SymbolicGround, mass: float) -> Any:
+def _inertial(ground: Ground, mass: float) -> Any:
     """Weight and -m times the plate's acceleration."""
 
     def force(mbs: Any, t: Any, loadVector: Any) -> list[Any]:

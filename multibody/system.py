@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.loading import SymbolicGround
+from multibody.loading import Ground
 from multibody.units import Units
 from reference.problem import State
 
@@ -64,7 +64,7 @@ class EngineModel:
 
     mbs: Any
     units: Units
-    ground: SymbolicGround
+    ground: Ground
     recorders: Recorders
     bodies: NDArray[np.int_]
     stiffen: Callable[[float], None]

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from multibody.contact import DAMPING, ROUNDING, contact_law, corner_and_relaxation, pressed_in, settled
 from multibody.engine import exudyn, items
-from multibody.loading import SymbolicGround, symbolic_load
+from multibody.loading import Ground, ground_of, symbolic_load
 from multibody.plate import COORDINATES, LOCKED, Plate, plate_for
 from multibody.recorders import recorded
 from multibody.system import EngineModel, EngineState
@@ -56,7 +56,7 @@ def translational(
     if len(masses) > 1:
         nodes.append(_chain(mbs, platform_node, masses, link_stiffness(scene, units)[:, :axes]))
 
-    ground = SymbolicGround(scene, units)
+    ground = ground_of(mbs, scene, units)
     plate = plate_for(mbs, loading, ground)
     friction, threshold = contact_law(scene, regularization, units)
     contact_node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
@@ -153,7 +153,7 @@ def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array) -> Any
 
 
 def _inertial_loads(
-    mbs: Any, ground: SymbolicGround, plate: Plate, masses: Array, depression: Any, nodes: list[Any], axes: int
+    mbs: Any, ground: Ground, plate: Plate, masses: Array, depression: Any, nodes: list[Any], axes: int
 ) -> list[Any]:
     """Weight and, unless the plate moves, -m times its acceleration on every body. Returns the expressions."""
 

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from multibody.contact import DAMPING, contact_law
 from multibody.engine import exudyn, items
 from multibody.integrate import CONTRACTIVITY, SPECTRAL_RADIUS, silence
-from multibody.loading import SymbolicGround, symbolic_load
+from multibody.loading import Ground, SymbolicGround, symbolic_load
 from multibody.surface import assembled
 from multibody.translational import HOLLOW
 from multibody.units import link_stiffness, units_of
@@ -31,7 +31,7 @@ class Candidate:
     """An assembled system; absolute: turns recorded coordinates (T, n) into those of the bodies (T, N, 3)."""
 
     mbs: Any
-    ground: SymbolicGround
+    ground: Ground
     recorders: list[Any]
     absolute: Any
     start: Any

@@ -1,0 +1,86 @@
+"""
+Recorded ground acceleration for the engine, linear between samples, and the steps that go with it.
+
+The engine's expressions know no tables. But steps end at the knots of a record, so within a step the acceleration is
+one straight line, whose numbers are set before the step: one call of Python per step, none inside it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.engine import exudyn
+from multibody.units import Units
+from reference.problem import Scene
+
+Array = NDArray[np.float64]
+
+AT = 1e-6  # of the shortest interval: this close to a knot is on it
+
+
+class RecordedGround:
+    """The plate's acceleration in units of the model, by the interface of `SymbolicGround`; phases mean nothing."""
+
+    def __init__(self, mbs: Any, scene: Scene, units: Units) -> None:
+        time, samples = scene.record[:, 0] / units.time, scene.record[:, 1:] / units.acceleration
+        self.knots: Array = time[time < scene.duration / units.time]
+        self.near = AT * float(np.diff(time).min())
+        self._time, self._samples = time, samples
+        self._rates = np.vstack([np.zeros(3), np.diff(samples, axis=0) / np.diff(time)[:, None], np.zeros(3)])
+        self._shift, self._interval = 0.0, -1
+        self._origin = exudyn.symbolic.Real("origin", 0.0)
+        self._value, self._rate = ([exudyn.symbolic.Real(f"{name}{k}", 0.0) for k in range(3)] for name in "ar")
+        mbs.SetPreStepUserFunction(self._before_step)
+
+    def set_phase(self, phase: Any) -> None:
+        """Nothing: a record has no phases."""
+
+    def set_shift(self, shift: float) -> None:
+        """What the runs that follow add to the engine's time: before the record its first sample holds."""
+        self._shift = shift
+
+    def begin(self, time: float) -> None:
+        """Make ready for a run that begins at this instant."""
+        self._interval = -1
+        self._enter(int(np.searchsorted(self._time, time + self._shift + self.near, side="right")))
+
+    def along(self, axis: int, time: Any) -> Any:
+        """Expression of the acceleration along `axis` at the symbolic instant `time`, inside the step being made."""
+        return self._value[axis] + self._rate[axis] * (time - self._origin)
+
+    def _before_step(self, mbs: Any, end: float) -> bool:
+        self._enter(int(np.searchsorted(self._time, end + self._shift - self.near)))
+        return True
+
+    def _enter(self, interval: int) -> None:
+        """Interval k lies between knots k - 1 and k; 0 before the first knot, where the first sample holds."""
+        if interval == self._interval:
+            return
+        self._interval, knot = interval, max(interval - 1, 0)
+        self._origin.SetValue(float(self._time[knot]) - self._shift)
+        for axis in range(3):
+            self._value[axis].SetValue(float(self._samples[knot, axis]))
+            self._rate[axis].SetValue(float(self._rates[interval, axis]))
+
+
+def aligned(knots: Array, near: float, time: float, step: float, count: int) -> tuple[float, int]:
+    """
+    Step and number of steps from `time` on, neither larger than those given, such that steps end at every knot passed.
+
+    From a knot on over as many intervals of the same length as `count` reaches; from elsewhere to the next knot.
+    """
+    place = int(np.searchsorted(knots, time + near, side="right"))
+    if place == len(knots):
+        return step, count
+    gap = float(knots[place]) - time
+    parts = math.ceil(gap / step * (1.0 - 1e-9))
+    intervals = 1
+    if place > 0 and time - knots[place - 1] <= near:
+        most = max(count // parts, 1)
+        alike = np.abs(np.diff(knots[place - 1 : place + most]) - gap) <= near
+        intervals = int(alike.argmin()) if not alike.all() else len(alike)
+    return gap / parts, min(count, max(intervals, 1) * parts)

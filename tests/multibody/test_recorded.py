@@ -1,0 +1,89 @@
+"""The engine under a recorded motion: steps end at its knots, and it finds what the equations find."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import multibody
+import reference
+from multibody.peak import Peaks
+from multibody.recorded import aligned
+from reference.problem import Scene, ground_velocity
+
+ANY = (0.0, 0.0)  # a record has no phases
+
+
+def example(name: str, scale: float = 1.0, duration: float | None = None) -> Scene:
+    scene = reference.load_scene(name)
+    data = scene.model_dump(exclude_none=True) | {"duration": duration or scene.duration}
+    data["excitation"]["scale"] = scale
+    return Scene.model_validate(data)
+
+
+@pytest.mark.parametrize(
+    ("name", "scale"),
+    [
+        ("synthetic-pair", 0.5),
+        ("synthetic-pair", 1.0),
+        ("synthetic-triple", 1.0),
+        *(pytest.param("synthetic-pair", scale, marks=pytest.mark.long) for scale in (0.2, 0.7, 1.4, 2.0, 2.6)),
+        *(pytest.param("synthetic-triple", scale, marks=pytest.mark.long) for scale in (0.2, 0.5, 0.7, 1.4, 2.0, 2.6)),
+    ],
+)
+def test_like_for_like_the_factors_agree_within_the_two_error_estimates(name, scale):
+    scene = example(name, scale)
+    found = multibody.amplification(scene, [ANY], regularization=1e-3)
+    truth = reference.amplification(scene, [ANY], regularization=1e-3)
+    assert list(found.status) == list(truth.status) == ["ok"]
+    assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error)
+    assert np.all(np.abs(found.mu - truth.mu) <= 1e-3 * truth.mu)
+
+
+@pytest.mark.parametrize("model", ["translational", pytest.param("spatial", marks=pytest.mark.long)])
+def test_a_moving_plate_gives_the_factors_of_inertial_forces(model):
+    """The plate is a million times as heavy as all bodies: 1e-6 of the force, and refinement's own errors."""
+    scene = example("synthetic-triple", duration=5.0)
+    fixed, moving = (multibody.amplification(scene, [ANY], model=model, loading=kind) for kind in ("inertial", "plate"))
+    assert list(moving.status) == ["ok"]
+    assert moving.mu == pytest.approx(fixed.mu, rel=1e-5)
+
+
+def test_the_plate_moves_as_the_integral_of_the_record_says():
+    """Frictionless and very slow, a pendulum stays behind: its motion against the plate is minus the plate's."""
+    data = example("synthetic-pair", duration=6.0).model_dump(exclude_none=True)
+    data["isolator"] = {"period": 400.0, "friction": 0.0}
+    data["bodies"] = data["bodies"][:1]
+    scene = Scene.model_validate(data)
+    motion = multibody.trajectory(scene, ANY, regularization=None, loading="plate", tolerance=1e-4)
+    expected = -ground_velocity(scene, ANY, motion.time)[:, :2]
+    assert motion.velocity[:, 0, :2] == pytest.approx(expected, abs=1e-2 * np.abs(expected).max())
+
+
+KNOTS = np.array([0.0, 0.1, 0.2, 0.3, 0.45, 0.6])
+
+
+@pytest.mark.parametrize(
+    ("time", "step", "count", "expected"),
+    [
+        (0.0, 0.03, 100, (0.025, 12)),  # three intervals of one length, four steps in each
+        (0.0, 0.03, 9, (0.025, 8)),  # as many as asked for reach
+        (0.0, 0.03, 3, (0.025, 3)),
+        (0.25, 0.03, 100, (0.025, 2)),  # from elsewhere to the next knot
+        (0.3, 0.2, 100, (0.15, 2)),
+        (0.6, 0.2, 100, (0.2, 100)),  # behind the last
+    ],
+)
+def test_steps_end_at_every_knot_passed(time, step, count, expected):
+    found = aligned(KNOTS, 1e-7, time, step, count)
+    assert found == (pytest.approx(expected[0]), expected[1])
+
+
+def test_a_peak_at_a_kink_is_the_sample_there_and_one_beside_it_is_read_on_its_own_side():
+    time = np.linspace(0.0, 1.0, 21)
+    roof = 1.0 - np.abs(time - 0.5)
+    hump = np.where(time < 0.5, 1.0392 * time, 0.52 - (time - 0.52) ** 2)  # its highest sample is at the kink
+    for size, top in ((roof, 1.0), (hump, 0.52)):
+        peaks = Peaks(1, np.inf, np.array([0.0, 0.5, 1.0]), 1e-9)
+        peaks.add(time, np.stack([size, 0.0 * size, 0.0 * size], axis=-1)[:, None], np.zeros((21, 1)))
+        assert peaks.value[0] == pytest.approx(top, rel=1e-12)
