@@ -30,6 +30,7 @@ from comparison.options import Options, UsageError, parsed
 from comparison.plan.ladder import LADDER, Rung
 from comparison.plan.study import Study
 from comparison.provenance import provenance
+from comparison.report.aside import clear_dead
 from comparison.report.findings import findings
 from comparison.report.store import replaced_when_complete
 from comparison.sweep.answers import Answers
@@ -115,6 +116,7 @@ def _run(
     from comparison.report.report import write_report
 
     begin, began = time.monotonic(), datetime.now(UTC)
+    clear_dead(options.out)
     tiles = study.tiles()
     store.trim(tiles)
     if options.fresh:

@@ -9,12 +9,16 @@ from rich.console import Console
 from rich.table import Table
 
 from comparison.account.differences import Difference
+from comparison.analyses.errands import errands, predicted
 from comparison.options import Options
 from comparison.plan.ladder import RECORDED_ON
 from comparison.plan.left_out import left_out
 from comparison.plan.study import Study
+from comparison.sweep.answers import Answers
 from comparison.sweep.tile_store import TileStore, store_beside
 from comparison.sweep.warm_up import START_UP
+
+WRITING = 6.0  # s: the page and its data are written by one process, recorded on `plan.ladder.RECORDED_ON`
 
 
 def print_plan(console: Console, study: Study, options: Options) -> None:
@@ -32,11 +36,19 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
             table.add_row(scene.name, rung.title, *cells)
     console.print(table)
     _print_left_out(console, study)
-    wall = START_UP + total / options.jobs
+    beside = predicted(study)
+    others = ", ".join(f"{name} {seconds:.0f} s ({tasks})" for name, (tasks, seconds) in beside.items() if tasks)
+    console.print(f"Beside the surfaces, s on one core and tasks: {others}.")
+    total += sum(seconds for _, seconds in beside.values())
+    wall = START_UP + total / options.jobs + WRITING
     console.print(f"{study.grid} x {study.grid} phases, {options.jobs} worker processes: about {wall:.0f} s.")
     store, tiles = TileStore(store_beside(options.out)), study.tiles()
     if not options.fresh and (stored := sum(map(store.holds, tiles))):
-        console.print(f"{stored} of {len(tiles)} tiles are in {store.folder} already: they are not computed again.")
+        asked, known = errands(study), Answers(store)
+        analyses = f"{sum(map(known.holds, asked))} of {len(asked)} analyses"
+        console.print(
+            f"{stored} of {len(tiles)} tiles are in {store.folder} already, {analyses}: they are not computed again."
+        )
     console.print(f"Costs were recorded on {RECORDED_ON}; another machine scales them all alike.")
     console.print("On a new installation compiling the reference adds some minutes of one worker, once.")
     console.print(f"Nothing was computed. The report would go to {options.out}.")

@@ -8,22 +8,24 @@ from comparison.analyses.convergence import LIMITS, convergence_tasks, limit_tre
 from comparison.analyses.effective import effective_tasks, read_back
 from comparison.analyses.scaling import scaling_tasks, scene_trends
 from comparison.analyses.slips import measured, slip_tasks
-from comparison.analyses.trajectories import motion_tasks, moved
+from comparison.analyses.trajectories import SPREAD, motion_tasks, moved, shown_rungs
 from comparison.assumptions.variations import variation_tasks, varied
 from comparison.claims.claims import CLAIMS
 from comparison.claims.evidence import gathered
 from comparison.claims.readings import READINGS
 from comparison.claims.table import GRID, SECONDS, questions
+from comparison.plan.ladder import Rung, pairs_of
 from comparison.plan.study import Study
 from comparison.sweep.errands import Errand
-from reference.problem import builtin_scenes
+from reference.problem import Scene, builtin_scenes
 
 # s of one task, recorded on `plan.ladder.RECORDED_ON` for the built-in scenes
 EFFECTIVE = {"reference": 0.02, "engine": 0.2}
 SLIP, SCALING = 0.3, 0.12
 CONVERGENCE = dict(zip((limit.what for limit in LIMITS), (0.15, 0.15, 0.7, 2.4)))
 VARIATION = {"translational": 0.5, "spatial": 1.1}
-MOTION = {"reference": 0.12, "engine": 0.5}
+MOTION = {"reference": 0.12, "engine": 0.6}
+PICTURE, PAPER = 0.7, 1.3  # of two models or a budget; in the manner of the paper
 
 
 def errands(study: Study) -> list[Errand]:
@@ -43,6 +45,35 @@ def errands(study: Study) -> list[Errand]:
         seconds = VARIATION["translational" if task[2] is None else "spatial"]
         found.append(Errand("assumptions", varied, task, seconds, task[0], compiled=False))
     return found
+
+
+def predicted(study: Study) -> dict[str, tuple[int, float]]:
+    """
+    Tasks and s on one core of all that is computed beside the surfaces, by stage.
+
+    Motions and pictures are counted before the surfaces are known that choose them.
+    """
+    known = errands(study)
+    found = {}
+    for name in dict.fromkeys(errand.stage for errand in known):
+        own = [errand.seconds for errand in known if errand.stage == name]
+        found[name] = len(own), sum(own)
+    motions = [MOTION[rung.side] for scene in study.scenes for rung in _moving(study, scene)]
+    drawn = [
+        seconds
+        for scene in study.scenes
+        for seconds in (PAPER, *(PICTURE,) * len(scene.bodies) * (1 + len(pairs_of(scene, study.ladder))))
+    ]
+    return found | {"motions": (len(motions), sum(motions)), "pictures": (len(drawn), sum(drawn))}
+
+
+def _moving(study: Study, scene: Scene) -> list[Rung]:
+    """The models of the motions: all where a difference is largest; at evenly spread phases those that have all."""
+    shown = shown_rungs(scene, study.ladder)
+    return [
+        *(rung for rung in shown for _ in scene.bodies),
+        *(rung for rung in shown for _ in range(SPREAD) if study.strides[rung.key] == 1),
+    ]
 
 
 def motion_errands(study: Study, surfaces: xr.Dataset) -> list[Errand]:

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from comparison.account.budget import TOTAL, steps
 from comparison.account.steps import Step
-from comparison.drawing.figures import QUARTER_NAMES, QUARTERS, SIGN_COLOURS, closed, save
+from comparison.drawing.figures import QUARTER_NAMES, QUARTERS, SIGN_COLOURS, closed
 from comparison.plan.study import Study
 from comparison.wording import mathtext, verbatim
 from reference.problem import Scene
@@ -28,7 +28,7 @@ def budget_figure_name(scene: Scene, body: int) -> str:
 
 
 def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> None:
-    """Write one map per step, and of the total, to `path`, PNG, and PDF: % of the first model's mu_i."""
+    """Write one map per step, and of the total, to `path`, PNG: % of the first model's mu_i."""
     found = steps(study, surfaces, scene.name, body)
     figure = Figure(figsize=(13.0, 3.4), dpi=110)
     FigureCanvasAgg(figure)
@@ -46,13 +46,13 @@ def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, bo
     bar = figure.colorbar(image, cax=figure.add_axes((0.915, 0.14, 0.01, 0.64)))
     bar.set_label("% of the first model's value", fontsize=8)
     bar.ax.tick_params(labelsize=8)
-    save(figure, path)
+    figure.savefig(path)
 
 
 def _map(axes: Axes, step: Step, norm: SymLogNorm) -> QuadMesh:
     phase, size = closed(step.alpha1, 100.0 * step.size)
     axes.set_facecolor("0.75")
-    image = axes.pcolormesh(phase, phase, size.T, cmap=SIGN_COLOURS, norm=norm, shading="nearest", rasterized=True)
+    image = axes.pcolormesh(phase, phase, size.T, cmap=SIGN_COLOURS, norm=norm, shading="nearest")
     row, column = np.nonzero(step.known & ~step.real)
     axes.plot(phase[row], phase[column], ".", color="0.35", markersize=160.0 / len(phase) / 4.0, markeredgewidth=0.0)
     axes.set_xlim(0.0, 2.0 * np.pi)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -24,7 +23,6 @@ Array = NDArray[np.float64]
 
 HEIGHT_COLOURS = "cividis"  # read alike with and without colour vision deficiency, and in print
 SIGN_COLOURS = "RdBu_r"
-PRINT_DOTS = 220  # per inch
 QUARTERS = np.arange(5) * np.pi / 2.0
 QUARTER_NAMES = ["0", "π/2", "π", "3π/2", "2π"]
 
@@ -35,7 +33,7 @@ def figure_name(scene: Scene, body: int, pair: Pair) -> str:
 
 
 def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: Pair) -> None:
-    """Write the two surfaces on one height scale and the map of their relative difference to `path`, PNG, and PDF."""
+    """Write the two surfaces on one height scale and the map of their relative difference to `path`, PNG."""
     both = [common_phases(surfaces, scene.name, [r.key]).sel(model=r.key, body=body) for r in (pair.first, pair.second)]
     figure = Figure(figsize=(13.0, 4.6), dpi=110)
     FigureCanvasAgg(figure)
@@ -52,14 +50,13 @@ def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: P
         _surface(axes, *closed(data["alpha1"].values, data["mu"].values), low, high)
         axes.set_title(f"$\\mu_{{{body}}}$, {mathtext(rung.title)}", fontsize=11, pad=0)
     _map(figure, figure.add_axes((0.70, 0.14, 0.22, 0.65)), pair_step(surfaces, scene.name, pair, body))
-    save(figure, path)
+    figure.savefig(path)
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write the figure to `path`, PNG, and beside it as PDF, in which what is rasterised has PRINT_DOTS."""
+    """Write the figure to `path`, PNG, and beside it as PDF."""
     figure.savefig(path)
-    # without a date the same figure gives the same file
-    figure.savefig(path.with_suffix(".pdf"), dpi=PRINT_DOTS, metadata={"CreationDate": None})
+    figure.savefig(path.with_suffix(".pdf"), metadata={"CreationDate": None})  # the same figure gives the same file
 
 
 def closed(phase: Array, mu: Array) -> tuple[Array, Array]:
@@ -69,14 +66,7 @@ def closed(phase: Array, mu: Array) -> tuple[Array, Array]:
 
 def _surface(axes: Axes3D, phase: Array, height: Array, low: float, high: float) -> None:
     alpha1, alpha2 = np.meshgrid(phase, phase, indexing="ij")
-    colours: dict[str, Any] = {
-        "cmap": HEIGHT_COLOURS,
-        "rasterized": True,
-        "vmin": low,
-        "vmax": high,
-        "linewidth": 0.2,
-        "edgecolor": (0, 0, 0, 0.35),
-    }
+    colours = {"cmap": HEIGHT_COLOURS, "vmin": low, "vmax": high, "linewidth": 0.2, "edgecolor": (0, 0, 0, 0.35)}
     axes.plot_surface(alpha1, alpha2, height, rcount=200, ccount=200, antialiased=True, **colours)
     axes.set_zlim(low, high)
     axes.set_box_aspect((1.0, 1.0, 0.62), zoom=0.88)
@@ -96,9 +86,7 @@ def _map(figure: Figure, axes: Axes, step: Step) -> None:
     limit = float(np.percentile(size, 98.0)) if largest > 0.0 else 1.0
     limit = limit if limit > 0.0 else largest
     axes.set_facecolor("0.75")
-    image = axes.pcolormesh(
-        phase, phase, height.T, cmap=SIGN_COLOURS, vmin=-limit, vmax=limit, shading="nearest", rasterized=True
-    )
+    image = axes.pcolormesh(phase, phase, height.T, cmap=SIGN_COLOURS, vmin=-limit, vmax=limit, shading="nearest")
     axes.set_xlim(0.0, 2.0 * np.pi)
     axes.set_ylim(0.0, 2.0 * np.pi)
     axes.set_aspect("equal")

@@ -20,7 +20,7 @@ from comparison.sweep.errands import Errand, fingerprint
 from comparison.sweep.sweep import sweep
 from reference.problem import Outcome, Scene
 
-SECONDS = {"pair": 0.8, "budget": 0.8, "paper": 1.3}  # of drawing one, recorded beside `Rung.seconds_per_point`
+SECONDS = {"pair": 0.6, "budget": 0.8, "paper": 1.3}  # of drawing one, recorded beside `Rung.seconds_per_point`
 SHOWN = ["mu", "error", "stride"]  # of the surfaces: what pictures are made of
 
 
@@ -69,7 +69,7 @@ def picture_errands(study: Study, surfaces: xr.Dataset) -> list[Errand]:
 
 
 def drawn(picture: Picture) -> Files:
-    """The files of one picture, PNG and PDF. Runs inside a worker process."""
+    """The files of one picture. Runs inside a worker process."""
     study, surfaces, scene, body = picture.study, picture.surfaces, picture.scene, picture.body
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

@@ -12,6 +12,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from comparison.extremes.matrix import read as stored_extremes
+from comparison.report.aside import NEW, OLD, aside
 from comparison.report.summary import SCHEMA
 from comparison.tradeoff.trade import read as stored_trades
 from reference.problem import SceneError
@@ -59,22 +60,20 @@ def replaced_when_complete(out: Path) -> Iterator[Path]:
     """
     place = out.resolve()
     made = _make_parents(place.parent)
-    aside = Path(tempfile.mkdtemp(dir=place.parent, prefix=f".{place.name}-"))
     try:
-        new = aside / "new"
-        new.mkdir()
-        for entry in place.iterdir() if place.exists() else ():
-            if _beside(entry.name):
-                shutil.copy2(entry, new)
-        yield new
-        _swap(new, place, aside / "old")
+        with aside(place) as folder:
+            new = folder / NEW
+            new.mkdir()
+            for entry in place.iterdir() if place.exists() else ():
+                if _beside(entry.name):
+                    shutil.copy2(entry, new)
+            yield new
+            _swap(new, place, folder / OLD)
     except BaseException:
-        shutil.rmtree(aside, ignore_errors=True)
         with suppress(OSError):
             for parent in made:
                 parent.rmdir()
         raise
-    shutil.rmtree(aside, ignore_errors=True)
 
 
 def _swap(new: Path, place: Path, old: Path) -> None:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+import signal
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,6 +14,7 @@ from conftest import Run
 from fake_models import fake_ladder
 
 from comparison.report import report
+from comparison.report.aside import clear_dead
 from comparison.report.store import replaced_when_complete
 
 SMALL = ["fig3-I", "--grid", "2"]
@@ -81,3 +85,52 @@ def test_the_swap_puts_the_old_report_back_when_the_new_one_cannot_move(
 def test_the_fake_models_would_notice_a_computation(command: Callable[..., Run]) -> None:
     run = command(*SMALL, ladder=fake_ladder("forbidden"))
     assert "nothing should have been computed" in run.err
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+sys.path.insert(0, {root!r})
+from comparison.report import store
+def killed(*rest):
+    os.kill(os.getpid(), signal.SIGKILL)
+if {late}:
+    move = os.rename
+    os.rename = lambda source, target: killed() if Path(source).name == "new" else move(source, target)
+with store.replaced_when_complete(Path("report")) as folder:
+    (folder / "index.html").write_text("half")
+    print("writing", flush=True)
+    if not {late}:
+        sys.stdin.read()
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kill -9")
+def test_what_a_killed_run_left_is_cleared_but_not_what_a_living_one_writes(tmp_path: Path) -> None:
+    (tmp_path / ".report-someone-else").mkdir()
+    script = KILLED.format(root=str(Path(__file__).parents[2]), late=False)
+    process = subprocess.Popen(
+        [sys.executable, "-c", script], cwd=tmp_path, stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    )
+    with process:
+        assert process.stdout is not None
+        process.stdout.readline()
+        clear_dead(tmp_path / "report")
+        assert len(list(tmp_path.iterdir())) == 2, "it lives"
+        process.kill()
+    assert len(list(tmp_path.iterdir())) == 2
+    clear_dead(tmp_path / "report")
+    assert [entry.name for entry in tmp_path.iterdir()] == [".report-someone-else"]
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kill -9")
+def test_a_report_taken_away_by_a_run_that_was_then_killed_is_put_back(tmp_path: Path) -> None:
+    (tmp_path / "report").mkdir()
+    (tmp_path / "report" / "index.html").write_text("old", encoding="utf-8")
+    script = KILLED.format(root=str(Path(__file__).parents[2]), late=True)
+    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, stdout=subprocess.PIPE, check=False)
+    assert done.returncode == -signal.SIGKILL
+    assert not (tmp_path / "report").exists()
+    clear_dead(tmp_path / "report")
+    assert [entry.name for entry in tmp_path.iterdir()] == ["report"]
+    assert (tmp_path / "report" / "index.html").read_text(encoding="utf-8") == "old"
