@@ -14,7 +14,7 @@ from pydantic import ValidationError
 from comparison.report.store import refuse_foreign
 from comparison.sweep.executors import cores
 from comparison.sweep.tile_store import refuse_foreign_store
-from reference.problem import Family, Scene, SceneError, builtin_scenes, load_family
+from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
 from reference.problem.scene_error import first_fault
 
 DEFAULT_GRID = 48  # phases per axis of the equations; a model that costs more takes every k-th (ladder.py)
@@ -94,7 +94,7 @@ def _parser() -> argparse.ArgumentParser:
         nargs="*",
         metavar="SCENE",
         help=f"TOML files, in which one key may run over a range, or built-in names "
-        f"(default: {', '.join(builtin_scenes())})",
+        f"(default: {', '.join(builtin_scenes())}; with a recorded motion: {', '.join(example_scenes())})",
     )
     parser.add_argument("--grid", default=str(DEFAULT_GRID), metavar="N", help="phases per axis (default %(default)s)")
     parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help="report (default %(default)s)")

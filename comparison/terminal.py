@@ -29,7 +29,7 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
         for rung in study.ladder:
             if not rung.applies(scene):
                 continue
-            points, computed = study.points(rung), len(study.solved(scene, rung))
+            points, computed = study.points(rung, scene), len(study.solved(scene, rung))
             seconds = study.seconds_of(scene, rung)
             total += seconds
             cells = str(points), str(computed), f"{rung.tolerance(study.tolerance):.0e}", f"{seconds:.1f}"
@@ -41,6 +41,8 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
     console.print(f"Beside the surfaces, s on one core and tasks: {others}.")
     total += sum(seconds for _, seconds in beside.values())
     wall = START_UP + total / options.jobs + WRITING
+    if len(study.phased) < len(study.scenes):
+        console.print("A recorded motion has no phases: one point per model.")
     console.print(f"{study.grid} x {study.grid} phases, {options.jobs} worker processes: about {wall:.0f} s.")
     store, tiles = TileStore(store_beside(options.out)), study.tiles()
     if not options.fresh and (stored := sum(map(store.holds, tiles))):

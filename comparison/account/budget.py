@@ -130,7 +130,9 @@ def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> Entry:
         real=float(step.real[known].mean()),
         unresolved=float(step.unresolved[known].mean()),
         uncertain=float(np.median(step.uncertainty[known])),
-        peak_moves=min(torus_distance(one, other) for one in highest[0] for other in highest[1]),
+        peak_moves=float("nan")
+        if step.recorded
+        else min(torus_distance(one, other) for one in highest[0] for other in highest[1]),
         correlation=_correlation(both[0][known], both[1][known]),
     )
 

@@ -23,7 +23,7 @@ class Step:
     (mu of `second` - mu of `first`) / scale at the phases (alpha1, alpha2), rad, that both models were asked for.
 
     size: signed, NaN where a value is missing. uncertainty: u_D = sqrt(u_A^2 + u_B^2) of the two error estimates in the
-    same unit. stride: the phases are every so many-th of the study's.
+    same unit. stride: the phases are every so many-th of the study's. recorded: the scene has none of them.
     """
 
     key: str
@@ -35,6 +35,7 @@ class Step:
     size: Array
     uncertainty: Array
     stride: int
+    recorded: bool = False
 
     @property
     def known(self) -> NDArray[np.bool_]:
@@ -69,8 +70,8 @@ class Step:
 
     @property
     def phases(self) -> tuple[float, float]:
-        """(alpha1, alpha2) of the largest absolute size, NaN without any."""
-        if self.place is None:
+        """(alpha1, alpha2) of the largest absolute size, NaN without any, or where there are no phases."""
+        if self.place is None or self.recorded:
             return float("nan"), float("nan")
         row, column = self.place
         return float(self.alpha1[row // self.stride]), float(self.alpha2[column // self.stride])
@@ -106,4 +107,5 @@ def step(surfaces: xr.Dataset, scene: str, key: str, first: Rung, second: Rung, 
         size=(mu(second) - mu(first)) / scale,
         uncertainty=np.hypot(error(first), error(second)) / scale,
         stride=int(data["stride"].sel(model=[first.key, second.key, per.key]).max()),
+        recorded=bool(data["recorded"]),
     )

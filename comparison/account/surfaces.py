@@ -20,8 +20,9 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
     The answers on dimensions scene, model, body, alpha1, alpha2 (rad).
 
     `mu` and `error` (absolute, estimated) are NaN where a point has no answer, where a model does not apply to the
-    scene, between the phases of a model with a `stride` above 1, and in bodies a scene does not have (`bodies` counts
-    them). `status` names each point's outcome, `instant` (s) when it arose. `cost` (scene, model) is s of compute.
+    scene, between the phases of a model with a `stride` above 1 (a `recorded` scene has one point, the first), and in
+    bodies a scene does not have (`bodies` counts them). `status` names each point's outcome, `instant` (s) when it
+    arose. `cost` (scene, model) is s of compute.
     """
     names = [scene.name for scene in study.scenes]
     models = [rung.key for rung in study.ladder]
@@ -50,7 +51,7 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
         cost[where] += answer.cost
     for row, scene in enumerate(study.scenes):
         for rung in rungs_of(scene, study.ladder):
-            column, place, source = models.index(rung.key), study.places(rung), study.sources(scene, rung)
+            column, place, source = models.index(rung.key), study.places(rung, scene), study.sources(scene, rung)
             for array in (mu, error, instant, status):
                 array[row, column, place] = array[row, column, source]
     square = (len(names), len(models), study.grid, study.grid)
@@ -68,9 +69,14 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
             "instant": (point, instant.reshape(square), {"units": "s", "long_name": "time when the outcome arose"}),
             "cost": (("scene", "model"), cost, {"units": "s", "long_name": "compute time of the surface"}),
             "stride": (
-                "model",
-                [study.strides[key] for key in models],
+                ("scene", "model"),
+                [[study.stride(rung, scene) for rung in study.ladder] for scene in study.scenes],
                 {"long_name": "the model has every k-th phase"},
+            ),
+            "recorded": (
+                "scene",
+                [scene.recorded for scene in study.scenes],
+                {"long_name": "whether it has no phases"},
             ),
             "bodies": ("scene", [len(scene.bodies) for scene in study.scenes], {"long_name": "bodies of the scene"}),
             "digest": ("scene", [scene.digest() for scene in study.scenes], {"long_name": "hash of the scene"}),
@@ -88,5 +94,6 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
 
 def common_phases(surfaces: xr.Dataset, scene: str, models: Sequence[str]) -> xr.Dataset:
     """The part of one scene's surfaces at the phases that each of these models was asked for."""
-    every = slice(None, None, int(surfaces["stride"].sel(model=list(models)).max()))
-    return surfaces.sel(scene=scene).isel(alpha1=every, alpha2=every)
+    own = surfaces.sel(scene=scene)
+    every = slice(None, None, int(own["stride"].sel(model=list(models)).max()))
+    return own.isel(alpha1=every, alpha2=every)

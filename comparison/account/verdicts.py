@@ -81,12 +81,13 @@ def verdict(study: Study, surfaces: xr.Dataset, scene: Scene) -> Verdict:
     place = row * total.stride, column * total.stride
     cause, part = _cause(ladders[body - 1][:-1], place)
     low, here, high = _heights(surfaces, scene.name, total, place)
-    sentence = (
-        f"body {body} differs by {signed(found)} at ({degrees(phases[0])}, {degrees(phases[1])}), where mu_{body} is "
-        f"{here:.3g} on a surface from {low:.3g} to {high:.3g}"
-        + (f"; largest step there: {signed(part)}, to the {cause}" if cause else "")
-        + f". Real at {percent(real)} of {int(total.known.sum())} phase pairs."
-    )
+    where = f" at ({degrees(phases[0])}, {degrees(phases[1])}), where mu_{body} is {here:.3g}"
+    where += f" on a surface from {low:.3g} to {high:.3g}"
+    share = f". Real at {percent(real)} of {int(total.known.sum())} phase pairs."
+    if scene.recorded:
+        phases, where, share = (float("nan"), float("nan")), f" from mu_{body} = {here:.3g} under the record", "."
+    largest = f"; largest step there: {signed(part)}, to the {cause}" if cause else ""
+    sentence = f"body {body} differs by {signed(found)}{where}{largest}{share}"
     return Verdict(scene.name, found, body, phases, cause, part, real, sentence)
 
 

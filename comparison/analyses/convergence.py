@@ -152,7 +152,7 @@ def convergence_tasks(study: Study) -> list[Task]:
     return [
         (scene, number)
         for number, limit in enumerate(LIMITS)
-        for scene in study.scenes
+        for scene in study.phased
         if not limit.dry_only or (not scene.lubricated and scene.friction_coefficient > 0.0)
     ]
 

@@ -24,7 +24,7 @@ from reference.problem import GRAVITY, Outcome, Scene, Trajectory, ground_accele
 Array = NDArray[np.float64]
 
 PHASES = (0.3, 1.1)  # rad, of the motion that is measured
-DURATION = 6.0  # s: the loading is strongest in its first seconds
+DURATION = 6.0  # s: two frequencies are strongest in their first seconds; a record is followed to its end
 FASTEST = 0.9  # friction is measured where the platform slides faster than this part of its largest speed
 
 
@@ -81,7 +81,8 @@ def read_back(task: tuple[Scene, Rung]) -> Effective:
     """The values of one model. What goes wrong is said in `fault`; a value is never made up."""
     scene, rung = task
     nothing = Effective(scene.name, rung.key)
-    short = scene.model_copy(update={"duration": min(scene.duration, DURATION)})
+    lasting = scene.duration if scene.recorded else min(scene.duration, DURATION)
+    short = scene.model_copy(update={"duration": lasting})
     settings = {key: value for key, value in rung.settings.items() if key != "cutoff"}  # a way to read, not to move
     try:
         motion: Trajectory = imported(rung.trajectory)(short, PHASES, **settings)

@@ -14,7 +14,7 @@ from comparison.claims.claims import CLAIMS
 from comparison.claims.evidence import gathered
 from comparison.claims.readings import READINGS
 from comparison.claims.table import GRID, SECONDS, questions
-from comparison.plan.ladder import Rung, pairs_of
+from comparison.plan.ladder import Rung, at_samples, pairs_of
 from comparison.plan.study import Study
 from comparison.sweep.errands import Errand
 from reference.problem import Scene, builtin_scenes
@@ -31,7 +31,7 @@ PICTURE, PAPER = 0.7, 1.3  # of two models or a budget; in the manner of the pap
 def errands(study: Study) -> list[Errand]:
     """What can be computed without knowing the surfaces."""
     found = [
-        Errand("effective values", read_back, (scene, rung), EFFECTIVE[rung.side], scene)
+        Errand("effective values", read_back, (scene, rung), EFFECTIVE[rung.side] * at_samples(scene), scene)
         for scene, rung in effective_tasks(study)
     ]
     found += [Errand("slips", measured, task, SLIP, task[0]) for task in slip_tasks(study)]
@@ -58,10 +58,10 @@ def predicted(study: Study) -> dict[str, tuple[int, float]]:
     for name in dict.fromkeys(errand.stage for errand in known):
         own = [errand.seconds for errand in known if errand.stage == name]
         found[name] = len(own), sum(own)
-    motions = [MOTION[rung.side] for scene in study.scenes for rung in _moving(study, scene)]
+    motions = [MOTION[rung.side] * at_samples(scene) for scene in study.scenes for rung in _moving(study, scene)]
     drawn = [
         seconds
-        for scene in study.scenes
+        for scene in study.phased
         for seconds in (PAPER, *(PICTURE,) * len(scene.bodies) * (1 + len(pairs_of(scene, study.ladder))))
     ]
     return found | {"motions": (len(motions), sum(motions)), "pictures": (len(drawn), sum(drawn))}
@@ -70,6 +70,8 @@ def predicted(study: Study) -> dict[str, tuple[int, float]]:
 def _moving(study: Study, scene: Scene) -> list[Rung]:
     """The models of the motions: all where a difference is largest; at evenly spread phases those that have all."""
     shown = shown_rungs(scene, study.ladder)
+    if scene.recorded:
+        return shown
     return [
         *(rung for rung in shown for _ in scene.bodies),
         *(rung for rung in shown for _ in range(SPREAD) if study.strides[rung.key] == 1),
@@ -78,7 +80,10 @@ def _moving(study: Study, scene: Scene) -> list[Rung]:
 
 def motion_errands(study: Study, surfaces: xr.Dataset) -> list[Errand]:
     """The motions kept for the report, which are chosen by what the surfaces show."""
-    return [Errand("motions", moved, task, MOTION[task[1].side], task[0]) for task in motion_tasks(study, surfaces)]
+    return [
+        Errand("motions", moved, task, MOTION[task[1].side] * at_samples(task[0]), task[0])
+        for task in motion_tasks(study, surfaces)
+    ]
 
 
 def paper_complete(study: Study) -> bool:

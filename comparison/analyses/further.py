@@ -17,8 +17,8 @@ from comparison.sweep.executors import Pool
 def further_findings(study: Study, jobs: int, executor: Pool) -> dict[str, Any]:
     """Fields of `Findings`: claims (None unless the study has every scene of the paper), scaling, convergence."""
     claims = claims_tested(jobs, executor) if paper_complete(study) else None
-    scaling = scaling_trends(study, jobs, executor)
-    convergence = convergence_trends(study, jobs, executor)
+    scaling = scaling_trends(study, jobs, executor) if study.phased else None
+    convergence = convergence_trends(study, jobs, executor) if study.phased else None
     return {"claims": claims, "scaling": scaling, "convergence": convergence}
 
 

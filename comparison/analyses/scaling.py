@@ -42,7 +42,7 @@ def scaled(scene: Scene, s: float) -> Scene:
 
 def scaling_tasks(study: Study) -> list[Task]:
     """Every scene with its supremum and, where that differs, its resolved peak."""
-    return [(scene, peak) for scene in study.scenes for peak in (True, False) if peak or _dry(scene)]
+    return [(scene, peak) for scene in study.phased for peak in (True, False) if peak or _dry(scene)]
 
 
 def scaling_trends(study: Study, jobs: int, executor: Pool = process_pool) -> list[Trend]:

@@ -162,7 +162,7 @@ class Effect:
 
 def slip_tasks(study: Study, slips: Sequence[Slip] = SLIPS) -> list[tuple[Scene, int]]:
     """Every measurable slip in every scene, in the order scene, slip."""
-    return [(scene, number) for scene in study.scenes for number, slip in enumerate(slips) if slip.measure]
+    return [(scene, number) for scene in study.phased for number, slip in enumerate(slips) if slip.measure]
 
 
 def slip_effects(

@@ -60,6 +60,8 @@ Task = tuple[Scene, Rung, float, Place, tuple[float, float]]
 
 def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Place]:
     """Where the total difference of each body is largest, then an even spread over the phases; no place twice."""
+    if scene.recorded:
+        return [Place(scene.name, 0, 0, "")]
     places: dict[tuple[int, int], str] = {}
     total = pairs_of(scene, study.ladder)[0]
     for body in range(1, len(scene.bodies) + 1):
@@ -83,7 +85,7 @@ def motion_tasks(study: Study, surfaces: xr.Dataset) -> list[Task]:
         for scene in study.scenes
         for place in chosen_places(study, surfaces, scene)
         for rung in shown_rungs(scene, study.ladder)
-        if place.row % study.strides[rung.key] == place.column % study.strides[rung.key] == 0
+        if place.row % study.stride(rung, scene) == place.column % study.stride(rung, scene) == 0
     ]
 
 

@@ -66,6 +66,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _spatial(name: str) -> Scene:
     scene = load_scene(name)
+    if scene.recorded:
+        rule = (
+            "rings and heights are varied at phases, which a recorded motion has not: give a scene of two frequencies"
+        )
+        raise SceneError(name, "excitation.record", scene.name, rule)
     if not has_spatial_data(scene):
         rule = "the spatial model needs supports, ring and sphere_radius of the isolator, height and size of every body"
         raise SceneError(name, "isolator, bodies", scene.name, rule)

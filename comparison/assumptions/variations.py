@@ -120,7 +120,7 @@ class Solved:
 def variation_tasks(study: Study, variations: Sequence[Variation] = FEW) -> list[Task]:
     """The translational model and every variation of the spatial one, for every scene to which both apply."""
     asked: list[Task] = []
-    for scene in study.scenes:
+    for scene in study.phased:
         engines = [rung for rung in rungs_of(scene, study.ladder) if rung.side == "engine"]
         if len(engines) == 2:
             plain, spatial = engines

@@ -21,7 +21,7 @@ from comparison.sweep.sweep import sweep
 from reference.problem import Outcome, Scene
 
 SECONDS = {"pair": 0.6, "budget": 0.8, "paper": 1.3}  # of drawing one, recorded beside `Rung.seconds_per_point`
-SHOWN = ["mu", "error", "stride"]  # of the surfaces: what pictures are made of
+SHOWN = ["mu", "error", "stride", "recorded"]  # of the surfaces: what pictures are made of
 
 
 @dataclass(frozen=True)
@@ -47,9 +47,9 @@ Files = tuple[tuple[str, bytes], ...]  # names and contents
 
 
 def pictures(study: Study, surfaces: xr.Dataset) -> list[Picture]:
-    """Every picture of the study."""
+    """Every picture of the study: a scene without phases has no surfaces."""
     found = []
-    for scene in study.scenes:
+    for scene in study.phased:
         own = Study((scene,), study.grid, study.tolerance, study.ladder, study.full)
         shown = surfaces[SHOWN].sel(scene=[scene.name])
         found.append(Picture("paper", own, shown))

@@ -29,7 +29,9 @@ def left_out(study: Study) -> list[Row]:
 def _of(study: Study, scene: Scene) -> list[Row]:
     rungs = [rung for rung in study.ladder if rung.applies(scene)]
     rows = []
-    for factor, some in _by_factor([(study.points(rung) / len(study.solved(scene, rung)), rung) for rung in rungs]):
+    for factor, some in _by_factor(
+        [(study.points(rung, scene) / len(study.solved(scene, rung)), rung) for rung in rungs]
+    ):
         rows.append(Row("mirrored phases", scene.name, _titles(some, rungs), f"1/{factor:.3g}", _mirror(scene)))
     if no_friction(scene):
         alike = [rung for rung in study.ladder if rung not in rungs and rung.settings.get("regularization") is not None]

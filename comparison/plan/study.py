@@ -24,7 +24,7 @@ class Study:
     A model that is too expensive for all of them computes every k-th phase of either axis, k being its stride. Strides
     are multiples of one another, so that of any two models the coarser grid is part of the finer. Phases whose motion
     is the mirror image of another's are not computed again, and models leave out what the scene does not require,
-    unless the study is `full`.
+    unless the study is `full`. A scene with a recorded motion has no phases: every model computes the one point (0, 0).
     """
 
     scenes: tuple[Scene, ...]
@@ -43,22 +43,33 @@ class Study:
             strides[rung.key] = stride
         return strides
 
-    def axis(self, rung: Rung) -> NDArray[np.intp]:
-        """Which of the `grid` phases of either axis a model computes."""
-        return np.arange(0, self.grid, self.strides[rung.key])
+    @property
+    def phased(self) -> tuple[Scene, ...]:
+        """The scenes that have phases."""
+        return tuple(scene for scene in self.scenes if not scene.recorded)
 
-    def points(self, rung: Rung) -> int:
+    def stride(self, rung: Rung, scene: Scene | None = None) -> int:
+        """The model's stride; in a scene without phases the whole grid."""
+        return self.grid if scene is not None and scene.recorded else self.strides[rung.key]
+
+    def axis(self, rung: Rung, scene: Scene | None = None) -> NDArray[np.intp]:
+        """Which of the `grid` phases of either axis a model computes, in a scene with phases if none is given."""
+        return np.arange(0, self.grid, self.stride(rung, scene))
+
+    def points(self, rung: Rung, scene: Scene | None = None) -> int:
         """Phase pairs of one surface of this model."""
-        return len(self.axis(rung)) ** 2
+        return len(self.axis(rung, scene)) ** 2
 
-    def places(self, rung: Rung) -> NDArray[np.intp]:
+    def places(self, rung: Rung, scene: Scene | None = None) -> NDArray[np.intp]:
         """The model's phase pairs as places on the whole grid, alpha2 running fastest."""
-        axis = self.axis(rung)
+        axis = self.axis(rung, scene)
         return (self.grid * axis[:, None] + axis).ravel()
 
     def sources(self, scene: Scene, rung: Rung) -> NDArray[np.intp]:
         """For each of `places` the one whose answer is also its own, by the symmetries of the scene (symmetry.py)."""
-        places = self.places(rung)
+        places = self.places(rung, scene)
+        if scene.recorded:
+            return places
         even = self.grid % self.strides[rung.key] == 0  # else the last phase and the first are closer than the others
         return (
             places[sources(scene, len(self.axis(rung)))] if rung.symmetric(scene) and even and not self.full else places

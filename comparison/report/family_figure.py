@@ -56,8 +56,9 @@ def draw_family(path: Path, family: Family, entries: Sequence[Entry], ladder: Se
         left.plot(places, 100.0 * mean, **look)
         right.plot(places, 100.0 * largest, label=titles[step], **look)
         right.plot(places, 100.0 * uncertain, color=look["color"], linewidth=0.8, linestyle="--")
-    left.set_ylabel("mean over the phases, % of the first model's value")
-    right.set_ylabel("largest over the phases, %")
+    alone = family.scenes[0].recorded  # one value, no phases
+    left.set_ylabel(f"{'signed size' if alone else 'mean over the phases'}, % of the first model's value")
+    right.set_ylabel("absolute size, %" if alone else "largest over the phases, %")
     if _positive(right):
         right.set_yscale("log")
     for axes in (left, right):

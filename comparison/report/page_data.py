@@ -32,8 +32,8 @@ def page_data(found: Findings) -> str:
 
     grid; strides, titles: by model. scenes, each: duration, s; pairs (first and second model, by pair); mu (by model,
     per body: rows alpha1, columns alpha2); contours (by pair, per body: polylines [[alpha1, alpha2], ...], rad, on
-    which |D| = u_D); places (row, column, phases, why, and motions: model, status, fault, stick, start and count of its
-    instants in the packed numbers).
+    which |D| = u_D); places (row, column, phases or null under a record, why, and motions: model, status, fault, stick,
+    start and count of its instants in the packed numbers).
     """
     study, surfaces = found.study, found.surfaces
     starts = _starts(found.motions or [])
@@ -69,6 +69,8 @@ def _scene(found: Findings, scene: Scene, surfaces: xr.Dataset, starts: Starts) 
     bodies = range(1, len(scene.bodies) + 1)
 
     def contours(pair: Pair, body: int) -> list[list[list[float]]]:
+        if scene.recorded:
+            return []
         step = pair_step(surfaces, scene.name, pair, body)
         return crossings(step.size, step.uncertainty, step.alpha1)
 
@@ -93,7 +95,7 @@ def _places(found: Findings, scene: Scene, starts: Starts) -> Iterator[dict[str,
         yield {
             "row": place.row,
             "column": place.column,
-            "phases": [float(alpha1[place.row]), float(alpha2[place.column])],
+            "phases": None if scene.recorded else [float(alpha1[place.row]), float(alpha2[place.column])],
             "why": place.why,
             "motions": [
                 {

@@ -39,6 +39,7 @@ from comparison.report.family_figure import draw_families
 from comparison.report.findings import Findings
 from comparison.report.junit import junit
 from comparison.report.page_data import packed, packed_motions, page_data
+from comparison.report.record_rows import record_rows
 from comparison.report.summary import outcome_counts, summary
 from comparison.report.summary_text import summary_text
 from comparison.report.verification import CHECKS
@@ -84,8 +85,13 @@ def draw_all_trades(figures: Path, found: Findings) -> None:
 SECTIONS = (
     Section("differences", "Differences"),
     Section("budget", "What makes the difference"),
-    Section("scaling", "Scaling test", "scaling", "python -m comparison.run makes it"),
-    Section("convergence", "What the steps tend to", "convergence", "python -m comparison.run makes it"),
+    Section("scaling", "Scaling test", "scaling", "python -m comparison.run makes it, of scenes with phases"),
+    Section(
+        "convergence",
+        "What the steps tend to",
+        "convergence",
+        "python -m comparison.run makes it, of scenes with phases",
+    ),
     Section(
         "families",
         "Families of scenes",
@@ -107,7 +113,7 @@ SECTIONS = (
         "assumptions",
         "How far the paper's assumptions carry",
         "assumptions",
-        "no scene says where its supports are and how high and large its bodies: the spatial model needs that",
+        "no scene with phases says where its supports are and how high and large its bodies, as the spatial model asks",
         draw_all_assumptions,
     ),
     Section(
@@ -206,27 +212,32 @@ def _scene(figures: Path, found: Findings, scene: Scene) -> dict[str, Any]:
         "scene": scene,
         "digest": scene.digest(),
         "verdict": verdict(found.study, found.surfaces, scene),
-        "verdicts": [_verdict(pair, [row for row in own if row.pair == pair.key]) for pair in pairs],
+        "verdicts": [_verdict(pair, [row for row in own if row.pair == pair.key], scene.recorded) for pair in pairs],
         "bodies": [
             {
                 "number": body,
                 "bar": bar(found.study, found.surfaces, scene, body),
+                "record": record_rows(found, scene, body),
                 "pictures": [
-                    {"pair": pair, "png": _inlined(figures / figure_name(scene, body, pair))} for pair in pairs
+                    {"pair": pair, "png": _inlined(figures / figure_name(scene, body, pair))}
+                    for pair in ([] if scene.recorded else pairs)
                 ],
-                "budget": _inlined(figures / budget_figure_name(scene, body)),
+                "budget": "" if scene.recorded else _inlined(figures / budget_figure_name(scene, body)),
             }
             for body in range(1, len(scene.bodies) + 1)
         ],
     }
 
 
-def _verdict(pair: Pair, rows: Sequence[Difference]) -> str:
+def _verdict(pair: Pair, rows: Sequence[Difference], recorded: bool) -> str:
     """One line: how large the pair's difference is, and where."""
     known = [row for row in rows if math.isfinite(row.maximum)]
     if not known:
         return f"{pair.title.capitalize()}: no phase pair has a value on both sides."
     worst = max(known, key=lambda row: row.maximum)
+    if recorded:
+        sizes = ", ".join(f"{percent(row.maximum)} for body {row.body}" for row in rows)
+        return f"{pair.title.capitalize()} ({pair.first.title} against {pair.second.title}): {sizes}."
     medians = ", ".join(f"{percent(row.median)} for body {row.body}" for row in rows)
     return (
         f"{pair.title.capitalize()} ({pair.first.title} against {pair.second.title}): median {medians}; "
@@ -283,7 +294,7 @@ def _outcomes(study: Study, surfaces: xr.Dataset) -> list[dict[str, Any]]:
             "scene": scene.name,
             "model": rung.title,
             "counts": outcome_counts(surfaces, scene.name, rung.key),
-            "points": study.points(rung),
+            "points": study.points(rung, scene),
             "cost": float(surfaces["cost"].sel(scene=scene.name, model=rung.key)),
             "ok": outcome_counts(surfaces, scene.name, rung.key).get(Outcome.OK.value, 0),
         }

@@ -91,7 +91,7 @@ def _scene(found: Findings, scene: Scene) -> dict[str, Any]:
         "acceptance": scene.acceptance.model_dump(),
         "models": {
             rung.key: {
-                "phases_per_axis": len(found.study.axis(rung)),
+                "phases_per_axis": len(found.study.axis(rung, scene)),
                 "outcomes": outcome_counts(found.surfaces, scene.name, rung.key),
                 "cost": float(found.surfaces["cost"].sel(scene=scene.name, model=rung.key)),
             }

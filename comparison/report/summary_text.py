@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isnan
 
 from comparison.account.verdicts import bar, verdict
 from comparison.plan.ladder import rungs_of
@@ -17,6 +18,8 @@ def summary_text(found: Findings) -> str:
     study, run = found.study, found.run
     count = len(study.scenes)
     heading = f"## Phase-resonance study: {count} scene{'' if count == 1 else 's'}, {study.grid} × {study.grid} phases"
+    if len(study.phased) < count:
+        heading += ", one value under each recorded motion"
     parts = [heading, _limits(found.broken), _verdicts(found), *_differences(found), *_budget(found), *_lost(found)]
     made = ", ".join(
         f"{name} {run['provenance'][name]}" for name in ("commit", "exudyn", "numba") if name in run["provenance"]
@@ -52,7 +55,7 @@ def _differences(found: Findings) -> list[str]:
             str(row.body),
             row.pair.replace("-", " "),
             *(percent(value) for value in (row.median, row.percentile95, row.maximum)),
-            f"({degrees(row.phases[0])}, {degrees(row.phases[1])})",
+            "none" if isnan(row.phases[0]) else f"({degrees(row.phases[0])}, {degrees(row.phases[1])})",
             percent(row.beyond_error),
             f"{row.unanswered} of {row.asked}",
         ]

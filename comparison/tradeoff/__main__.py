@@ -44,6 +44,10 @@ def main(argv: Sequence[str] | None = None, executor: Pool = process_pool) -> in
     words = list(sys.argv[1:] if argv is None else argv)
     try:
         scenes = [load_scene(name) for name in given.scenes or [DEFAULT]]
+        for scene in scenes:
+            if scene.recorded:
+                rule = "its truths are for phases, which a recorded motion has not: give a scene of two frequencies"
+                raise SceneError(scene.name, "excitation.record", scene.name, rule)
         given.out.mkdir(parents=True, exist_ok=True)
         before = {trade.scene: trade for trade in read(given.out) or []}
         trades = []

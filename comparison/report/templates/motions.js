@@ -4,7 +4,7 @@ const turn = 2 * Math.PI;
 const around = (a, b) => { const d = Math.abs(a - b) % turn; return Math.min(d, turn - d); };
 const indexed = text => text.replace(/_(\w+)/g, "<sub>$1</sub>");  // v_reg as plotly writes it
 const degrees = phase => `${Math.round(phase * 180 / Math.PI)}°`;
-const named = place => `(${place.phases.map(degrees).join(", ")})`;
+const named = place => place.phases === null ? "the record" : `(${place.phases.map(degrees).join(", ")})`;
 const nearest = (places, alpha1, alpha2) => places.reduce((best, place, index) => {
   const far = Math.hypot(around(place.phases[0], alpha1), around(place.phases[1], alpha2));
   return far < best[1] ? [index, far] : best;

@@ -12,12 +12,16 @@ const plotting = () => library ??= unpacked("plotly").then(buffer => {
 });
 
 // a browser keeps only about sixteen drawing contexts: draw what is in view, drop what is not
-const boxes = [...document.querySelectorAll(".surfaces")];
+const boxes = [...document.querySelectorAll(".surfaces, .record")];
 const visible = new Set();
 async function show(box) {
   try {
     await plotting();
     if (!visible.has(box)) return;
+    if (box.classList.contains("record")) {  // no surface: its one motion of each model, at once
+      if (box.parentElement.querySelector(".motions").hidden && data.scenes[box.dataset.scene].places.length) await choose(box, 0);
+      return;
+    }
     await drawSurfaces(box, data, pairOf(box), chosen[box.dataset.scene]);
     if (box.linked) return;
     box.linked = true;

@@ -1,0 +1,127 @@
+"""A study with recorded motions: one point per scene and model, tables and motions in place of surfaces."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from conftest import Run, without_errands
+from fake_models import fake_ladder, known_motions
+from playwright.sync_api import sync_playwright
+from test_page_in_a_browser import CHROMIUM, DESKTOP, FLAGS, LAPTOP, _opened
+
+import comparison.run
+from comparison.account.budget import budget
+from comparison.account.surfaces import NOT_ASKED, labelled_surfaces
+from comparison.analyses.errands import errands, predicted
+from comparison.analyses.trajectories import chosen_places
+from comparison.assumptions.__main__ import main as assumptions
+from comparison.plan.left_out import left_out
+from comparison.plan.study import Study
+from comparison.plan.tiles import solve_tile
+from comparison.run import main
+from reference.problem import example_scenes, load_family, load_scene
+
+MIXED = ("synthetic-pair", "fig4-viscous")
+EXAMPLES = Path(__file__).parents[2] / "reference/problem/examples"
+
+
+@pytest.fixture
+def study() -> Study:
+    return Study(tuple(map(load_scene, MIXED)), 4, 1e-3, fake_ladder(gap=0.01))
+
+
+def test_a_record_is_one_point_of_every_model_and_the_other_scene_keeps_its_grid(study):
+    surfaces = labelled_surfaces(study, study.tiles(), [solve_tile(tile) for tile in study.tiles()])
+    record, grid = (surfaces.sel(scene=name) for name in MIXED)
+    assert [len(tile.phases) for tile in study.tiles() if tile.scene.recorded] == [1] * 6
+    assert (record["status"].isel(alpha1=0, alpha2=0) == "ok").all()
+    assert (record["status"] == NOT_ASKED).sum() == 6 * 15
+    assert np.isfinite(grid["mu"].sel(model="small")).all()
+    entries = [entry for entry in budget(study, surfaces) if entry.scene == "synthetic-pair"]
+    total = next(entry for entry in entries if (entry.body, entry.step) == (1, "total"))
+    assert (total.asked, total.mean) == (1, pytest.approx(0.01))
+    assert np.isnan([*total.phases, total.peak_moves]).all()
+
+
+def test_what_needs_phases_or_amplitudes_is_not_asked_of_a_record(study):
+    stages = {errand.stage for errand in errands(Study(study.scenes[:1], 4, 1e-3))}
+    assert stages == {"effective values"}
+    assert predicted(Study(study.scenes[:1], 4, 1e-3))["pictures"][0] == 0
+    assert not left_out(Study(study.scenes[:1], 4, 1e-3))
+    (place,) = chosen_places(study, None, study.scenes[0])
+    assert (place.row, place.column) == (0, 0)
+
+
+def test_a_mixed_study_is_planned_computed_and_checked(command: Callable[..., Run]) -> None:
+    plan = command(*MIXED, "--grid", "4", "--plan")
+    assert (plan.code, "one point per model" in plan.out) == (0, True)
+    run = command(*MIXED, "--grid", "4", "--check", ladder=fake_ladder(gap=0.0))
+    assert (run.code, run.err) == (0, "")
+    first, second = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))["scenes"]
+    assert {row["asked"] for row in first["differences"]} == {1}
+    assert {tuple(row["phases"]) for row in first["differences"]} == {(None, None)}
+    assert [scene["models"]["small"]["phases_per_axis"] for scene in (first, second)] == [1, 4]
+    with xr.open_dataset(run.report / "surfaces.nc", engine="h5netcdf") as stored:
+        assert stored["recorded"].values.tolist() == [True, False]
+    names = sorted(file.name for file in (run.report / "figures").iterdir())
+    assert names
+    assert not [name for name in names if name.startswith("synthetic")]
+
+
+def test_a_broken_limit_of_a_record_is_told(command: Callable[..., Run]) -> None:
+    run = command("synthetic-pair", "--check", ladder=fake_ladder(gap=0.01))
+    assert run.code == 1
+    assert "synthetic-pair" in run.err
+
+
+def test_a_family_of_scales_is_drawn(command: Callable[..., Run], tmp_path: Path) -> None:
+    text = (EXAMPLES / "synthetic-pair.toml").read_text(encoding="utf-8")
+    file = tmp_path / "mine.toml"
+    file.write_text(text.replace("scale = 1.0", "scale = {range = [0.5, 2.0], steps = 4}"), encoding="utf-8")
+    assert [scene.record[5, 1] / load_scene("synthetic-pair").record[5, 1] for scene in load_family(file).scenes] == [
+        0.5, 1.0, 1.5, 2.0,
+    ]  # fmt: skip
+    run = command(str(file))
+    assert run.code == 0
+    assert (run.report / "figures" / "mine-body1-family.png").exists()
+    assert "4 values of excitation.scale" in (run.report / "index.html").read_text(encoding="utf-8")
+
+
+def test_varied_rings_are_refused_of_a_record_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    assert assumptions(["synthetic-pair"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
+def test_the_page_shows_the_table_and_the_motions_of_a_record_without_a_click(tmp_path: Path) -> None:
+    place = tmp_path / "report"
+    with pytest.MonkeyPatch.context() as patch:
+        without_errands(patch)
+        patch.setattr(comparison.run, "slip_effects", lambda *rest: [])
+        patch.setattr(comparison.run, "stored_motions", known_motions)
+        patch.setattr(comparison.run, "further_findings", lambda *rest: {})
+        words = [*example_scenes(), "--grid", "4", "--jobs", "1", "--out", str(place)]
+        assert main(words, fake_ladder(), ThreadPoolExecutor) == 0
+    with sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        for window in (LAPTOP, DESKTOP):
+            visit = _opened(browser, place / "index.html", window)
+            page = visit.page
+            assert page.locator(".surfaces").count() == 0
+            assert page.locator(".record tbody tr").count() == 2 * 2 * 6
+            box = page.locator(".motions").first
+            page.locator(".record").first.scroll_into_view_if_needed()
+            page.wait_for_function("document.querySelector('.motions').data?.length > 0")
+            assert box.is_visible()
+            page.locator("button[data-pair=like-for-like]").click()
+            named = "document.querySelector('.motions').data?.some(trace => trace.name?.includes('translational'))"
+            page.wait_for_function(named)
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+            assert (visit.complaints, len(visit.requests)) == ([], 1)
+        browser.close()
