@@ -14,7 +14,16 @@ from multibody.refine import refine
 from multibody.spatial import spatial
 from multibody.system import EngineModel
 from multibody.translational import translational
-from reference.problem import Amplification, Outcome, Scene, checked_phases, ground_peak, in_plane, planar, untilted
+from reference.problem import (
+    Amplification,
+    Outcome,
+    Scene,
+    checked_phases,
+    ground_peak,
+    in_plane,
+    planar_chain,
+    untilted,
+)
 
 BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": translational, "spatial": spatial}
 
@@ -80,7 +89,7 @@ def amplification(
     ground = ground_peak(scene, pairs)
     level = model == "spatial" and not full and untilted(scene).allowed
     chosen = "translational" if level else model
-    flat = chosen == "translational" and not full and planar(scene).allowed
+    flat = chosen == "translational" and not full and planar_chain(scene).allowed
     moving = in_plane(scene) if flat else scene
     with silence():
         more = {"axes": 1} if flat else {}

@@ -19,8 +19,10 @@ from reference.problem import (
     checked_phases,
     exponents,
     ground_peak,
+    in_plane,
     linear,
     loading_period,
+    planar,
 )
 from reference.solver.certified import NOT_MET, Peaks, certified_peaks
 from reference.solver.system import (
@@ -77,7 +79,9 @@ def amplification(
     step limit, solver failed. Raises ValueError for arguments outside these rules.
     """
     pairs = checked_phases(phases)
-    system, demand = checked_demand(scene, equations, regularization, tolerance, cutoff, rest_condition)
+    flat = not full and rest_condition == "consistent" and planar(scene).allowed  # (4.6) as printed knows directions
+    moving, axes = (in_plane(scene), 1) if flat else (scene, 2)
+    system, demand = checked_demand(moving, equations, regularization, tolerance, cutoff, rest_condition, axes)
     count, bodies = len(pairs), len(scene.bodies)
     mu, error = np.full((count, bodies), np.nan), np.full((count, bodies), np.nan)
     instant = np.full(count, np.nan)
@@ -90,17 +94,17 @@ def amplification(
     def solve(part: slice) -> float:
         begin = time.thread_time()
         ground = ground_peak(scene, pairs[part])
-        moving = ground > 0.0
+        shaken = ground > 0.0
         status[part] = Outcome.NO_GROUND_MOTION.value
-        places = np.arange(count)[part][moving]
+        places = np.arange(count)[part][shaken]
         some = pairs[places]
         peaks = superposed(scene, system, some, demand) if summed else certified_peaks(system, some, demand)
         outcomes = np.array([OUTCOMES[int(code)] for code in peaks.code], dtype=object)
         outcomes[(outcomes == Outcome.OK) & ~np.isfinite(peaks.value).all(axis=1)] = Outcome.SOLVER_FAILED
         known = (outcomes == Outcome.OK) | (outcomes == Outcome.TOLERANCE_NOT_MET)
         status[places] = [outcome.value for outcome in outcomes]
-        mu[places[known]] = peaks.value[known] / ground[moving][known, None]
-        error[places[known]] = peaks.error[known] / ground[moving][known, None]
+        mu[places[known]] = peaks.value[known] / ground[shaken][known, None]
+        error[places[known]] = peaks.error[known] / ground[shaken][known, None]
         instant[part] = 0.0
         instant[places] = np.where(outcomes == Outcome.OK, np.nan, peaks.instant)
         return time.thread_time() - begin
@@ -140,6 +144,7 @@ def checked_demand(
     tolerance: float,
     cutoff: float | None,
     rest_condition: str,
+    axes: int = 2,
 ) -> tuple[System, Demand]:
     """The scene in compiled form and what is asked of a run. Raises ValueError, one line, for a wrong argument."""
     if equations not in ("exact", "small"):
@@ -153,7 +158,7 @@ def checked_demand(
             raise ValueError(f"{name} = {speed!r}: must be a finite speed greater than 0 m/s, or None")
     if cutoff is not None and regularization is not None:
         raise ValueError(f"cutoff = {cutoff!r}: belongs to the set-valued law; give no regularization with it")
-    system = pack(scene, equations == "small", regularization, rest_condition == "printed")
+    system = pack(scene, equations == "small", regularization, rest_condition == "printed", axes)
     period, knots = loading_period(scene), STEPS_PER_KNOT * len(scene.record)
     vibrations = min(STEPS_PER_VIBRATION * scene.duration * system.fastest / (2.0 * np.pi), MOST_FOR_VIBRATIONS)
     with np.errstate(over="ignore"):  # refused by loads_are_finite

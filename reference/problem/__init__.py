@@ -19,6 +19,7 @@ from reference.problem.reductions import (
     no_friction,
     own_axes,
     planar,
+    planar_chain,
     untilted,
     unused_harmonics,
 )
@@ -57,6 +58,7 @@ __all__ = [
     "parse_scene",
     "phase_grid",
     "planar",
+    "planar_chain",
     "untilted",
     "unused_harmonics",
 ]

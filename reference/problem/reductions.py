@@ -65,8 +65,6 @@ def untilted(scene: Scene) -> Reduction:
 
 def planar(scene: Scene) -> Reduction:
     """The motion stays in one vertical plane (4.7): half of the horizontal coordinates are enough (`in_plane`)."""
-    if len(scene.bodies) == 1:
-        return Reduction(False, "one body: none above it whose coordinates could be left out")
     if scene.recorded:
         return Reduction(False, RECORDED)
     x, y = scene.amplitudes[:2]
@@ -81,6 +79,13 @@ def planar(scene: Scene) -> Reduction:
     return Reduction(
         True, "(4.7): one direction of loading, links equally stiff in x and y: the motion stays in a plane"
     )
+
+
+def planar_chain(scene: Scene) -> Reduction:
+    """The bodies above the platform need no coordinates across the plane of motion."""
+    if len(scene.bodies) == 1:
+        return Reduction(False, "one body: none above it whose coordinates could be left out")
+    return planar(scene)
 
 
 def in_plane(scene: Scene) -> Scene:

@@ -25,7 +25,7 @@ THROUGH_REAL, THROUGH_IMAGINARY = _THROUGH.real.copy(), _THROUGH.imag.copy()
 def eliminate_chain(system: System, work: Work, h: float) -> None:
     """For step length h: the pivots."""
     bodies = work.x.shape[0]
-    for axis in range(2):
+    for axis in range(system.axes):
         for j in range(CHANNELS):
             level = (h * EIGENVALUES[j]) ** 2
             upper = 1.0 + 0.0j
@@ -42,7 +42,7 @@ def eliminate_chain(system: System, work: Work, h: float) -> None:
 def feed_back(system: System, work: Work, h: float) -> None:
     """What the platform's stage accelerations do to its own drive through the eliminated chain."""
     feedback = work.feedback
-    for axis in range(2):
+    for axis in range(system.axes):
         for k in range(STAGES):
             for m in range(STAGES):
                 feedback[axis, k, m] = 0.0
@@ -61,7 +61,7 @@ def load_chain(system: System, work: Work, h: float) -> None:
     """The loads of the eliminated chain from the state and the ground; fills `free`."""
     x, v, free, ground, loads, pivot = work.x, work.v, work.free, work.ground, work.load, work.pivot
     bodies = work.x.shape[0]
-    for axis in range(2):
+    for axis in range(system.axes):
         for k in range(STAGES):
             free[axis, k] = -ground[axis, k]
         if bodies == 1:
@@ -98,7 +98,7 @@ def move_chain(system: System, work: Work, h: float) -> None:
     """Stage accelerations of the bodies from those of the platform; the state at the end of the step in x1, v1."""
     x, v, a, load, pivot = work.x, work.v, work.a, work.load, work.pivot
     bodies = work.x.shape[0]
-    for axis in range(2):
+    for axis in range(system.axes):
         for i in range(1, bodies):
             for k in range(STAGES):
                 a[i, axis, k] = 0.0
@@ -127,7 +127,7 @@ def chain_acceleration(system: System, work: Work, ux: float, uy: float) -> None
     """Accelerations a0 of the bodies above the platform in the state x, v."""
     bodies = work.x.shape[0]
     for i in range(1, bodies):
-        for axis in range(2):
+        for axis in range(system.axes):
             pull = system.below[i, axis] * (work.x[i - 1, axis] - work.x[i, axis])
             if i < bodies - 1:
                 pull += system.above[i, axis] * (work.x[i + 1, axis] - work.x[i, axis])

@@ -10,7 +10,7 @@ a slip vector s = factor * v_h with v_h the horizontal velocity:
 
 from __future__ import annotations
 
-from math import sqrt
+from math import cos, sin, sqrt
 
 from reference.solver.compiled import compiled
 
@@ -103,6 +103,14 @@ def rest_excess_printed(
     gx = -(2.0 * ux + fx) + reaction * px / radius  # spring force f + u with its sign turned
     gy = -(2.0 * uy + fy) + reaction * py / radius
     return gx * gx + gy * gy - lx * lx - ly * ly
+
+
+@compiled
+def heading(angle: float, axes: int) -> tuple[float, float]:
+    """Cosine and sine of a slip direction; along x exactly where the motion stays in that plane."""
+    if axes == 1:
+        return (1.0 if cos(angle) > 0.0 else -1.0), 0.0
+    return cos(angle), sin(angle)
 
 
 @compiled

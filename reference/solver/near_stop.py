@@ -9,11 +9,11 @@ speed. The chain above the platform, slow on this time scale, follows by iterati
 
 from __future__ import annotations
 
-from math import cos, exp, log, sin
+from math import exp, log
 
 from reference.solver.collocation import NODES, STAGES, A
 from reference.solver.compiled import compiled
-from reference.solver.friction import slip_vector
+from reference.solver.friction import heading, slip_vector
 from reference.solver.ground import ground_at
 from reference.solver.linear_solve import factorize, solve
 from reference.solver.platform import acceleration
@@ -52,7 +52,7 @@ def near_stop_step(
     x, v, a, xs, vs = work.x, work.v, work.a, work.chain, work.velocity
     turn, ground, stage, residual = work.turning, work.ground, work.stage, work.residual[:STAGES]
     matrix, pivots = work.matrix[:STAGES, :STAGES], work.pivots[:STAGES]
-    ex, ey = cos(angle), sin(angle)
+    ex, ey = heading(angle, system.axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
     across = work.a0[0, 1] * ex - work.a0[0, 0] * ey
     for k in range(STAGES):
@@ -61,7 +61,7 @@ def near_stop_step(
         # a turn is at most towards the force: do not overshoot it in the guess
         turn[DIRECTION, k] += max(-0.5, min(0.5, h * NODES[k] * across))
         for i in range(bodies):
-            for axis in range(2):
+            for axis in range(system.axes):
                 xs[i, axis, k] = x[i, axis]
                 a[i, axis, k] = work.a0[i, axis]
     reach = 0.0
@@ -69,15 +69,14 @@ def near_stop_step(
         moved = 0.0
         for k in range(STAGES):
             turn[SPEED, k] = exp(turn[SIGMA, k])
-            turn[COSINE, k] = cos(turn[DIRECTION, k])
-            turn[SINE, k] = sin(turn[DIRECTION, k])
+            turn[COSINE, k], turn[SINE, k] = heading(turn[DIRECTION, k], system.axes)
         for k in range(STAGES):
             elapsed = 0.0
             for m in range(STAGES):
                 elapsed += A[k, m] * turn[SPEED, m]
             turn[CLOCK, k] = t + h * elapsed
         for i in range(bodies):
-            for axis in range(2):
+            for axis in range(system.axes):
                 for k in range(STAGES):
                     if i == 0:
                         vs[i, axis, k] = turn[SPEED, k] * turn[COSINE + axis, k]
@@ -95,7 +94,7 @@ def near_stop_step(
             ux, uy, uz = ground_at(system, phase, turn[CLOCK, k])
             ground[0, k], ground[1, k], ground[2, k] = ux, uy, uz
             for i in range(1, bodies):
-                for axis in range(2):
+                for axis in range(system.axes):
                     pull = system.below[i, axis] * (xs[i - 1, axis, k] - xs[i, axis, k])
                     if i < bodies - 1:
                         pull += system.above[i, axis] * (xs[i + 1, axis, k] - xs[i, axis, k])
@@ -146,7 +145,7 @@ def near_stop_step(
         reach = moved
         if moved <= max(tolerance, SETTLED):
             for i in range(bodies):
-                for axis in range(2):
+                for axis in range(system.axes):
                     work.x1[i, axis] = xs[i, axis, STAGES - 1]
                     work.v1[i, axis] = vs[i, axis, STAGES - 1]
             absolute_accelerations(system, work, SLIDING)

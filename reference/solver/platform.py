@@ -116,7 +116,7 @@ def slopes(system: System, contact: int, work: Work) -> None:
         rise = pressure / sqrt(1.0 - nx * nx - ny * ny)
         share = ratio / determinant  # of the reaction in a load along the normal
         turn = reaction * (ratio - 1.0) / determinant
-        for axis in range(2):
+        for axis in range(system.axes):
             p, v, n, s, f = (px, vx, nx, sx, fx) if axis == 0 else (py, vy, ny, sy, fy)
             # by position
             dspeed2 = 2.0 * climb * (v + climb * p)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, log, sin, sqrt
+from math import atan2, log, sqrt
 
 from reference.solver.advance import (
     GROW,
@@ -25,7 +25,7 @@ from reference.solver.chain import eliminate_chain, load_chain
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled, merged
 from reference.solver.events import first_crossing, lowest
-from reference.solver.friction import sliding_speed2
+from reference.solver.friction import heading, sliding_speed2
 from reference.solver.ground import ground_at, ground_at_stages
 from reference.solver.near_stop import directed
 from reference.solver.platform import rest_excess
@@ -79,7 +79,7 @@ def guess_onset(system: System, phase: Array, work: Work, h: float) -> None:
     eliminate_chain(system, work, h)
     load_chain(system, work, h)
     angle = work.run[ANGLE]
-    ex, ey = cos(angle), sin(angle)
+    ex, ey = heading(angle, system.axes)
     for k in range(STAGES):
         ax, ay, _, _ = directed(
             system, work.x[0, 0], work.x[0, 1], work.free[0, k], work.free[1, k],
@@ -105,7 +105,7 @@ def begin_slide(system: System, phase: Array, work: Work, demand: Demand) -> Non
             work.best[0] = onset
             work.doubt[0] = 0.0
     work.run[ANGLE] = angle
-    ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, cos(angle), sin(angle))
+    ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, *heading(angle, system.axes))
     begin_with(system, work, ax, ay, ux, uy, uz, False)
 
 

@@ -33,7 +33,7 @@ def rest_step(system: System, phase: Array, work: Work, t: float, h: float) -> i
     ground_at_stages(system, phase, t, h, work)
     eliminate_chain(system, work, h)
     load_chain(system, work, h)
-    for axis in range(2):
+    for axis in range(system.axes):
         for k in range(STAGES):
             work.a[0, axis, k] = 0.0
             work.stage[axis, k] = work.x[0, axis]
@@ -59,7 +59,7 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
     a, stage = work.a, work.stage
     fresh, before = True, 0.0
     for iteration in range(ITERATIONS):
-        place_platform(work, h)
+        place_platform(work, h, system.axes)
         for k in range(STAGES):
             if stage[0, k] ** 2 + stage[1, k] ** 2 >= system.radius**2:
                 return beyond_rim(system, work)
@@ -77,12 +77,12 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
             work.residual[STAGES + k] = ay - a[0, 1, k]
         if fresh:
             slopes(system, contact, work)
-            set_matrix(work, h)
-            if not factorize(work.matrix, work.pivots):
+            set_matrix(work, h, system.axes)
+            if not factorize(work.matrix, work.pivots[: system.axes * STAGES]):
                 return UNSOLVED
-        solve(work.matrix, work.pivots, work.residual)
+        solve(work.matrix, work.pivots[: system.axes * STAGES], work.residual)
         change = 0.0
-        for axis in range(2):
+        for axis in range(system.axes):
             for k in range(STAGES):
                 correction = work.residual[axis * STAGES + k]
                 a[0, axis, k] += correction
@@ -90,7 +90,7 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
         if not np.isfinite(change) or (iteration > 1 and fresh and change > before):
             return UNSOLVED
         if change <= tolerance:
-            place_platform(work, h)
+            place_platform(work, h, system.axes)
             move_chain(system, work, h)
             absolute_accelerations(system, work, contact)
             return SOLVED if lowest(stage[6]) > 0.0 else OPEN
@@ -100,10 +100,10 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
 
 
 @compiled
-def place_platform(work: Work, h: float) -> None:
+def place_platform(work: Work, h: float, axes: int) -> None:
     """Position, velocity and drive of the platform at the stages, from its stage accelerations."""
     a, stage, free, feedback = work.a, work.stage, work.free, work.feedback
-    for axis in range(2):
+    for axis in range(axes):
         for k in range(STAGES):
             velocity = 0.0
             position = 0.0
@@ -118,11 +118,11 @@ def place_platform(work: Work, h: float) -> None:
 
 
 @compiled
-def set_matrix(work: Work, h: float) -> None:
+def set_matrix(work: Work, h: float, axes: int) -> None:
     """Derivative of the stage equations a - acceleration(a) = 0 by the stage accelerations of the platform."""
     matrix, feedback, slope = work.matrix, work.feedback, work.slopes
-    for row in range(2):
-        for column in range(2):
+    for row in range(axes):
+        for column in range(axes):
             for k in range(STAGES):
                 by_position = h * h * slope[2 * column + row, k]
                 by_velocity = h * slope[4 + 2 * column + row, k]
@@ -131,7 +131,7 @@ def set_matrix(work: Work, h: float) -> None:
                     matrix[row * STAGES + k, column * STAGES + m] = -(
                         by_position * A2[k, m] + by_velocity * A[k, m] + by_drive * feedback[column, k, m]
                     )
-    for k in range(2 * STAGES):
+    for k in range(axes * STAGES):
         matrix[k, k] += 1.0
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, exp, log, pi, sin
+from math import exp, log, pi
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from reference.solver.chain import chain_acceleration
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled, merged
 from reference.solver.events import first_crossing, lowest
+from reference.solver.friction import heading
 from reference.solver.ground import ground_at
 from reference.solver.near_stop import ACROSS, ALONG, CLOCK, DIRECTION, LOG_RATIO, SIGMA, directed, near_stop_step
 from reference.solver.platform import rest_excess
@@ -60,7 +61,7 @@ def ratio_in(system: System, work: Work, phase: Array) -> tuple[float, float]:
     fx, fy = drive(system, work, ux, uy)
     ax, ay, _, ratio = directed(
         system, work.x[0, 0], work.x[0, 1], fx, fy, ux, uy, system.gravity + uz,
-        exp(run[LOG_SPEED]), cos(run[ANGLE]), sin(run[ANGLE]),
+        exp(run[LOG_SPEED]), *heading(run[ANGLE], system.axes),
     )  # fmt: skip
     begin_with(system, work, ax, ay, ux, uy, uz, False)
     return log(ratio), (ax * ax + ay * ay) ** 0.5

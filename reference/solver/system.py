@@ -46,6 +46,7 @@ class System(NamedTuple):
     exponents: Complex  # (2,), 1/s
     record: Array  # (K, 4), s and m/s^2, knots of a recorded motion, between which it is linear; (0, 4) without one
     duration: float  # s
+    axes: int  # 1 for a motion in the plane of x and z: y stays exactly zero
     fastest: float  # rad/s, bound of the chain's natural frequencies
 
 
@@ -123,7 +124,7 @@ class Demand(NamedTuple):
     step_limit: int
 
 
-def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = False) -> System:
+def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = False, axes: int = 2) -> System:
     """The scene in compiled form. `v_reg`, m/s, selects the regularised law; None the set-valued one."""
     masses, links = scene.masses, scene.stiffness
     below, above = np.zeros((len(masses), 2)), np.zeros((len(masses), 2))
@@ -146,6 +147,7 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
         exponents=np.zeros(2, np.complex128) if scene.recorded else exponents(scene),
         record=scene.record,
         duration=float(scene.duration),
+        axes=axes,
         fastest=float(np.sqrt(2.0 * (below + above).max())),  # Gershgorin's bound
     )
 

@@ -81,6 +81,13 @@ def test_a_plane_costs_less_than_space(scene: Scene) -> None:
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("law", [{"equations": "small"}, {}, {"regularization": 1e-3}], ids=str)
+@pytest.mark.parametrize("scene", [scene_of("fig4-dry"), scene_of("fig4-dry", *([LINK] * 8))], ids=["2", "10 bodies"])
+def test_solving_in_a_plane_costs_less_than_in_space(scene: Scene, law: dict[str, Any]) -> None:
+    assert measured(reference.amplification, scene, phase_grid(12), phase_grid(12), **law) > 1.0
+
+
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["fig3-I", "fig4-viscous"])
 def test_level_bodies_cost_less_than_bodies_that_turn(name: str) -> None:
     scene = scene_of(name, height=0.0)
