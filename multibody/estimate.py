@@ -25,7 +25,6 @@ Array = NDArray[np.float64]
 SAFETY_TWO, SAFETY_MORE = 1.5, 1.25  # on the error that two levels, and three or more, show (Roache)
 SLOWEST, FASTEST = 2.0, 4.0  # factor by which a level reduces the error: at stops, in smooth motion
 TOO_GOOD = 5.0  # a larger factor is chance
-CHANCE = 4e-4  # relative: what level 0 typically gets wrong; two levels may agree by chance, so no estimate is smaller
 FLOOR = 1e-6  # relative: what is left below is not measured
 
 
@@ -40,16 +39,20 @@ def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> 
         change = np.where(rate > TOO_GOOD, earlier / SLOWEST, change)
         rate = np.where(rate > TOO_GOOD, SLOWEST, np.clip(rate, SLOWEST, FASTEST))
     change = safety * change * (1.0 + lag(levels[-2], model)) / (rate - 1.0)
-    likely: Array = np.maximum(change, CHANCE / 4.0 ** (len(levels) - 1) * now)
+    likely: Array = np.maximum(change, levels[-1].chance * now)
     return likely + peaks[-1].sampling + levels[-1].rounding + FLOOR * now
 
 
 def from_compliance(stiff: Peaks, soft: March, level: Level, model: EngineModel) -> Array:
-    """Error (N,) that the contact's compliance leaves in `stiff`, from a run with the softer contact of `level`."""
+    """
+    Error (N,) that the contact's compliance leaves in `stiff`, from a run with the softer contact of `level`.
+
+    Never less than its share of rho: the geometry of the contact is not known better.
+    """
     if soft.outcome != Outcome.OK:
         return np.full_like(stiff.value, np.inf)
     change: Array = SAFETY_TWO * np.abs(stiff.value - soft.peaks.value) * (1.0 + lag(level, model))
-    return change
+    return change + level.penetration * stiff.value
 
 
 def lag(level: Level, model: EngineModel) -> float:

@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 
 SPECTRAL_RADIUS = 0.8  # of generalised alpha: the contact must not ring, the rest must not be damped
 
+HALVED = 1e4  # a step over the shortest in its place where the engine cannot solve it: contacts touch, friction turns
+
 CONTRACTIVITY = 0.05  # of modified Newton, above which the Jacobian is renewed: fewest iterations (measured)
 
 
@@ -56,6 +58,13 @@ class Motion:
                 for column in fields(Motion)
             )
         )
+
+    @staticmethod
+    def none(model: EngineModel) -> Motion:
+        """No rows at all, of a model whose contact forces are recorded."""
+        size, contacts = model.coordinates, len(model.recorders.contact)
+        widths = [(size,), (size,), (size,), (4 * contacts,), (6 * contacts,), (3, 3)]
+        return Motion(np.empty(0), *(np.empty((0, *width)) for width in widths))
 
     def state(self, row: int) -> EngineState:
         return EngineState(self.coordinates[row], self.velocities[row], self.contact[row], self.plate[row])
@@ -99,6 +108,7 @@ class Engine:
         self.model = model
         # over a moving plate the first residual is the heavy plate's: only the absolute tolerance says something
         self.settings = _settings(newton / HEAVY if model.moving_plate else newton, absolute)
+        self.iterations = 0  # of Newton's method in the last run, with those of steps that were tried again
 
     def run(self, state: EngineState, begin: float, step: float, count: int) -> Motion | None:
         """`count` steps from `state` at time `begin`; None if the engine could not solve one of them."""
@@ -107,11 +117,15 @@ class Engine:
         self.settings.timeIntegration.startTime = begin
         self.settings.timeIntegration.endTime = begin + count * step
         self.settings.timeIntegration.numberOfSteps = count
+        self.settings.timeIntegration.minimumStepSize = step / HALVED
+        solver = exudyn.MainSolverImplicitSecondOrder()
         try:
-            if not exudyn.MainSolverImplicitSecondOrder().SolveSystem(self.model.mbs, self.settings):
+            if not solver.SolveSystem(self.model.mbs, self.settings):
                 return None
         except (exudyn.ExudynError, RuntimeError, ValueError):
             return None
+        finally:
+            self.iterations = int(solver.it.newtonStepsCount)
         return self._read()
 
     def _read(self) -> Motion:

@@ -21,7 +21,9 @@ from reference.problem import Scene, exponents
 
 LEVELS = 8
 STEPS_PER_PERIOD = 150  # of the fastest motion that matters, at level 0
-STATIC = 0.02  # of the shortest period of loading and pendulum: faster links follow without swinging
+STEPS_PER_DECAY = 24  # of the time in which a harmonic falls by e, at level 0, while it lasts
+LASTS = 28.0  # such times, until a harmonic has fallen by 1e12
+CHANCE = 6e-4  # relative: what level 0 typically gets wrong
 TURN = 0.14  # allowed change of the slip velocity in one step at level 0, as its fraction
 PENETRATION = 1e-6  # of rho, at level 0 and most
 LAG = 0.3  # x at level 0 where rounding allows: from there on a level halves the contact's error (measured)
@@ -38,7 +40,9 @@ class Level:
     """
     step: the largest, in units of time. turn: allowed change of the slip velocity in one step, as its fraction.
     penetration: of the contact under the weight, of rho. newton: relative tolerance of the forces. deepest: how often
-    the largest step may be divided by `RATIO`.
+    the largest step may be divided by `RATIO`. chance: relative error that this level typically has, and below which no
+    agreement with another one tells anything. decays: for every harmonic that dies faster than the largest step
+    resolves, the instant until which it lasts and the step up to there.
     """
 
     step: float
@@ -47,6 +51,13 @@ class Level:
     newton: float
     rounding: float
     deepest: int
+    chance: float
+    decays: tuple[tuple[float, float], ...] = ()
+
+    def shallowest(self, time: float) -> int:
+        """How often the largest step must be divided at `time` for the decay of the loading."""
+        allowed = min((step for until, step in self.decays if time < until), default=self.step)
+        return min(math.ceil(math.log(self.step / allowed, RATIO) - 1e-9), self.deepest)
 
     @property
     def absolute(self) -> float:
@@ -55,7 +66,11 @@ class Level:
 
 
 def largest_step(scene: Scene, model: EngineModel) -> float:
-    """Step of level 0 in units of the model, from the shortest period of the loading, the pendulum and the chain."""
+    """
+    Step of level 0 in units of the model, from the shortest period of the loading, the pendulum and the chain.
+
+    Of the chain however short: the loading begins at once and sets every mode swinging, and none is damped.
+    """
     slow = [2.0 * math.pi]
     if not scene.recorded:  # a record is linear within every step
         slow += [2.0 * math.pi / (pace * model.units.time) for pace in exponents(scene).imag]
@@ -68,7 +83,14 @@ def largest_step(scene: Scene, model: EngineModel) -> float:
             stiffness[link : link + 2, link : link + 2] += k * np.array([[1.0, -1.0], [-1.0, 1.0]])
         scaled = stiffness / np.sqrt(np.outer(masses, masses))
         fastest = min(fastest, 2.0 * math.pi / math.sqrt(float(np.linalg.eigvalsh(scaled)[-1])))
-    return min(max(fastest, STATIC * min(slow)), *slow) / STEPS_PER_PERIOD
+    return min(fastest, *slow) / STEPS_PER_PERIOD
+
+
+def brief_harmonics(scene: Scene, model: EngineModel, step: float) -> list[tuple[float, float]]:
+    """Until when the harmonics last that `step` does not resolve, and the step they ask for, at level 0."""
+    rates = [] if scene.recorded else -exponents(scene).real * model.units.time
+    times = [1.0 / rate for rate in rates if rate > 0.0]
+    return [(LASTS * time, time / STEPS_PER_DECAY) for time in times if time / STEPS_PER_DECAY < step]
 
 
 def levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
@@ -81,7 +103,9 @@ def levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
         softest, stiffenings = softest / FALL ** min(stiffenings, 1), 0
     penetrations = [softest / FALL ** min(level, stiffenings) for level in range(LEVELS)]
     at_stop = FINEST * TURN * model.relaxation
-    deepest = max(SHALLOWEST, math.ceil(math.log(step / at_stop, RATIO))) if at_stop < step else SHALLOWEST
+    brief = brief_harmonics(scene, model, step)
+    smallest = min([at_stop, *(needed for _, needed in brief)])
+    deepest = max(SHALLOWEST, math.ceil(math.log(step / smallest, RATIO))) if smallest < step else SHALLOWEST
     return [
         Level(
             step / 2.0**level,
@@ -90,6 +114,8 @@ def levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
             NEWTON / 4.0**level,
             model.rounding / penetration,
             deepest,
+            CHANCE / 4.0**level,
+            tuple((until, needed / 2.0**level) for until, needed in brief),
         )
         for level, penetration in enumerate(penetrations)
     ]

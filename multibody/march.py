@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 
 SETTLING = 2  # depth of the first chunk: the contact settles
 LONG, SHORT = 256, 32  # steps in a chunk at the largest step at most, at smaller ones
+ITERATIONS = 2  # of Newton's method in a step that costs what `Budget` says
 STEPS_OF_RATE = 4  # over which the rate of a gap is taken
 BEHIND = 4.0  # allowed turns times the relaxation of friction: first step behind a kink of the loading
 LATEST = 8  # rows at the end of a chunk that decide whether the step may grow
@@ -35,9 +36,28 @@ LATEST = 8  # rows at the end of a chunk that decide whether the step may grow
 
 @dataclass
 class Budget:
-    """Steps left to all runs of one point."""
+    """
+    Work left to all runs of one point: nominal microseconds, so that the answer does not depend on the machine.
+
+    step, run: what a step costs, and what a run costs before its first step.
+    """
 
     left: float
+    step: float
+    run: float
+
+    @staticmethod
+    def of(work: float, coordinates: int) -> Budget:
+        """`work` for a model with so many coordinates, whose matrices are dense; coefficients measured."""
+        return Budget(work, 8.0 + 0.6 * coordinates + 0.02 * coordinates**2, 2e-3 * coordinates**3)
+
+    def cost(self, steps: float, runs: float) -> float:
+        """Of so many steps in so many runs."""
+        return self.step * steps + self.run * runs
+
+    def allows(self, span: float, level: Level) -> bool:
+        """Whether what is left is enough for `span` at the largest step of a level."""
+        return self.cost(span / level.step, span / level.step / LONG) <= self.left
 
 
 @dataclass
@@ -65,18 +85,19 @@ def march(
     """Run from `start` at time 0 to `end`; ground: plate's acceleration (T, 3) at times (T,), in units of the model."""
     model = engine.model
     result = March(Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near))
-    if budget.left * level.step < end:
+    if not budget.allows(end, level):
         return _ended(result, Outcome.STEP_LIMIT, 0.0)
     state, time, depth, ahead = start, 0.0, SETTLING, LONG
     while time < end * (1.0 - 1e-12):
+        depth = max(depth, level.shallowest(time))
         step = level.step / RATIO**depth
         count = ahead if depth == 0 else SHORT
         count = min(count, math.ceil((end - time) / step * (1.0 - 1e-12)))
         step, count = aligned(model.ground.knots, model.ground.near, time, min(step, (end - time) / count), count)
         motion = engine.run(state, time, step, count)
         result.runs += 1
-        result.steps += count
-        budget.left -= count
+        result.steps += count if motion is None else len(motion.time) - 1
+        budget.left -= budget.cost(max(count, engine.iterations / ITERATIONS), 1)
         if budget.left < 0.0:
             return _ended(result, Outcome.STEP_LIMIT, time)
         if motion is None or not np.isfinite(motion.accelerations).all():

@@ -39,7 +39,7 @@ def trajectory(
         built = assembled(scene, model, regularization, loading=loading, contact_force=True)
         point = refine(scene, built, pair, tolerance, initial=initial, keep=True)
     units, bodies = built.units, built.bodies
-    motion = Motion.joined(point.finest.chunks)
+    motion = Motion.joined(point.finest.chunks) if point.finest.chunks else Motion.none(built)
     time = motion.time * units.time
     resting = not built.moving_plate
     ground = ground_acceleration(scene, pair, time) if resting else motion.plate[:, 2] * units.acceleration

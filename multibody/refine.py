@@ -20,13 +20,15 @@ from multibody.estimate import from_compliance, from_levels
 from multibody.integrate import Engine
 from multibody.level import FALL, Level, levels
 from multibody.march import Budget, March, march
+from multibody.peak import Peaks
 from multibody.system import EngineModel
 from reference.problem import Outcome, Scene, State, ground_acceleration
 
 Array = NDArray[np.float64]
 
-WORK = 4e7  # steps times coordinates of all runs of one point, before it is given up: minutes
+WORK = 8e6  # nominal microseconds (see `Budget`) of all runs of one point, before it is given up
 UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
+PREDICTED = 3.0  # steps of the first two levels over those of the first: without both there is no answer
 GROWTH = 2.0  # steps of a level over those of the one before, at most
 
 
@@ -65,8 +67,12 @@ def refine(
     end = scene.duration / units.time
     model.ground.set_phase(phase)
     first = ground_acceleration(scene, phase, [0.0])[0]
-    budget = Budget(WORK / model.coordinates)
+    budget = Budget.of(WORK, model.coordinates)
     plan = levels(scene, model, tolerance) if plan is None else plan
+    nothing = np.full(len(model.bodies), np.nan)
+    if not budget.allows(end, replace(plan[0], step=plan[0].step / PREDICTED)):
+        none = March(Peaks(len(model.bodies), model.corner), Outcome.STEP_LIMIT, 0.0)
+        return Refined(nothing, nothing, Outcome.STEP_LIMIT, 0.0, none)
 
     def ground(time: Array) -> Array:
         return ground_acceleration(scene, phase, time * units.time) / units.acceleration
@@ -79,10 +85,16 @@ def refine(
             begin = balanced(engine, begin, level)
         return march(engine, begin, end, ground, level, budget, keep=keep)
 
+    def compliance(stiff: March, level: Level) -> Array:
+        softer = replace(level, penetration=FALL * level.penetration)
+        return from_compliance(stiff.peaks, run(softer), softer, model)
+
     marches: list[March] = []
     best: tuple[March, Array] | None = None
+    left_out: Level | None = None  # the level of `best`, if what its compliance leaves is not part of the error yet
     for number, level in enumerate(plan):
-        if marches and budget.left < GROWTH * marches[-1].steps:
+        shared = model.rigid and number > 0 and level.penetration == plan[number - 1].penetration
+        if marches and budget.left < GROWTH * budget.cost(marches[-1].steps, marches[-1].runs) * (1.0 + shared):
             break
         now = run(level)
         marches.append(now)
@@ -98,16 +110,20 @@ def refine(
             break
         finished = [past.peaks for past in marches[-3:] if past.outcome == Outcome.OK]
         errors = from_levels(finished, list(plan[: number + 1]), model)
-        shared = model.rigid and level.penetration == plan[number - 1].penetration
-        if shared and (errors <= tolerance * now.peaks.value).all():
-            softer = replace(level, penetration=FALL * level.penetration)
-            errors = errors + from_compliance(now.peaks, run(softer), softer, model)
+        left_out = level if shared else None
+        if left_out and (errors <= tolerance * now.peaks.value).all():
+            errors, left_out = errors + compliance(now, level), None
         best = now, errors
         if (errors <= tolerance * now.peaks.value).all():
             return _answer(model, now, errors, Outcome.OK)
     if best is not None:
-        return _answer(model, *best, Outcome.TOLERANCE_NOT_MET)
-    nothing = np.full(len(model.bodies), np.nan)
+        now, errors = best
+        if left_out:
+            errors = errors + compliance(now, left_out)
+        if np.isfinite(errors).all():
+            return _answer(model, now, errors, Outcome.TOLERANCE_NOT_MET)
+        # nothing tells what the compliance leaves: the run that should has no answer
+        return Refined(nothing, nothing, Outcome.SOLVER_FAILED, scene.duration, now)
     # levels that do not agree, or end alike: by how the first of the last two that has no answer ends
     failed = next((past for past in marches[:-3:-1] if past.outcome != Outcome.OK), None)
     if failed is None:  # one level has an answer, and no steps are left for another that tells its error

@@ -22,12 +22,13 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from comparison.extremes.cells import Cell, Solved, cells, solve_cell
 from comparison.extremes.matrix import FILE, Matrix, as_entry, matrix, written
-from comparison.extremes.rows import COLUMNS, ENGINE, EQUATIONS, Column, Row, rows
+from comparison.extremes.rows import COLUMNS, EQUATIONS, REFERENCE, Column, Row, rows
 from comparison.extremes.verdicts import Verdict
 from comparison.extremes.worker import answers
 from comparison.provenance import provenance
 from comparison.sweep.executors import cores
 
+BRIEF = {"lubrication, s/m", "start at the friction limit", "outside the rules"}  # for the engine's models, too
 LIMIT = 90.0  # s for one cell with its finer runs, on a machine that does nothing else
 
 
@@ -67,9 +68,12 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def reduced(every: Sequence[Row]) -> list[Row]:
-    """The extremes for a quick look: those of the equations alone that take a fraction of a second."""
-    cheap = {"small", "exact", "regularised"}
-    kept = [(row, tuple(key for key in row.columns if key in cheap)) for row in every if row.quick]
+    """The extremes for a quick look: those that take a fraction of a second."""
+    kept = [
+        (row, row.columns if row.group in BRIEF else tuple(key for key in row.columns if key in REFERENCE))
+        for row in every
+        if row.quick
+    ]
     return [Row(**{**vars(row), "columns": columns}) for row, columns in kept if columns]
 
 
@@ -113,7 +117,7 @@ def run(
         "cpu_seconds": round(sum(result.total for result in results if isinstance(result, Solved)), 1),
         "jobs": jobs,
         "limit": limit,
-        "reduced": not any(cell.column.amplification == ENGINE for cell in tasks),
+        "reduced": len(tasks) < len(cells(list(rows()))),
         "provenance": provenance(),
     }
     places = {id(cell.row): number for number, cell in enumerate(cells(chosen, columns))}
@@ -146,7 +150,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--only", default="", metavar="TEXT", help="the extremes whose name contains this")
     keys = [column.key for column in COLUMNS]
     parser.add_argument("--models", nargs="+", choices=keys, metavar="KEY", help=f"some of {', '.join(keys)}")
-    parser.add_argument("--reduced", action="store_true", help="the equations alone, without what takes long")
+    parser.add_argument("--reduced", action="store_true", help="what takes little: mostly the equations alone")
     return parser
 
 

@@ -45,6 +45,8 @@ def amplification(
     ground = ground_peak(scene, pairs)
     with silence():
         built = assembled(scene, model, regularization)
+        if contact_stiffness is not None:
+            built = replace(built, rigid=True)  # the stiffness was not chosen for the model: what it leaves is an error
         plan = _levels(scene, built, tolerance, contact_stiffness, step)
         for m, phase in enumerate(pairs):
             point = refine(scene, built, phase, tolerance, plan=plan)
@@ -64,5 +66,13 @@ def _levels(
     if step is not None:
         longer = step / model.units.time / plan[0].step
         deeper = math.ceil(math.log(longer, RATIO))  # the smallest step stays what it is
-        plan = [replace(level, step=level.step * longer, deepest=max(level.deepest + deeper, 0)) for level in plan]
+        plan = [
+            replace(
+                level,
+                step=level.step * longer,
+                deepest=max(level.deepest + deeper, 0),
+                chance=level.chance * max(longer, 1.0) ** 2,  # the method is of second order
+            )
+            for level in plan
+        ]
     return plan

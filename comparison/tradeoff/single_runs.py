@@ -88,7 +88,7 @@ def _peaks(scene: Scene, model: EngineModel, level: Level, phase: Array) -> Arra
     engine = Engine(model, level.newton, level.absolute)
     begin = model.start(None, ground_acceleration(scene, phase, [0.0])[0], level.penetration)
     begin = balanced(engine, begin, level)
-    budget = Budget(WORK / model.coordinates)
+    budget = Budget.of(10.0 * WORK, model.coordinates)  # one run in place of all that refine a point
     found = march(engine, begin, scene.duration / units.time, ground, level, budget)
     if found.outcome != Outcome.OK:
         return np.full(len(scene.bodies), np.nan)
