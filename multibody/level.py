@@ -88,7 +88,7 @@ def largest_step(scene: Scene, model: EngineModel) -> float:
 
 def brief_harmonics(scene: Scene, model: EngineModel, step: float) -> list[tuple[float, float]]:
     """Until when the harmonics last that `step` does not resolve, and the step they ask for, at level 0."""
-    rates = [] if scene.recorded else -exponents(scene).real * model.units.time
+    rates: list[float] = [] if scene.recorded else list(-exponents(scene).real * model.units.time)
     times = [1.0 / rate for rate in rates if rate > 0.0]
     return [(LASTS * time, time / STEPS_PER_DECAY) for time in times if time / STEPS_PER_DECAY < step]
 

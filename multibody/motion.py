@@ -43,7 +43,7 @@ def trajectory(
     time = motion.time * units.time
     resting = not built.moving_plate
     ground = ground_acceleration(scene, pair, time) if resting else motion.plate[:, 2] * units.acceleration
-    vectors = motion.force.reshape(len(time), -1, 2, 3)  # per contact: force, normal
+    vectors = motion.force.reshape(len(time), motion.force.shape[1] // 6, 2, 3)  # per contact: force, normal
     support_force = np.abs((vectors[:, :, 0] * vectors[:, :, 1]).sum(axis=-1)) * units.force
     extra = {"slip_speed": motion.slip * units.velocity, "support_force": support_force}
     if model == "spatial":

@@ -10,8 +10,10 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
+import reference
 from comparison.extremes.__main__ import main, reduced, run
-from comparison.extremes.cells import Cell, cells, solve_cell
+from comparison.extremes.cells import Cell, _scene, cells, solve_cell
+from comparison.extremes.engine import amplification
 from comparison.extremes.figure import draw_extremes
 from comparison.extremes.matrix import Entry, Matrix, read, written
 from comparison.extremes.rows import COLUMNS, Column, Row, rows, scene
@@ -158,3 +160,17 @@ def _extreme(verdict: str, error: float | None):
     from comparison.extremes.matrix import Extreme
 
     return Extreme("a group", verdict, {"fake": Entry(verdict, "a reason", error, 0.25, 0.5)})
+
+
+@pytest.mark.parametrize("given", [{"contact_stiffness": 1e4}, {"contact_stiffness": 1e6}, {"step": 0.1}])
+def test_the_error_knows_what_a_bad_choice_of_stiffness_or_step_costs(given):
+    written = _scene(scene(duration=0.5))
+    engine = amplification(written, [(0.3, 1.1)], tolerance=1e-2, **given)
+    exact = reference.amplification(written, [(0.3, 1.1)], equations="exact", regularization=1e-3)
+    assert engine.status[0] in ("ok", "tolerance not met")
+    assert (abs(engine.mu - exact.mu) <= engine.error + exact.error).all()
+
+
+def test_the_reduced_form_asks_the_engine_as_well():
+    asked = {cell.column.key for cell in cells(reduced(list(rows())))}
+    assert asked == {column.key for column in COLUMNS}

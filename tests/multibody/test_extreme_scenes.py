@@ -1,0 +1,118 @@
+"""At the extremes a point ends with an error that holds or with a status, and its work is known before it is spent."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scenes_at_hand import changed
+
+import multibody
+import reference
+from multibody import refine
+from multibody.integrate import Engine
+from multibody.march import March, march
+from reference.problem import Outcome, Scene, load_scene
+
+PHASE = [(0.3, 1.1)]
+V_REG = 1e-3
+
+
+def strong(**tables: Any) -> Scene:
+    """`fig3-I` at twice its amplitude, changed."""
+    load = {"amplitudes": [[2.0, 0.0], [0.0, 2.0]], **tables.pop("excitation", {})}
+    return changed(load_scene("fig3-I"), excitation=load, **tables)
+
+
+def linked(period: float, **tables: Any) -> Scene:
+    return strong(bodies=[{"mass": 1.0}, {"mass": 1.0, "period": [period, 0.8 * period]}], **tables)
+
+
+def marches(monkeypatch: pytest.MonkeyPatch) -> list[March]:
+    """The marches of the calls that follow."""
+    done: list[March] = []
+
+    def kept(*given: Any, **more: Any) -> March:
+        done.append(march(*given, **more))
+        return done[-1]
+
+    monkeypatch.setattr(refine, "march", kept)
+    return done
+
+
+@pytest.mark.parametrize(
+    ("scene", "regularization"),
+    [
+        (strong(duration=1.0, excitation={"decay": [1e6, 1e6]}), V_REG),  # gone before the largest step ends
+        (strong(duration=0.1, excitation={"decay": [1e3, 0.3]}), V_REG),
+        (linked(1e-2, duration=0.6), V_REG),  # undamped, it rings when the loading begins
+        (linked(1e-3, duration=0.02), V_REG),
+        (strong(duration=3.0), 1e-4),  # two levels agree to 0.9 of what both are off
+    ],
+    ids=["decay 1e6/s", "decay 1e3/s", "link 1e-2 s", "link 1e-3 s", "v_reg 1e-4 m/s"],
+)
+def test_the_error_holds_where_a_scene_is_much_quicker_than_its_loading(scene: Scene, regularization: float) -> None:
+    # what is left of a loading of 1 us is weak beside the rounding of the contact force
+    tolerance = 1e-2 if scene.excitation.decay[0] == 1e6 else 1e-3
+    engine = multibody.amplification(scene, PHASE, regularization=regularization, tolerance=tolerance)
+    equations = reference.amplification(scene, PHASE, equations="exact", regularization=regularization)
+    assert engine.status.tolist() == [Outcome.OK]
+    assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
+
+
+CHAIN = [{"mass": 1.0}] + [{"mass": 1.0, "period": [0.01, 0.01]}] * 199
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [strong(duration=1e4), linked(1e-4), strong(bodies=CHAIN)],
+    ids=["1e4 s", "link 1e-4 s", "200 bodies"],
+)
+def test_work_beyond_the_budget_is_refused_before_any_step(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Engine, "run", lambda *given: pytest.fail("a step was spent"))
+    result = multibody.amplification(scene, PHASE)
+    assert result.status[0] == Outcome.STEP_LIMIT
+    assert result.instant[0] == 0.0
+    assert np.isnan(result.mu).all()
+
+
+def test_a_motion_that_was_never_begun_has_no_instants_and_says_why() -> None:
+    motion = multibody.trajectory(strong(duration=1e4), PHASE[0], model="spatial")
+    assert motion.status == Outcome.STEP_LIMIT
+    assert motion.position.shape == (0, 2, 3)
+
+
+def test_levels_that_cannot_round_less_are_not_spent(monkeypatch: pytest.MonkeyPatch) -> None:
+    # 1e-9 m/s^2 is a tenth of what a contact force rounds to
+    done = marches(monkeypatch)
+    weak = strong(duration=0.5, excitation={"amplitudes": [[1e-9, 0.0], [0.0, 1e-9]]})
+    result = multibody.amplification(weak, PHASE)
+    assert result.status[0] == Outcome.TOLERANCE_NOT_MET
+    assert (result.error > 0.1 * result.mu).all()
+    assert len(done) <= 3, "two levels, and the compliance of the second"
+
+
+def test_iterations_in_vain_are_work_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
+    ran = Engine.run
+
+    def vain(self: Engine, *given: Any) -> Any:
+        motion = ran(self, *given)
+        self.iterations = 10**6
+        return motion
+
+    monkeypatch.setattr(Engine, "run", vain)
+    result = multibody.amplification(strong(duration=0.5), PHASE)
+    assert result.status[0] == Outcome.STEP_LIMIT
+
+
+def test_what_the_compliance_leaves_is_part_of_an_error_that_misses_the_tolerance(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    done = marches(monkeypatch)
+    scene = strong(duration=0.3)
+    result = multibody.amplification(scene, PHASE, tolerance=1e-9)
+    assert result.status[0] == Outcome.TOLERANCE_NOT_MET
+    equations = reference.amplification(scene, PHASE, equations="exact", regularization=V_REG, tolerance=1e-8)
+    assert (np.abs(result.mu - equations.mu) <= result.error + equations.error).all()
+    assert done[-1].steps < 1.5 * done[-2].steps, "the last run repeats the finest level with a softer contact"
