@@ -116,8 +116,8 @@ def refine(
         best = now, errors
         if (errors <= tolerance * now.peaks.value).all():
             return _answer(model, now, errors, Outcome.OK)
-        if (level.rounding > tolerance * now.peaks.value).any():
-            break  # no further level rounds less
+        if (level.rounding > np.maximum(tolerance * now.peaks.value, errors / FALL)).any():
+            break  # hardly more than rounding is left, and no further level rounds less
     if best is not None:
         now, errors = best
         if left_out:
