@@ -11,14 +11,12 @@ from typing import NoReturn
 
 from pydantic import ValidationError
 
+from comparison.plan.choice import AMBITIONS, DEFAULT, DEFAULT_TOLERANCE, tightest
 from comparison.report.store import refuse_foreign
 from comparison.sweep.executors import cores
 from comparison.sweep.tile_store import refuse_foreign_store
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
 from reference.problem.scene_error import first_fault
-
-DEFAULT_GRID = 48  # phases per axis of the equations; a model that costs more takes every k-th (ladder.py)
-DEFAULT_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -26,15 +24,21 @@ class Options:
     """What the command line asks for, valid."""
 
     families: tuple[Family, ...]
-    grid: int
+    grid: int | None
     out: Path
     jobs: int
-    tolerance: float
+    tolerance: float | None
+    budget: float | None
     check: bool
     plan: bool
     fresh: bool = False
     scheduler: str | None = None
     full: bool = False
+
+    @property
+    def by_trade(self) -> bool:
+        """Whether the measured trade chooses what is computed."""
+        return self.tolerance is not None or self.budget is not None
 
     @property
     def scenes(self) -> tuple[Scene, ...]:
@@ -58,10 +62,11 @@ def parsed(argv: Sequence[str] | None) -> Options:
     amplitude = None if given.amplitude is None else _number("--amplitude", given.amplitude, 1e-12, 1e6, "m/s^2")
     options = Options(
         families=tuple(_family(name, amplitude) for name in names),
-        grid=_whole("--grid", given.grid, 2, 512),
+        grid=None if given.grid is None else _whole("--grid", given.grid, 2, 512),
         out=given.out,
         jobs=cores() if given.jobs is None else _whole("--jobs", given.jobs, 1, 1024),
-        tolerance=_number("--tolerance", given.tolerance, 1e-12, 0.1, "relative error of mu"),
+        tolerance=_given("--tolerance", given.tolerance, tightest(), 0.1, "relative error of mu"),
+        budget=_given("--budget", given.budget, 1.0, 1e7, "s of the whole run"),
         check=given.check,
         plan=given.plan,
         fresh=given.fresh,
@@ -77,6 +82,9 @@ def parsed(argv: Sequence[str] | None) -> Options:
     if given.scheduler is not None and given.jobs is not None:
         rule = "counts processes of this machine, --scheduler takes all workers of a cluster: give one of the two"
         raise SceneError("command line", "--jobs", given.jobs, rule)
+    if given.scheduler is not None and options.budget is not None:
+        rule = "is kept by what this machine is measured to do, --scheduler computes on others: give one of the two"
+        raise SceneError("command line", "--budget", given.budget, rule)
     if not options.plan:
         refuse_foreign(options.out)
         refuse_foreign_store(options.out)
@@ -96,7 +104,7 @@ def _parser() -> argparse.ArgumentParser:
         help=f"TOML files, in which one key may run over a range, or built-in names "
         f"(default: {', '.join(builtin_scenes())}; with a recorded motion: {', '.join(example_scenes())})",
     )
-    parser.add_argument("--grid", default=str(DEFAULT_GRID), metavar="N", help="phases per axis (default %(default)s)")
+    parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {AMBITIONS[DEFAULT].grid})")
     parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help="report (default %(default)s)")
     parser.add_argument("--jobs", metavar="N", help=f"worker processes of this machine (default {cores()})")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="compute on the Dask cluster with this scheduler")
@@ -107,9 +115,15 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument(
         "--tolerance",
-        default=str(DEFAULT_TOLERANCE),
         metavar="X",
-        help="relative error asked of every engine mu; the reference is asked for 1e-6 or better (default %(default)s)",
+        help="relative error asked of every mu: takes the cheapest settings that are known to meet it, and leaves out "
+        "models that cannot; the equations are asked for 1e-6 or better "
+        f"(default {DEFAULT_TOLERANCE:g}, this machine unmeasured)",
+    )
+    parser.add_argument(
+        "--budget",
+        metavar="SECONDS",
+        help="time for the whole run on this machine: takes the most accurate study that fits",
     )
     parser.add_argument("--amplitude", metavar="A", help="largest ground acceleration amplitude of every scene, m/s^2")
     parser.add_argument(
@@ -138,6 +152,10 @@ def _whole(key: str, text: str, least: int, most: int) -> int:
     if not least <= value <= most:
         raise SceneError("command line", key, value, rule)
     return value
+
+
+def _given(key: str, text: str | None, least: float, most: float, unit: str) -> float | None:
+    return None if text is None else _number(key, text, least, most, unit)
 
 
 def _number(key: str, text: str, least: float, most: float, unit: str) -> float:

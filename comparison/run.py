@@ -15,18 +15,22 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 from datetime import UTC, datetime
+from typing import Any
 
+import xarray as xr
 from rich.console import Console
 
+from comparison.account.promises import kept_promises
 from comparison.account.surfaces import labelled_surfaces
 from comparison.analyses.effective import effective_values
-from comparison.analyses.errands import errands, motion_errands
+from comparison.analyses.errands import errands, motion_errands, seconds_beside
 from comparison.analyses.further import further_findings
 from comparison.analyses.slips import slip_effects
 from comparison.analyses.trajectories import stored_motions
 from comparison.assumptions.reach import Reach
 from comparison.extremes.matrix import read as stored_extremes
 from comparison.options import Options, UsageError, parsed
+from comparison.plan.choice import Asked, BudgetError, Choice, choice
 from comparison.plan.ladder import LADDER, Rung
 from comparison.plan.study import Study
 from comparison.provenance import provenance
@@ -41,7 +45,7 @@ from comparison.sweep.going_on import command_line, going_on, here
 from comparison.sweep.progress import wide_console
 from comparison.sweep.stopping import stoppable
 from comparison.sweep.tile_store import StoreError, TileStore, store_beside
-from comparison.terminal import print_differences, print_plan
+from comparison.terminal import print_choice, print_differences, print_plan, print_promises
 from comparison.tradeoff.trade import read as stored_trades
 from reference.problem import SceneError
 
@@ -61,12 +65,17 @@ def main(
         try:
             options = parsed(argv)
             console = wide_console()
-            study = Study(options.scenes, options.grid, options.tolerance, ladder, options.full)
+            chosen = _chosen(options, ladder)
+            study = chosen.study
             if options.plan:
-                print_plan(console, study, options)
+                print_plan(console, study, options, chosen.whole)
+                if options.by_trade:
+                    print_choice(console, chosen, options)
                 return 0
+            if options.by_trade:
+                print_choice(console, chosen, options)
             store = TileStore(store_beside(options.out))
-            return _ended(study, options, console, words, executor, store)
+            return _ended(chosen, options, console, words, executor, store)
         except (SceneError, UsageError) as fault:
             print(fault, file=sys.stderr)
             return 2
@@ -75,19 +84,29 @@ def main(
             return 130
 
 
+def _chosen(options: Options, ladder: Sequence[Rung]) -> Choice:
+    """What is computed. Raises SceneError where no study fits the budget."""
+    asked = options.tolerance, options.budget, options.grid, options.jobs, options.full, seconds_beside
+    try:
+        return choice(Asked(options.scenes, ladder, *asked))
+    except BudgetError as fault:
+        raise SceneError("command line", "--budget", options.budget, str(fault)) from None
+
+
 def _ended(
-    study: Study, options: Options, console: Console, words: Sequence[str], executor: Pool, store: TileStore
+    chosen: Choice, options: Options, console: Console, words: Sequence[str], executor: Pool, store: TileStore
 ) -> int:
     """The exit code; whatever ends the run early, what is finished is kept, and the line printed says how to go on."""
+    study = chosen.study
     try:
         if options.scheduler is None:
             if executor is not process_pool:
-                return _run(study, options, console, command_line(words), factory(executor), store)
+                return _run(chosen, options, console, command_line(words), factory(executor), store)
             with process_pool(options.jobs) as workers:  # started once, for all that the study computes
-                return _run(study, options, console, command_line(words), factory(workers), store)
+                return _run(chosen, options, console, command_line(words), factory(workers), store)
         with cluster(options.scheduler, {rung.amplification for rung in study.ladder}) as there:
             options = replace(options, jobs=there.width)
-            return _run(study, options, console, command_line(words), factory(there), store)
+            return _run(chosen, options, console, command_line(words), factory(there), store)
     except KeyboardInterrupt as stop:
         print(f"interrupted: {going_on(store, study, words)}", file=sys.stderr)
         return 128 + getattr(stop, "number", signal.SIGINT)
@@ -104,7 +123,7 @@ def _ended(
 
 
 def _run(
-    study: Study,
+    chosen: Choice,
     options: Options,
     console: Console,
     command: str,
@@ -117,31 +136,30 @@ def _run(
 
     begin, began = time.monotonic(), datetime.now(UTC)
     clear_dead(options.out)
+    study = chosen.study
     tiles = study.tiles()
     store.trim(tiles)
     if options.fresh:
         store.forget(tiles)
     known = Answers(store, options.fresh)
-    done = computed(study, store, console, options.jobs, executor, errands(study), known)
+    done = computed(study, store, console, options.jobs, executor, errands(study, chosen.whole), known)
     seconds, answers = time.monotonic() - begin, done.answers
     surfaces = labelled_surfaces(study, tiles, answers)
     console.print("Keeping a few motions of every scene for the report, and drawing the surfaces.")
-    chosen = [*motion_errands(study, surfaces), *drawing.picture_errands(study, surfaces)]
-    fetched(chosen, known, console, options.jobs, executor)
+    motions = motion_errands(study, surfaces) if chosen.whole else []
+    fetched([*motions, *drawing.picture_errands(study, surfaces)], known, console, options.jobs, executor)
     executor = known.on(executor)  # what the analyses ask has been fetched
     pictures = drawing.all_drawn(study, surfaces, options.jobs, executor)
     effective = effective_values(study, options.jobs, executor)
     effects = slip_effects(study, options.jobs, executor)
-    motions = stored_motions(study, surfaces, options.jobs, executor)
-    further = further_findings(study, options.jobs, executor)
-    assumptions = Reach.of(study, options.jobs, executor)
+    more = _more(study, surfaces, options, executor) if chosen.whole else {}
     beside = {"extremes": stored_extremes(options.out), "tradeoff": stored_trades(options.out)}
     families = [family for family in options.families if len(family.scenes) > 1] or None
     titles = {rung.key: rung.title for rung in study.ladder}
     faults = sorted(
         {f"{tile.scene.name}, {titles[tile.rung]}: {a.fault}" for tile, a in zip(tiles, answers) if a.fault}
     )
-    run = {
+    run: dict[str, Any] = {
         "command": command,
         "began": began.isoformat(timespec="seconds"),
         "seconds": round(seconds, 1),
@@ -154,10 +172,11 @@ def _run(
             for stage, part in known.parts.items()
         },
         "jobs": options.jobs,
+        "choice": kept_promises(chosen, options.tolerance, options.budget, surfaces) if options.by_trade else None,
         "provenance": provenance(),
     }
-    of_run = {"motions": motions, "assumptions": assumptions, "families": families, "pictures": pictures}
-    found = findings(study, surfaces, effective, effects, faults, run, **of_run, **beside, **further)
+    of_run = {"families": families, "pictures": pictures}
+    found = findings(study, surfaces, effective, effects, faults, run, **of_run, **beside, **more)
     console.print("Writing the report.")
     with replaced_when_complete(options.out) as folder:
         write_report(folder, found)
@@ -165,9 +184,20 @@ def _run(
         print(f"solver: {line}", file=sys.stderr)
     for line in found.broken if options.check else []:
         print(f"limit broken: {line}", file=sys.stderr)
+    if options.by_trade:
+        print_promises(console, run["choice"], time.monotonic() - begin)
     _print_closing(console, options, run, time.monotonic() - begin)
     print_differences(console, found.rows)
     return 1 if options.check and found.broken else 0
+
+
+def _more(study: Study, surfaces: xr.Dataset, options: Options, executor: Callable[[int], Executor]) -> dict[str, Any]:
+    """Fields of the findings that a report can do without."""
+    return {
+        "motions": stored_motions(study, surfaces, options.jobs, executor),
+        "assumptions": Reach.of(study, options.jobs, executor),
+        **further_findings(study, options.jobs, executor),
+    }
 
 
 def _print_closing(console: Console, options: Options, run: dict[str, object], seconds: float) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -11,17 +12,16 @@ from rich.table import Table
 from comparison.account.differences import Difference
 from comparison.analyses.errands import errands, predicted
 from comparison.options import Options
+from comparison.plan.choice import Choice
 from comparison.plan.ladder import RECORDED_ON
 from comparison.plan.left_out import left_out
+from comparison.plan.overhead import START_UP, WRITING
 from comparison.plan.study import Study
 from comparison.sweep.answers import Answers
 from comparison.sweep.tile_store import TileStore, store_beside
-from comparison.sweep.warm_up import START_UP
-
-WRITING = 6.0  # s: the page and its data are written by one process, recorded on `plan.ladder.RECORDED_ON`
 
 
-def print_plan(console: Console, study: Study, options: Options) -> None:
+def print_plan(console: Console, study: Study, options: Options, whole: bool = True) -> None:
     """What would be computed and its predicted cost."""
     table = _table("scene", "model", "points", "computed", "tolerance", "s on one core")
     total = 0.0
@@ -36,7 +36,7 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
             table.add_row(scene.name, rung.title, *cells)
     console.print(table)
     _print_left_out(console, study)
-    beside = predicted(study)
+    beside = predicted(study, whole)
     others = ", ".join(f"{name} {seconds:.0f} s ({tasks})" for name, (tasks, seconds) in beside.items() if tasks)
     console.print(f"Beside the surfaces, s on one core and tasks: {others}.")
     total += sum(seconds for _, seconds in beside.values())
@@ -46,12 +46,13 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
     console.print(f"{study.grid} x {study.grid} phases, {options.jobs} worker processes: about {wall:.0f} s.")
     store, tiles = TileStore(store_beside(options.out)), study.tiles()
     if not options.fresh and (stored := sum(map(store.holds, tiles))):
-        asked, known = errands(study), Answers(store)
+        asked, known = errands(study, whole), Answers(store)
         analyses = f"{sum(map(known.holds, asked))} of {len(asked)} analyses"
         console.print(
             f"{stored} of {len(tiles)} tiles are in {store.folder} already, {analyses}: they are not computed again."
         )
-    console.print(f"Costs were recorded on {RECORDED_ON}; another machine scales them all alike.")
+    if not options.by_trade:
+        console.print(f"Costs were recorded on {RECORDED_ON}; another machine scales them all alike.")
     console.print("On a new installation compiling the reference adds some minutes of one worker, once.")
     console.print(f"Nothing was computed. The report would go to {options.out}.")
 
@@ -66,6 +67,43 @@ def _print_left_out(console: Console, study: Study) -> None:
             console.print(f"  {row.scene}: {row.what} ({row.models}): cost {row.cost}: {row.why}")
     else:
         console.print("Nothing is left out: the scenes require all of it.")
+
+
+def print_choice(console: Console, chosen: Choice, options: Options) -> None:
+    """What `--tolerance` or `--budget` chose, and what is expected of it."""
+    study = chosen.study
+    asked = [f"--tolerance {options.tolerance:g}"] if options.tolerance is not None else []
+    asked += [f"--budget {options.budget:g}"] if options.budget is not None else []
+    console.print(f"Chosen for {' '.join(asked)}, by the measured trade and the speed of this machine:")
+    table = _table("model", "phases per axis", "asked for", "s of compute")
+    for rung in study.ladder:
+        if any(rung.applies(scene) for scene in study.scenes):
+            cells = str(len(study.axis(rung))), f"{rung.tolerance(study.tolerance):.0e}", f"{study.seconds(rung):.1f}"
+            table.add_row(rung.title, *cells)
+    console.print(table)
+    for line in chosen.left_out:
+        console.print(f"Left out: {line}.")
+    if not chosen.whole:
+        console.print(
+            "Left out: motions, claims, scaling, convergence, assumptions varied: they do not fit the budget."
+        )
+    console.print(
+        f"Expected: every mu to {study.tolerance:g} at 99 % of the points; {chosen.compute:.1f} s of compute, "
+        f"about {chosen.wall:.0f} s in all with {options.jobs} workers."
+    )
+
+
+def print_promises(console: Console, kept: Mapping[str, Any], seconds: float) -> None:
+    """What came of it."""
+    for model in kept["models"]:
+        console.print(
+            f"{model['title']}: {model['tolerance']:g} met at {100.0 * model['met']:.4g} % of {model['points']} points "
+            f"by the error estimates, {100.0 * model['error99']:.2g} % of mu at 99 % of them."
+        )
+    console.print(
+        f"{kept['seconds']:.1f} s of compute where {kept['predicted_seconds']:.1f} s were expected; {seconds:.0f} s "
+        f"in all where {kept['predicted_wall']:.0f} s were."
+    )
 
 
 def print_differences(console: Console, rows: Sequence[Difference]) -> None:

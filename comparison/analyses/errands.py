@@ -28,13 +28,15 @@ MOTION = {"reference": 0.12, "engine": 0.6}
 PICTURE, PAPER = 0.7, 1.3  # of two models or a budget; in the manner of the paper
 
 
-def errands(study: Study) -> list[Errand]:
-    """What can be computed without knowing the surfaces."""
+def errands(study: Study, whole: bool = True) -> list[Errand]:
+    """What can be computed without knowing the surfaces; not `whole`: only what every report needs."""
     found = [
         Errand("effective values", read_back, (scene, rung), EFFECTIVE[rung.side] * at_samples(scene), scene)
         for scene, rung in effective_tasks(study)
     ]
     found += [Errand("slips", measured, task, SLIP, task[0]) for task in slip_tasks(study)]
+    if not whole:
+        return found
     found += [Errand("scaling test", scene_trends, task, SCALING, task[0]) for task in scaling_tasks(study)]
     for scene, number in convergence_tasks(study):
         seconds = CONVERGENCE[LIMITS[number].what]
@@ -47,24 +49,33 @@ def errands(study: Study) -> list[Errand]:
     return found
 
 
-def predicted(study: Study) -> dict[str, tuple[int, float]]:
+def predicted(study: Study, whole: bool = True) -> dict[str, tuple[int, float]]:
     """
     Tasks and s on one core of all that is computed beside the surfaces, by stage.
 
     Motions and pictures are counted before the surfaces are known that choose them.
     """
-    known = errands(study)
+    known = errands(study, whole)
     found = {}
     for name in dict.fromkeys(errand.stage for errand in known):
         own = [errand.seconds for errand in known if errand.stage == name]
         found[name] = len(own), sum(own)
-    motions = [MOTION[rung.side] * at_samples(scene) for scene in study.scenes for rung in _moving(study, scene)]
+    motions = [
+        MOTION[rung.side] * at_samples(scene)
+        for scene in study.scenes
+        for rung in (_moving(study, scene) if whole else ())
+    ]
     drawn = [
         seconds
         for scene in study.phased
         for seconds in (PAPER, *(PICTURE,) * len(scene.bodies) * (1 + len(pairs_of(scene, study.ladder))))
     ]
     return found | {"motions": (len(motions), sum(motions)), "pictures": (len(drawn), sum(drawn))}
+
+
+def seconds_beside(study: Study, whole: bool) -> float:
+    """s on one core of all that is computed beside the surfaces."""
+    return sum(seconds for _, seconds in predicted(study, whole).values())
 
 
 def _moving(study: Study, scene: Scene) -> list[Rung]:

@@ -57,7 +57,8 @@ class Rung:
     `assumptions`: its row in the report's table of equations. `seconds_per_point`: recorded cost of one phase pair of
     a built-in scene with 20 s of motion, on RECORDED_ON. `applies`: whether the scene gives it anything to add. `most`:
     phases per axis that its cost allows, or None; of a finer study it computes every k-th phase. `symmetric`: whether
-    mirrored phases (symmetry.py) are known to give mirrored motions of the scene and are not computed again.
+    mirrored phases (symmetry.py) are known to give mirrored motions of the scene and are not computed again. `asks`:
+    the tolerance that was chosen for it (choice.py).
     """
 
     key: str
@@ -73,9 +74,12 @@ class Rung:
     most: int | None = None
     symmetric: Callable[[Scene], bool] = field(default=never)
     applies: Callable[[Scene], bool] = field(default=any_scene)
+    asks: float | None = None
 
     def tolerance(self, asked: float) -> float:
         """Relative error this rung asks of its own numbers when the study asks for `asked`."""
+        if self.asks is not None:
+            return self.asks
         return min(asked, REFERENCE_TOLERANCE) if self.side == "reference" else asked
 
     def seconds(self, scene: Scene, points: int) -> float:
@@ -104,7 +108,9 @@ def pairs_of(scene: Scene, ladder: Sequence[Rung]) -> list[Pair]:
     rungs = rungs_of(scene, ladder)
     first, last = rungs[0], rungs[-1]
     reference = [rung for rung in rungs if rung.side == "reference"][-1]
-    engine = next(rung for rung in rungs if rung.side == "engine")
+    engine = next((rung for rung in rungs if rung.side == "engine"), None)
+    if engine is None:  # no engine meets the tolerance, or fits the budget
+        return [Pair("total", "total", f"the paper's printed equations against {last.title}", first, last)]
     pairs = [
         Pair("total", "total", "the paper's printed equations against the most complete engine model", first, last),
         Pair(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -25,6 +25,8 @@ class Study:
     are multiples of one another, so that of any two models the coarser grid is part of the finer. Phases whose motion
     is the mirror image of another's are not computed again, and models leave out what the scene does not require,
     unless the study is `full`. A scene with a recorded motion has no phases: every model computes the one point (0, 0).
+    costs: processor time of a point, s, by name of the scene and key of the model, where it is known better than by the
+    ladder (costs.py).
     """
 
     scenes: tuple[Scene, ...]
@@ -32,6 +34,7 @@ class Study:
     tolerance: float
     ladder: Sequence[Rung] = LADDER
     full: bool = False
+    costs: Mapping[tuple[str, str], float] | None = None
 
     @cached_property
     def strides(self) -> dict[str, int]:
@@ -113,6 +116,8 @@ class Study:
 
     def seconds_of(self, scene: Scene, rung: Rung) -> float:
         """Predicted cost of one model on one scene, s on one core."""
+        if self.costs is not None and (scene.name, rung.key) in self.costs:
+            return self.costs[scene.name, rung.key] * len(self.solved(scene, rung))
         return rung.seconds(scene, len(self.solved(scene, rung))) / self.saving(scene, rung)
 
     def seconds(self, rung: Rung) -> float:

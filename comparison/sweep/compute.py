@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from rich.console import Console
 
+from comparison.plan.overhead import START_UP
 from comparison.plan.study import Study
 from comparison.plan.tiles import Answer, Tile, solve_tile, unanswered
 from comparison.sweep.answers import Answers
@@ -18,7 +19,7 @@ from comparison.sweep.halves import halves, joined
 from comparison.sweep.progress import Stage, progress
 from comparison.sweep.sweep import sweep
 from comparison.sweep.tile_store import TileStore
-from comparison.sweep.warm_up import START_UP, WARM_UP, warm_up
+from comparison.sweep.warm_up import WARM_UP, warm_up
 from reference.problem import Outcome
 
 COMPILING = "compiling the reference"

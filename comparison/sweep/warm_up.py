@@ -13,7 +13,6 @@ from comparison.plan.study import Study
 from comparison.plan.tiles import Tile
 
 DURATION = 0.5  # s of motion: enough to reach every function, and over in milliseconds
-START_UP = 5.0  # s: worker processes start and load the compiled equations, recorded on `plan.ladder.RECORDED_ON`
 WARM_UP = "warm-up"  # rung of the tile, which belongs to no surface
 
 

@@ -37,9 +37,9 @@ def quick_figure(path: Path, *rest: object) -> None:
 
 def without_errands(patch: pytest.MonkeyPatch) -> None:
     """Nothing beside the surfaces is computed ahead or kept: what the analyses need they ask for themselves."""
-    patch.setattr(comparison.run, "errands", lambda study: [])
-    patch.setattr(comparison.run, "motion_errands", lambda study, surfaces: [])
-    patch.setattr(pictures, "picture_errands", lambda study, surfaces: [])
+    patch.setattr(comparison.run, "errands", lambda *rest: [])
+    patch.setattr(comparison.run, "motion_errands", lambda *rest: [])
+    patch.setattr(pictures, "picture_errands", lambda *rest: [])
 
 
 @pytest.fixture
