@@ -6,10 +6,12 @@ import tempfile
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from typing import Literal
 
 import xarray as xr
+from PIL import Image
 
 from comparison.drawing.budget_figure import budget_figure_name, draw_budget
 from comparison.drawing.figures import draw_pair, figure_name
@@ -21,6 +23,7 @@ from comparison.sweep.sweep import sweep
 from reference.problem import Outcome, Scene
 
 SECONDS = {"pair": 0.6, "budget": 0.8, "paper": 1.3}  # of drawing one, recorded beside `Rung.seconds_per_point`
+PAGE = ".webp"
 SHOWN = ["mu", "error", "stride", "recorded"]  # of the surfaces: what pictures are made of
 
 
@@ -80,7 +83,23 @@ def drawn(picture: Picture) -> Files:
         else:
             assert picture.pair is not None
             draw_pair(folder / figure_name(scene, body, picture.pair), surfaces, scene, body, picture.pair)
-        return tuple((file.name, file.read_bytes()) for file in sorted(folder.iterdir()))
+        files = [(file.name, file.read_bytes()) for file in sorted(folder.iterdir())]
+    if picture.kind != "paper":  # what the page shows
+        files += [(for_page(name), smaller(content)) for name, content in files]
+    return tuple(files)
+
+
+def for_page(name: str) -> str:
+    """Name of a picture as the page holds it."""
+    return str(Path(name).with_suffix(PAGE))
+
+
+def smaller(png: bytes) -> bytes:
+    """The same picture to the last dot in half the bytes."""
+    found = BytesIO()
+    with Image.open(BytesIO(png)) as picture:
+        picture.convert("RGB").save(found, "WEBP", lossless=True, quality=20, method=1)  # hardly smaller with more
+    return found.getvalue()
 
 
 def all_drawn(study: Study, surfaces: xr.Dataset, jobs: int, executor: Callable[[int], Executor]) -> dict[str, bytes]:

@@ -11,14 +11,12 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import resources
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import jinja2
 import numpy as np
 import xarray as xr
-from PIL import Image
 from plotly.offline import get_plotlyjs
 
 from comparison.account.differences import Difference
@@ -30,6 +28,7 @@ from comparison.claims.humps import LEAST_SHARE, MOST_SHARE, SHARE
 from comparison.claims.table import SIGNS
 from comparison.drawing.budget_figure import budget_figure_name
 from comparison.drawing.figures import figure_name
+from comparison.drawing.pictures import PAGE, for_page, smaller
 from comparison.extremes.figure import COLOURS, MEANING, PICTURE, draw_extremes, said
 from comparison.extremes.matrix import written
 from comparison.extremes.verdicts import Verdict
@@ -151,7 +150,8 @@ def write_report(folder: Path, found: Findings) -> None:
     figures = folder / "figures"
     figures.mkdir()
     for name, content in found.pictures.items():
-        (figures / name).write_bytes(content)
+        if not name.endswith(PAGE):
+            (figures / name).write_bytes(content)
     for section in SECTIONS:
         if section.draw and section.present(found):
             section.draw(figures, found)
@@ -172,10 +172,10 @@ def _page(figures: Path, found: Findings) -> str:
         sections=[section for section in SECTIONS if section.present(found)],
         absent=[section for section in SECTIONS if not section.present(found)],
         found=found,
-        picture=lambda name: _inlined(figures / name),
+        picture=lambda name: _inlined(smaller((figures / name).read_bytes())),
         study=study,
         run=found.run,
-        scenes=[_scene(figures, found, scene) for scene in study.scenes],
+        scenes=[_scene(found, scene) for scene in study.scenes],
         pairs=list({pair.key: pair for scene in study.scenes for pair in pairs_of(scene, study.ladder)}.values()),
         ladder=ladder,
         step_numbers={rung.key: number for number, rung in enumerate(ladder)},
@@ -205,7 +205,7 @@ def _page(figures: Path, found: Findings) -> str:
     )
 
 
-def _scene(figures: Path, found: Findings, scene: Scene) -> dict[str, Any]:
+def _scene(found: Findings, scene: Scene) -> dict[str, Any]:
     pairs = pairs_of(scene, found.study.ladder)
     own = [row for row in found.rows if row.scene == scene.name]
     return {
@@ -219,10 +219,10 @@ def _scene(figures: Path, found: Findings, scene: Scene) -> dict[str, Any]:
                 "bar": bar(found.study, found.surfaces, scene, body),
                 "record": record_rows(found, scene, body),
                 "pictures": [
-                    {"pair": pair, "png": _inlined(figures / figure_name(scene, body, pair))}
+                    {"pair": pair, "png": _inlined(found.pictures[for_page(figure_name(scene, body, pair))])}
                     for pair in ([] if scene.recorded else pairs)
                 ],
-                "budget": "" if scene.recorded else _inlined(figures / budget_figure_name(scene, body)),
+                "budget": _budget(found, scene, body),
             }
             for body in range(1, len(scene.bodies) + 1)
         ],
@@ -246,12 +246,14 @@ def _verdict(pair: Pair, rows: Sequence[Difference], recorded: bool) -> str:
     )
 
 
-def _inlined(path: Path) -> str:
-    """The picture inside the page, the same to the last dot in half the bytes."""
-    smaller = BytesIO()
-    with Image.open(path) as picture:
-        picture.convert("RGB").save(smaller, "WEBP", lossless=True, quality=20, method=1)  # hardly smaller with more
-    return "data:image/webp;base64," + base64.b64encode(smaller.getvalue()).decode()
+def _budget(found: Findings, scene: Scene, body: int) -> str:
+    """The picture of the budget over the phases, of which a recorded motion has none."""
+    return "" if scene.recorded else _inlined(found.pictures[for_page(budget_figure_name(scene, body))])
+
+
+def _inlined(webp: bytes) -> str:
+    """A picture inside the page."""
+    return "data:image/webp;base64," + base64.b64encode(webp).decode()
 
 
 def _properties(ladder: Sequence[Any]) -> list[dict[str, Any]]:

@@ -1,0 +1,90 @@
+"""Pictures drawn by workers are those drawn at home, are stored, and one whose worker fails is drawn all the same."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+from conftest import quick_figure
+from fake_models import fake_ladder
+from rich.console import Console
+
+from comparison.account.surfaces import labelled_surfaces
+from comparison.analyses.errands import predicted
+from comparison.drawing import pictures
+from comparison.drawing.pictures import PAGE, all_drawn, for_page, picture_errands
+from comparison.plan.study import Study
+from comparison.plan.tiles import solve_tile
+from comparison.sweep.answers import Answers
+from comparison.sweep.compute import fetched
+from comparison.sweep.tile_store import TileStore
+from reference.problem import load_scene
+
+
+class Broken(Executor):
+    """Whose every task fails."""
+
+    def submit(self, solve: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        failed: Future[Any] = Future()
+        failed.set_exception(RuntimeError("no room"))
+        return failed
+
+
+def _solved(gap: float = 0.01, grid: int = 4) -> tuple[Study, xr.Dataset]:
+    study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), grid, 1e-3, fake_ladder(gap=gap))
+    tiles = study.tiles()
+    return study, labelled_surfaces(study, tiles, [solve_tile(tile) for tile in tiles])
+
+
+@pytest.fixture
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("draw_pair", "draw_budget", "draw_paper_figure"):
+        monkeypatch.setattr(pictures, name, quick_figure)
+
+
+@pytest.mark.usefixtures("quick")
+def test_every_picture_of_the_page_has_its_small_form() -> None:
+    study, surfaces = _solved()
+    files = all_drawn(study, surfaces, 1, ThreadPoolExecutor)
+    shown = [name for name in files if name.endswith(".png")]
+    assert len(shown) == 2 * 2 * 4, "three differences and the budget, of two bodies in two scenes"
+    assert {for_page(name) for name in shown} == {name for name in files if name.endswith(PAGE)}
+    errands = picture_errands(study, surfaces)
+    assert predicted(study)["pictures"] == (
+        len(errands),
+        pytest.approx(sum(errand.seconds for errand in errands), rel=0.2),
+    )
+
+
+@pytest.mark.usefixtures("quick")
+def test_what_no_worker_draws_is_drawn_at_home() -> None:
+    study, surfaces = _solved()
+    assert all_drawn(study, surfaces, 2, lambda jobs: Broken()) == all_drawn(study, surfaces, 2, ThreadPoolExecutor)
+
+
+@pytest.mark.usefixtures("quick")
+def test_pictures_are_stored_and_belong_to_their_numbers(tmp_path: Path) -> None:
+    def drawn_anew(study: Study, surfaces: xr.Dataset) -> int:
+        answers = Answers(TileStore(tmp_path))
+        errands = picture_errands(study, surfaces)
+        fetched(errands, answers, Console(quiet=True), 1, ThreadPoolExecutor)
+        return len(errands) - answers.parts["pictures"].stored
+
+    whole = drawn_anew(*_solved())
+    assert whole > 0
+    assert drawn_anew(*_solved()) == 0
+    assert drawn_anew(*_solved(gap=0.02)) == whole
+
+
+def test_a_real_figure_is_a_file_and_its_small_form() -> None:
+    study, surfaces = _solved()
+    budget = next(errand for errand in picture_errands(study, surfaces) if errand.task.kind == "budget")
+    files = budget.solve(budget.task)
+    assert [name for name, content in files if len(content) > 1000] == [
+        "fig3-I-body1-budget.png",
+        "fig3-I-body1-budget.webp",
+    ]
