@@ -29,6 +29,7 @@ Array = NDArray[np.float64]
 WORK = 8e6  # nominal microseconds (see `Budget`) of all runs of one point, before it is given up
 UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
 PREDICTED = 3.0  # steps of the first two levels over those of the first: without both there is no answer
+SETTLES = 1e-8  # of rho: a smaller penetration no longer settles how more than three supports share the load
 GROWTH = 2.0  # steps of a level over those of the one before, at most
 
 
@@ -93,7 +94,8 @@ def refine(
     best: tuple[March, Array] | None = None
     left_out: Level | None = None  # the level of `best`, if what its compliance leaves is not part of the error yet
     for number, level in enumerate(plan):
-        shared = model.rigid and number > 0 and level.penetration == plan[number - 1].penetration
+        counts = model.rigid or level.penetration < SETTLES
+        shared = counts and number > 0 and level.penetration == plan[number - 1].penetration
         if marches and budget.left < GROWTH * budget.cost(marches[-1].steps, marches[-1].runs) * (1.0 + shared):
             break
         now = run(level)
