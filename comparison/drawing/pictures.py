@@ -22,7 +22,7 @@ from comparison.sweep.errands import Errand, fingerprint
 from comparison.sweep.sweep import sweep
 from reference.problem import Outcome, Scene
 
-SECONDS = {"pair": 0.6, "budget": 0.8, "paper": 1.3}  # of drawing one, recorded beside `Rung.seconds_per_point`
+SECONDS = {"pair": 0.45, "budget": 0.6, "paper": 1.0}  # of drawing one, recorded beside `Rung.seconds_per_point`
 PAGE = ".webp"
 SHOWN = ["mu", "error", "stride", "recorded"]  # of the surfaces: what pictures are made of
 
