@@ -181,3 +181,12 @@ def test_the_digest_sees_what_changes_results_and_nothing_else():
     for old, new in changes:
         digests.add(parse_scene(GOOD.replace(old, new).encode(), "one").digest())
     assert len(digests) == len(changes) + 1
+
+
+def test_a_copy_with_other_bodies_has_their_masses_and_links():
+    scene = load_scene("fig3-I")
+    assert len(scene.masses) == 2
+    assert scene.stiffness.shape == (1, 2)
+    alone = scene.model_copy(update={"bodies": scene.bodies[:1]})
+    assert alone.masses.tolist() == [scene.bodies[0].mass]
+    assert alone.stiffness.shape == (0, 2)
