@@ -43,7 +43,7 @@ def draw_family(path: Path, family: Family, entries: Sequence[Entry], ladder: Se
     FigureCanvasAgg(figure)
     title = family.scenes[0].title
     figure.suptitle(f"{title} ({family.name}), body {body}: what each model adds", fontsize=12, y=0.98)
-    left, right = figure.add_axes((0.06, 0.14, 0.33, 0.74)), figure.add_axes((0.47, 0.14, 0.33, 0.74))
+    left, right = figure.add_axes((0.06, 0.14, 0.31, 0.74)), figure.add_axes((0.44, 0.14, 0.31, 0.74))
     numbers = not any(isinstance(value, str) for value in family.values)
     places = np.array(family.values, dtype=float) if numbers else np.arange(len(family.values), dtype=float)
     steps = [key for key in titles if any(e.step == key and e.scene == family.scenes[0].name for e in entries)]
@@ -60,13 +60,13 @@ def draw_family(path: Path, family: Family, entries: Sequence[Entry], ladder: Se
     left.set_ylabel(f"{'signed size' if alone else 'mean over the phases'}, % of the first model's value")
     right.set_ylabel("absolute size, %" if alone else "largest over the phases, %")
     if _positive(right):
-        right.set_yscale("log")
+        right.set_yscale("log", nonpositive="mask")  # a step of exactly nothing has no place there
     for axes in (left, right):
         axes.set_xlabel(family.key)
         axes.grid(color="0.9")
         if not numbers:
             axes.set_xticks(places, [str(value) for value in family.values], rotation=20.0, fontsize=8)
-    figure.legend(*right.get_legend_handles_labels(), loc="center left", bbox_to_anchor=(0.815, 0.5), frameon=False)
+    figure.legend(*right.get_legend_handles_labels(), loc="center left", bbox_to_anchor=(0.765, 0.5), frameon=False)
     figure.savefig(path)
 
 
