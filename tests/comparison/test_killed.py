@@ -175,3 +175,42 @@ def test_a_full_disk_is_one_line_exit_3_and_the_run_goes_on_later(
     again = command(*words)
     assert again.code == 0
     assert "only the others are computed" in again.out
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="kill -9")
+def test_a_real_run_killed_among_its_analyses_reports_the_same_numbers(tmp_path: Path) -> None:
+    def begun(out: str) -> subprocess.Popen[bytes]:
+        words = [sys.executable, "-m", "comparison.run", "fig4-viscous", "--grid", "2", "--jobs", "1", "--out", out]
+        environment = {**os.environ, "PYTHONPATH": str(HERE.parents[1])}
+        return subprocess.Popen(words, cwd=tmp_path, env=environment, stdout=subprocess.DEVNULL)
+
+    def numbers(out: str) -> tuple[object, dict[str, dict[str, int]]]:
+        found = json.loads((tmp_path / out / "summary.json").read_text(encoding="utf-8"))
+        run = found.pop("run")
+        for scene in found["scenes"]:
+            for model in scene["models"].values():
+                model.pop("cost")  # processor time is no number of the models
+        for cell in found["assumptions"]["cells"]:
+            cell.pop("cost")
+        return json.dumps(found), run["parts"]
+
+    # the process that compiles the reference and those that load it differ in the eleventh digit: compile first
+    assert begun("first").wait() == 0
+    assert begun("whole").wait() == 0
+    for late in (2, 25):  # the analyses, and after the surfaces: motions and pictures
+        process = begun("killed")
+        while process.poll() is None and len(list(tmp_path.glob("killed.tiles/*/*.answer"))) < late:
+            time.sleep(0.01)
+        process.kill()
+        assert process.wait() == -9
+        assert not (tmp_path / "killed").exists()
+    assert begun("killed").wait() == 0
+    whole, _ = numbers("whole")
+    resumed, parts = numbers("killed")
+    assert resumed == whole
+    assert parts["assumptions"]["stored_before"] == parts["assumptions"]["tasks"]
+    assert begun("killed").wait() == 0
+    again, parts = numbers("killed")
+    assert again == whole
+    assert all(part["stored_before"] == part["tasks"] for part in parts.values()), "nothing is computed"
