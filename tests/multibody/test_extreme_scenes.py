@@ -116,3 +116,19 @@ def test_what_the_compliance_leaves_is_part_of_an_error_that_misses_the_toleranc
     equations = reference.amplification(scene, PHASE, equations="exact", regularization=V_REG, tolerance=1e-8)
     assert (np.abs(result.mu - equations.mu) <= result.error + equations.error).all()
     assert done[-1].steps < 1.5 * done[-2].steps, "the last run repeats the finest level with a softer contact"
+
+
+@pytest.mark.parametrize(("regularization", "asked"), [(1e-3, False), (1e-5, True)])
+def test_what_four_very_stiff_supports_give_way_is_part_of_the_error(
+    regularization: float, asked: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Below 1e-8 rho they rock on two diagonals; above, what they give way settles who carries what."""
+    pressed: list[float] = []
+
+    def kept(*given: Any, **more: Any) -> March:
+        pressed.append(given[4].penetration)
+        return march(*given, **more)
+
+    monkeypatch.setattr(refine, "march", kept)
+    multibody.amplification(strong(duration=0.02), PHASE, model="spatial", regularization=regularization)
+    assert (len(set(pressed)) > 1) == asked
