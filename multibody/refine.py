@@ -92,6 +92,7 @@ def refine(
 
     marches: list[March] = []
     best: tuple[March, Array] | None = None
+    complete: tuple[March, Array] | None = None  # the last answer whose error lacks nothing
     left_out: Level | None = None  # the level of `best`, if what its compliance leaves is not part of the error yet
     for number, level in enumerate(plan):
         counts = model.rigid or level.penetration < SETTLES
@@ -116,6 +117,7 @@ def refine(
         if left_out and (errors <= tolerance * now.peaks.value).all():
             errors, left_out = errors + compliance(now, level), None
         best = now, errors
+        complete = complete if left_out else best
         if (errors <= tolerance * now.peaks.value).all():
             return _answer(model, now, errors, Outcome.OK)
         if (level.rounding > np.maximum(tolerance * now.peaks.value, errors / FALL)).any():
@@ -127,6 +129,8 @@ def refine(
         if np.isfinite(errors).all():
             return _answer(model, now, errors, Outcome.TOLERANCE_NOT_MET)
         # nothing tells what the compliance leaves: the run that should has no answer
+        if complete is not None:
+            return replace(_answer(model, *complete, Outcome.TOLERANCE_NOT_MET), finest=now)
         return Refined(nothing, nothing, Outcome.SOLVER_FAILED, scene.duration, now)
     # levels that do not agree, or end alike: by how the first of the last two that has no answer ends
     failed = next((past for past in marches[:-3:-1] if past.outcome != Outcome.OK), None)

@@ -132,3 +132,12 @@ def test_what_four_very_stiff_supports_give_way_is_part_of_the_error(
     monkeypatch.setattr(refine, "march", kept)
     multibody.amplification(strong(duration=0.02), PHASE, model="spatial", regularization=regularization)
     assert (len(set(pressed)) > 1) == asked
+
+
+def test_without_a_run_about_the_compliance_the_level_before_answers(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(refine, "from_compliance", lambda stiff, *rest: np.full_like(stiff.value, np.inf))
+    scene = strong(duration=0.3)
+    result = multibody.amplification(scene, PHASE, tolerance=1e-6)
+    assert result.status[0] == Outcome.TOLERANCE_NOT_MET
+    equations = reference.amplification(scene, PHASE, equations="exact", regularization=V_REG, tolerance=1e-8)
+    assert (np.abs(result.mu - equations.mu) <= result.error + equations.error).all()
