@@ -133,7 +133,7 @@ def _tell(console: Console, found: Matrix) -> None:
         console.print(escape(f"FAILED: {row.group} {row.title}, {title}: {entry.reason}"), soft_wrap=True)
     counts = ", ".join(f"{count} {name}" for name, count in found.counts().items())
     spent = f"{found.run['seconds']} s, {found.run['cpu_seconds']} s of processor time"
-    console.print(f"{sum(found.counts().values())} cells in {spent}: {counts}.")
+    console.print(f"{sum(found.counts().values())} cells in {spent}: {counts}.", soft_wrap=True)
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -19,22 +19,31 @@ from comparison.plan.study import Study
 from comparison.plan.tiles import Answer, Tile, solve_tile
 
 DURATION = 0.5  # s of motion: enough to reach every function, and over in milliseconds
+COMPILED = "reference:"  # the models that are
+APART = """
+import pickle, sys
+sys.path[:] = pickle.load(sys.stdin.buffer)
+from comparison.plan.tiles import solve_tile
+solve_tile(pickle.loads(pickle.load(sys.stdin.buffer)))
+"""
 WARM_UP = "warm-up"  # rung of the tile, which belongs to no surface
 
 
 def warm_up(study: Study) -> Tile:
-    """One phase pair of the first scene under the first model. Over so short a time its numbers mean nothing."""
-    tile = study.tiles()[0]
+    """
+    One phase pair of the first scene under the exact equations, which no reduction solves without stepping, or under
+    the first model. Over so short a time its numbers mean nothing.
+    """
+    tiles = study.tiles()
+    tile = next((tile for tile in tiles if tile.rung == "exact"), tiles[0])
     scene = tile.scene.model_copy(update={"duration": DURATION})
     return replace(tile, rung=WARM_UP, scene=scene, phases=tile.phases[:1])
 
 
 def warmed_up(tile: Tile) -> Answer:
     """The answer to a warm-up, from the build that is on disk by then."""
-    solve = "import pickle, sys; sys.path[:], tile = pickle.load(sys.stdin.buffer), pickle.load(sys.stdin.buffer)"
-    apart = f"{solve}; from comparison.plan.tiles import solve_tile; solve_tile(pickle.loads(tile))"
-    words = pickle.dumps(sys.path) + pickle.dumps(pickle.dumps(tile))  # where to find things before what needs them
-    quiet = subprocess.DEVNULL
-    # where it cannot be done (a model that only this process knows) this process compiles
-    subprocess.run([sys.executable, "-c", apart], input=words, stdout=quiet, stderr=quiet, check=False)
+    if tile.amplification.startswith(COMPILED):
+        paths, asked = pickle.dumps(sys.path), pickle.dumps(pickle.dumps(tile))  # where to find it before what needs it
+        quiet = subprocess.DEVNULL
+        subprocess.run([sys.executable, "-c", APART], input=paths + asked, stdout=quiet, stderr=quiet, check=False)
     return solve_tile(tile)
