@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
 
 from comparison.drawing.figures import save
 from comparison.tradeoff.trade import Answered, Entry, Trade
@@ -62,6 +63,7 @@ def draw_tradeoff(path: Path, trade: Trade) -> None:
 def _panel(axes: Axes, trade: Trade, question: Answered, body: int) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
+    axes.xaxis.set_minor_locator(LogLocator(subs=(2.0, 3.0, 6.0)))  # labels that do not touch
     axes.set_ylim(LOWEST, HIGHEST)
     axes.grid(alpha=0.25)
     axes.axhspan(LOWEST, max(question.error, LOWEST), color="0.9", zorder=0)
@@ -72,9 +74,7 @@ def _panel(axes: Axes, trade: Trade, question: Answered, body: int) -> None:
         _curve(axes, method, entries, body, dark if number % 2 == 0 else light, MARKERS[number])
     front = sorted((entry.seconds, _height(entry.most[body])) for entry in trade.of(question.key) if entry.front[body])
     if front:
-        axes.plot(
-            *np.transpose(front), "o", ms=12, mfc="none", mec="k", mew=1.1, label=f"Pareto front of body {body + 1}"
-        )
+        axes.plot(*np.transpose(front), "o", ms=12, mfc="none", mec="k", mew=1.1, label="on the Pareto front")
 
 
 def _curve(axes: Axes, method: str, entries: list[Entry], body: int, colour: str, marker: str) -> None:
