@@ -1,7 +1,7 @@
 """
 Numerical stability at the extremes: `python -m comparison.extremes [--out DIR]`.
 
-Every model meets every extreme of `extreme_scenes` in a process that can be killed, and its answer is judged by a finer
+Every model meets every extreme of `rows` in a process that can be killed, and its answer is judged by a finer
 run. Writes extremes.json and extremes.png. Exit codes: 0 no cell failed; 1 some did; 2 a wrong option; 130 interrupted.
 """
 
@@ -49,7 +49,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     words = sys.argv[1:] if argv is None else argv
     try:
         given.out.mkdir(parents=True, exist_ok=True)
-        command = shlex.join(["python", "-m", "comparison.extremes.__main__", *words])
+        command = shlex.join(["python", "-m", "comparison.extremes", *words])
         found = run(chosen, given.jobs, given.limit, console, command, columns)
         from comparison.extremes.figure import PICTURE, draw_extremes  # matplotlib: not needed to refuse a command
 

@@ -124,6 +124,7 @@ def test_the_command_writes_the_matrix_and_its_picture(tmp_path, capsys):
     assert "0 FAILED" in out
     found = read(tmp_path)
     assert found is not None
+    assert found.run["command"].startswith("python -m comparison.extremes --models small ")
     assert {row.group for row in found.rows} == {"amplitude, m/s^2", "outside the rules"} - {"outside the rules"}
     assert (tmp_path / "extremes.png").read_bytes().startswith(b"\x89PNG")
 
