@@ -11,15 +11,17 @@ from contextlib import contextmanager, suppress
 from fnmatch import fnmatchcase
 from pathlib import Path
 
+from comparison.extremes.matrix import FILE as EXTREMES
 from comparison.extremes.matrix import read as stored_extremes
 from comparison.report.aside import NEW, OLD, aside
 from comparison.report.summary import SCHEMA
+from comparison.tradeoff.trade import FILE as TRADES
 from comparison.tradeoff.trade import read as stored_trades
 from reference.problem import SceneError
 
 PARTS = {"index.html", "surfaces.nc", "summary.json", "summary.md", "junit.xml", "figures"}
 # what other commands leave there: the next report takes it up, and keeps it
-BESIDE = ("extremes.json", "extremes.png", "tradeoff.json", "*-tradeoff.png", "*-tradeoff.pdf", "*-tradeoff.nc")
+BESIDE = (EXTREMES, "extremes.png", TRADES, "*-tradeoff.png", "*-tradeoff.pdf", "*-tradeoff.nc")
 
 
 def refuse_foreign(out: Path) -> None:

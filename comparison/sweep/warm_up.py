@@ -24,7 +24,7 @@ APART = """
 import pickle, sys
 sys.path[:] = pickle.load(sys.stdin.buffer)
 from comparison.plan.tiles import solve_tile
-solve_tile(pickle.loads(pickle.load(sys.stdin.buffer)))
+solve_tile(pickle.load(sys.stdin.buffer))
 """
 WARM_UP = "warm-up"  # rung of the tile, which belongs to no surface
 
@@ -43,7 +43,7 @@ def warm_up(study: Study) -> Tile:
 def warmed_up(tile: Tile) -> Answer:
     """The answer to a warm-up, from the build that is on disk by then."""
     if tile.amplification.startswith(COMPILED):
-        paths, asked = pickle.dumps(sys.path), pickle.dumps(pickle.dumps(tile))  # where to find it before what needs it
+        paths, asked = pickle.dumps(sys.path), pickle.dumps(tile)  # where to find it before what needs it
         quiet = subprocess.DEVNULL
         subprocess.run([sys.executable, "-c", APART], input=paths + asked, stdout=quiet, stderr=quiet, check=False)
     return solve_tile(tile)

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 FILE, SCHEMA = "tradeoff.json", "phase-resonance/tradeoff"
-DATA = "tradeoff.nc"
 
 
 @dataclass(frozen=True)
