@@ -25,6 +25,7 @@ Array = NDArray[np.float64]
 SAFETY_TWO, SAFETY_MORE = 1.5, 1.25  # on the error that two levels, and three or more, show (Roache)
 SLOWEST, FASTEST = 2.0, 4.0  # factor by which a level reduces the error: at stops, in smooth motion
 TOO_GOOD = 5.0  # a larger factor is chance
+WARPING = 0.05  # relative change of a peak over the largest load that warping takes (measured: up to 0.02)
 FLOOR = 1e-6  # relative: what is left below is not measured
 
 
@@ -35,12 +36,18 @@ def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> 
     safety, rate = SAFETY_TWO, np.full_like(change, SLOWEST)
     if len(peaks) > 2:
         safety, earlier = SAFETY_MORE, np.abs(before - peaks[-3].value)
-        rate = earlier / np.maximum(change, np.finfo(float).tiny)
+        rate = earlier / np.maximum(change, 1e-290)
         change = np.where(rate > TOO_GOOD, earlier / SLOWEST, change)
         rate = np.where(rate > TOO_GOOD, SLOWEST, np.clip(rate, SLOWEST, FASTEST))
     change = safety * change * (1.0 + lag(levels[-2], model)) / (rate - 1.0)
     likely: Array = np.maximum(change, levels[-1].chance * now)
     return likely + peaks[-1].sampling + levels[-1].rounding + FLOOR * now
+
+
+def from_sharing(run: March) -> Array:
+    """Error (N,) of a run whose supports do not quite share the load as elastic ones do."""
+    error: Array = WARPING * run.warping * run.peaks.value
+    return error
 
 
 def from_compliance(stiff: Peaks, soft: March, level: Level, model: EngineModel) -> Array:

@@ -85,7 +85,7 @@ def place(model: EngineModel, state: EngineState) -> None:
     """Make `state` the one that the engine's next run starts from."""
     coordinates, velocities = state.coordinates, state.velocities
     if model.moving_plate:
-        axes = carried_along(model.bodies, len(coordinates))
+        axes = carried_along(model.carried, len(coordinates))
         shift = np.hstack([state.plate, np.zeros((3, 1))])
         turns = np.zeros(COORDINATES - 3)
         coordinates = np.concatenate([coordinates + shift[0, axes], state.plate[0], turns])
@@ -142,7 +142,7 @@ class Engine:
         plate = np.zeros((len(time), 3, 3))
         if self.model.moving_plate:
             plate = np.stack([columns([sensor])[:, :3] for sensor in recorders.plate], axis=1)
-            carried = self.model.bodies
+            carried = self.model.carried
             for derivative, part in enumerate(motion):
                 axes = carried_along(carried, part.shape[1])
                 part[:, axes < 3] -= plate[:, derivative, axes[axes < 3]]

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from multibody.supports import GIVES_WAY
 from multibody.system import EngineModel
 from multibody.units import link_stiffness
 from reference.problem import Scene, exponents
@@ -30,6 +31,7 @@ LAG = 0.3  # x at level 0 where rounding allows: from there on a level halves th
 NEWTON = 1e-5  # relative tolerance of the forces, at level 0
 NOISE = 0.25  # share of the tolerance that rounding of the forces may take
 PEAK = 0.2  # of g: the peak for which it does
+MOST, USUAL = 4e-4, 1e-3  # largest share of rho by which warping may give way; tolerance for which it is the smallest
 FALL = 4.0  # of the penetration from level to level
 RATIO = 4  # between neighbouring step sizes
 SHALLOWEST, FINEST = 7, 0.05  # step sizes below the largest, at least; the smallest in allowed steps at a stop
@@ -41,8 +43,9 @@ class Level:
     step: the largest, in units of time. turn: allowed change of the slip velocity in one step, as its fraction.
     penetration: of the contact under the weight, of rho. newton: relative tolerance of the forces. deepest: how often
     the largest step may be divided by `RATIO`. chance: relative error that this level typically has, and below which no
-    agreement with another one tells anything. decays: for every harmonic that dies faster than the largest step
-    resolves, the instant until which it lasts and the step up to there.
+    agreement with another one tells anything. gives_way: of supports against warping under the weight, of rho. decays:
+    for every harmonic that dies faster than the largest step resolves, the instant until which it lasts and the step up
+    to there.
     """
 
     step: float
@@ -52,6 +55,7 @@ class Level:
     rounding: float
     deepest: int
     chance: float
+    gives_way: float
     decays: tuple[tuple[float, float], ...] = ()
 
     def shallowest(self, time: float) -> int:
@@ -99,9 +103,8 @@ def levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
     stiffest = min(model.rounding / (NOISE * PEAK * tolerance), PENETRATION / FALL)
     softest = float(np.clip((LAG * model.relaxation) ** 2, stiffest, PENETRATION))
     stiffenings = math.floor(math.log(softest / stiffest, FALL) + 1e-9)
-    if not model.rigid:
-        softest, stiffenings = softest / FALL ** min(stiffenings, 1), 0
     penetrations = [softest / FALL ** min(level, stiffenings) for level in range(LEVELS)]
+    gives_way = float(np.clip(GIVES_WAY * USUAL / tolerance, GIVES_WAY, MOST))
     at_stop = FINEST * TURN * model.relaxation
     brief = brief_harmonics(scene, model, step)
     smallest = min([at_stop, *(needed for _, needed in brief)])
@@ -115,6 +118,7 @@ def levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
             model.rounding / penetration,
             deepest,
             CHANCE / 4.0**level,
+            gives_way,
             tuple((until, needed / 2.0**level) for until, needed in brief),
         )
         for level, penetration in enumerate(penetrations)

@@ -69,6 +69,7 @@ class March:
     instant: float = math.nan  # in units of the model
     steps: int = 0
     runs: int = 0
+    warping: float = 0.0  # largest load that supports on a plane would not carry, in shares of the weight
     chunks: list[Motion] = field(default_factory=list)
 
 
@@ -123,6 +124,7 @@ def march(
                 result.chunks.append(kept.upto(row))
             if outcome != Outcome.OK:
                 return _ended(result, outcome, float(kept.time[row]))
+            result.warping = max(result.warping, _warping(kept, engine, level))
             result.peaks.add(kept.time, absolute[: last + 1], kept.slip)
             state, time = kept.state(last), float(kept.time[last])
             ahead = _steps_ahead(kept, engine, level)
@@ -168,6 +170,14 @@ def _behind_kinks(motion: Motion, platform: Array, engine: Engine, peak: float, 
         rows = rows[(size[rows] > NEAR * max(peak, float(size.max()))) & (motion.slip[rows].min(axis=1) < model.corner)]
         excess[np.minimum(rows + 1, len(excess) - 1)] = per_turn / (BEHIND * model.relaxation)
     return excess
+
+
+def _warping(motion: Motion, engine: Engine, level: Level) -> float:
+    """Largest load that warping takes while all contacts are closed: what keeps the supports from elastic sharing."""
+    if engine.model.warped is None:
+        return 0.0
+    closed = (motion.gap < 0.0).all(axis=1)
+    return float(engine.model.warped(motion.coordinates)[closed].max(initial=0.0)) / level.gives_way
 
 
 def _gap_rate(motion: Motion) -> Array:

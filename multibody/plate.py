@@ -46,8 +46,8 @@ def plate_for(mbs: Any, loading: str, ground: Ground) -> Plate:
     return Plate(body, True, node, (symbolic_load(mbs, load, "loadVectorUserFunction", drive),))
 
 
-def carried_along(bodies: np.ndarray[Any, Any], count: int) -> np.ndarray[Any, Any]:
+def carried_along(carried: np.ndarray[Any, Any], count: int) -> np.ndarray[Any, Any]:
     """Which direction of the plate each of `count` coordinates goes along with, (count,); 3: none."""
     axes = np.full(count, 3)
-    axes[bodies] = np.arange(3)
+    axes[carried] = np.arange(3)
     return axes

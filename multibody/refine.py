@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.balance import balanced
-from multibody.estimate import from_compliance, from_levels
+from multibody.estimate import from_compliance, from_levels, from_sharing
 from multibody.integrate import Engine
 from multibody.level import FALL, Level, levels
 from multibody.march import Budget, March, march
@@ -29,7 +29,6 @@ Array = NDArray[np.float64]
 WORK = 8e6  # nominal microseconds (see `Budget`) of all runs of one point, before it is given up
 UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
 PREDICTED = 3.0  # steps of the first two levels over those of the first: without both there is no answer
-SETTLES = 1e-8  # of rho: a smaller penetration no longer settles how more than three supports share the load
 GROWTH = 2.0  # steps of a level over those of the one before, at most
 
 
@@ -79,7 +78,7 @@ def refine(
         return ground_acceleration(scene, phase, time * units.time) / units.acceleration
 
     def run(level: Level) -> March:
-        model.stiffen(level.penetration)
+        model.stiffen(level.penetration, level.gives_way)
         engine = Engine(model, level.newton, level.absolute)
         begin = model.start(initial, first, level.penetration)
         if initial is None:
@@ -95,8 +94,7 @@ def refine(
     complete: tuple[March, Array] | None = None  # the last answer whose error lacks nothing
     left_out: Level | None = None  # the level of `best`, if what its compliance leaves is not part of the error yet
     for number, level in enumerate(plan):
-        counts = model.rigid or level.penetration < SETTLES
-        shared = counts and number > 0 and level.penetration == plan[number - 1].penetration
+        shared = number > 0 and level.penetration == plan[number - 1].penetration
         if marches and budget.left < GROWTH * budget.cost(marches[-1].steps, marches[-1].runs) * (1.0 + shared):
             break
         now = run(level)
@@ -112,7 +110,7 @@ def refine(
         if now.outcome != Outcome.OK:
             break
         finished = [past.peaks for past in marches[-3:] if past.outcome == Outcome.OK]
-        errors = from_levels(finished, list(plan[: number + 1]), model)
+        errors = from_levels(finished, list(plan[: number + 1]), model) + from_sharing(now)
         left_out = level if shared else None
         if left_out and (errors <= tolerance * now.peaks.value).all():
             errors, left_out = errors + compliance(now, level), None

@@ -4,12 +4,11 @@ The spatial model: rigid bodies free to turn, supports on a ring, contacts that 
 Platform and bodies are boxes with six degrees of freedom at their heights. The platform's underside has one depression
 per support, each with its own unilateral contact, so supports share the load as overturning demands. A link is a set of
 upright bars clamped at both ends: stiff in tension and in bending about the horizontal axes, with the scene's shear
-stiffness acting half-way up, and against twist the stiffness of bars that stand on the ring, ring^2 (kx + ky) / 2.
+stiffness acting half-way up, and against twist the stiffness of bars that stand on the ring, ring^2 (kx + ky) / 2. Its
+forces act on both bodies at the same point, the middle between the two ends.
 
-How a rigid platform's weight is shared by more than three supports is settled by what they give way: a platform that
-has yawed and tilted fits only three of the spheres, by 1e-8 rho or so, and with contacts stiffer than that it rocks on
-two diagonals. The penetration under the weight, 2.5e-7 rho or less, is therefore part of this model with more than
-three supports, the same at every level of accuracy.
+More than three supports share the load as elastic bearings do (`supports`), or give way by the scene's
+`support_stiffness`. Then the stiffness of the contacts is the bearings' own, and part of the model.
 """
 
 from __future__ import annotations
@@ -24,6 +23,7 @@ from multibody.engine import exudyn, items
 from multibody.loading import Ground, ground_of, symbolic_load
 from multibody.plate import plate_for
 from multibody.recorders import recorded
+from multibody.supports import DETERMINATE, GIVES_WAY, fixed_supports, sharing_supports, sphere_nodes
 from multibody.system import EngineModel, EngineState
 from multibody.units import Units, link_stiffness, units_of
 from reference.problem import Scene, State
@@ -56,24 +56,28 @@ def spatial(
     links = []
     for link, stiffness in enumerate(link_stiffness(scene, units)):
         carried = float(masses[link + 1 :].sum())
-        bars = _bars(mbs, bodies[link : link + 2], heights[link : link + 2])
+        bars = link_between(mbs, bodies[link : link + 2], heights[link : link + 2])
         twist = float(np.hypot(*ring[0])) ** 2 * stiffness.mean()
         links.append((bars, carried, stiffness, twist))
 
     ground = ground_of(mbs, scene, units)
+    bearings = scene.isolator.support_stiffness
+    given = 0.0 if bearings is None else units.force / (len(ring) * bearings * units.length)
+    shared = not given and len(ring) > DETERMINATE
+    spheres = sphere_nodes(mbs, ring, loading == "plate") if shared else []
     plate = plate_for(mbs, loading, ground)
+    supports = sharing_supports(mbs, plate, ring, spheres) if shared else fixed_supports(mbs, plate, ring)
     friction, threshold = contact_law(scene, regularization, units)
     contacts, contact_nodes = [], []
-    for place in ring:
+    for place, support in zip(ring, supports.markers):
         contact_nodes.append(
             mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
         )
-        support = items.MarkerBodyRigid(bodyNumber=plate.body, localPosition=[*place, 1.0])
         depression = items.MarkerBodyRigid(bodyNumber=bodies[0], localPosition=[*place, -heights[0]])
         contacts.append(
             mbs.AddObject(
                 items.ObjectContactSphereSphere(
-                    markerNumbers=[mbs.AddMarker(support), mbs.AddMarker(depression)],
+                    markerNumbers=[support, mbs.AddMarker(depression)],
                     nodeNumber=contact_nodes[-1],
                     spheresRadii=[radius, radius + 1.0],
                     isHollowSphere1=True,
@@ -88,28 +92,35 @@ def spatial(
         load = mbs.AddLoad(items.LoadForceVector(markerNumber=centre, loadVector=[0.0, 0.0, -mass]))
         if not plate.moves:
             expressions.append(symbolic_load(mbs, load, "loadVectorUserFunction", _inertial(ground, float(mass))))
-    recorders = recorded(mbs, nodes, contact_nodes, contacts if contact_force else [], plate.node)
+    recorders = recorded(mbs, [*nodes, *supports.nodes], contact_nodes, contacts if contact_force else [], plate.node)
     mbs.Assemble()
 
     count = len(contacts)
 
-    def stiffen(penetration: float) -> None:
+    def stiffen(penetration: float, gives_way: float = GIVES_WAY) -> None:
+        pressed = given or penetration
         for contact in contacts:
-            mbs.SetObjectParameter(contact, "spheresRadii", [radius + penetration, radius + 1.0])
-            mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / (count * penetration))
-            mbs.SetObjectParameter(contact, "contactDamping", 2.0 * DAMPING / (count * np.sqrt(penetration)))
+            mbs.SetObjectParameter(contact, "spheresRadii", [radius + pressed, radius + 1.0])
+            mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / (count * pressed))
+            mbs.SetObjectParameter(contact, "contactDamping", 2.0 * DAMPING / (count * np.sqrt(pressed)))
+        supports.hold(penetration, gives_way)
         for link in links:
-            _stiffen_bars(mbs, *link, 1.0 / (GIVES * penetration))
+            stiffen_link(mbs, *link, 1.0 / (GIVES * penetration))
 
     index = PER_BODY * np.arange(len(masses))[:, None] + np.arange(3)
+    own = PER_BODY * len(masses)  # coordinates of the bodies, before those of the spheres
+    vertical = own + supports.vertical
 
     def start(initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
-        coordinates, velocities = np.zeros(PER_BODY * len(masses)), np.zeros(PER_BODY * len(masses))
+        coordinates, velocities = np.zeros((2, own + supports.coordinates))
         if initial is not None:
             coordinates[index[:, :2]] = np.asarray(initial.position, float) / units.length
             velocities[index[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
         place, velocity, gap, slip = pressed_in(
-            coordinates[:2], velocities[:2], ground_acceleration / units.acceleration, penetration
+            coordinates[:2],
+            velocities[:2],
+            ground_acceleration / units.acceleration,
+            given or penetration,
         )
         coordinates[:3], velocities[:3] = place, velocity
         coordinates[index[1:, 2]], velocities[index[1:, 2]] = place[2], velocity[2]
@@ -122,26 +133,32 @@ def spatial(
     def settle(state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
         return state
 
+    def warped(coordinates: Array) -> Array:
+        spread: Array = np.abs(coordinates[:, vertical] @ supports.warping).max(axis=1, initial=0.0)
+        return spread
+
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
-    keep = (container, expressions)
     return EngineModel(
-        mbs,
-        units,
-        ground,
-        recorders,
-        index,
-        stiffen,
-        start,
-        settle,
-        1.0,
-        corner,
-        relaxation,
-        True,
-        slippery,
-        count == 3,
-        ROUNDING * max(1.0, float(np.hypot(*ring[0])), float(heights.max())) ** 2,  # of places, and of their moments
-        plate.moves,
-        keep,
+        mbs=mbs,
+        units=units,
+        ground=ground,
+        recorders=recorders,
+        bodies=index,
+        stiffen=stiffen,
+        start=start,
+        settle=settle,
+        rim=1.0,
+        corner=corner,
+        relaxation=relaxation,
+        # of places, and of their moments
+        rounding=ROUNDING * max(1.0, float(np.hypot(*ring[0])), float(heights.max())) ** 2,
+        moving_plate=plate.moves,
+        carried=np.vstack([index, own + supports.carried]),
+        keep_alive=(container, expressions),
+        liftoff=True,
+        slippery=slippery,
+        warped=warped,
+        bearings=given,
     )
 
 
@@ -164,17 +181,19 @@ def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:
     return ring, isolator.sphere_radius / units.length, heights, sizes
 
 
-def _bars(mbs: Any, bodies: list[Any], heights: Array) -> Any:
+def link_between(mbs: Any, bodies: list[Any], heights: Array) -> Any:
     """The link between two neighbours, acting half-way between their centres; its stiffness comes later."""
     middle = 0.5 * (heights[1] - heights[0])
     markers = [
         mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[0.0, 0.0, sign * middle]))
         for body, sign in zip(bodies, (1.0, -1.0))
     ]
-    return mbs.AddObject(items.ObjectConnectorRigidBodySpringDamper(markerNumbers=markers))
+    return mbs.AddObject(
+        items.ObjectConnectorRigidBodySpringDamper(markerNumbers=markers, useIntrinsicFormulation=True)
+    )
 
 
-def _stiffen_bars(mbs: Any, bars: Any, carried: float, shear: Array, twist: float, stiff: float) -> None:
+def stiffen_link(mbs: Any, bars: Any, carried: float, shear: Array, twist: float, stiff: float) -> None:
     """Give bars the scene's stiffness in shear and twist and `stiff` otherwise; carried: mass above them."""
     held = np.array([0.0, 0.0, stiff, stiff, stiff, 0.0])
     mbs.SetObjectParameter(bars, "stiffness", np.diag([*shear, *held[2:5], twist]))

@@ -51,15 +51,18 @@ class EngineModel:
     An assembled engine system that can be run again and again.
 
     bodies: (N, 3), index of the coordinate that moves body i along x, y, z. stiffen: sets the contact so that the
-    weight presses it in by a given fraction of rho. start: state from an initial state (None: at rest), the plate's
-    acceleration then, m/s^2, and the same fraction. settle: state to go on from with a smaller step, from the last one,
-    the rate of each gap (K,) and the same fraction. rim: largest rise of the platform, in units of length. corner: slip
-    speed in units of velocity under which the friction law is linear; inf if it has no such corner. relaxation: time in
-    which a slip below it dies out, in units of time; inf likewise. liftoff: whether the model goes on when every
-    contact is open. slippery: takes the friction away, or gives it back; None if the start needs no balance. rigid:
-    whether the contact stands for a rigid one, and its compliance for an error. rounding: of a contact force times its
-    penetration, in units of weight times length. moving_plate: whether the loading moves the plate, whose coordinates
-    are then the system's last. keep_alive: what the engine only points to.
+    weight presses it in by a given fraction of rho, and the supports so that warping gives way by another one. start:
+    state from an initial state (None: at rest), the plate's acceleration then, m/s^2, and the first fraction. settle:
+    state to go on from with a smaller step, from the last one, the rate of each gap (K,) and the first fraction. rim:
+    largest rise of the platform, in units of length. corner: slip speed in units of velocity under which the friction
+    law is linear; inf if it has no such corner. relaxation: time in which a slip below it dies out, in units of time;
+    inf likewise. rounding: of a contact force times its penetration, in units of weight times length. moving_plate:
+    whether the loading moves the plate, whose coordinates are then the system's last. carried: (C, 3), index of the
+    coordinates that the plate carries along x, y, z. keep_alive: what the engine only points to. liftoff: whether the
+    model goes on when every contact is open. slippery: takes the friction away, or gives it back; None if the start
+    needs no balance. warped: how far the supports of coordinates (T, n) are from a plane, (T,), in units of length;
+    None if the model has no supports that share the load. bearings: penetration by the weight that the scene states, in
+    units of length, or 0.
     """
 
     mbs: Any
@@ -67,18 +70,20 @@ class EngineModel:
     ground: Ground
     recorders: Recorders
     bodies: NDArray[np.int_]
-    stiffen: Callable[[float], None]
+    stiffen: Callable[..., None]
     start: Callable[[State | None, Array, float], EngineState]
     settle: Callable[[EngineState, Array, float], EngineState]
     rim: float
     corner: float
     relaxation: float
-    liftoff: bool
-    slippery: Callable[[bool], None] | None
-    rigid: bool
     rounding: float
     moving_plate: bool
+    carried: NDArray[np.int_]
     keep_alive: tuple[Any, ...]
+    liftoff: bool = False
+    slippery: Callable[[bool], None] | None = None
+    warped: Callable[[Array], Array] | None = None
+    bearings: float = 0.0
 
     @property
     def coordinates(self) -> int:

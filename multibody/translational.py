@@ -81,7 +81,7 @@ def translational(
     bodies = np.tile(np.arange(3), (len(masses), 1))
     bodies[1:, :axes] = np.arange(COORDINATES, count).reshape(-1, axes)
 
-    def stiffen(penetration: float) -> None:
+    def stiffen(penetration: float, gives_way: float = 0.0) -> None:
         # closer by the static penetration, so that the pendulum at rest has length rho whatever the stiffness
         mbs.SetObjectParameter(contact, "spheresRadii", [HOLLOW - (1.0 - penetration), HOLLOW])
         mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / penetration)
@@ -102,23 +102,21 @@ def translational(
 
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     return EngineModel(
-        mbs,
-        units,
-        ground,
-        recorders,
-        bodies,
-        stiffen,
-        start,
-        settle,
-        1.0,
-        corner,
-        relaxation,
-        False,
-        None,
-        True,
-        ROUNDING,
-        plate.moves,
-        (container, expressions),
+        mbs=mbs,
+        units=units,
+        ground=ground,
+        recorders=recorders,
+        bodies=bodies,
+        stiffen=stiffen,
+        start=start,
+        settle=settle,
+        rim=1.0,
+        corner=corner,
+        relaxation=relaxation,
+        rounding=ROUNDING,
+        moving_plate=plate.moves,
+        carried=bodies,
+        keep_alive=(container, expressions),
     )
 
 

@@ -45,8 +45,6 @@ def amplification(
     ground = ground_peak(scene, pairs)
     with silence():
         built = assembled(scene, model, regularization)
-        if contact_stiffness is not None:
-            built = replace(built, rigid=True)  # the stiffness was not chosen for the model: what it leaves is an error
         plan = _levels(scene, built, tolerance, contact_stiffness, step)
         for m, phase in enumerate(pairs):
             point = refine(scene, built, phase, tolerance, plan=plan)

@@ -19,6 +19,7 @@ FASTEST = 2e5  # rad in the whole motion: links that vibrate more often are step
 RECORDED = "a recorded motion: no harmonics, no phases"
 
 LARGEST = 1e300  # m/s^2
+INSIDE = 2.0  # of the shift of the supports' load on a level sphere: covers a sphere that is not level
 
 
 @dataclass(frozen=True)
@@ -54,13 +55,29 @@ def own_axes(scene: Scene) -> Reduction:
 
 
 def untilted(scene: Scene) -> Reduction:
-    """Nothing turns the bodies of the spatial model: assumption (vi) holds, it moves like the translational one."""
+    """
+    Nothing turns the body of the spatial model: assumption (vi) holds, it moves like the translational one.
+
+    All contact forces on a body that does not turn are parallel, so a single body is in balance with them at unequal
+    shares: at height 0 the supports' center of load is off by at most friction times R, and must stay inside the ring.
+    The weight of a second body shifts with its displacement across the direction of sliding, and turns the platform.
+    """
     isolator = scene.isolator
-    if None in (isolator.supports, isolator.ring, isolator.sphere_radius):
+    if isolator.supports is None or isolator.ring is None or isolator.sphere_radius is None:
         return Reduction(False, "no supports are stated")
-    if any(body.height is None or body.size is None or body.height > 0.0 for body in scene.bodies):
-        return Reduction(False, "bodies above the depressions: inertia tilts and twists them")
-    return Reduction(True, "every centre of mass is level with the depressions: equal supports, no body turns")
+    if len(scene.bodies) > 1:
+        return Reduction(False, "bodies above the platform: their weight shifts, tilts and twists it")
+    if scene.bodies[0].height != 0.0 or scene.bodies[0].size is None:
+        return Reduction(False, "a body above the depressions: inertia shifts the supports' load")
+    if isolator.support_stiffness is not None:
+        return Reduction(False, "supports that give way: unequal loads tilt the platform")
+    if scene.friction_coefficient > 0.0:
+        if scene.lubricated:
+            return Reduction(False, "lubricated: the friction that shifts the supports' load has no limit")
+        shift = scene.friction_coefficient * (scene.radius + isolator.sphere_radius)
+        if not INSIDE * shift <= isolator.ring * math.cos(math.pi / isolator.supports):
+            return Reduction(False, "a narrow ring: friction may lift the platform off a support")
+    return Reduction(True, "one body, its center level with the depressions: it does not turn")
 
 
 def planar(scene: Scene) -> Reduction:

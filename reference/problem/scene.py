@@ -19,6 +19,7 @@ from reference.problem.record_files import GRAVITY as GRAVITY
 from reference.problem.recorded import EXAMPLES, with_samples
 from reference.problem.scene_error import EXCITATIONS, MisfitError, SceneError, first_fault
 
+SOFTEST = 0.1  # of the radius: what supports may give way by under the weight
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
 PerAxis = Annotated[list[Positive], Field(min_length=2, max_length=2)]
@@ -47,6 +48,7 @@ class Isolator(Table):
     supports: Annotated[int, Field(ge=3)] | None = None  # K, spatial model
     ring: Positive | None = None  # m, radius of the circle of supports, spatial model
     sphere_radius: Positive | None = None  # m, r
+    support_stiffness: Positive | None = None  # N/m, vertical, of one support; without it supports are rigid
 
     @model_validator(mode="after")
     def _alternatives(self) -> Isolator:
@@ -134,6 +136,12 @@ class Scene(Table):
         for key, value in derived.items():
             if not (math.isfinite(value) and value > 0.0):
                 raise MisfitError(key, value, "must be finite and positive in double precision")
+        bearings = self.isolator.support_stiffness
+        if bearings is not None:
+            share = self.total_mass * GRAVITY / ((self.isolator.supports or 1) * bearings * self.radius)
+            if not share <= SOFTEST:
+                rule = f"gives way by {share:.3g} of the radius under the weight: must be at most {SOFTEST:g}"
+                raise MisfitError("isolator.support_stiffness", bearings, rule)
         if isinstance(self.excitation, Record) and not np.isfinite(self.record).all():
             raise MisfitError("excitation.scale", self.excitation.scale, "must leave every sample finite")
         return self

@@ -1,0 +1,149 @@
+"""
+The supports of the spatial model: they share the load as elastic bearings do, however stiff the contacts are.
+
+Rigid supports leave the forces of more than three of them undetermined, and a rigid platform that has yawed and tilted
+fits three spheres only, by about 3e-8 rho: contacts stiffer than that make it rock on two diagonals. Real bearings give
+way by far more, so that N_k = c0 + c1 x_k + c2 y_k. Here every sphere can move vertically. Against the three patterns
+of such forces (heave, tilt about x, tilt about y) the spheres are held ten times as stiffly as by contacts. Against
+the K - 3 other patterns, which warp the ring, they give way by a stated share of rho under the weight. That is more
+than the misfit, so that warping takes hardly any load. It is less than what would let a support that closes again hit
+the platform. The stiffness of the contacts, and with it the time in which the total force follows, does not change.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.engine import items
+from multibody.plate import COORDINATES, LOCKED, Plate
+
+Array = NDArray[np.float64]
+
+DETERMINATE = 3  # supports whose forces follow from statics
+STIFFER = 10.0  # what holds the spheres against heave and tilt, over the contacts
+GIVES_WAY = 2e-5  # of rho under the weight, against warping, where no level of accuracy says more
+MASS = 1e-2  # of all spheres together: much less than that of the bodies
+UPRIGHT = [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]  # turns the axis of a 1-D mass, x, upwards
+
+
+@dataclass(frozen=True)
+class Supports:
+    """
+    Spheres under the platform.
+
+    markers: of the spheres' centers. nodes: of the spheres' own coordinates, empty where the spheres are fixed.
+    coordinates: how many these are. vertical: (K,) or (0,), index of each sphere's vertical one. carried: (K, 3) or
+    (0, 3), index of the coordinates that a moving plate carries along. warping: (K, K), see `warping`. hold: sets what
+    holds the spheres, for the penetration of the contacts and the share of rho by which warping gives way.
+    """
+
+    markers: list[Any]
+    nodes: list[Any]
+    coordinates: int
+    vertical: NDArray[np.int_]
+    carried: NDArray[np.int_]
+    warping: Array
+    hold: Callable[[float, float], None]
+
+
+def warping(ring: Array) -> Array:
+    """Projection (K, K) of K forces at places (K, 2) onto the part that neither heave nor tilt contains."""
+    patterns, _ = np.linalg.qr(np.column_stack([np.ones(len(ring)), ring]))
+    projection: Array = np.eye(len(ring)) - patterns @ patterns.T
+    return projection
+
+
+def sphere_nodes(mbs: Any, ring: Array, moving: bool) -> list[Any]:
+    """Nodes of spheres that share the load at places (K, 2): a vertical coordinate, or six on a plate that moves."""
+    if moving:
+        places = [[*place, 1.0, 0.0, 0.0, 0.0] for place in ring]
+        return [mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=place)) for place in places]
+    return [mbs.AddNode(items.Node1D(referenceCoordinates=[0.0])) for _ in ring]
+
+
+def fixed_supports(mbs: Any, plate: Plate, ring: Array) -> Supports:
+    """Spheres fixed to the plate at places (K, 2), a length of one above the plane of the depressions."""
+    markers = [
+        mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body, localPosition=[*place, 1.0])) for place in ring
+    ]
+    none, count = np.empty(0, np.int_), len(ring)
+    return Supports(markers, [], 0, none, none.reshape(0, 3), np.zeros((0, count)), lambda penetration, share: None)
+
+
+def sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) -> Supports:
+    """
+    Spheres at places (K, 2) that share the load elastically, with the coordinates of `sphere_nodes`.
+
+    On a plate that moves a sphere is a rigid body whose moments of inertia keep it from turning, since a 1-D mass has
+    no other motion than its own.
+    """
+    count = len(ring)
+    warped = warping(ring)
+    if plate.moves:
+        inertia = [LOCKED] * 3 + [0.0] * 3
+        spheres = [items.ObjectRigidBody(nodeNumber=node, mass=MASS / count, inertia=inertia) for node in nodes]
+        springs = _springs_on_plate(mbs, plate, nodes, warped)
+        each, upright = COORDINATES, 2
+    else:
+        spheres = [
+            items.ObjectMass1D(
+                mass=MASS / count, nodeNumber=node, referencePosition=[*place, 1.0], referenceRotation=UPRIGHT
+            )
+            for node, place in zip(nodes, ring)
+        ]
+        springs = _springs_on_ground(mbs, nodes, warped)
+        each, upright = 1, 0
+    markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=mbs.AddObject(sphere))) for sphere in spheres]
+    first = each * np.arange(count)
+    carried = first[:, None] + np.arange(3) if plate.moves else np.empty((0, 3), np.int_)
+
+    def hold(penetration: float, share: float) -> None:
+        stiff, soft = STIFFER / (count * penetration), 1.0 / (count * share)
+        # damped critically, as the platform's share of the mass on the same springs
+        springs(stiff, soft, 2.0 * np.sqrt(stiff / count), 2.0 * np.sqrt(soft / count))
+
+    return Supports(markers, nodes, each * count, first + upright, carried, warped, hold)
+
+
+Springs = Callable[[float, float, float, float], None]  # stiffness against heave and tilt, warping; damping likewise
+
+
+def _springs_on_ground(mbs: Any, nodes: list[Any], warped: Array) -> Springs:
+    count = len(nodes)
+    springs = mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=nodes, forceVector=np.full(count, 1.0 / count)))
+
+    def matrix(stiff: float, soft: float) -> Array:
+        return stiff * (np.eye(count) - warped) + soft * warped
+
+    return _setter(mbs, springs, matrix)
+
+
+def _springs_on_plate(mbs: Any, plate: Plate, nodes: list[Any], warped: Array) -> Springs:
+    count = len(nodes)
+    against = np.hstack([np.eye(count), -np.ones((count, 1))])  # of a sphere against the plate, along one axis
+    index = [COORDINATES * np.arange(count + 1) + axis for axis in range(3)]
+    size = COORDINATES * (count + 1)
+    weight = np.zeros(size)
+    weight[index[2]] = [*[1.0 / count] * count, -1.0]
+    springs = mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=[*nodes, plate.node], forceVector=weight))
+
+    def matrix(stiff: float, soft: float) -> Array:
+        whole, level = np.zeros((size, size)), stiff * np.eye(count)
+        for axis, part in zip(index, (level, level, level + (soft - stiff) * warped)):
+            whole[np.ix_(axis, axis)] = against.T @ part @ against
+        return whole
+
+    return _setter(mbs, springs, matrix)
+
+
+def _setter(mbs: Any, springs: Any, matrix: Callable[[float, float], Array]) -> Springs:
+    def to(stiff: float, soft: float, stiff_damping: float, soft_damping: float) -> None:
+        mbs.SetObjectParameter(springs, "stiffnessMatrix", matrix(stiff, soft))
+        mbs.SetObjectParameter(springs, "dampingMatrix", matrix(stiff_damping, soft_damping))
+
+    return to

@@ -1,0 +1,275 @@
+"""
+An independent calculation of the spatial model: Newton-Euler with constraints, integrated by SciPy's Radau.
+
+Rigid bodies with six degrees of freedom each. The platform's depressions stay on the fixed spheres in the mean that
+elastic supports demand: the normal forces are N_k = c0 + c1 x_k + c2 y_k, and the constraints are the three moments of
+the gaps that these forces work on. With three supports that is every gap by itself. A link keeps the distance of its
+two ends along the bars and the tilt between its bodies; shear and twist are elastic. All its forces act at the middle
+between the two ends, on both bodies. Dry friction is linear in the slip velocity below v_reg.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import ArrayLike, NDArray
+from scipy.integrate import Radau
+
+from reference.problem import GRAVITY, Scene, ground_acceleration, ground_peak
+
+Array = NDArray[np.float64]
+
+STABILIZATION = 40.0  # 1/s, rate at which a violated constraint returns to zero (Baumgarte)
+STEP = 1e-5  # s, of the difference quotient along the motion for the links' constraints
+PER_STEP = 12  # instants per step at which accelerations are read
+
+
+@njit(cache=True)
+def _dot(a, b):
+    return (a * b).sum()
+
+
+@njit(cache=True)
+def _turned(matrix, vector):
+    return (matrix * vector).sum(axis=1)
+
+
+@njit(cache=True)
+def _skew(v):
+    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+
+
+@njit(cache=True)
+def _rotation(theta):
+    """Rotation matrix of a rotation vector."""
+    square = _dot(theta, theta)
+    k = _skew(theta)
+    if square < 1e-8:
+        first, second = 1.0 - square / 6.0, 0.5 - square / 24.0
+    else:
+        angle = math.sqrt(square)
+        first, second = math.sin(angle) / angle, (1.0 - math.cos(angle)) / square
+    return np.eye(3) + first * k + second * (k @ k)
+
+
+@njit(cache=True)
+def _rotation_vector(r):
+    axis = 0.5 * np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]])
+    sine = math.sqrt(_dot(axis, axis))
+    if sine < 1e-8:
+        return axis
+    return axis * (math.atan2(sine, 0.5 * (r[0, 0] + r[1, 1] + r[2, 2] - 1.0)) / sine)
+
+
+@njit(cache=True)
+def _rate(theta, omega):
+    """Rate of a rotation vector of a body that turns with omega, in fixed axes."""
+    square = _dot(theta, theta)
+    k = _skew(theta)
+    second = 1.0 / 12.0 + square / 720.0
+    if square > 1e-4:
+        angle = math.sqrt(square)
+        second = 1.0 / square - (1.0 + math.cos(angle)) / (2.0 * angle * math.sin(angle))
+    return omega - 0.5 * _turned(k, omega) + second * _turned(k, _turned(k, omega))
+
+
+@njit(cache=True)
+def _link(place, turn, half, i):
+    """Middle of the link's two ends, middle axes, distance of the ends and relative turn in these axes."""
+    lower, upper = _rotation(turn[i]), _rotation(turn[i + 1])
+    relative = _rotation_vector(np.ascontiguousarray(lower.T) @ upper)
+    axes = lower @ _rotation(0.5 * relative)
+    ends = place[i + 1] - half * upper[:, 2] - place[i] - half * lower[:, 2]
+    middle = place[i] + half * lower[:, 2] + 0.5 * ends
+    return middle, axes, _turned(axes.T, ends), relative
+
+
+@njit(cache=True)
+def _link_rates(place, turn, velocity, omega, half, i):
+    """Rates of the three constraints of link i: distance along the bars, tilt about two axes."""
+    middle, axes, _, _ = _link(place, turn, half, i)
+    upper = velocity[i + 1] + np.cross(omega[i + 1], middle - place[i + 1])
+    lower = velocity[i] + np.cross(omega[i], middle - place[i])
+    spin = omega[i + 1] - omega[i]
+    return np.array([_dot(axes[:, 2], upper - lower), _dot(axes[:, 0], spin), _dot(axes[:, 1], spin)])
+
+
+@njit(cache=True)
+def accelerations(state, ground, masses, inertia, heights, shear, twist, ring, radius, sphere, friction, corner):
+    """
+    Accelerations (N, 6) of the bodies against the plate, and normal forces (K,).
+
+    A support that would have to pull carries nothing, as long as three are left.
+    """
+    closed = np.ones(len(ring))
+    while True:
+        accelerated, normals = _solved(
+            state, ground, masses, inertia, heights, shear, twist, ring, radius, sphere, friction, corner, closed
+        )
+        if normals.min() >= 0.0 or closed.sum() <= 3.0:
+            return accelerated, normals
+        closed[normals.argmin()] = 0.0
+
+
+@njit(cache=True)
+def _solved(state, ground, masses, inertia, heights, shear, twist, ring, radius, sphere, friction, corner, closed):
+    bodies, supports = len(masses), len(ring)
+    place, turn = state[0], state[1]
+    velocity, omega = state[2], state[3]
+    size = 6 * bodies + 3 * bodies
+    matrix, right = np.zeros((size, size)), np.zeros(size)
+    for i in range(bodies):
+        r = _rotation(turn[i])
+        tensor = (r * inertia[i]) @ np.ascontiguousarray(r.T)
+        matrix[6 * i : 6 * i + 3, 6 * i : 6 * i + 3] = masses[i] * np.eye(3)
+        matrix[6 * i + 3 : 6 * i + 6, 6 * i + 3 : 6 * i + 6] = tensor
+        right[6 * i : 6 * i + 3] = -masses[i] * (ground + np.array([0.0, 0.0, GRAVITY]))
+        right[6 * i + 3 : 6 * i + 6] = -np.cross(omega[i], _turned(tensor, omega[i]))
+    platform = _rotation(turn[0])
+    first = 6 * bodies
+    for k in range(supports):
+        if closed[k] == 0.0:
+            continue
+        shape = np.array([1.0, ring[k, 0], ring[k, 1]])
+        arm = _turned(platform, np.array([ring[k, 0], ring[k, 1], -heights[0]]))
+        away = np.array([ring[k, 0], ring[k, 1], radius]) - place[0] - arm
+        length = math.sqrt(_dot(away, away))
+        normal = away / length
+        center = velocity[0] + np.cross(omega[0], arm)
+        touching = arm + normal * (radius + sphere)
+        slip = velocity[0] + np.cross(omega[0], touching)
+        slip = slip - normal * _dot(normal, slip)
+        speed = math.sqrt(_dot(slip, slip))
+        force = normal - friction * slip / max(speed, corner)
+        moment = np.cross(arm, normal) + np.cross(touching, force - normal)
+        along = np.cross(arm, normal)
+        gap, rate = length - radius, -_dot(normal, center)
+        bend = _dot(center, center) - rate**2
+        turning = np.cross(omega[0], np.cross(omega[0], arm))
+        for j in range(3):
+            matrix[0:3, first + j] -= shape[j] * force
+            matrix[3:6, first + j] -= shape[j] * moment
+            matrix[first + j, 0:3] += shape[j] * normal
+            matrix[first + j, 3:6] += shape[j] * along
+            wanted = 2.0 * STABILIZATION * rate + STABILIZATION**2 * gap
+            right[first + j] += shape[j] * (bend / length - _dot(normal, turning) + wanted)
+    for i in range(bodies - 1):
+        half = 0.5 * (heights[i + 1] - heights[i])
+        middle, axes, ends, relative = _link(place, turn, half, i)
+        pull = _turned(axes, np.array([-shear[i, 0] * ends[0], -shear[i, 1] * ends[1], 0.0]))
+        wring = -twist[i] * relative[2] * axes[:, 2]
+        row = first + 3 + 3 * i
+        for sign, body in ((1.0, i + 1), (-1.0, i)):
+            arm = middle - place[body]
+            right[6 * body : 6 * body + 3] += sign * pull
+            right[6 * body + 3 : 6 * body + 6] += sign * (np.cross(arm, pull) + wring)
+            along = np.cross(arm, axes[:, 2])
+            matrix[row, 6 * body : 6 * body + 3] += sign * axes[:, 2]
+            matrix[row, 6 * body + 3 : 6 * body + 6] += sign * along
+            matrix[6 * body : 6 * body + 3, row] -= sign * axes[:, 2]
+            matrix[6 * body + 3 : 6 * body + 6, row] -= sign * along
+            for tilt in range(2):
+                matrix[row + 1 + tilt, 6 * body + 3 : 6 * body + 6] += sign * axes[:, tilt]
+                matrix[6 * body + 3 : 6 * body + 6, row + 1 + tilt] -= sign * axes[:, tilt]
+        turn_rate = np.empty_like(turn)
+        for body in range(bodies):
+            turn_rate[body] = _rate(turn[body], omega[body])
+        later = _link_rates(place + STEP * velocity, turn + STEP * turn_rate, velocity, omega, half, i)
+        before = _link_rates(place - STEP * velocity, turn - STEP * turn_rate, velocity, omega, half, i)
+        now = _link_rates(place, turn, velocity, omega, half, i)
+        violated = np.array([ends[2], relative[0], relative[1]])
+        right[row : row + 3] = (
+            -(later - before) / (2.0 * STEP) - 2.0 * STABILIZATION * now - STABILIZATION**2 * violated
+        )
+    solved = np.linalg.solve(matrix, right)
+    normals = closed * (solved[first] + _turned(ring, solved[first + 1 : first + 3]))
+    return solved[:first].reshape(bodies, 6), normals
+
+
+@njit(cache=True)
+def _flow(state, accelerated):
+    """Rate of the state (4, N, 3)."""
+    rate = np.empty_like(state)
+    rate[0] = state[2]
+    for i in range(state.shape[1]):
+        rate[1, i] = _rate(state[1, i], state[3, i])
+    rate[2], rate[3] = accelerated[:, :3], accelerated[:, 3:]
+    return rate
+
+
+@dataclass(frozen=True)
+class SpatialMotion:
+    """Peaks of the absolute accelerations (N,) and their instants, mu (N,), and samples of the motion."""
+
+    mu: Array
+    instant: Array
+    time: Array
+    support_force: Array  # (T, K), N
+    yaw: Array  # (T,), of the platform, rad
+    drift: float  # m, largest distance of a mean gap from zero
+
+
+def spatial_motion(scene: Scene, phase: ArrayLike, regularization: float, tolerance: float = 1e-8) -> SpatialMotion:
+    """The motion from rest for one phase pair; the supports must stay loaded (RuntimeError otherwise)."""
+    isolator, bodies = scene.isolator, len(scene.bodies)
+    angles = 2.0 * np.pi * (np.arange(isolator.supports) + 0.5) / isolator.supports
+    ring = isolator.ring * np.column_stack([np.cos(angles), np.sin(angles)])
+    sizes = np.array([body.size for body in scene.bodies])
+    inertia = scene.masses[:, None] / 12.0 * ((sizes**2).sum(axis=1)[:, None] - sizes**2)
+    heights = np.array([body.height for body in scene.bodies])
+    lubricated = scene.lubricated
+    model = (
+        scene.masses,
+        inertia,
+        heights,
+        scene.stiffness,
+        isolator.ring**2 * scene.stiffness.mean(axis=1),
+        ring,
+        scene.radius,
+        isolator.sphere_radius,
+        scene.friction_coefficient * (1e6 if lubricated else 1.0),
+        1e6 if lubricated else regularization,
+    )
+
+    def solved(time: float, flat: Array) -> tuple[Array, Array]:
+        return accelerations(flat.reshape(4, bodies, 3), ground_acceleration(scene, phase, [time])[0], *model)
+
+    def rate(time: float, flat: Array) -> Array:
+        flow: Array = _flow(flat.reshape(4, bodies, 3), solved(time, flat)[0]).ravel()
+        return flow
+
+    start = np.zeros((4, bodies, 3))
+    start[0, :, 2] = heights
+    # a first step that resolves the onset of regularized friction
+    solver = Radau(
+        rate, 0.0, start.ravel(), scene.duration, rtol=tolerance, atol=1e-3 * tolerance, first_step=1e-5, max_step=0.02
+    )
+    times, forces, yaws = [0.0], [solved(0.0, start.ravel())[1]], [0.0]
+    peak, instant = np.zeros(bodies), np.zeros(bodies)
+    drift = 0.0
+    while solver.status == "running":
+        message = solver.step()
+        if solver.status == "failed":
+            raise RuntimeError(message)
+        dense = solver.dense_output()
+        for time in np.linspace(solver.t_old, solver.t, PER_STEP + 1)[1:]:
+            state = dense(time)
+            accelerated, normals = solved(time, state)
+            if normals.min() < 0.0:
+                raise RuntimeError(f"a support lifts off at {time:.4f} s")
+            ground = ground_acceleration(scene, phase, [time])[0]
+            size = np.linalg.norm(accelerated[:, :3] + ground, axis=1)
+            instant = np.where(size > peak, time, instant)
+            peak = np.maximum(peak, size)
+            times.append(float(time))
+            forces.append(normals)
+            yaws.append(float(state.reshape(4, bodies, 3)[1, 0, 2]))
+        place, turn = solver.y.reshape(4, bodies, 3)[:2]
+        arms = np.column_stack([ring, np.full(len(ring), -heights[0])]) @ _rotation(turn[0]).T
+        away = np.column_stack([ring, np.full(len(ring), scene.radius)]) - place[0] - arms
+        drift = max(drift, abs(float((np.linalg.norm(away, axis=1) - scene.radius).mean())))
+    below = ground_peak(scene, np.reshape(np.asarray(phase, float), (1, -1)))[0]
+    return SpatialMotion(peak / below, instant, np.array(times), np.array(forces), np.array(yaws), drift)
