@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from comparison.account.differences import Difference
+from comparison.account.unanswered import Unanswered
 from comparison.analyses.errands import errands, predicted
 from comparison.options import Options
 from comparison.plan.choice import Choice
@@ -104,6 +105,12 @@ def print_promises(console: Console, kept: Mapping[str, Any], seconds: float) ->
         f"{kept['seconds']:.1f} s of compute where {kept['predicted_seconds']:.1f} s were expected; {seconds:.0f} s "
         f"in all where {kept['predicted_wall']:.0f} s were."
     )
+
+
+def print_unanswered(console: Console, lacking: Sequence[Unanswered]) -> None:
+    """The models without a value somewhere, a line each: why, and what helps."""
+    for one in lacking:
+        console.print(f"Without a value: {one.sentence}", soft_wrap=True)
 
 
 def print_differences(console: Console, rows: Sequence[Difference]) -> None:

@@ -15,7 +15,6 @@ from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
 from comparison.account.surfaces import common_phases
 from comparison.drawing.figures import QUARTER_NAMES, QUARTERS, closed
-from comparison.plan.ladder import pairs_of
 from comparison.plan.study import Study
 from comparison.wording import mathtext
 from reference.problem import Scene
@@ -39,7 +38,7 @@ def draw_paper_figure(stem: Path, study: Study, surfaces: xr.Dataset, scene: Sce
     Write `stem`.png and `stem`.pdf: for every body the surface of the paper's equations and that of the engine under
     the paper's assumption that no body turns, on one height scale per body.
     """
-    pairs = pairs_of(scene, study.ladder)
+    pairs = study.pairs(scene)
     first, last = pairs[0].first, pairs[-1].second
     bodies = len(scene.bodies)
     with mpl.rc_context(PRINT):

@@ -84,6 +84,10 @@ def uneven(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bo
     return smooth(scene, phases, tolerance)
 
 
+def never_refused(scene: Scene, **settings: object) -> str:
+    return ""
+
+
 def forbidden(scene: Scene, phases: object, **settings: object) -> Amplification:
     raise AssertionError("nothing should have been computed")
 
@@ -126,7 +130,7 @@ def known_motions(study: Study, surfaces: xr.Dataset, *rest: object) -> list[Sto
     for scene in study.scenes:
         circle = np.stack([np.cos(time), np.sin(time)], axis=1)[:, None, :].repeat(len(scene.bodies), axis=1)
         for place in chosen_places(study, surfaces, scene):
-            for number, rung in enumerate(shown_rungs(scene, study.ladder)):
+            for number, rung in enumerate(shown_rungs(study, scene)):
                 at = 0.01 * (1 + number) * circle
                 found.append(StoredMotion(place, rung.key, time, at, -at, ((2.0, 3.0),)))
     return found
@@ -147,6 +151,7 @@ def errors_in(gaps: Mapping[str, float], claimed: Mapping[str, float] | None = N
             amplification="fake_models:planted",
             settings={"gap": gaps.get(rung.key, 0.0), "claimed": (claimed or {}).get(rung.key, 1e-5)},
             symmetric=never,
+            refusal=None,
         )
         for rung in LADDER
     )
@@ -158,6 +163,10 @@ def fake_ladder(engine: str = "smooth", gap: float = 0.01, tile: int = 4) -> tup
     for rung in LADDER:
         name = engine if rung.side == "engine" else "smooth"
         settings = {"gap": gap} if (rung.side, name) == ("engine", "smooth") else {}
-        functions = {"amplification": f"fake_models:{name}", "trajectory": "fake_models:forbidden"}
+        functions = {
+            "amplification": f"fake_models:{name}",
+            "trajectory": "fake_models:forbidden",
+            "refusal": None if rung.refusal is None else "fake_models:never_refused",
+        }
         rungs.append(replace(rung, **functions, settings=settings, tile=tile, symmetric=never))
     return tuple(rungs)
