@@ -15,6 +15,7 @@ from PIL import Image
 
 from comparison.drawing.budget_figure import budget_figure_name, draw_budget
 from comparison.drawing.figures import draw_pair, figure_name
+from comparison.drawing.file_names import with_ending
 from comparison.drawing.paper_figures import draw_paper_figure, paper_figure_name
 from comparison.plan.ladder import Pair
 from comparison.plan.study import Study
@@ -92,7 +93,7 @@ def drawn(picture: Picture) -> Files:
 
 def for_page(name: str) -> str:
     """Name of a picture as the page holds it."""
-    return str(Path(name).with_suffix(PAGE))
+    return with_ending(Path(name), PAGE).name
 
 
 def smaller(png: bytes) -> bytes:

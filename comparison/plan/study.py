@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,7 +13,17 @@ from comparison.plan.ladder import LADDER, Pair, Rung, pairs_of, rungs_of
 from comparison.plan.savings import saving
 from comparison.plan.symmetry import sources
 from comparison.plan.tiles import Tile
-from reference.problem import Scene, phase_grid
+from reference.problem import Scene, SceneError, phase_grid
+
+
+def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
+    """Refuse a name of a scene or family that is there twice. names: each with its source. Raises SceneError."""
+    seen: dict[str, str] = {}
+    for source, name in names:
+        if name in seen:
+            rule = f"same name as {seen[name]}, which names its surfaces: give each scene once, rename a file"
+            raise SceneError(source, "scene", name, rule)
+        seen[name] = source
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,7 @@ from comparison.extremes.matrix import written
 from comparison.extremes.verdicts import Verdict
 from comparison.plan.ladder import Pair, rungs_of
 from comparison.plan.study import Study
-from comparison.report.family_figure import draw_families
+from comparison.report.family_figure import draw_families, family_figure_name
 from comparison.report.findings import Findings
 from comparison.report.junit import junit
 from comparison.report.page_data import packed, packed_motions, page_data
@@ -175,6 +175,11 @@ def _page(figures: Path, found: Findings) -> str:
         sections=[section for section in SECTIONS if section.present(found)],
         absent=[section for section in SECTIONS if not section.present(found)],
         found=found,
+        figure_names={
+            "assumptions": assumption_figure_name,
+            "family": family_figure_name,
+            "tradeoff": tradeoff_figure_name,
+        },
         picture=lambda name: _inlined(smaller((figures / name).read_bytes())),
         study=study,
         run=found.run,
