@@ -188,7 +188,7 @@ def _run(
         print(line, file=sys.stderr)
     if options.by_trade:
         print_promises(console, run["choice"], time.monotonic() - begin)
-    _print_closing(console, options, run, time.monotonic() - begin)
+    _print_closing(console, options, run, time.monotonic() - begin, bool(study.phased))
     print_unanswered(console, found.unanswered)
     print_differences(console, found.rows)
     return 1 if options.check and found.broken else 0
@@ -214,14 +214,15 @@ def _more(study: Study, surfaces: xr.Dataset, options: Options, executor: Callab
     }
 
 
-def _print_closing(console: Console, options: Options, run: dict[str, object], seconds: float) -> None:
+def _print_closing(console: Console, options: Options, run: dict[str, object], seconds: float, phased: bool) -> None:
     console.print(
         f"{seconds:.0f} s with {options.jobs} workers: {run['compute_seconds']} s of compute "
         f"({run['predicted_compute_seconds']} s predicted)."
     )
     console.print(f"Report: {options.out / 'index.html'}", soft_wrap=True)  # a path is copied whole
-    console.print("Next: open it in a browser; a finer look: --grid N with a larger N; what that costs: --plan.")
-    console.print("Relative differences over the phases, per body:")
+    finer = "; a finer look: --grid N with a larger N; what that costs: --plan" if phased else ""
+    console.print(f"Next: open it in a browser{finer}.")
+    console.print(f"Relative differences{' over the phases' if phased else ''}, per body:")
 
 
 if __name__ == "__main__":

@@ -109,6 +109,8 @@ def moved(task: Task) -> StoredMotion:
         settings["times"] = np.linspace(0.0, scene.duration, round(scene.duration / STEP) + 1)
     try:
         motion: Trajectory = imported(rung.trajectory)(scene, phase, tolerance=tolerance, **settings)
+        if len(motion.time) == 0:  # refused before its first step
+            return _nothing(place, rung.key, Outcome(motion.status), "")
         position, acceleration = motion.position[:, :, :2], motion.absolute_acceleration[:, :, :2]
         size = np.linalg.norm(motion.absolute_acceleration, axis=2)
         if not np.isfinite(size).all():

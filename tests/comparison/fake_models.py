@@ -84,6 +84,23 @@ def uneven(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bo
     return smooth(scene, phases, tolerance)
 
 
+def refused(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
+    """Takes no step at any phase pair."""
+    answer = smooth(scene, phases, tolerance)
+    nothing, points = np.full_like(answer.mu, np.nan), len(phases)
+    return Amplification(nothing, nothing, np.full(points, Outcome.STEP_LIMIT.value), np.zeros(points), 0.0)
+
+
+def why_refused(scene: Scene, tolerance: float) -> str:
+    return "refused before any step: 3 times the work, shorten the duration to 7 s"
+
+
+def unmoved(scene: Scene, phase: Sequence[float], tolerance: float) -> Trajectory:
+    """A motion that was never begun."""
+    none = np.empty((0, len(scene.bodies), 3))
+    return Trajectory(np.empty(0), none, none, none, np.empty(0), [], Outcome.STEP_LIMIT.value, 0.0)
+
+
 def never_refused(scene: Scene, **settings: object) -> str:
     return ""
 
@@ -154,6 +171,15 @@ def errors_in(gaps: Mapping[str, float], claimed: Mapping[str, float] | None = N
             refusal=None,
         )
         for rung in LADDER
+    )
+
+
+def silenced(*keys: str, gap: float = 5e-5) -> tuple[Rung, ...]:
+    """The fake ladder in which the models named refuse every phase pair."""
+    functions = {"amplification": "fake_models:refused", "refusal": "fake_models:why_refused"}
+    return tuple(
+        replace(rung, **functions, trajectory="fake_models:unmoved", settings={}) if rung.key in keys else rung
+        for rung in fake_ladder(gap=gap)
     )
 
 
