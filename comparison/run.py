@@ -188,8 +188,8 @@ def _run(
         print(line, file=sys.stderr)
     if options.by_trade:
         print_promises(console, run["choice"], time.monotonic() - begin)
-    _print_closing(console, options, run, time.monotonic() - begin, bool(study.phased))
     print_unanswered(console, found.unanswered)
+    _print_closing(console, options, run, time.monotonic() - begin, bool(study.phased))
     print_differences(console, found.rows)
     return 1 if options.check and found.broken else 0
 

@@ -118,11 +118,11 @@ def pairs_of(scene: Scene, ladder: Sequence[Rung], silent: Collection[str] = ())
     asked = rungs_of(scene, ladder)
     rungs = [rung for rung in asked if rung.key not in silent]
     first, last = rungs[0], rungs[-1]
-    printed = "the paper's printed equations" if first is asked[0] else first.title
+    printed = "the paper's printed equations" if first is asked[0] else f"the {first.title}"
     reference = [rung for rung in asked if rung.side == "reference"][-1]
     engine = next((rung for rung in asked if rung.side == "engine"), None)
     complete = last is asked[-1] and engine is not None
-    other = "the most complete engine model" if complete else last.title
+    other = "the most complete engine model" if complete else f"the {last.title}"
     pairs = [Pair("total", "total", f"{printed} against {other}", first, last)]
     if engine is None or engine not in rungs:  # it does not meet the tolerance, fit the budget, or answer
         return pairs

@@ -40,7 +40,7 @@ function drawSurfaces(box, data, pair, chosen) {
   const [low, high] = range;
   const phases = rows => [...rows.map((_, i) => turn * i / rows.length), turn];
   const filled = rows => rows.flat().some(v => v !== null);  // a surface without any value is none: the library cannot draw it
-  const missing = rows => filled(rows) ? "" : ": no value at any phase pair";
+  const missing = rows => filled(rows) ? "" : "<br>no value at any phase pair";
   const surface = (rows, scene, colours, [cmin, cmax], x, unit) => !filled(rows) ? { type: "scatter3d", scene, x: [], y: [], z: [], showlegend: false } : ({
     type: "surface", x: phases(rows), y: phases(rows), z: turned(wrapped(rows)), scene, colorscale: colours, cmin, cmax,
     colorbar: { x, len: 0.7, thickness: 10, tickfont: { size: 10 } }, showscale: x !== null,
