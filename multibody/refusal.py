@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from multibody.integrate import silence
 from multibody.level import STEPS_PER_PERIOD, levels
@@ -51,13 +52,13 @@ def refusal(
     return (
         f"refused before any step: it needs {needed:.2g} times the work that a phase pair may take "
         f"({built.coordinates} coordinates in steps of {step:.2g} s over {scene.duration:g} s; the fastest period is "
-        f"{STEPS_PER_PERIOD * step:.2g} s). Shorten the duration to about {_rounded_down(enough):g} s "
-        f"(above {_rounded_down(tried):g} s no step is taken), or take fewer bodies or a longer fastest period; "
+        f"{STEPS_PER_PERIOD * step:.2g} s). Shorten the duration to about {_two_digits(enough, math.floor):g} s "
+        f"(above {_two_digits(tried, math.ceil):g} s no step is taken), or take fewer bodies or a longer fastest period; "
         "a looser tolerance does not help"
     )
 
 
-def _rounded_down(value: float) -> float:
-    """Two digits of a positive number, never above it."""
+def _two_digits(value: float, rounded: Callable[[float], int]) -> float:
+    """Two digits of a positive number, rounded by `math.floor` or `math.ceil`."""
     unit = 10.0 ** (math.floor(math.log10(value)) - 1)
-    return float(f"{math.floor(value / unit * (1.0 - 1e-9)) * unit:.2g}")
+    return float(f"{rounded(value / unit) * unit:.2g}")

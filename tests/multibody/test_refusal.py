@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import numpy as np
+import pytest
 from scenes_at_hand import changed
 
 import multibody
@@ -41,8 +42,16 @@ def test_a_refusal_tells_by_how_much_and_the_durations_that_it_names_are_true() 
     assert tried is not None
     assert enough is not None
     assert float(enough[1]) < float(tried[1]) < 30.0
-    assert multibody.refusal(_frame(float(tried[1])), "spatial") == ""
-    assert multibody.refusal(_frame(1.1 * float(tried[1])), "spatial") != ""
+    assert multibody.refusal(_frame(0.95 * float(tried[1])), "spatial") == ""
+    assert multibody.refusal(_frame(1.001 * float(tried[1])), "spatial") != ""
+
+
+@pytest.mark.long
+def test_at_the_duration_that_a_refusal_names_there_are_values() -> None:
+    enough = re.search(r"duration to about (\S+) s", multibody.refusal(_frame(30.0), "spatial"))
+    assert enough is not None
+    found = multibody.amplification(_frame(float(enough[1])), [(0.1, 0.2)], model="spatial")
+    assert np.isfinite(found.mu).all(), found.status
 
 
 def test_a_refusal_is_what_the_model_does_and_no_tolerance_changes_it() -> None:
