@@ -53,7 +53,7 @@ def refusal(
         f"refused before any step: it needs {needed:.2g} times the work that a phase pair may take "
         f"({built.coordinates} coordinates in steps of {step:.2g} s over {scene.duration:g} s; the fastest period is "
         f"{STEPS_PER_PERIOD * step:.2g} s). Shorten the duration to about {_two_digits(enough, math.floor):g} s "
-        f"(above {_two_digits(tried, math.ceil):g} s no step is taken), or take fewer bodies or a longer fastest period; "
+        f"(above {_two_digits(tried, math.ceil):g} s no step is taken), or take fewer bodies or a longer period; "
         "a looser tolerance does not help"
     )
 
