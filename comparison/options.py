@@ -12,6 +12,7 @@ from typing import NoReturn
 from pydantic import ValidationError
 
 from comparison.plan.choice import AMBITIONS, DEFAULT, DEFAULT_TOLERANCE, tightest
+from comparison.plan.study import refuse_same_names
 from comparison.report.store import refuse_foreign
 from comparison.sweep.executors import cores
 from comparison.sweep.tile_store import refuse_foreign_store
@@ -73,12 +74,9 @@ def parsed(argv: Sequence[str] | None) -> Options:
         full=given.full,
         scheduler=given.scheduler,
     )
-    seen: dict[str, str] = {}
-    for name, family in zip(names, options.families):
-        if family.name in seen:
-            rule = f"same name as {seen[family.name]}, which names its surfaces: give each scene once, rename a file"
-            raise SceneError(name, "scene", family.name, rule)
-        seen[family.name] = name
+    sources = list(zip(names, options.families))
+    refuse_same_names((source, family.name) for source, family in sources)
+    refuse_same_names((source, scene.name) for source, family in sources for scene in family.scenes)
     if given.scheduler is not None and given.jobs is not None:
         rule = "counts processes of this machine, --scheduler takes all workers of a cluster: give one of the two"
         raise SceneError("command line", "--jobs", given.jobs, rule)

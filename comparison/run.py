@@ -22,6 +22,7 @@ from rich.console import Console
 
 from comparison.account.promises import kept_promises
 from comparison.account.surfaces import labelled_surfaces
+from comparison.account.unanswered import with_silent_models
 from comparison.analyses.effective import effective_values
 from comparison.analyses.errands import errands, motion_errands, seconds_beside
 from comparison.analyses.further import further_findings
@@ -35,7 +36,7 @@ from comparison.plan.ladder import LADDER, Rung
 from comparison.plan.study import Study
 from comparison.provenance import provenance
 from comparison.report.aside import clear_dead
-from comparison.report.findings import findings
+from comparison.report.findings import Findings, findings
 from comparison.report.store import replaced_when_complete
 from comparison.sweep.answers import Answers
 from comparison.sweep.cluster import cluster
@@ -45,7 +46,7 @@ from comparison.sweep.going_on import command_line, going_on, here
 from comparison.sweep.progress import wide_console
 from comparison.sweep.stopping import stoppable
 from comparison.sweep.tile_store import StoreError, TileStore, store_beside
-from comparison.terminal import print_choice, print_differences, print_plan, print_promises
+from comparison.terminal import print_choice, print_differences, print_plan, print_promises, print_unanswered
 from comparison.tradeoff.trade import read as stored_trades
 from reference.problem import SceneError
 
@@ -145,6 +146,7 @@ def _run(
     done = computed(study, store, console, options.jobs, executor, errands(study, chosen.whole), known)
     seconds, answers = time.monotonic() - begin, done.answers
     surfaces = labelled_surfaces(study, tiles, answers)
+    study = with_silent_models(study, surfaces)
     console.print("Keeping a few motions of every scene for the report, and drawing the surfaces.")
     motions = motion_errands(study, surfaces) if chosen.whole else []
     fetched([*motions, *drawing.picture_errands(study, surfaces)], known, console, options.jobs, executor)
@@ -182,13 +184,25 @@ def _run(
         write_report(folder, found)
     for line in faults:
         print(f"solver: {line}", file=sys.stderr)
-    for line in found.broken if options.check else []:
-        print(f"limit broken: {line}", file=sys.stderr)
+    for line in _checked(found) if options.check else []:
+        print(line, file=sys.stderr)
     if options.by_trade:
         print_promises(console, run["choice"], time.monotonic() - begin)
-    _print_closing(console, options, run, time.monotonic() - begin)
+    print_unanswered(console, found.unanswered)
+    _print_closing(console, options, run, time.monotonic() - begin, bool(study.phased))
     print_differences(console, found.rows)
     return 1 if options.check and found.broken else 0
+
+
+def _checked(found: Findings) -> list[str]:
+    """What `--check` says: every broken limit, and the scenes that state none."""
+    limited = {limit.scene for limit in found.limits}
+    unlimited = [scene.name for scene in found.study.scenes if scene.name not in limited]
+    lines = [f"limit broken: {line}" for line in found.broken]
+    if unlimited:
+        which = "no scene states" if not limited else f"{', '.join(unlimited)}: no limits are stated under"
+        lines.append(f"--check: {which} [acceptance]{' limits' if not limited else ''}: nothing was checked")
+    return lines
 
 
 def _more(study: Study, surfaces: xr.Dataset, options: Options, executor: Callable[[int], Executor]) -> dict[str, Any]:
@@ -200,14 +214,15 @@ def _more(study: Study, surfaces: xr.Dataset, options: Options, executor: Callab
     }
 
 
-def _print_closing(console: Console, options: Options, run: dict[str, object], seconds: float) -> None:
+def _print_closing(console: Console, options: Options, run: dict[str, object], seconds: float, phased: bool) -> None:
     console.print(
         f"{seconds:.0f} s with {options.jobs} workers: {run['compute_seconds']} s of compute "
         f"({run['predicted_compute_seconds']} s predicted)."
     )
     console.print(f"Report: {options.out / 'index.html'}", soft_wrap=True)  # a path is copied whole
-    console.print("Next: open it in a browser; a finer look: --grid N with a larger N; what that costs: --plan.")
-    console.print("Relative differences over the phases, per body:")
+    finer = "; a finer look: --grid N with a larger N; what that costs: --plan" if phased else ""
+    console.print(f"Next: open it in a browser{finer}.")
+    console.print(f"Relative differences{' over the phases' if phased else ''}, per body:")
 
 
 if __name__ == "__main__":

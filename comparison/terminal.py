@@ -10,13 +10,16 @@ from rich.console import Console
 from rich.table import Table
 
 from comparison.account.differences import Difference
+from comparison.account.unanswered import Unanswered
 from comparison.analyses.errands import errands, predicted
 from comparison.options import Options
 from comparison.plan.choice import Choice
 from comparison.plan.ladder import RECORDED_ON
 from comparison.plan.left_out import left_out
-from comparison.plan.overhead import START_UP, WRITING
+from comparison.plan.overhead import COMPILED_ONCE, START_UP, WRITING
+from comparison.plan.recorded import recorded
 from comparison.plan.study import Study
+from comparison.plan.tiles import refusal_of
 from comparison.sweep.answers import Answers
 from comparison.sweep.tile_store import TileStore, store_beside
 
@@ -24,13 +27,15 @@ from comparison.sweep.tile_store import TileStore, store_beside
 def print_plan(console: Console, study: Study, options: Options, whole: bool = True) -> None:
     """What would be computed and its predicted cost."""
     table = _table("scene", "model", "points", "computed", "tolerance", "s on one core")
-    total = 0.0
+    total, refused = 0.0, []
     for scene in study.scenes:
         for rung in study.ladder:
             if not rung.applies(scene):
                 continue
             points, computed = study.points(rung, scene), len(study.solved(scene, rung))
-            seconds = study.seconds_of(scene, rung)
+            reason = refusal_of(scene, rung, rung.tolerance(study.tolerance), study.full)
+            refused += [f"{scene.name}, {rung.title}: {reason}"] if reason else []
+            seconds = 0.0 if reason else study.seconds_of(scene, rung)
             total += seconds
             cells = str(points), str(computed), f"{rung.tolerance(study.tolerance):.0e}", f"{seconds:.1f}"
             table.add_row(scene.name, rung.title, *cells)
@@ -43,7 +48,10 @@ def print_plan(console: Console, study: Study, options: Options, whole: bool = T
     wall = START_UP + total / options.jobs + WRITING
     if len(study.phased) < len(study.scenes):
         console.print("A recorded motion has no phases: one point per model.")
-    console.print(f"{study.grid} x {study.grid} phases, {options.jobs} worker processes: about {wall:.0f} s.")
+    for line in refused:
+        console.print(f"{line}.", soft_wrap=True)
+    over = f"{study.grid} x {study.grid} phases, " if study.phased else ""
+    console.print(f"{over}{options.jobs} worker processes: about {wall:.0f} s.")
     store, tiles = TileStore(store_beside(options.out)), study.tiles()
     if not options.fresh and (stored := sum(map(store.holds, tiles))):
         asked, known = errands(study, whole), Answers(store)
@@ -53,7 +61,13 @@ def print_plan(console: Console, study: Study, options: Options, whole: bool = T
         )
     if not options.by_trade:
         console.print(f"Costs were recorded on {RECORDED_ON}; another machine scales them all alike.")
-    console.print("On a new installation compiling the reference adds some minutes of one worker, once.")
+        if uncalibrated := [scene.name for scene in study.scenes if scene.digest() not in recorded().seconds]:
+            console.print(
+                f"Not recorded, so guessed from the paper's scenes in proportion to the duration, and easily ten times "
+                f"too low for more bodies or shorter periods: {', '.join(uncalibrated)}.",
+                soft_wrap=True,
+            )
+    console.print(COMPILED_ONCE)
     console.print(f"Nothing was computed. The report would go to {options.out}.")
 
 
@@ -83,6 +97,8 @@ def print_choice(console: Console, chosen: Choice, options: Options) -> None:
     console.print(table)
     for line in chosen.left_out:
         console.print(f"Left out: {line}.")
+    if not any(rung.side == "engine" for rung in study.ladder):
+        console.print("NO ENGINE MODEL is left: this study compares the equations with each other only.")
     if not chosen.whole:
         console.print(
             "Left out: motions, claims, scaling, convergence, assumptions varied: they do not fit the budget."
@@ -104,6 +120,12 @@ def print_promises(console: Console, kept: Mapping[str, Any], seconds: float) ->
         f"{kept['seconds']:.1f} s of compute where {kept['predicted_seconds']:.1f} s were expected; {seconds:.0f} s "
         f"in all where {kept['predicted_wall']:.0f} s were."
     )
+
+
+def print_unanswered(console: Console, lacking: Sequence[Unanswered]) -> None:
+    """The models without a value somewhere, a line each: why, and what helps."""
+    for one in lacking:
+        console.print(f"Without a value: {one.sentence}", soft_wrap=True)
 
 
 def print_differences(console: Console, rows: Sequence[Difference]) -> None:

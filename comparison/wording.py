@@ -7,6 +7,8 @@ import re
 
 from markupsafe import Markup, escape
 
+from reference.problem import verbatim
+
 POWERS = re.compile(r"\^(\w)")
 SUBSCRIPTS = re.compile(r"(?<=[\w>])_(\w+)")
 INDEXED = re.compile(r"\b([a-zA-Z]+)_(\w+)")
@@ -47,11 +49,6 @@ def symbols(text: str) -> Markup:
     """Names such as v_reg, l^3 and rho as they are printed: with indices, powers and Greek letters."""
     greek = LETTERS.sub(lambda found: found.group(1) + GREEK[found.group(2)], str(escape(text)))
     return Markup(SUBSCRIPTS.sub(r"<sub>\1</sub>", POWERS.sub(r"<sup>\1</sup>", greek)))
-
-
-def verbatim(text: str) -> str:
-    """A text of a scene for matplotlib, which reads dollars as the marks of a formula."""
-    return text.replace("$", r"\$")
 
 
 def mathtext(text: str) -> str:

@@ -23,12 +23,25 @@ from scipy.spatial.transform import Rotation
 from multibody.engine import exudyn
 from multibody.integrate import place
 from multibody.motion import trajectory
+from multibody.refusal import refusal
 from multibody.surface import assembled
-from reference.problem import Scene, SceneError, Trajectory, ground_acceleration, load_scene
+from reference.problem import (
+    ADVICE,
+    Outcome,
+    Scene,
+    SceneError,
+    Trajectory,
+    ground_acceleration,
+    load_scene,
+    verbatim,
+)
 
 Array = NDArray[np.float64]
 
 FRAMES_PER_SECOND = 25
+MOST_FRAMES = 1500  # of a film, which is held in memory whole: 3.6 MB each
+MOST_STRETCHED = 1e6  # times
+SUFFIXES = (".gif",)  # of files that can be written with what is installed
 RING, SUPPORTS, SPHERE, STOREY = 1.0, 4, 0.05, 1.0  # m, -, m, m: drawn where the scene gives no spatial data
 SEEN, LARGEST = 0.3, 1e4  # rad or m, up to which turns and contact paths are magnified; by this much at most
 CORNERS = 0.5 * np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
@@ -36,7 +49,7 @@ CORNERS = 0.5 * np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) fo
 
 def frames(time: Array, values: Array, rate: float) -> Array:
     """`values` (T, ...) given at `time` (T,), s, at equally spaced instants (F, ...), `rate` of them per second."""
-    count = max(round(time[-1] * rate), 1) + 1
+    count = frame_count(time[-1], FRAMES_PER_SECOND / rate)
     instants = np.linspace(time[0], time[-1], count)
     columns = [np.interp(instants, time, column) for column in values.reshape(len(time), -1).T]
     return np.stack(columns, axis=-1).reshape(count, *values.shape[1:])
@@ -72,8 +85,36 @@ def contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
     return paths
 
 
+def frame_count(duration: float, speed: float) -> int:
+    """Frames of a film of so many s of motion, `speed` of them per second of film."""
+    return max(round(min(duration * FRAMES_PER_SECOND / speed, 1e9)), 1) + 1
+
+
+def refuse_film(scene: Scene, out: Path, stretch: float, speed: float) -> None:
+    """Raise ValueError, one line, if no film can be written to `out` or it would be absurd: before anything is run."""
+    if not (np.isfinite(stretch) and 0.0 < stretch <= MOST_STRETCHED):
+        raise ValueError(f"--stretch: {stretch}: must be greater than 0 and at most {MOST_STRETCHED:g}")
+    if not (np.isfinite(speed) and speed > 0.0):
+        raise ValueError(f"--speed: {speed}: must be finite and greater than 0")
+    fastest = scene.duration * FRAMES_PER_SECOND
+    slowest = fastest / (MOST_FRAMES - 1)
+    if speed > fastest or frame_count(scene.duration, speed) > MOST_FRAMES:
+        raise ValueError(
+            f"--speed: {speed:g}: a film of {scene.duration:g} s of motion has 2 to {MOST_FRAMES} frames, "
+            f"{FRAMES_PER_SECOND} per second: give {slowest:.2g} to {fastest:.2g}"
+        )
+    if out.is_dir():
+        raise ValueError(f"--out: {out}: is a folder: give the name of a {' or '.join(SUFFIXES)} file")
+    if out.suffix.lower() not in SUFFIXES:
+        raise ValueError(f"--out: {out}: must end in {' or '.join(SUFFIXES)}")
+    if not out.parent.is_dir():
+        raise ValueError(f"--out: {out}: its folder does not exist")
+    if not os.access(out if out.exists() else out.parent, os.W_OK):
+        raise ValueError(f"--out: {out}: cannot be written")
+
+
 def draw(scene: Scene, motion: Trajectory, out: Path, *, stretch: float, speed: float) -> None:
-    """Write the animation to `out` (.gif, or whatever matplotlib can write); displacements drawn `stretch` times."""
+    """Write the animation to `out`, GIF; displacements drawn `stretch` times. The motion has at least one instant."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -142,12 +183,11 @@ def draw(scene: Scene, motion: Trajectory, out: Path, *, stretch: float, speed: 
         centres = rest + shifts[frame] * stretch
         for axis, mast in enumerate(masts):
             mast.set_data(centres[:, axis], centres[:, 2])
-        title.set_text(f"{scene.title}\nt = {frame / rate:.2f} s; {scales}")
+        title.set_text(f"{verbatim(scene.title)}\nt = {frame / rate:.2f} s; {scales}")
         return [title, points, *lines, *masts, *(outline for outline, _, _ in outlines)]
 
     animation = FuncAnimation(figure, show, frames=len(shifts), blit=False)
-    writer = PillowWriter(fps=FRAMES_PER_SECOND) if out.suffix == ".gif" else None
-    animation.save(str(out), writer=writer)
+    animation.save(str(out), writer=PillowWriter(fps=FRAMES_PER_SECOND))
     plt.close(figure)
 
 
@@ -208,16 +248,15 @@ def main(words: list[str] | None = None) -> int:
     given = _arguments(words)
     phase = np.array(given.phases)
     try:
-        for name in ("stretch", "speed"):
-            if not (np.isfinite(getattr(given, name)) and getattr(given, name) > 0.0):
-                raise ValueError(f"--{name}: {getattr(given, name)}: must be finite and greater than 0")
-        if not given.view and not given.out.parent.is_dir():
-            raise ValueError(f"--out: {given.out}: its folder does not exist")
         scene = load_scene(given.scene, given.amplitude)
         if given.view:
             view(scene, phase, given.model, given.regularization)
             return 0
+        refuse_film(scene, given.out, given.stretch, given.speed)
         motion = trajectory(scene, phase, given.model, given.regularization)
+        if len(motion.time) == 0:
+            reason = refusal(scene, given.model, given.regularization, full=True) or ADVICE[Outcome(motion.status)]
+            raise ValueError(f"{scene.name}: there is no motion to show: {motion.status}: {reason}")
     except (SceneError, ValueError) as fault:
         print(fault, file=sys.stderr)
         return 2

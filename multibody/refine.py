@@ -19,7 +19,7 @@ from multibody.balance import balanced
 from multibody.estimate import from_compliance, from_levels, from_sharing
 from multibody.integrate import Engine
 from multibody.level import FALL, Level, levels
-from multibody.march import Budget, March, march
+from multibody.march import LONG, Budget, March, march
 from multibody.peak import Peaks
 from multibody.system import EngineModel
 from reference.problem import Outcome, Scene, State, ground_acceleration
@@ -48,6 +48,16 @@ class Refined:
     finest: March
 
 
+def work_needed(model: EngineModel, end: float, largest: float) -> float:
+    """
+    Least work of a point, two levels without a shorter step, as a share of what it may spend.
+
+    end, largest: duration and largest step of the first level, in units of the model.
+    """
+    steps = PREDICTED * end / largest
+    return Budget.of(WORK, model.coordinates).cost(steps, steps / LONG) / WORK
+
+
 def refine(
     scene: Scene,
     model: EngineModel,
@@ -70,7 +80,7 @@ def refine(
     budget = Budget.of(WORK, model.coordinates)
     plan = levels(scene, model, tolerance) if plan is None else plan
     nothing = np.full(len(model.bodies), np.nan)
-    if not budget.allows(end, replace(plan[0], step=plan[0].step / PREDICTED)):
+    if work_needed(model, end, plan[0].step) > 1.0:
         none = March(Peaks(len(model.bodies), model.corner), Outcome.STEP_LIMIT, 0.0)
         return Refined(nothing, nothing, Outcome.STEP_LIMIT, 0.0, none)
 

@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from comparison.account.steps import Step, step
 from comparison.account.surfaces import common_phases
-from comparison.plan.ladder import rungs_of
 from comparison.plan.study import Study
 
 Array = NDArray[np.float64]
@@ -61,7 +60,7 @@ class Entry:
 
 def steps(study: Study, surfaces: xr.Dataset, scene: str, body: int) -> list[Step]:
     """Every step of one body's surface in the order of the ladder, named after its second rung, then the total."""
-    rungs = rungs_of(next(one for one in study.scenes if one.name == scene), study.ladder)
+    rungs = study.compared(next(one for one in study.scenes if one.name == scene))
     pairs = [(second.key, first, second) for first, second in pairwise(rungs)]
     return [
         step(surfaces, scene, key, first, second, body, per=rungs[0])

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from comparison.account.steps import Step, step
 from comparison.account.surfaces import common_phases
-from comparison.plan.ladder import Pair, pairs_of
+from comparison.plan.ladder import Pair
 from comparison.plan.study import Study
 from reference.problem import Outcome
 
@@ -55,7 +55,7 @@ def differences(study: Study, surfaces: xr.Dataset) -> list[Difference]:
         _difference(surfaces, scene.name, pair, body)
         for scene in study.scenes
         for body in range(1, len(scene.bodies) + 1)
-        for pair in pairs_of(scene, study.ladder)
+        for pair in study.pairs(scene)
     ]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -97,3 +98,9 @@ def common_phases(surfaces: xr.Dataset, scene: str, models: Sequence[str]) -> xr
     own = surfaces.sel(scene=scene)
     every = slice(None, None, int(own["stride"].sel(model=list(models)).max()))
     return own.isel(alpha1=every, alpha2=every)
+
+
+def outcome_counts(surfaces: xr.Dataset, scene: str, model: str) -> dict[str, int]:
+    """How many of the phase pairs asked of the model ended in each outcome, most frequent first."""
+    status = common_phases(surfaces, scene, [model])["status"].sel(model=model)
+    return dict(Counter(np.asarray(status).ravel().tolist()).most_common())

@@ -73,7 +73,8 @@ def verdict(study: Study, surfaces: xr.Dataset, scene: Scene) -> Verdict:
     if size.max() < 0.0:
         nan = float("nan")
         said = f"no real difference: {between} agree within the error estimates at all {compared} values compared"
-        sentence = said + "." if compared else f"{between} have no phase pair in common where both have a value."
+        apart = "not both a value" if scene.recorded else "no phase pair in common where both have a value"
+        sentence = said + "." if compared else f"{between} have {apart}."
         return Verdict(scene.name, nan, 0, (nan, nan), "", nan, 0.0 if compared else nan, sentence)
     row, column = (int(index) for index in np.unravel_index(np.argmax(size), size.shape))
     found, real = float(total.size[row, column]), float(total.real[total.known].mean())

@@ -14,7 +14,7 @@ from comparison.claims.claims import CLAIMS
 from comparison.claims.evidence import gathered
 from comparison.claims.readings import READINGS
 from comparison.claims.table import GRID, SECONDS, questions
-from comparison.plan.ladder import Rung, at_samples, pairs_of
+from comparison.plan.ladder import Rung, at_samples
 from comparison.plan.study import Study
 from comparison.sweep.errands import Errand
 from reference.problem import Scene, builtin_scenes
@@ -68,7 +68,7 @@ def predicted(study: Study, whole: bool = True) -> dict[str, tuple[int, float]]:
     drawn = [
         seconds
         for scene in study.phased
-        for seconds in (PAPER, *(PICTURE,) * len(scene.bodies) * (1 + len(pairs_of(scene, study.ladder))))
+        for seconds in (PAPER, *(PICTURE,) * len(scene.bodies) * (1 + len(study.pairs(scene))))
     ]
     return found | {"motions": (len(motions), sum(motions)), "pictures": (len(drawn), sum(drawn))}
 
@@ -80,7 +80,7 @@ def seconds_beside(study: Study, whole: bool) -> float:
 
 def _moving(study: Study, scene: Scene) -> list[Rung]:
     """The models of the motions: all where a difference is largest; at evenly spread phases those that have all."""
-    shown = shown_rungs(scene, study.ladder)
+    shown = shown_rungs(study, scene)
     if scene.recorded:
         return shown
     return [

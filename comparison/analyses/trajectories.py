@@ -6,7 +6,7 @@ A motion is thinned only as far as straight lines between the instants left repr
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from comparison.account.differences import pair_step
-from comparison.plan.ladder import Rung, pairs_of
+from comparison.plan.ladder import Rung
 from comparison.plan.study import Study
 from comparison.plan.tiles import imported
 from comparison.sweep.sweep import sweep
@@ -63,7 +63,7 @@ def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Plac
     if scene.recorded:
         return [Place(scene.name, 0, 0, "")]
     places: dict[tuple[int, int], str] = {}
-    total = pairs_of(scene, study.ladder)[0]
+    total = study.pairs(scene)[0]
     for body in range(1, len(scene.bodies) + 1):
         if place := pair_step(surfaces, scene.name, total, body).place:
             places.setdefault(place, f"largest difference of body {body}")
@@ -84,7 +84,7 @@ def motion_tasks(study: Study, surfaces: xr.Dataset) -> list[Task]:
         (scene, rung, rung.tolerance(study.tolerance), place, (axes[0][place.row], axes[1][place.column]))
         for scene in study.scenes
         for place in chosen_places(study, surfaces, scene)
-        for rung in shown_rungs(scene, study.ladder)
+        for rung in shown_rungs(study, scene)
         if place.row % study.stride(rung, scene) == place.column % study.stride(rung, scene) == 0
     ]
 
@@ -96,9 +96,9 @@ def stored_motions(
     return sweep(motion_tasks(study, surfaces), moved, _lost, lambda task, motion: None, jobs, executor)
 
 
-def shown_rungs(scene: Scene, ladder: Sequence[Rung]) -> list[Rung]:
+def shown_rungs(study: Study, scene: Scene) -> list[Rung]:
     """The models whose surfaces the page shows, each once."""
-    return list({rung.key: rung for pair in pairs_of(scene, ladder) for rung in (pair.first, pair.second)}.values())
+    return list({rung.key: rung for pair in study.pairs(scene) for rung in (pair.first, pair.second)}.values())
 
 
 def moved(task: Task) -> StoredMotion:
@@ -109,6 +109,8 @@ def moved(task: Task) -> StoredMotion:
         settings["times"] = np.linspace(0.0, scene.duration, round(scene.duration / STEP) + 1)
     try:
         motion: Trajectory = imported(rung.trajectory)(scene, phase, tolerance=tolerance, **settings)
+        if len(motion.time) == 0:  # refused before its first step
+            return _nothing(place, rung.key, Outcome(motion.status), "")
         position, acceleration = motion.position[:, :, :2], motion.absolute_acceleration[:, :, :2]
         size = np.linalg.norm(motion.absolute_acceleration, axis=2)
         if not np.isfinite(size).all():

@@ -14,15 +14,15 @@ from pathlib import Path
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.progress import Progress
+from rich.progress import BarColumn, Progress, TimeRemainingColumn
 from rich.table import Table
 
 from comparison.assumptions.reach import said
 from comparison.assumptions.variations import DURATION, MANY, PHASES, Cell, assumption_cells, ranges
 from comparison.plan.ladder import has_spatial_data
-from comparison.plan.study import Study
+from comparison.plan.study import Study, refuse_same_names
 from comparison.sweep.executors import process_pool
-from comparison.sweep.progress import wide_console
+from comparison.sweep.progress import description, wide_console
 from reference.problem import Scene, SceneError, builtin_scenes, load_scene
 
 TOLERANCE = 1e-3
@@ -41,9 +41,16 @@ def main(argv: Sequence[str] | None = None) -> int:
     if given.jobs < 1:
         parser.error(f"--jobs {given.jobs}: must be a whole number from 1")
     try:
-        scenes = [_spatial(name) for name in given.scenes or builtin_scenes()]
+        names = given.scenes or builtin_scenes()
+        scenes = [_spatial(name) for name in names]
+        refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
+        if given.figures:
+            given.figures.mkdir(parents=True, exist_ok=True)
     except SceneError as fault:
         print(fault, file=sys.stderr)
+        return 2
+    except OSError as fault:
+        print(f"command line: --figures = {str(given.figures)!r}: cannot be made: {fault.strerror}", file=sys.stderr)
         return 2
     console = wide_console()
     console.print(
@@ -56,7 +63,6 @@ def main(argv: Sequence[str] | None = None) -> int:
             if given.figures:
                 from comparison.assumptions.figure import assumption_figure_name, draw_assumptions
 
-                given.figures.mkdir(parents=True, exist_ok=True)
                 draw_assumptions(given.figures / assumption_figure_name(scene), scene, cells)
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
@@ -78,7 +84,7 @@ def _spatial(name: str) -> Scene:
 
 
 def _watched(console: Console, scene: Scene, jobs: int) -> list[Cell]:
-    with Progress(console=console, transient=True) as progress:
+    with Progress(description(), BarColumn(), TimeRemainingColumn(), console=console, transient=True) as progress:
         bar = progress.add_task(scene.name, total=1 + len(MANY))
         study = Study((scene,), 1, TOLERANCE)
         return assumption_cells(study, jobs, process_pool, MANY, lambda: progress.advance(bar))

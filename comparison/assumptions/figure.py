@@ -14,7 +14,8 @@ from matplotlib.patches import Rectangle
 
 from comparison.assumptions.variations import WITHIN, Cell
 from comparison.drawing.figures import save
-from reference.problem import Scene
+from comparison.drawing.file_names import figure_file
+from reference.problem import Scene, verbatim
 
 COLOURS = ("#fde725", "#35b779", "#440154")  # within 1 %, within 5 %, beyond: told apart without colour vision too
 NO_VALUE, NOT_TRIED = "0.6", "0.95"
@@ -22,7 +23,7 @@ NO_VALUE, NOT_TRIED = "0.6", "0.95"
 
 def assumption_figure_name(scene: Scene) -> str:
     """File name of the figure of one scene."""
-    return f"{scene.name}-assumptions.png"
+    return figure_file(scene.name, "assumptions")
 
 
 def draw_assumptions(path: Path, scene: Scene, cells: Sequence[Cell]) -> None:
@@ -31,7 +32,7 @@ def draw_assumptions(path: Path, scene: Scene, cells: Sequence[Cell]) -> None:
     bodies = len(scene.bodies)
     figure = Figure(figsize=(1.2 + 4.6 * bodies, 3.9), dpi=110, layout="constrained")
     FigureCanvasAgg(figure)
-    figure.suptitle(f"{scene.title} ({scene.name}): spatial against translational model", fontsize=11)
+    figure.suptitle(verbatim(f"{scene.title} ({scene.name}): spatial against translational model"), fontsize=11)
     for body, axes in enumerate(np.atleast_1d(figure.subplots(1, bodies, sharey=True)), start=1):
         _map(axes, scene, own, body)
     save(figure, path)

@@ -15,16 +15,17 @@ from matplotlib.figure import Figure
 from comparison.account.budget import TOTAL, steps
 from comparison.account.steps import Step
 from comparison.drawing.figures import QUARTER_NAMES, QUARTERS, SIGN_COLOURS, closed
+from comparison.drawing.file_names import figure_file
 from comparison.plan.study import Study
-from comparison.wording import mathtext, verbatim
-from reference.problem import Scene
+from comparison.wording import mathtext
+from reference.problem import Scene, verbatim
 
 LINEAR = 1e-6  # relative: below it the colours are linear, above it logarithmic in both directions
 
 
 def budget_figure_name(scene: Scene, body: int) -> str:
     """File name of the figure of one scene and body."""
-    return f"{scene.name}-body{body}-budget.png"
+    return figure_file(scene.name, f"body{body}", "budget")
 
 
 def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> None:

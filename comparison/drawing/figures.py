@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 from comparison.account.differences import pair_step
 from comparison.account.steps import Step
 from comparison.account.surfaces import common_phases
+from comparison.drawing.file_names import figure_file, with_ending
 from comparison.plan.ladder import Pair
-from comparison.wording import mathtext, verbatim
-from reference.problem import Scene
+from comparison.wording import mathtext
+from reference.problem import Scene, verbatim
 
 Array = NDArray[np.float64]
 
@@ -29,7 +30,7 @@ QUARTER_NAMES = ["0", "π/2", "π", "3π/2", "2π"]
 
 def figure_name(scene: Scene, body: int, pair: Pair) -> str:
     """File name of the figure of one scene, body and pair of models."""
-    return f"{scene.name}-body{body}-{pair.key}.png"
+    return figure_file(scene.name, f"body{body}", pair.key)
 
 
 def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: Pair) -> None:
@@ -56,7 +57,7 @@ def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: P
 def save(figure: Figure, path: Path) -> None:
     """Write the figure to `path`, PNG, and beside it as PDF."""
     figure.savefig(path)
-    figure.savefig(path.with_suffix(".pdf"), metadata={"CreationDate": None})  # the same figure gives the same file
+    figure.savefig(with_ending(path, ".pdf"), metadata={"CreationDate": None})  # the same figure gives the same file
 
 
 def closed(phase: Array, mu: Array) -> tuple[Array, Array]:

@@ -15,7 +15,7 @@ from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
 from comparison.account.surfaces import common_phases
 from comparison.drawing.figures import QUARTER_NAMES, QUARTERS, closed
-from comparison.plan.ladder import pairs_of
+from comparison.drawing.file_names import figure_file, with_ending
 from comparison.plan.study import Study
 from comparison.wording import mathtext
 from reference.problem import Scene
@@ -30,16 +30,16 @@ RESOLUTION = 300  # dots per inch
 
 
 def paper_figure_name(scene: Scene) -> str:
-    """File name, without its suffix, of the manuscript figure of one scene."""
-    return f"{scene.name}-paper"
+    """File name of the manuscript figure of one scene."""
+    return figure_file(scene.name, "paper")
 
 
-def draw_paper_figure(stem: Path, study: Study, surfaces: xr.Dataset, scene: Scene) -> None:
+def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene) -> None:
     """
-    Write `stem`.png and `stem`.pdf: for every body the surface of the paper's equations and that of the engine under
-    the paper's assumption that no body turns, on one height scale per body.
+    Write `path`, PNG, and the same as PDF: for every body the surface of the paper's equations and that of the engine
+    under the paper's assumption that no body turns, on one height scale per body.
     """
-    pairs = pairs_of(scene, study.ladder)
+    pairs = study.pairs(scene)
     first, last = pairs[0].first, pairs[-1].second
     bodies = len(scene.bodies)
     with mpl.rc_context(PRINT):
@@ -56,8 +56,8 @@ def draw_paper_figure(stem: Path, study: Study, surfaces: xr.Dataset, scene: Sce
                 letter = chr(ord("a") + 2 * row + column)
                 _surface(axes, phase, height, (low, high), rf"$\mu_{{{row + 1}}}$")
                 axes.set_title(f"({letter}) $\\mu_{{{row + 1}}}$, {mathtext(rung.title)}", y=1.0, fontsize=9.0)
-        figure.savefig(stem.with_suffix(".pdf"), metadata={"CreationDate": None})
-        figure.savefig(stem.with_suffix(".png"), dpi=RESOLUTION)
+        figure.savefig(with_ending(path, ".pdf"), metadata={"CreationDate": None})
+        figure.savefig(path, dpi=RESOLUTION)
 
 
 def _surface(axes: Axes, phase: np.ndarray, height: np.ndarray, limits: tuple[float, float], name: str) -> None:

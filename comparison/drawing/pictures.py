@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import BytesIO
 from pathlib import Path
 from typing import Literal
@@ -15,8 +15,9 @@ from PIL import Image
 
 from comparison.drawing.budget_figure import budget_figure_name, draw_budget
 from comparison.drawing.figures import draw_pair, figure_name
+from comparison.drawing.file_names import with_ending
 from comparison.drawing.paper_figures import draw_paper_figure, paper_figure_name
-from comparison.plan.ladder import Pair, pairs_of
+from comparison.plan.ladder import Pair
 from comparison.plan.study import Study
 from comparison.sweep.errands import Errand, fingerprint
 from comparison.sweep.sweep import sweep
@@ -53,11 +54,12 @@ def pictures(study: Study, surfaces: xr.Dataset) -> list[Picture]:
     """Every picture of the study: a scene without phases has no surfaces."""
     found = []
     for scene in study.phased:
-        own = Study((scene,), study.grid, study.tolerance, study.ladder, study.full)
+        silent = {scene.name: (study.silent or {}).get(scene.name, ())}
+        own = replace(study, scenes=(scene,), costs=None, silent=silent)
         shown = surfaces[SHOWN].sel(scene=[scene.name])
         found.append(Picture("paper", own, shown))
         for body in range(1, len(scene.bodies) + 1):
-            found += [Picture("pair", own, shown, body, pair) for pair in pairs_of(scene, study.ladder)]
+            found += [Picture("pair", own, shown, body, pair) for pair in study.pairs(scene)]
             found.append(Picture("budget", own, shown, body))
     return found
 
@@ -91,7 +93,7 @@ def drawn(picture: Picture) -> Files:
 
 def for_page(name: str) -> str:
     """Name of a picture as the page holds it."""
-    return str(Path(name).with_suffix(PAGE))
+    return with_ending(Path(name), PAGE).name
 
 
 def smaller(png: bytes) -> bytes:

@@ -17,8 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.markup import escape
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
 
 from comparison.extremes.cells import Cell, Solved, cells, solve_cell
 from comparison.extremes.matrix import FILE, Matrix, as_entry, matrix, written
@@ -27,6 +26,7 @@ from comparison.extremes.verdicts import Verdict
 from comparison.extremes.worker import answers
 from comparison.provenance import provenance
 from comparison.sweep.executors import cores
+from comparison.sweep.progress import description, wide_console
 
 BRIEF = {"lubrication, s/m", "start at the friction limit", "outside the rules"}  # for the engine's models, too
 LIMIT = 180.0  # s for one cell with its finer runs: four times what the dearest takes of one processor
@@ -38,7 +38,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     if not given.limit > 0.0 or given.jobs < 1:
         print("command line: --limit and --jobs must be greater than 0", file=sys.stderr)
         return 2
-    console = Console(highlight=False)
+    console = wide_console()
     chosen = reduced(list(rows())) if given.reduced else list(rows())
     if given.only:
         chosen = [row for row in chosen if given.only in f"{row.group} {row.title}"]
@@ -91,9 +91,7 @@ def run(
     # the longest first: no process waits at the end for a cell that another has just begun
     tasks.sort(key=lambda cell: cell.row.quick)
     begin, began = time.monotonic(), datetime.now(UTC)
-    bar = Progress(
-        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), console=console
-    )
+    bar = Progress(description(), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), console=console)
     with bar:
         shown = bar.add_task("extremes", total=len(tasks))
 
@@ -103,7 +101,7 @@ def run(
             if entry.verdict == Verdict.FAILED or not console.is_terminal:
                 spent = "" if entry.seconds is None else f" ({entry.seconds:.1f} s, in all {entry.total:.1f} s)"
                 name = f"{cell.row.group} {cell.row.title}, {cell.column.title}"
-                bar.console.print(escape(f"{entry.verdict}: {name}: {entry.reason}{spent}"), soft_wrap=True)
+                bar.console.print(f"{entry.verdict}: {name}: {entry.reason}{spent}", soft_wrap=True)
 
         # the reference is compiled on its first use: not within the time of a cell
         asks = {name for column in columns for name in (column.amplification, *(finer[0] for finer in column.finer))}
@@ -128,9 +126,9 @@ def run(
 def _tell(console: Console, found: Matrix) -> None:
     """Counts, and what a model cannot do."""
     for row, title, entry in found.listed(Verdict.LIMIT):
-        console.print(escape(f"limit: {row.group} {row.title}, {title}: {entry.reason}"), soft_wrap=True)
+        console.print(f"limit: {row.group} {row.title}, {title}: {entry.reason}", soft_wrap=True)
     for row, title, entry in found.listed(Verdict.FAILED):
-        console.print(escape(f"FAILED: {row.group} {row.title}, {title}: {entry.reason}"), soft_wrap=True)
+        console.print(f"FAILED: {row.group} {row.title}, {title}: {entry.reason}", soft_wrap=True)
     counts = ", ".join(f"{count} {name}" for name, count in found.counts().items())
     spent = f"{found.run['seconds']} s, {found.run['cpu_seconds']} s of processor time"
     console.print(f"{sum(found.counts().values())} cells in {spent}: {counts}.", soft_wrap=True)

@@ -7,7 +7,7 @@ A rung names the function that answers for it ("package:function", the contract 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
@@ -58,7 +58,8 @@ class Rung:
     a built-in scene with 20 s of motion, on RECORDED_ON. `applies`: whether the scene gives it anything to add. `most`:
     phases per axis that its cost allows, or None; of a finer study it computes every k-th phase. `symmetric`: whether
     mirrored phases (symmetry.py) are known to give mirrored motions of the scene and are not computed again. `asks`:
-    the tolerance that was chosen for it (choice.py).
+    the tolerance that was chosen for it (choice.py). `refusal`: the function that tells from the scene alone why every
+    phase pair would be refused, or "" ("package:function", the contract of `multibody.refusal`).
     """
 
     key: str
@@ -75,6 +76,7 @@ class Rung:
     symmetric: Callable[[Scene], bool] = field(default=never)
     applies: Callable[[Scene], bool] = field(default=any_scene)
     asks: float | None = None
+    refusal: str | None = None
 
     def tolerance(self, asked: float) -> float:
         """Relative error this rung asks of its own numbers when the study asks for `asked`."""
@@ -103,32 +105,34 @@ def rungs_of(scene: Scene, ladder: Sequence[Rung]) -> list[Rung]:
     return [rung for rung in ladder if rung.applies(scene)]
 
 
-def pairs_of(scene: Scene, ladder: Sequence[Rung]) -> list[Pair]:
-    """The total difference, that within the paper's assumptions, and the like-for-like one: what the scene allows."""
-    rungs = rungs_of(scene, ladder)
+def pairs_of(scene: Scene, ladder: Sequence[Rung], silent: Collection[str] = ()) -> list[Pair]:
+    """
+    The total difference, that within the paper's assumptions, and the like-for-like one: what the scene allows.
+
+    Parameters
+    ----------
+    silent
+        Keys of models without a value. The total then leads from the first to the last model that has values. The
+        other two compare fixed models: without one of these they are left out.
+    """
+    asked = rungs_of(scene, ladder)
+    rungs = [rung for rung in asked if rung.key not in silent]
     first, last = rungs[0], rungs[-1]
-    reference = [rung for rung in rungs if rung.side == "reference"][-1]
-    engine = next((rung for rung in rungs if rung.side == "engine"), None)
-    if engine is None:  # no engine meets the tolerance, or fits the budget
-        return [Pair("total", "total", f"the paper's printed equations against {last.title}", first, last)]
-    pairs = [
-        Pair("total", "total", "the paper's printed equations against the most complete engine model", first, last),
-        Pair(
-            "translational",
-            "translational",
-            "the paper's printed equations against the engine under the paper's own assumption that no body turns",
-            first,
-            engine,
-        ),
-        Pair(
-            "like-for-like",
-            "like for like",
-            "same geometry and same friction law on both sides: this gap must close",
-            reference,
-            engine,
-        ),
-    ]
-    return [pair for pair in pairs if pair.key != "translational" or engine is not last]
+    printed = "the paper's printed equations" if first is asked[0] else f"the {first.title}"
+    reference = [rung for rung in asked if rung.side == "reference"][-1]
+    engine = next((rung for rung in asked if rung.side == "engine"), None)
+    complete = last is asked[-1] and engine is not None
+    other = "the most complete engine model" if complete else f"the {last.title}"
+    pairs = [Pair("total", "total", f"{printed} against {other}", first, last)]
+    if engine is None or engine not in rungs:  # it does not meet the tolerance, fit the budget, or answer
+        return pairs
+    if engine is not last and first is asked[0]:
+        sentence = f"{printed} against the engine under the paper's own assumption that no body turns"
+        pairs.append(Pair("translational", "translational", sentence, first, engine))
+    if reference in rungs:
+        sentence = "same geometry and same friction law on both sides: this gap must close"
+        pairs.append(Pair("like-for-like", "like for like", sentence, reference, engine))
+    return pairs
 
 
 _PEAK = "largest value the computed motion reaches"
@@ -207,6 +211,7 @@ TRANSLATIONAL = _next(
     side="engine",
     amplification="multibody:amplification",
     trajectory="multibody:trajectory",
+    refusal="multibody:refusal",
     settings={"model": "translational", "regularization": V_REG},
     seconds_per_point=0.35,
     tile=2,

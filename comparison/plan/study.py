@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.plan.ladder import LADDER, Rung
+from comparison.plan.ladder import LADDER, Pair, Rung, pairs_of, rungs_of
 from comparison.plan.savings import saving
 from comparison.plan.symmetry import sources
 from comparison.plan.tiles import Tile
-from reference.problem import Scene, phase_grid
+from reference.problem import Scene, SceneError, phase_grid
+
+
+def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
+    """Refuse a name of a scene or family that is there twice. names: each with its source. Raises SceneError."""
+    seen: dict[str, str] = {}
+    for source, name in names:
+        if name in seen:
+            rule = f"same name as {seen[name]}, which names its surfaces: give each scene once, rename a file"
+            raise SceneError(source, "scene", name, rule)
+        seen[name] = source
 
 
 @dataclass(frozen=True)
@@ -26,7 +36,8 @@ class Study:
     is the mirror image of another's are not computed again, and models leave out what the scene does not require,
     unless the study is `full`. A scene with a recorded motion has no phases: every model computes the one point (0, 0).
     costs: processor time of a point, s, by name of the scene and key of the model, where it is known better than by the
-    ladder (costs.py).
+    ladder (costs.py). silent: by name of the scene, the models that turned out to have no value there: comparisons pass
+    over them (account/unanswered.py).
     """
 
     scenes: tuple[Scene, ...]
@@ -35,6 +46,7 @@ class Study:
     ladder: Sequence[Rung] = LADDER
     full: bool = False
     costs: Mapping[tuple[str, str], float] | None = None
+    silent: Mapping[str, tuple[str, ...]] | None = None
 
     @cached_property
     def strides(self) -> dict[str, int]:
@@ -50,6 +62,15 @@ class Study:
     def phased(self) -> tuple[Scene, ...]:
         """The scenes that have phases."""
         return tuple(scene for scene in self.scenes if not scene.recorded)
+
+    def compared(self, scene: Scene) -> list[Rung]:
+        """The models of a scene that have values there, in order; all of them while nothing is computed."""
+        silent = (self.silent or {}).get(scene.name, ())
+        return [rung for rung in rungs_of(scene, self.ladder) if rung.key not in silent]
+
+    def pairs(self, scene: Scene) -> list[Pair]:
+        """The pairs of models that are compared on a scene."""
+        return pairs_of(scene, self.ladder, (self.silent or {}).get(scene.name, ()))
 
     def stride(self, rung: Rung, scene: Scene | None = None) -> int:
         """The model's stride; in a scene without phases the whole grid."""

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from comparison.plan.ladder import Rung
 from reference.problem import Outcome, Scene
 
 Array = NDArray[np.float64]
@@ -43,6 +44,14 @@ def imported(path: str) -> Any:
     """The object named "package.module:name"."""
     module, name = path.split(":")
     return getattr(import_module(module), name)
+
+
+def refusal_of(scene: Scene, rung: Rung, tolerance: float, full: bool = False) -> str:
+    """Why a model would refuse every phase pair of a scene, told without computing one; "" if it would not."""
+    if rung.refusal is None or not rung.applies(scene):
+        return ""
+    asked = {"full": True} if full else {}
+    return str(imported(rung.refusal)(scene, **rung.settings, tolerance=tolerance, **asked))
 
 
 def solve_tile(tile: Tile) -> Answer:

@@ -12,9 +12,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from comparison.account.budget import TOTAL, Entry
+from comparison.drawing.file_names import figure_file
 from comparison.plan.ladder import Rung
 from comparison.report.findings import Findings
-from reference.problem import Family
+from reference.problem import Family, verbatim
 
 COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00")  # told apart by every eye
 MARKERS = "osD^v<>"  # and in print
@@ -22,7 +23,7 @@ MARKERS = "osD^v<>"  # and in print
 
 def family_figure_name(family: Family, body: int) -> str:
     """File name of the figure of one family and body."""
-    return f"{family.name}-body{body}-family.png"
+    return figure_file(family.name, f"body{body}", "family")
 
 
 def draw_families(folder: Path, found: Findings) -> None:
@@ -42,7 +43,7 @@ def draw_family(path: Path, family: Family, entries: Sequence[Entry], ladder: Se
     figure = Figure(figsize=(13.0, 4.4), dpi=110)
     FigureCanvasAgg(figure)
     title = family.scenes[0].title
-    figure.suptitle(f"{title} ({family.name}), body {body}: what each model adds", fontsize=12, y=0.98)
+    figure.suptitle(verbatim(f"{title} ({family.name}), body {body}: what each model adds"), fontsize=12, y=0.98)
     left, right = figure.add_axes((0.06, 0.14, 0.31, 0.74)), figure.add_axes((0.44, 0.14, 0.31, 0.74))
     numbers = not any(isinstance(value, str) for value in family.values)
     places = np.array(family.values, dtype=float) if numbers else np.arange(len(family.values), dtype=float)
@@ -62,10 +63,10 @@ def draw_family(path: Path, family: Family, entries: Sequence[Entry], ladder: Se
     if _positive(right):
         right.set_yscale("log", nonpositive="mask")  # a step of exactly nothing has no place there
     for axes in (left, right):
-        axes.set_xlabel(family.key)
+        axes.set_xlabel(verbatim(family.key))
         axes.grid(color="0.9")
         if not numbers:
-            axes.set_xticks(places, [str(value) for value in family.values], rotation=20.0, fontsize=8)
+            axes.set_xticks(places, [verbatim(str(value)) for value in family.values], rotation=20.0, fontsize=8)
     figure.legend(*right.get_legend_handles_labels(), loc="center left", bbox_to_anchor=(0.765, 0.5), frameon=False)
     figure.savefig(path)
 

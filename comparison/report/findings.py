@@ -8,9 +8,10 @@ from typing import Any
 
 import xarray as xr
 
-from comparison.account.acceptance import broken_limits
+from comparison.account.acceptance import Limit, checked_limits
 from comparison.account.budget import Entry, budget
 from comparison.account.differences import Difference, differences
+from comparison.account.unanswered import Unanswered, unanswered
 from comparison.analyses.effective import Effective
 from comparison.analyses.slips import Effect
 from comparison.analyses.trajectories import StoredMotion
@@ -27,10 +28,10 @@ from reference.problem import Family
 class Findings:
     """
     surfaces: see `labelled_surfaces`. rows: differences of pairs of models. budget: what every rung adds. effective:
-    values read back from each model. effects: what slips of the print do to mu. broken: acceptance limits, one line
-    each. faults: what solvers complained about. run: command, times, provenance. pictures: files of the surfaces' by
-    name. Fields that may be None are what only some commands compute. motions: see `stored_motions`. claims, scaling,
-    convergence: see `further_findings`.
+    values read back from each model. effects: what slips of the print do to mu. unanswered: models without a value
+    somewhere. limits: the acceptance limits that scenes state, held against the rest. faults: what solvers complained
+    about. run: command, times, provenance. pictures: files of the surfaces' by name. Fields that may be None are what
+    only some commands compute. motions: see `stored_motions`. claims, scaling, convergence: see `further_findings`.
     assumptions: how far the paper's carry, see `Reach`. families: those of more than one scene. extremes: the
     matrix that `python -m comparison.extremes` left beside the report. tradeoff: what `python -m comparison.tradeoff`
     left there.
@@ -42,7 +43,8 @@ class Findings:
     budget: Sequence[Entry]
     effective: Sequence[Effective]
     effects: Sequence[Effect]
-    broken: Sequence[str]
+    unanswered: Sequence[Unanswered]
+    limits: Sequence[Limit]
     faults: Sequence[str]
     run: Mapping[str, Any]
     pictures: Mapping[str, bytes] = field(default_factory=dict)
@@ -55,6 +57,11 @@ class Findings:
     extremes: Matrix | None = None
     tradeoff: Sequence[Trade] | None = None
 
+    @property
+    def broken(self) -> list[str]:
+        """Acceptance limits that are broken, one line for each body."""
+        return [line for limit in self.limits for line in limit.broken]
+
 
 def findings(
     study: Study,
@@ -66,6 +73,17 @@ def findings(
     **more: Any,
 ) -> Findings:
     """What the surfaces say once they are complete; `more`: the fields that may be None."""
-    rows = differences(study, surfaces)
-    broken = broken_limits(study, surfaces, rows)
-    return Findings(study, surfaces, rows, budget(study, surfaces), effective, effects, broken, faults, run, **more)
+    rows, lacking = differences(study, surfaces), unanswered(study, surfaces)
+    return Findings(
+        study,
+        surfaces,
+        rows,
+        budget(study, surfaces),
+        effective,
+        effects,
+        lacking,
+        checked_limits(study, surfaces, rows, lacking),
+        faults,
+        run,
+        **more,
+    )

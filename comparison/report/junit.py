@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from xml.etree import ElementTree
 
+from comparison.account.acceptance import Limit
 from comparison.report.findings import Findings
 from reference.problem import Scene
+
+FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # what XML 1.0 cannot hold
 
 
 def junit(found: Findings) -> str:
@@ -21,14 +25,24 @@ def junit(found: Findings) -> str:
 
 def _suite(scene: Scene, found: Findings) -> ElementTree.Element:
     seconds = float(found.surfaces["cost"].sel(scene=scene.name).sum())
-    suite = ElementTree.Element("testsuite", name=scene.name, time=f"{seconds:.1f}", timestamp=str(found.run["began"]))
-    limits = {key: limit for key, limit in scene.acceptance.model_dump().items() if limit is not None}
-    for key, limit in limits.items():
-        case = ElementTree.SubElement(suite, "testcase", classname=scene.name, name=f"acceptance.{key} = {limit:g}")
-        broken = [line for line in found.broken if line.startswith(f"{scene.name}: ") and f"acceptance.{key}:" in line]
-        if broken:
-            ElementTree.SubElement(case, "failure", message=broken[0]).text = "\n".join(broken)
+    name, began = _allowed(scene.name), str(found.run["began"])
+    suite = ElementTree.Element("testsuite", name=name, time=f"{seconds:.1f}", timestamp=began)
+    limits = [limit for limit in found.limits if limit.scene == scene.name]
+    suite.extend([_case(name, limit) for limit in limits])
     suite.set("tests", str(len(limits)))
     suite.set("failures", str(len(suite.findall("testcase/failure"))))
     suite.set("errors", "0")
     return suite
+
+
+def _case(scene: str, limit: Limit) -> ElementTree.Element:
+    case = ElementTree.Element("testcase", classname=scene, name=f"acceptance.{limit.key} = {limit.allowed:g}")
+    if limit.broken:
+        lines = [_allowed(line) for line in limit.broken]
+        ElementTree.SubElement(case, "failure", message=lines[0]).text = "\n".join(lines)
+    return case
+
+
+def _allowed(text: str) -> str:
+    """The text, every character that XML cannot hold replaced."""
+    return FORBIDDEN.sub("\ufffd", text)

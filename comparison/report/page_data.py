@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from comparison.account.differences import pair_step
 from comparison.account.surfaces import common_phases
 from comparison.analyses.trajectories import Place, StoredMotion
-from comparison.plan.ladder import Pair, pairs_of, rungs_of
+from comparison.plan.ladder import Pair, rungs_of
 from comparison.plan.study import Study
 from comparison.report.findings import Findings
 from reference.problem import Scene
@@ -78,7 +78,7 @@ def _scene(found: Findings, scene: Scene, surfaces: xr.Dataset, starts: Starts) 
         mu = common_phases(surfaces, scene.name, [model])["mu"].sel(model=model, body=body).values
         return [[float(f"{value:.7g}") if np.isfinite(value) else None for value in row] for row in mu]
 
-    pairs = pairs_of(scene, study.ladder)
+    pairs = study.pairs(scene)
     return {
         "duration": scene.duration,
         "pairs": {pair.key: [pair.first.key, pair.second.key] for pair in pairs},

@@ -20,6 +20,8 @@ import xarray as xr
 from plotly.offline import get_plotlyjs
 
 from comparison.account.differences import Difference
+from comparison.account.surfaces import outcome_counts
+from comparison.account.unanswered import advice
 from comparison.account.verdicts import bar, verdict
 from comparison.analyses.effective import PHASES
 from comparison.analyses.slips import SLIPS, Effect
@@ -32,19 +34,19 @@ from comparison.drawing.pictures import PAGE, for_page, smaller
 from comparison.extremes.figure import COLOURS, MEANING, PICTURE, draw_extremes, said
 from comparison.extremes.matrix import written
 from comparison.extremes.verdicts import Verdict
-from comparison.plan.ladder import Pair, pairs_of, rungs_of
+from comparison.plan.ladder import Pair, rungs_of
 from comparison.plan.study import Study
-from comparison.report.family_figure import draw_families
+from comparison.report.family_figure import draw_families, family_figure_name
 from comparison.report.findings import Findings
 from comparison.report.junit import junit
 from comparison.report.page_data import packed, packed_motions, page_data
 from comparison.report.record_rows import record_rows
-from comparison.report.summary import outcome_counts, summary
+from comparison.report.summary import summary
 from comparison.report.summary_text import summary_text
 from comparison.report.verification import CHECKS
 from comparison.tradeoff.figure import draw_tradeoff, tradeoff_figure_name
 from comparison.wording import degrees, percent, scientific, significant, symbols
-from reference.problem import ADVICE, Outcome, Scene
+from reference.problem import Outcome, Scene
 
 
 @dataclass(frozen=True)
@@ -54,7 +56,7 @@ class Section:
 
     finding: the field of `Findings` it shows, at hand in the template as `section_data`; where that is None the section
     is left out and `absent` says which command makes it. draw: writes its pictures into the folder of the figures; the
-    template shows one by {{ picture("file name") }}.
+    template shows one by {{ picture("file name") }}. title_recorded: title where no scene has phases, "" for the same.
     """
 
     name: str
@@ -62,6 +64,7 @@ class Section:
     finding: str = ""
     absent: str = ""
     draw: Callable[[Path, Findings], None] | None = None
+    title_recorded: str = ""
 
     def present(self, found: Findings) -> bool:
         """Whether the findings hold what the section shows."""
@@ -98,7 +101,7 @@ SECTIONS = (
         "a range in a scene file makes one: friction = {range = [0.02, 0.2], steps = 10}",
         draw_families,
     ),
-    Section("surfaces", "Surfaces"),
+    Section("surfaces", "Surfaces", title_recorded="Values under the records"),
     Section("outcomes", "Outcomes and cost"),
     Section("models", "What was compared"),
     Section(
@@ -172,11 +175,19 @@ def _page(figures: Path, found: Findings) -> str:
         sections=[section for section in SECTIONS if section.present(found)],
         absent=[section for section in SECTIONS if not section.present(found)],
         found=found,
+        figure_names={
+            "assumptions": assumption_figure_name,
+            "family": family_figure_name,
+            "tradeoff": tradeoff_figure_name,
+        },
         picture=lambda name: _inlined(smaller((figures / name).read_bytes())),
         study=study,
         run=found.run,
         scenes=[_scene(found, scene) for scene in study.scenes],
-        pairs=list({pair.key: pair for scene in study.scenes for pair in pairs_of(scene, study.ladder)}.values()),
+        question=_question(study),
+        compared=_compared(study),
+        section_titles={s.name: s.title if study.phased else s.title_recorded or s.title for s in SECTIONS},
+        pairs=list({pair.key: pair for scene in study.scenes for pair in study.pairs(scene)}.values()),
         ladder=ladder,
         step_numbers={rung.key: number for number, rung in enumerate(ladder)},
         titles={"scene": "as stated", **{rung.key: rung.title for rung in study.ladder}},
@@ -194,7 +205,6 @@ def _page(figures: Path, found: Findings) -> str:
         hump_share=SHARE,
         hump_shares=(LEAST_SHARE, MOST_SHARE),
         outcomes=_outcomes(study, found.surfaces),
-        advice=ADVICE,
         broken=found.broken,
         faults=found.faults,
         style=(templates / "report.css").read_text(encoding="utf-8"),
@@ -205,8 +215,22 @@ def _page(figures: Path, found: Findings) -> str:
     )
 
 
+def _question(study: Study) -> str:
+    """Over what the page shows the amplification factors: phases, records, or both."""
+    phases = f"over {study.grid} × {study.grid} initial phases of the two-frequency loading"
+    if not study.phased:
+        return "under a recorded motion" if len(study.scenes) == 1 else "under recorded motions"
+    return phases if len(study.phased) == len(study.scenes) else f"{phases}, or under a recorded motion"
+
+
+def _compared(study: Study) -> str:
+    """Which models the total difference compares, if it is the same in every scene."""
+    sentences = {study.pairs(scene)[0].sentence for scene in study.scenes}
+    return sentences.pop() if len(sentences) == 1 else "the first against the last model that has values, in each scene"
+
+
 def _scene(found: Findings, scene: Scene) -> dict[str, Any]:
-    pairs = pairs_of(scene, found.study.ladder)
+    pairs = found.study.pairs(scene)
     own = [row for row in found.rows if row.scene == scene.name]
     return {
         "scene": scene,
@@ -233,7 +257,7 @@ def _verdict(pair: Pair, rows: Sequence[Difference], recorded: bool) -> str:
     """One line: how large the pair's difference is, and where."""
     known = [row for row in rows if math.isfinite(row.maximum)]
     if not known:
-        return f"{pair.title.capitalize()}: no phase pair has a value on both sides."
+        return f"{pair.title.capitalize()}: {'no value' if recorded else 'no phase pair has a value'} on both sides."
     worst = max(known, key=lambda row: row.maximum)
     if recorded:
         sizes = ", ".join(f"{percent(row.maximum)} for body {row.body}" for row in rows)
@@ -298,6 +322,11 @@ def _outcomes(study: Study, surfaces: xr.Dataset) -> list[dict[str, Any]]:
             "counts": outcome_counts(surfaces, scene.name, rung.key),
             "points": study.points(rung, scene),
             "cost": float(surfaces["cost"].sel(scene=scene.name, model=rung.key)),
+            "others": [
+                f"{count} × {outcome}: {advice(study, scene, rung, outcome)}"
+                for outcome, count in outcome_counts(surfaces, scene.name, rung.key).items()
+                if outcome != Outcome.OK
+            ],
             "ok": outcome_counts(surfaces, scene.name, rung.key).get(Outcome.OK.value, 0),
         }
         for scene in study.scenes

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
-from comparison.account.surfaces import common_phases
+from comparison.account.surfaces import outcome_counts
 from comparison.account.verdicts import verdict
 from comparison.analyses.further import claims_summary, trends_summary
 from comparison.analyses.slips import SLIPS
@@ -20,12 +18,6 @@ from reference.problem import Scene
 
 SCHEMA = "phase-resonance/summary"
 VERSION = 2
-
-
-def outcome_counts(surfaces: xr.Dataset, scene: str, model: str) -> dict[str, int]:
-    """How many of the phase pairs asked of the model ended in each outcome, most frequent first."""
-    status = common_phases(surfaces, scene, [model])["status"].sel(model=model)
-    return dict(Counter(np.asarray(status).ravel().tolist()).most_common())
 
 
 def summary(found: Findings) -> dict[str, Any]:
@@ -73,6 +65,7 @@ def summary(found: Findings) -> dict[str, Any]:
             }
             for family in found.families
         ],
+        "unanswered": [asdict(one) for one in found.unanswered],
         "broken": list(found.broken),
         "faults": list(found.faults),
     }

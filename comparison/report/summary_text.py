@@ -2,37 +2,50 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from math import isnan
 
+from comparison.account.surfaces import outcome_counts
 from comparison.account.verdicts import bar, verdict
 from comparison.plan.ladder import rungs_of
 from comparison.report.findings import Findings
-from comparison.report.summary import outcome_counts
 from comparison.wording import degrees, percent
 from reference.problem import Outcome
+
+MARKS = re.compile(r"[\\|<>*_`\[\]#~$&!]")
 
 
 def summary_text(found: Findings) -> str:
     """GitHub's Markdown."""
     study, run = found.study, found.run
     count = len(study.scenes)
-    heading = f"## Phase-resonance study: {count} scene{'' if count == 1 else 's'}, {study.grid} × {study.grid} phases"
-    if len(study.phased) < count:
-        heading += ", one value under each recorded motion"
-    parts = [heading, _limits(found.broken), _verdicts(found), *_differences(found), *_budget(found), *_lost(found)]
+    kinds = [f"{study.grid} × {study.grid} phases"] if study.phased else []
+    kinds += ["one value under each recorded motion"] if len(study.phased) < count else []
+    heading = f"## Phase-resonance study: {count} scene{'' if count == 1 else 's'}, {', '.join(kinds)}"
+    parts = [heading, _limits(found), *_unanswered(found), _verdicts(found)]
+    parts += [*_differences(found), *_budget(found), *_lost(found)]
+    shown = "Surfaces to turn, motions" if study.phased else "Motions"
     made = ", ".join(
         f"{name} {run['provenance'][name]}" for name in ("commit", "exudyn", "numba") if name in run["provenance"]
     )
     parts.append(
         "The two codes are cross-verified, not validated: no measurement is involved.  \n"
-        f"`{run['command']}`: {run['seconds']} s with {run['jobs']} workers, began {run['began']}; {made}. "
-        "Surfaces to turn, motions, assumptions and provenance: `index.html` of the report."
+        f"{_code(run['command'])}: {run['seconds']} s with {run['jobs']} workers, began {run['began']}; {made}. "
+        f"{shown}, assumptions and provenance: `index.html` of the report."
     )
     return "\n\n".join(parts) + "\n"
 
 
-def _limits(broken: Sequence[str]) -> str:
+def _unanswered(found: Findings) -> list[str]:
+    """Models without a value somewhere."""
+    return ["\n".join(f"- {_plain(one.sentence)}" for one in found.unanswered)] if found.unanswered else []
+
+
+def _limits(found: Findings) -> str:
+    broken = found.broken
+    if not found.limits:
+        return "No scene states acceptance limits: nothing was checked."
     if not broken:
         return "**Every acceptance limit holds.**"
     lines = "\n".join(f"- {_plain(line)}" for line in broken)
@@ -43,7 +56,7 @@ def _verdicts(found: Findings) -> str:
     study = found.study
     said = [(scene, verdict(study, found.surfaces, scene)) for scene in study.scenes]
     return "\n".join(
-        f"- **{scene.name}** ({_plain(scene.title)}): {_plain(one.sentence.replace('mu_', 'μ_'))}"
+        f"- **{_plain(scene.name)}** ({_plain(scene.title)}): {_plain(one.sentence.replace('mu_', 'μ_'))}"
         for scene, one in said
     )
 
@@ -84,7 +97,7 @@ def _budget(found: Findings) -> list[str]:
 
 def _lost(found: Findings) -> list[str]:
     lines = [
-        f"- {scene.name}, {rung.title}: {count} × {outcome}"
+        f"- {_plain(scene.name)}, {_plain(rung.title)}: {count} × {outcome}"
         for scene in found.study.scenes
         for rung in rungs_of(scene, found.study.ladder)
         for outcome, count in outcome_counts(found.surfaces, scene.name, rung.key).items()
@@ -94,13 +107,19 @@ def _lost(found: Findings) -> list[str]:
     return ["### Points that are not ok", "\n".join(lines)] if lines else []
 
 
+def _code(text: str) -> str:
+    """A text as code, between more backticks than stand in it anywhere."""
+    fence = "`" * (1 + max((len(ticks) for ticks in re.findall("`+", text)), default=0))
+    space = " " if "`" in text else ""
+    return f"{fence}{space}{text}{space}{fence}"
+
+
 def _table(names: Sequence[str], rows: Sequence[Sequence[str]], left: int) -> str:
     rule = [":---" if index < left else "---:" for index in range(len(names))]
     return "\n".join("| " + " | ".join(_plain(cell) for cell in row) + " |" for row in [names, rule, *rows])
 
 
 def _plain(text: str) -> str:
-    """Nothing in a text of ours or of a scene is to be read as Markdown."""
-    for mark in "\\|<*_`":
-        text = text.replace(mark, f"\\{mark}")
-    return text
+    """A text on one line in which nothing is read as Markdown, HTML or a formula."""
+    shown = "".join(letter if letter.isprintable() else " " for letter in text)
+    return MARKS.sub(r"\\\g<0>", shown)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from rich.console import Console
 
-from comparison.plan.overhead import START_UP
+from comparison.plan.overhead import COMPILED_ONCE, START_UP
 from comparison.plan.study import Study
 from comparison.plan.tiles import Answer, Tile, solve_tile, unanswered
 from comparison.sweep.answers import Answers
@@ -114,7 +114,7 @@ def _solved(
     titles = {WARM_UP: COMPILING, **{rung.key: rung.title for rung in study.ladder}}
     compiled = {rung.key for rung in study.ladder if rung.side == "reference"}
     pending = {WARM_UP}
-    console.print("On a new installation the reference is compiled first, once: that takes minutes.")
+    console.print(COMPILED_ONCE)
     with progress(console, stages, jobs) as display:
 
         def done(piece: Piece, answer: Answer | Fetched | None) -> None:

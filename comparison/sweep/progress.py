@@ -17,8 +17,18 @@ PLAIN_WIDTH = 120  # columns of a table that goes to a file or a pipe
 
 
 def wide_console() -> Console:
-    """Standard output: as wide as the terminal, or PLAIN_WIDTH columns where there is none."""
-    return Console(highlight=False, width=None if sys.stdout.isatty() else PLAIN_WIDTH)
+    """
+    Standard output: as wide as the terminal, or PLAIN_WIDTH columns where there is none.
+
+    Every text is printed as it is: brackets and colons in names and titles are no markup.
+    """
+    width = None if sys.stdout.isatty() else PLAIN_WIDTH
+    return Console(highlight=False, markup=False, emoji=False, width=width)
+
+
+def description() -> TextColumn:
+    """The name of a bar as it is; a bar's own default would read brackets in it as markup."""
+    return TextColumn("{task.description}", markup=False)
 
 
 @dataclass(frozen=True)
@@ -42,7 +52,7 @@ def progress(console: Console, stages: Mapping[str, Stage], jobs: int) -> Iterat
     if not console.is_terminal:
         yield Lines(console, stages, jobs)
         return
-    columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[count]}"), TimeRemainingColumn()
+    columns = description(), BarColumn(), TextColumn("{task.fields[count]}", markup=False), TimeRemainingColumn()
     with Progress(*columns, console=console) as bars:
         yield Bars(bars, stages)
 

@@ -20,9 +20,10 @@ from typing import Any
 import xarray as xr
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
 
+from comparison.drawing.file_names import with_ending
+from comparison.plan.study import refuse_same_names
 from comparison.provenance import provenance
 from comparison.sweep.executors import Pool, cores, process_pool
 from comparison.sweep.progress import Stage, progress, wide_console
@@ -48,6 +49,7 @@ def main(argv: Sequence[str] | None = None, executor: Pool = process_pool) -> in
             if scene.recorded:
                 rule = "its truths are for phases, which a recorded motion has not: give a scene of two frequencies"
                 raise SceneError(scene.name, "excitation.record", scene.name, rule)
+        refuse_same_names((scene.name, scene.name) for scene in scenes)
         given.out.mkdir(parents=True, exist_ok=True)
         before = {trade.scene: trade for trade in read(given.out) or []}
         trades = []
@@ -111,8 +113,9 @@ def _kept(trade: Trade, data: xr.Dataset, folder: Path) -> None:
     """Values and picture of one scene."""
     from comparison.tradeoff.figure import draw_tradeoff, tradeoff_figure_name  # plotting: not needed to refuse
 
-    data.to_netcdf(folder / f"{trade.scene}-tradeoff.nc", engine="h5netcdf")
-    draw_tradeoff(folder / tradeoff_figure_name(trade.scene), trade)
+    picture = folder / tradeoff_figure_name(trade.scene)
+    data.to_netcdf(with_ending(picture, ".nc"), engine="h5netcdf")
+    draw_tradeoff(picture, trade)
 
 
 def print_trade(console: Console, trade: Trade) -> None:
@@ -128,7 +131,7 @@ def print_trade(console: Console, trade: Trade) -> None:
             if any(entry.front):
                 sizes = ("  ".join(f"{part:.0e}" for part in parts) for parts in (entry.median, entry.most))
                 value = f"{entry.value:.0e} {entry.unit}".strip()
-                table.add_row(escape(entry.method), value, f"{entry.seconds:.4f}", *sizes)
+                table.add_row(entry.method, value, f"{entry.seconds:.4f}", *sizes)
         console.print(table)
 
 

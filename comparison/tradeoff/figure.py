@@ -11,8 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from comparison.drawing.figures import save
+from comparison.drawing.file_names import figure_file
 from comparison.tradeoff.trade import Answered, Entry, Trade
-from comparison.wording import mathtext, verbatim
+from comparison.wording import mathtext
+from reference.problem import verbatim
 
 LOWEST, HIGHEST = 1e-12, 10.0
 # one hue for each family, a marker for each method in it: told apart without colours, too
@@ -29,7 +31,7 @@ MARKERS = "osD^v<>PX*"
 
 def tradeoff_figure_name(scene: str) -> str:
     """File name of the diagrams of one scene."""
-    return f"{scene}-tradeoff.png"
+    return figure_file(scene, "tradeoff")
 
 
 def draw_tradeoff(path: Path, trade: Trade) -> None:

@@ -9,6 +9,7 @@ from reference.problem.excitation import (
     loading_period,
 )
 from reference.problem.family import Family, load_family
+from reference.problem.figure_text import verbatim
 from reference.problem.outcome import ADVICE, Outcome
 from reference.problem.reductions import (
     Reduction,
@@ -61,4 +62,5 @@ __all__ = [
     "planar_chain",
     "untilted",
     "unused_harmonics",
+    "verbatim",
 ]

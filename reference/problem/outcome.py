@@ -28,7 +28,8 @@ ADVICE: dict[Outcome, str] = {
     Outcome.PAINLEVE: "the mass matrix of (3.9) lost its sign: lower the friction coefficient or the swing",
     Outcome.NON_FINITE_LOAD: "loads or stiffness overflow double precision: rescale the scene",
     Outcome.NO_GROUND_MOTION: "(5.1) divides by the ground acceleration: give a nonzero amplitude",
-    Outcome.STEP_LIMIT: "more steps than allowed: shorten the duration or loosen the tolerance",
+    Outcome.STEP_LIMIT: "the steps or the work of one point are spent: shorten the duration; a looser tolerance may "
+    "help the equations, not the engine",
     Outcome.SOLVER_FAILED: "the equations of a step could not be solved: loosen the tolerance or change v_reg",
     Outcome.WORKER_DIED: "the process that computed this point died: run the point alone",
 }

@@ -17,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, Validatio
 
 from reference.problem.record_files import GRAVITY as GRAVITY
 from reference.problem.recorded import EXAMPLES, with_samples
-from reference.problem.scene_error import EXCITATIONS, MisfitError, SceneError, first_fault
+from reference.problem.scene_error import EXCITATIONS, MisfitError, SceneError, UnknownKeyError, first_fault
 
 SOFTEST = 0.1  # of the radius: what supports may give way by under the weight
 Positive = Annotated[float, Field(gt=0.0)]
@@ -26,10 +26,22 @@ PerAxis = Annotated[list[Positive], Field(min_length=2, max_length=2)]
 PerHarmonic = Annotated[list[float], Field(min_length=2, max_length=2)]
 
 
+UNWRITTEN = ("name", "samples")  # fields that no scene file holds
+
+
 class Table(BaseModel):
     """One table of the file: unknown keys, wrong types and non-finite numbers are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys(cls, data: Any) -> Any:
+        """Refuse an unknown key with the nearest valid ones. Raises UnknownKeyError."""
+        for key in data if isinstance(data, dict) else ():
+            if key not in cls.model_fields:
+                raise UnknownKeyError(str(key), data[key], [name for name in cls.model_fields if name not in UNWRITTEN])
+        return data
 
 
 def exactly_one(table: BaseModel, first: str, second: str) -> None:
@@ -95,14 +107,53 @@ def _kind(excitation: Any) -> str:
     return EXCITATIONS[int(recorded)]
 
 
-class Acceptance(Table):
-    """Limits for `--check`: exact equations against the translational engine model, same v_reg."""
+class Limits(Table):
+    """Limits of the relative difference of two models over the phases, for every body."""
 
-    median: Positive | None = None  # relative difference of mu_i over the phases, per body
-    maximum: Positive | None = None
-    ratio: Positive | None = None  # largest difference in units of the two error estimates together, per body
-    closure: Positive | None = None  # largest |sum of the ladder's steps - total| relative to mu_i, per body
-    failed: Annotated[int, Field(ge=0)] = 0  # points without an answer, on both sides together
+    median: Positive | None = None  # of mu_i
+    maximum: Positive | None = None  # of mu_i
+    ratio: Positive | None = None  # largest difference in units of the two error estimates together
+
+    def stated(self) -> dict[str, float]:
+        """The limits that are given, by key."""
+        limits = {"median": self.median, "maximum": self.maximum, "ratio": self.ratio}
+        return {key: limit for key, limit in limits.items() if limit is not None}
+
+
+class Acceptance(Limits):
+    """Limits for `--check`. The keys of `Limits` given here are those of `like_for_like`."""
+
+    total: Limits | None = None  # the paper's printed equations against the most complete model
+    translational: Limits | None = None  # the same against the engine in which no body turns
+    like_for_like: Limits | None = None  # exact equations against that engine, same friction law
+    closure: Positive | None = None  # largest |sum of the steps of the models - total| relative to mu_i, per body
+    failed: Annotated[int, Field(ge=0)] | None = None  # points without an answer, of all models; 0 beside other limits
+
+    @model_validator(mode="after")
+    def _once(self) -> Acceptance:
+        if twice := sorted(self.stated().keys() & (self.like_for_like or Limits()).stated().keys()):
+            raise ValueError(f"give {twice[0]} here or in like_for_like, which mean the same, not in both")
+        return self
+
+    def differences(self) -> list[tuple[str, str, str, float]]:
+        """Key as written, pair of models, measure and limit of every difference that is limited."""
+        tables = (
+            ("", "like-for-like", self),
+            ("like_for_like.", "like-for-like", self.like_for_like),
+            ("translational.", "translational", self.translational),
+            ("total.", "total", self.total),
+        )
+        return [
+            (f"{start}{key}", pair, key, limit)
+            for start, pair, limits in tables
+            if limits is not None
+            for key, limit in limits.stated().items()
+        ]
+
+    @property
+    def failures(self) -> int | None:
+        """Points without an answer that are allowed: none where only other limits are given; None without any limit."""
+        return 0 if self.failed is None and (self.differences() or self.closure is not None) else self.failed
 
 
 class Scene(Table):

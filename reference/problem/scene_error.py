@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from typing import Any
 
 from pydantic import ValidationError
@@ -28,6 +29,16 @@ class MisfitError(ValueError):
         super().__init__(f"{key}: {rule}")
 
 
+class UnknownKeyError(ValueError):
+    """A key that its table does not know; the message names the most similar of the `valid` ones."""
+
+    def __init__(self, key: str, value: Any, valid: list[str]) -> None:
+        self.key, self.value = key, value
+        near = get_close_matches(key, valid, 1)
+        help_ = f"did you mean {near[0]!r}?" if near else f"valid here: {', '.join(valid)}"
+        super().__init__(f"unknown key; {help_}")
+
+
 def one_line(text: str) -> str:
     """The text, or its Python literal if it would break the line."""
     return text if text.isprintable() else repr(text)
@@ -42,13 +53,15 @@ def first_fault(file: str, fault: ValidationError) -> SceneError:
     """The first thing pydantic found wrong, said in the words of the scene file."""
     errors = fault.errors(include_url=False)
     # a misspelt key is unknown and its right name is missing: the first says more
-    error = next((error for error in errors if error["type"] == "extra_forbidden"), errors[0])
-    misfit = error.get("ctx", {}).get("error")
+    causes = [error.get("ctx", {}).get("error") for error in errors]
+    unknown = next((place for place, cause in enumerate(causes) if isinstance(cause, UnknownKeyError)), 0)
+    error, misfit = errors[unknown], causes[unknown]
     if isinstance(misfit, MisfitError):
         return SceneError(file, misfit.key, misfit.value, misfit.rule)
     key = ".".join(str(part) for part in error["loc"] if part not in EXCITATIONS) or "scene"
-    if error["type"] == "extra_forbidden":
-        return SceneError(file, key, error["input"], "unknown key; remove it or correct its spelling")
+    if isinstance(misfit, UnknownKeyError):
+        path = misfit.key if key == "scene" else f"{key}.{misfit.key}"
+        return SceneError(file, path, misfit.value, str(misfit))
     if error["type"] == "missing":
         return SceneError(file, key, None, "this key is required")
     rule = error["msg"].removeprefix("Value error, ")

@@ -84,6 +84,27 @@ def uneven(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bo
     return smooth(scene, phases, tolerance)
 
 
+def refused(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
+    """Takes no step at any phase pair."""
+    answer = smooth(scene, phases, tolerance)
+    nothing, points = np.full_like(answer.mu, np.nan), len(phases)
+    return Amplification(nothing, nothing, np.full(points, Outcome.STEP_LIMIT.value), np.zeros(points), 0.0)
+
+
+def why_refused(scene: Scene, tolerance: float) -> str:
+    return "refused before any step: 3 times the work, shorten the duration to 7 s"
+
+
+def unmoved(scene: Scene, phase: Sequence[float], tolerance: float) -> Trajectory:
+    """A motion that was never begun."""
+    none = np.empty((0, len(scene.bodies), 3))
+    return Trajectory(np.empty(0), none, none, none, np.empty(0), [], Outcome.STEP_LIMIT.value, 0.0)
+
+
+def never_refused(scene: Scene, **settings: object) -> str:
+    return ""
+
+
 def forbidden(scene: Scene, phases: object, **settings: object) -> Amplification:
     raise AssertionError("nothing should have been computed")
 
@@ -126,7 +147,7 @@ def known_motions(study: Study, surfaces: xr.Dataset, *rest: object) -> list[Sto
     for scene in study.scenes:
         circle = np.stack([np.cos(time), np.sin(time)], axis=1)[:, None, :].repeat(len(scene.bodies), axis=1)
         for place in chosen_places(study, surfaces, scene):
-            for number, rung in enumerate(shown_rungs(scene, study.ladder)):
+            for number, rung in enumerate(shown_rungs(study, scene)):
                 at = 0.01 * (1 + number) * circle
                 found.append(StoredMotion(place, rung.key, time, at, -at, ((2.0, 3.0),)))
     return found
@@ -147,8 +168,18 @@ def errors_in(gaps: Mapping[str, float], claimed: Mapping[str, float] | None = N
             amplification="fake_models:planted",
             settings={"gap": gaps.get(rung.key, 0.0), "claimed": (claimed or {}).get(rung.key, 1e-5)},
             symmetric=never,
+            refusal=None,
         )
         for rung in LADDER
+    )
+
+
+def silenced(*keys: str, gap: float = 5e-5) -> tuple[Rung, ...]:
+    """The fake ladder in which the models named refuse every phase pair."""
+    functions = {"amplification": "fake_models:refused", "refusal": "fake_models:why_refused"}
+    return tuple(
+        replace(rung, **functions, trajectory="fake_models:unmoved", settings={}) if rung.key in keys else rung
+        for rung in fake_ladder(gap=gap)
     )
 
 
@@ -158,6 +189,10 @@ def fake_ladder(engine: str = "smooth", gap: float = 0.01, tile: int = 4) -> tup
     for rung in LADDER:
         name = engine if rung.side == "engine" else "smooth"
         settings = {"gap": gap} if (rung.side, name) == ("engine", "smooth") else {}
-        functions = {"amplification": f"fake_models:{name}", "trajectory": "fake_models:forbidden"}
+        functions = {
+            "amplification": f"fake_models:{name}",
+            "trajectory": "fake_models:forbidden",
+            "refusal": None if rung.refusal is None else "fake_models:never_refused",
+        }
         rungs.append(replace(rung, **functions, settings=settings, tile=tile, symmetric=never))
     return tuple(rungs)

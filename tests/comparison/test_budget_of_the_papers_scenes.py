@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from comparison.account.acceptance import broken_limits
+from comparison.account.acceptance import checked_limits
 from comparison.account.budget import budget, closure, steps
 from comparison.account.differences import differences
 from comparison.account.surfaces import labelled_surfaces
+from comparison.account.unanswered import unanswered
 from comparison.plan.study import Study
 from comparison.plan.tiles import solve_tile
 from reference.problem import builtin_scenes, load_scene
@@ -24,7 +25,9 @@ def test_the_budget_closes_and_no_like_for_like_step_exceeds_twice_its_uncertain
     study = Study((scene,), GRID, 1e-3)
     tiles = study.tiles()
     surfaces = labelled_surfaces(study, tiles, [solve_tile(tile) for tile in tiles])
-    assert broken_limits(study, surfaces, differences(study, surfaces)) == []
+    limits = checked_limits(study, surfaces, differences(study, surfaces), unanswered(study, surfaces))
+    assert len(limits) == 5
+    assert [line for limit in limits for line in limit.broken] == []
     for body in range(1, len(scene.bodies) + 1):
         found = steps(study, surfaces, name, body)
         assert closure(found) < 1e-14  # rounding of a handful of numbers near 1

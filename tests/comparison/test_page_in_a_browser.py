@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import without_errands
+from fake_models import fake_ladder, silenced
 from matplotlib.image import imread
 from playwright.sync_api import Browser, Locator, Page, sync_playwright
+
+import comparison.run
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-sync"]
@@ -169,3 +174,21 @@ def test_nothing_was_asked_of_a_network_and_nothing_complained(visit: Visit, fin
     """Last: after all that was done to the page above."""
     assert visit.complaints == []
     assert visit.requests == [(finished / "index.html").as_uri()]
+
+
+def test_surfaces_without_any_value_are_said_to_have_none(
+    browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    without_errands(monkeypatch)
+    monkeypatch.setattr(comparison.run, "slip_effects", lambda *rest: [])
+    monkeypatch.setattr(comparison.run, "stored_motions", lambda *rest: [])
+    monkeypatch.setattr(comparison.run, "further_findings", lambda *rest: {})
+    ladder = silenced(*(rung.key for rung in fake_ladder()))
+    words = ["fig3-I", "--grid", "2", "--jobs", "2", "--out", str(tmp_path / "report")]
+    assert comparison.run.main(words, ladder, ThreadPoolExecutor) == 0
+    visit = _opened(browser, tmp_path / "report" / "index.html", LAPTOP)
+    box = _drawn(visit.page, 0)
+    assert box.inner_text().count("no value at any phase pair") == 3
+    assert "could not be drawn" not in visit.page.inner_text("body")
+    assert visit.complaints == []
+    visit.page.close()

@@ -16,11 +16,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from comparison.account.acceptance import broken_limits
+from comparison.account.acceptance import checked_limits
 from comparison.account.budget import TOTAL, closure, steps
 from comparison.account.differences import differences
 from comparison.account.steps import RESOLVED
 from comparison.account.surfaces import labelled_surfaces
+from comparison.account.unanswered import unanswered
 from comparison.plan.ladder import LADDER, Rung
 from comparison.plan.study import Study
 from comparison.plan.tiles import solve_tile
@@ -144,10 +145,14 @@ def test_a_mistake_moves_the_steps_to_and_from_its_rung_and_no_other(
 def test_a_mistake_on_either_side_of_the_like_for_like_step_breaks_the_limit_of_twice_its_uncertainty(
     sound: Solved, mistake: Mistake
 ) -> None:
-    rows = differences(sound.study, sound.surfaces)
-    assert broken_limits(sound.study, sound.surfaces, rows) == []
-    wrong = _with(sound, mistake)
-    lines = broken_limits(wrong.study, wrong.surfaces, differences(wrong.study, wrong.surfaces))
+    def broken(solved: Solved) -> list[str]:
+        rows = differences(solved.study, solved.surfaces)
+        limits = checked_limits(solved.study, solved.surfaces, rows, unanswered(solved.study, solved.surfaces))
+        assert [limit.key for limit in limits] == ["median", "maximum", "ratio", "closure", "failed"]
+        return [line for limit in limits for line in limit.broken]
+
+    assert broken(sound) == []
+    lines = broken(_with(sound, mistake))
     assert any(f"body {mistake.body}: acceptance.ratio" in line for line in lines), lines
 
 

@@ -108,4 +108,4 @@ def test_nothing_of_a_scene_is_read_as_markup(name: str, command: Callable[..., 
     if name == "junit.xml":
         assert ElementTree.fromstring(text).tag == "testsuites"
     else:
-        assert r"a \| b \<c> \*d\* & \`e\`" in text
+        assert r"a \| b \<c\> \*d\* \& \`e\`" in text

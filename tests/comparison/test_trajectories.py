@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 import comparison.analyses.trajectories
 from comparison.account.surfaces import labelled_surfaces
 from comparison.analyses.trajectories import SHARE, chosen_places, moved, shown_rungs, stored_motions, thinned
-from comparison.plan.ladder import pairs_of
 from comparison.plan.study import Study
 from comparison.plan.tiles import solve_tile
 from reference.problem import Scene, Trajectory, load_scene
@@ -78,9 +77,9 @@ def test_a_model_with_a_coarse_grid_moves_at_its_own_phases_only(monkeypatch: py
     stride = study.strides["spatial"]
     assert stride > 1
     assert {(row % stride, column % stride) for key, row, column in asked if key == "spatial"} == {(0, 0)}
-    shown = {rung.key for rung in shown_rungs(study.scenes[0], study.ladder)}
+    shown = {rung.key for rung in shown_rungs(study, study.scenes[0])}
     assert {motion.model for motion in motions} == shown
-    assert shown == {r.key for pair in pairs_of(study.scenes[0], study.ladder) for r in (pair.first, pair.second)}
+    assert shown == {r.key for pair in study.pairs(study.scenes[0]) for r in (pair.first, pair.second)}
 
 
 def slides(scene: Scene, phase: object, tolerance: float, **settings: object) -> Trajectory:

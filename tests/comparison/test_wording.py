@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from comparison.wording import degrees, mathtext, percent, scientific, signed, significant, symbols, verbatim
+from comparison.wording import degrees, mathtext, percent, scientific, signed, significant, symbols
+from reference.problem import verbatim
 
 NAN = float("nan")
 

@@ -48,6 +48,26 @@ def test_a_film_is_written_off_screen(tmp_path: Path, capsys: pytest.CaptureFixt
         assert film.n_frames == 6  # 25 per second and the first
 
 
+def test_a_refused_motion_is_one_line_that_says_why_and_what_helps(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "long.toml").write_text(SHORT.replace("duration = 0.2", "duration = 1e4"))
+    words = [str(tmp_path / "long.toml"), "--phases", "0", "0", "--speed", "1e3", "--out", str(tmp_path / "run.gif")]
+    assert main(words) == 2
+    message = capsys.readouterr().err
+    assert message.startswith("long: there is no motion to show: step limit: refused before any step")
+    assert "a looser tolerance does not help" in message
+    assert message.count("\n") == 1
+    assert not (tmp_path / "run.gif").exists()
+
+
+def test_a_dollar_in_a_title_is_a_letter_of_the_film(tmp_path: Path) -> None:
+    (tmp_path / "short.toml").write_text(SHORT.replace('title = "short"', r"title = 'x $\frac{$ y'"))
+    out = tmp_path / "run.gif"
+    assert main([str(tmp_path / "short.toml"), "--phases", "0", "0", "--speed", "0.2", "--out", str(out)]) == 0
+    assert out.exists()
+
+
 class Screen:
     """Stands in for the engine's renderer and solver: notes what it is asked for."""
 
@@ -161,10 +181,20 @@ def test_turns_are_magnified_by_round_factors_and_never_reduced(largest: float, 
         (["fig3-I", "--phases", "0", "nan"], "phases"),
         (["fig3-I", "--phases", "0", "0", "--model", "flexible"], "model"),
         (["fig3-I", "--phases", "0", "0", "--speed", "0"], "--speed"),
+        (["fig3-I", "--phases", "0", "0", "--speed", "1e-9"], "--speed"),
+        (["fig3-I", "--phases", "0", "0", "--speed", "1e9"], "--speed"),
+        (["fig3-I", "--phases", "0", "0", "--stretch", "1e300"], "--stretch"),
         (["fig3-I", "--phases", "0", "0", "--out", "/nowhere/run.gif"], "--out"),
+        (["fig3-I", "--phases", "0", "0", "--out", "run.mp4"], "must end in .gif"),
+        (["fig3-I", "--phases", "0", "0", "--out", "run"], "must end in .gif"),
+        (["fig3-I", "--phases", "0", "0", "--out", "/"], "is a folder"),
     ],
 )
-def test_wrong_options_end_with_one_line(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_options_end_with_one_line_before_anything_is_run(
+    words: list[str], said: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if said not in ("phases", "model"):  # which the run itself refuses, before its first step
+        monkeypatch.setattr(animate, "trajectory", lambda *given: pytest.fail("a motion was computed"))
     assert main(words) == 2
     message = capsys.readouterr().err
     assert said in message

@@ -29,7 +29,7 @@ async function show(box) {
     box.on("plotly_hover", ({ points: [point] }) => { box.under = point; });
     box.on("plotly_unhover", () => { box.under = null; });
   } catch (fault) {
-    box.replaceChildren(`The surfaces cannot be turned in this browser (${fault.message}): see the static figure below.`);
+    box.replaceChildren(`The surfaces could not be drawn (${fault.message}): see the static figure below.`);
     box.parentElement.querySelector("details").open = true;
   }
 }

@@ -39,7 +39,9 @@ function drawSurfaces(box, data, pair, chosen) {
   const range = extent([a, b].flat()), reach = Math.max(...extent(percent).map(Math.abs)) || 1;
   const [low, high] = range;
   const phases = rows => [...rows.map((_, i) => turn * i / rows.length), turn];
-  const surface = (rows, scene, colours, [cmin, cmax], x, unit) => ({
+  const filled = rows => rows.flat().some(v => v !== null);  // a surface without any value is none: the library cannot draw it
+  const missing = rows => filled(rows) ? "" : "<br>no value at any phase pair";
+  const surface = (rows, scene, colours, [cmin, cmax], x, unit) => !filled(rows) ? { type: "scatter3d", scene, x: [], y: [], z: [], showlegend: false } : ({
     type: "surface", x: phases(rows), y: phases(rows), z: turned(wrapped(rows)), scene, colorscale: colours, cmin, cmax,
     colorbar: { x, len: 0.7, thickness: 10, tickfont: { size: 10 } }, showscale: x !== null,
     hovertemplate: `α₁ %{x:.3f}<br>α₂ %{y:.3f}<br>%{z:.5g}${unit}<extra></extra>`,
@@ -79,8 +81,8 @@ function drawSurfaces(box, data, pair, chosen) {
   ], {
     margin: { l: 0, r: 10, t: 6, b: 0 }, font: { size: 11 }, uirevision: pair,
     scene: space(0, 0.3, range), scene2: space(0.31, 0.62, range), scene3: space(0.69, 0.99, [-reach, reach]),
-    annotations: [heading(0.13, `${mu}, ${indexed(data.titles[first])}`), heading(0.46, `${mu}, ${indexed(data.titles[second])}`),
-      heading(0.85, "difference, % of the first")],
+    annotations: [heading(0.13, `${mu}, ${indexed(data.titles[first])}${missing(a)}`), heading(0.46, `${mu}, ${indexed(data.titles[second])}${missing(b)}`),
+      heading(0.85, `difference, % of the first${missing(percent)}`)],
   }, { displaylogo: false, responsive: true, modeBarButtonsToRemove: ["toImage"] });
 }
 

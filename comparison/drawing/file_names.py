@@ -1,0 +1,39 @@
+"""How files of figures are called: the one place where names of scenes become names of files."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+ENDINGS = (".png", ".pdf", ".webp", ".nc")
+LONGEST = 200  # bytes of a name before its ending: file systems allow 255 in all
+
+
+def figure_file(scene: str, *parts: str, ending: str = ".png") -> str:
+    """
+    Name of a file that belongs to a scene.
+
+    Parameters
+    ----------
+    scene
+        Name of the scene, in which there may be dots, as in "frame[friction=0.02]".
+    parts
+        What the figure shows, as "body1", "total".
+
+    Returns
+    -------
+    str
+        The parts joined by hyphens; a longer name than file systems allow is cut and ends in a hash of the whole.
+    """
+    stem = "-".join([scene, *parts])
+    written = stem.encode(errors="surrogateescape")
+    if len(written) > LONGEST:
+        kept = written[: LONGEST - 20].decode(errors="ignore")
+        stem = "-".join([kept, hashlib.sha256(written).hexdigest()[:8], *parts])
+    return stem + ending
+
+
+def with_ending(path: Path, ending: str) -> Path:
+    """The same file name with another ending. Dots before the ending belong to the name of the scene."""
+    old = next((one for one in ENDINGS if path.name.endswith(one)), "")
+    return path.with_name(path.name.removesuffix(old) + ending)

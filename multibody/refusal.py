@@ -1,0 +1,64 @@
+"""Why a model is refused for a scene before any step is taken, and what would help: told from the scene alone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from multibody.integrate import silence
+from multibody.level import STEPS_PER_PERIOD, levels
+from multibody.refine import GROWTH, PREDICTED, work_needed
+from multibody.surface import assembled
+from reference.problem import Scene, untilted
+
+
+def refusal(
+    scene: Scene,
+    model: str = "translational",
+    regularization: float | None = 1e-3,
+    tolerance: float = 1e-3,
+    full: bool = False,
+) -> str:
+    """
+    Tell whether `amplification` refuses every phase pair of a scene because of its work.
+
+    Parameters
+    ----------
+    scene, model, regularization, tolerance, full
+        As in `amplification`.
+
+    Returns
+    -------
+    str
+        One line with the work that is needed, what makes it, and the duration that is expected to have values.
+        Empty if the model is tried. A model that is tried may still run out of work on the way.
+
+    Raises
+    ------
+    ValueError
+        For wrong arguments, as in `amplification`.
+    """
+    chosen = "translational" if model == "spatial" and not full and untilted(scene).allowed else model
+    with silence():
+        built = assembled(scene, chosen, regularization)
+    largest = levels(scene, built, tolerance)[0].step
+    end = scene.duration / built.units.time
+    needed = work_needed(built, end, largest)
+    if needed <= 1.0:
+        return ""
+    step = largest * built.units.time
+    tried = scene.duration / needed
+    enough = tried * PREDICTED / (1.0 + 2.0 * GROWTH)  # for two levels and the compliance of the second
+    return (
+        f"refused before any step: it needs {needed:.2g} times the work that a phase pair may take "
+        f"({built.coordinates} coordinates in steps of {step:.2g} s over {scene.duration:g} s; the fastest period is "
+        f"{STEPS_PER_PERIOD * step:.2g} s). Shorten the duration to about {_two_digits(enough, math.floor):g} s "
+        f"(above {_two_digits(tried, math.ceil):g} s no step is taken), or take fewer bodies or a longer period; "
+        "a looser tolerance does not help"
+    )
+
+
+def _two_digits(value: float, rounded: Callable[[float], int]) -> float:
+    """Two digits of a positive number, rounded by `math.floor` or `math.ceil`."""
+    unit = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return float(f"{rounded(value / unit) * unit:.2g}")
