@@ -6,6 +6,10 @@ happens below that speed, so that the difference must vanish with it. The suprem
 v_reg and is approached, if at all, like a power so low that no v_reg in use is small enough. The engine's contact,
 pressed in by the weight by a share p of rho, that is of stiffness 1/p, against the rigid one under the same law; at a
 constant step, and another of half its length for the error bar, so that nothing but the stiffness changes.
+
+With bodies that turn there is no set-valued answer to compare with. The spatial model is compared with itself at a
+v_reg ten times smaller than the smallest one: unequal support forces keep the supports from stopping together, so that
+its peaks converge where those of the translational model climb towards the supremum.
 """
 
 from __future__ import annotations
@@ -18,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparison.analyses.trends import Trend, trend
+from comparison.plan.ladder import has_spatial_data
 from comparison.plan.study import Study
 from comparison.sweep.executors import Pool, process_pool
 from comparison.sweep.sweep import sweep
@@ -39,6 +44,7 @@ FEWEST_PERIODS = 2.5  # for the engine at constant step
 REGULARISATIONS = (3e-3, 1e-3, 3e-4, 1e-4, 3e-5)  # m/s
 ENGINE_REGULARISATIONS = (1e-2, 3e-3, 1e-3)  # m/s
 PENETRATIONS = (3e-3, 1e-3, 3e-4)  # of rho, under the weight
+SMALLEST = 1e-4  # m/s, for bodies that turn: stands for their limit
 V_REG = 1e-2  # m/s, for the stiffness: a constant step resolves it
 STEPS_PER_PERIOD = 2250  # of the faster harmonic, and twice as many
 MOST_STEPS = 20_000
@@ -62,6 +68,17 @@ def _by_engine(scene: Scene) -> Values:
         return answer.mu, answer.error
 
     return _against(_short(scene, FEW_PERIODS), FEW, ENGINE_REGULARISATIONS, solved, lambda v: v)
+
+
+def _with_turning(scene: Scene) -> Values:
+    """The spatial model at v_reg against itself at the smallest one."""
+    short = _short(scene, FEW_PERIODS)
+    limit, *answers = (
+        engine_amplification(short, FEW, model="spatial", regularization=v, tolerance=ENGINE_TOLERANCE)
+        for v in (SMALLEST, *ENGINE_REGULARISATIONS)
+    )
+    sizes = np.stack([answer.mu / limit.mu - 1.0 for answer in answers], axis=1)
+    return sizes, np.stack([np.hypot(answer.error, limit.error) / limit.mu for answer in answers], axis=1)
 
 
 def _by_equations(scene: Scene, phases: Array, v: float) -> Values:
@@ -134,14 +151,27 @@ class Limit:
     parameter: tuple[float, ...]
     expected: float | None
     measure: Callable[[Scene], Values]
-    dry_only: bool = True
+    applies: Callable[[Scene], bool]
+
+
+def _dry(scene: Scene) -> bool:
+    return not scene.lubricated and scene.friction_coefficient > 0.0
+
+
+def _dry_on_supports(scene: Scene) -> bool:
+    return _dry(scene) and has_spatial_data(scene)
+
+
+def _any(scene: Scene) -> bool:
+    return True
 
 
 LIMITS = (
-    Limit("exact equations: regularised against resolved", REGULARISATIONS, 1.0, _regularised),
-    Limit("exact equations: regularised against supremum", REGULARISATIONS, None, _to_supremum),
-    Limit("engine against resolved", ENGINE_REGULARISATIONS, 1.0, _by_engine),
-    Limit("elastic contact against rigid", PENETRATIONS, 1.0, _stiffened, dry_only=False),
+    Limit("exact equations: regularised against resolved", REGULARISATIONS, 1.0, _regularised, _dry),
+    Limit("exact equations: regularised against supremum", REGULARISATIONS, None, _to_supremum, _dry),
+    Limit("engine against resolved", ENGINE_REGULARISATIONS, 1.0, _by_engine, _dry),
+    Limit("bodies that turn: against v_reg = 1e-4 m/s", ENGINE_REGULARISATIONS, 1.0, _with_turning, _dry_on_supports),
+    Limit("elastic contact against rigid", PENETRATIONS, 1.0, _stiffened, _any),
 )
 
 Task = tuple[Scene, int]  # and the number of the limit
@@ -149,12 +179,7 @@ Task = tuple[Scene, int]  # and the number of the limit
 
 def convergence_tasks(study: Study) -> list[Task]:
     """Every limit with every scene that has it, in the order of LIMITS."""
-    return [
-        (scene, number)
-        for number, limit in enumerate(LIMITS)
-        for scene in study.phased
-        if not limit.dry_only or (not scene.lubricated and scene.friction_coefficient > 0.0)
-    ]
+    return [(scene, number) for number, limit in enumerate(LIMITS) for scene in study.phased if limit.applies(scene)]
 
 
 def convergence_trends(study: Study, jobs: int, executor: Pool = process_pool) -> list[Trend]:

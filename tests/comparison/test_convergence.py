@@ -28,10 +28,10 @@ def test_every_limit_comes_in_order_and_a_lubricated_scene_has_only_the_contact(
         sizes = np.array(PENETRATIONS)[None, :, None] * np.array([1.0, -2.0])[None, None, :]
         return sizes, 1e-3 * np.abs(sizes)
 
-    limits = [Limit(one.what, PENETRATIONS, 1.0, planted, one.dry_only) for one in LIMITS]
+    limits = [Limit(one.what, PENETRATIONS, 1.0, planted, one.applies) for one in LIMITS]
     monkeypatch.setattr(convergence, "LIMITS", limits)
     found = convergence_trends(_study("fig3-I", "fig4-viscous"), 2, ThreadPoolExecutor)
-    assert [(one.scene, one.body) for one in found] == [("fig3-I", 1), ("fig3-I", 2)] * 4 + [
+    assert [(one.scene, one.body) for one in found] == [("fig3-I", 1), ("fig3-I", 2)] * 5 + [
         ("fig4-viscous", 1),
         ("fig4-viscous", 2),
     ]
@@ -63,7 +63,7 @@ def test_a_limit_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(scene: Scene) -> None:
         raise RuntimeError("no engine")
 
-    monkeypatch.setattr(convergence, "LIMITS", [replace(LIMITS[3], measure=broken)])
+    monkeypatch.setattr(convergence, "LIMITS", [replace(LIMITS[4], measure=broken)])
     assert [one.verdict for one in limit_trends((load_scene("fig3-I"), 0))] == [
         "solver failed: RuntimeError: no engine"
     ] * 2
@@ -72,7 +72,7 @@ def test_a_limit_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_contact_ten_times_stiffer_is_ten_times_closer(monkeypatch: pytest.MonkeyPatch) -> None:
     """Second body of fig3-II: 8e-5 of mu at 3e-3 of rho; what is of higher order there is a tenth of it."""
     monkeypatch.setattr(convergence, "FEWEST_PERIODS", 2.0)
-    found = limit_trends((load_scene("fig3-II"), 3))[1]
+    found = limit_trends((load_scene("fig3-II"), 4))[1]
     assert found.verdict == "like the power 1"
     assert found.medians[0] == pytest.approx(8.4e-5, rel=0.2)
     assert found.slope.exponent == pytest.approx(1.0, abs=0.15)
