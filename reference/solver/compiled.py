@@ -19,6 +19,9 @@ import numba
 # sums may be reordered; infinities and NaN keep their meaning
 FAST = {"contract", "reassoc", "nsz"}
 
+njit: Any = numba.njit
+config: Any = numba.config
+
 
 def _cache_folder() -> str:
     package = Path(__file__).parent
@@ -26,7 +29,8 @@ def _cache_folder() -> str:
     for source in sorted(package.rglob("*.py")):
         digest.update(source.read_bytes())
     name = f"numba-{digest.hexdigest()[:12]}"
-    for parent in (package / "__pycache__", Path.home() / ".cache" / "phase-resonance", Path(tempfile.gettempdir())):
+    own = (package / "__pycache__", Path.home() / ".cache" / "phase-resonance", Path(tempfile.gettempdir()))
+    for parent in (Path(config.CACHE_DIR),) if config.CACHE_DIR else own:  # NUMBA_CACHE_DIR is the user's choice
         try:
             parent.mkdir(parents=True, exist_ok=True)
         except OSError:
@@ -37,9 +41,6 @@ def _cache_folder() -> str:
 
 
 CACHE_FOLDER = _cache_folder()
-
-njit: Any = numba.njit
-config: Any = numba.config
 # divisions by zero give inf or NaN as in NumPy; other threads go on meanwhile
 OPTIONS = {"error_model": "numpy", "fastmath": FAST, "nogil": True}
 
@@ -57,7 +58,7 @@ def merged(function: Callable[..., Any]) -> Any:
 def entry(function: Callable[..., Any]) -> Any:
     """Compile `function` with everything it calls on first use, and keep the build on disk."""
     before = config.CACHE_DIR
-    config.CACHE_DIR = before or CACHE_FOLDER  # the user's NUMBA_CACHE_DIR goes first
+    config.CACHE_DIR = CACHE_FOLDER
     try:
         return njit(cache=True, **OPTIONS)(function)
     finally:
