@@ -11,7 +11,7 @@ from math import sqrt
 
 import numpy as np
 
-from reference.solver.chain import eliminate_chain, feed_back, load_chain, move_chain
+from reference.solver.chain import CHANNEL_ROUNDING, eliminate_chain, feed_back, load_chain, move_chain
 from reference.solver.collocation import A2, AT_START, NODES, STAGES, A
 from reference.solver.compiled import compiled
 from reference.solver.equations import vertical_acceleration
@@ -185,6 +185,8 @@ def step_error(work: Work) -> float:
         # friction may decelerate a platform that nothing drives
         load = max(load, abs(work.a[0, 0, k]) + abs(work.a[0, 1, k]))
     noise = ROUNDING * load
+    if work.x.shape[0] > 1:
+        noise += CHANNEL_ROUNDING * load
     worst = 0.0
     for i in range(work.x.shape[0]):
         squared = 0.0

@@ -59,9 +59,19 @@ def test_a_model_that_is_wrong_fails_and_is_told_why(model):
 
 def test_a_model_that_hangs_is_killed_and_the_next_cell_is_solved():
     other = replace(fake("honest"), key="other")
-    found = computed([replace(PLAIN, columns=("fake", "other"))], fake("hangs"), other, limit=8.0)
-    assert found.rows[0].entries["fake"].reason == "hangs: no answer within 8 s"
+    found = computed([replace(PLAIN, columns=("fake", "other"))], fake("hangs"), other, limit=2.0)
+    assert found.rows[0].entries["fake"].reason == "hangs: no answer within 2 s of processor time"
     assert found.rows[0].entries["other"].verdict == Verdict.CONVERGED
+
+
+def test_a_model_that_a_busy_machine_keeps_waiting_does_not_hang():
+    """Two runs of 2.5 s each, which compute next to nothing, under a limit of 1 s."""
+    assert entry(fake("is_kept_waiting"), limit=1.0).verdict == Verdict.CONVERGED
+
+
+def test_a_model_that_computes_nothing_any_more_is_killed_in_the_end(monkeypatch):
+    monkeypatch.setattr("comparison.extremes.worker.STALLED", 4.0)
+    assert entry(fake("waits_for_ever"), limit=1.0).reason == "hangs: no answer within 4 s"
 
 
 def test_a_model_that_is_right_converges_or_refuses_or_says_what_it_cannot():
