@@ -171,12 +171,13 @@ def absolute_accelerations(system: System, work: Work, contact: int) -> None:
 
 
 @compiled
-def step_error(work: Work) -> float:
+def step_error(work: Work, tolerance: float) -> float:
     """
     Error of the absolute accelerations inside the step over `scale` (N,), the largest over the bodies.
 
     The interpolating polynomial, evaluated at the start of the step, misses the acceleration known there by the
-    interpolation error of the step, which falls like h^7.
+    interpolation error of the step, which falls like h^7. What rounding in the chain's channels may do is at most
+    `tolerance`: it falls with no step.
     """
     total, total0 = work.total, work.total0
     load = abs(total0[0, 2])
@@ -185,8 +186,7 @@ def step_error(work: Work) -> float:
         # friction may decelerate a platform that nothing drives
         load = max(load, abs(work.a[0, 0, k]) + abs(work.a[0, 1, k]))
     noise = ROUNDING * load
-    if work.x.shape[0] > 1:
-        noise += CHANNEL_ROUNDING * load
+    channels = noise + (CHANNEL_ROUNDING * load if work.x.shape[0] > 1 else 0.0)
     worst = 0.0
     for i in range(work.x.shape[0]):
         squared = 0.0
@@ -196,5 +196,6 @@ def step_error(work: Work) -> float:
                 defect += AT_START[k] * total[i, axis, k]
             squared += defect * defect
         work.defect[i] = sqrt(squared)
-        worst = max(worst, (work.defect[i] - noise) / work.scale[i])
+        error = (work.defect[i] - noise) / work.scale[i]
+        worst = max(worst, min(error, tolerance) if work.defect[i] <= channels else error)
     return worst

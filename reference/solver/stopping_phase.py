@@ -146,7 +146,7 @@ def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, rec
                 return code, STOPPING
             h *= 0.3
             continue
-        error = step_error(work)
+        error = step_error(work, demand.tolerance)
         factor = length_factor(error, demand.tolerance)
         if not error <= demand.tolerance:
             h *= min(0.7, factor)
