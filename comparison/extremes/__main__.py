@@ -29,7 +29,7 @@ from comparison.sweep.executors import cores
 from comparison.sweep.progress import description, wide_console
 
 BRIEF = {"lubrication, s/m", "start at the friction limit", "outside the rules"}  # for the engine's models, too
-LIMIT = 180.0  # s for one cell with its finer runs: four times what the dearest takes of one processor
+LIMIT = 180.0  # s of processor time for one cell with its finer runs: four times what the dearest takes
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -86,7 +86,7 @@ def run(
     columns: Sequence[Column] = COLUMNS,
     work: Callable[[Cell], Any] = solve_cell,
 ) -> Matrix:
-    """The matrix of the chosen rows, computed by `jobs` processes; limit: s for one cell."""
+    """The matrix of the chosen rows, computed by `jobs` processes; limit: s of processor time for one cell."""
     tasks = cells(chosen, columns)
     # the longest first: no process waits at the end for a cell that another has just begun
     tasks.sort(key=lambda cell: cell.row.quick)
@@ -143,7 +143,11 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help=f"where {FILE} goes")
     parser.add_argument("--jobs", default=cores(), type=int, metavar="N", help="worker processes (default %(default)s)")
     parser.add_argument(
-        "--limit", default=LIMIT, type=float, metavar="SECONDS", help="longest time of one cell (default %(default)s)"
+        "--limit",
+        default=LIMIT,
+        type=float,
+        metavar="SECONDS",
+        help="most processor time of one cell (default %(default)s)",
     )
     parser.add_argument("--only", default="", metavar="TEXT", help="the extremes whose name contains this")
     keys = [column.key for column in COLUMNS]

@@ -19,7 +19,7 @@ from comparison.sweep.halves import halves, joined
 from comparison.sweep.progress import Stage, progress
 from comparison.sweep.sweep import sweep
 from comparison.sweep.tile_store import TileStore
-from comparison.sweep.warm_up import WARM_UP, warm_up, warmed_up
+from comparison.sweep.warm_up import WARM_UP, warm_up
 from reference.problem import Outcome
 
 COMPILING = "compiling the reference"
@@ -143,9 +143,7 @@ Piece = Tile | Errand
 
 
 def _run(piece: Piece) -> Answer | Fetched | None:
-    if isinstance(piece, Errand):
-        return run_errand(piece)
-    return warmed_up(piece) if piece.rung == WARM_UP else solve_tile(piece)
+    return run_errand(piece) if isinstance(piece, Errand) else solve_tile(piece)
 
 
 def _lost(piece: Piece, outcome: Outcome, fault: str) -> Answer | Fetched | None:

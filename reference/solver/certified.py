@@ -76,8 +76,12 @@ def certified_peaks(system: System, phases: Array, demand: Demand) -> Peaks:
 
 
 def _error(before: Peaks, after: Peaks, tolerance: float, unit: float) -> Array:
-    """Estimated error of `after`, (M, N): what reading the peak leaves, and what the runs' states leave."""
+    """
+    Estimated error of `after`, (M, N): what reading the peak leaves, and what the runs' states leave.
+
+    Below what rounding may do the two runs differ by chance: there the error is that of rounding, however they differ.
+    """
     share = np.where(after.value < FLOOR * unit, 1.0, SHARE)  # steps do not resolve less than that
     between = share * np.abs(after.value - before.value)
     rounding = ROUNDING * np.maximum(after.value, unit)  # small accelerations are differences of large ones
-    return READING * after.error + between + LUCK * tolerance * after.value + rounding
+    return np.maximum(READING * after.error + between, rounding) + LUCK * tolerance * after.value

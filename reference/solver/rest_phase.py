@@ -73,7 +73,7 @@ def rest_phase(system: System, phase: Array, work: Work, demand: Demand, record:
         if run[HELD] > 0.0:
             h = min(h, run[HELD])
         rest_step(system, phase, work, run[TIME], h)
-        error = step_error(work)
+        error = step_error(work, demand.tolerance)
         factor = length_factor(error, demand.tolerance)
         if not error <= demand.tolerance:
             if not shortened(work, demand, h, factor):

@@ -177,7 +177,7 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
             growth = CAUTIOUS
             run[OLD_LENGTH] = 0.0 if run[OLD_LENGTH] > 3.0 * h else run[OLD_LENGTH]
             continue
-        error = step_error(work)
+        error = step_error(work, demand.tolerance)
         factor = length_factor(error, demand.tolerance)
         if not error <= demand.tolerance:
             if not shortened(work, demand, h, factor):

@@ -69,7 +69,7 @@ def smooth_phase(
                 return code, contact
             run[LENGTH] = 0.3 * h
             continue
-        error = step_error(work)
+        error = step_error(work, demand.tolerance)
         factor = length_factor(error, demand.tolerance)
         if not error <= demand.tolerance:
             if not shortened(work, demand, h, factor):

@@ -11,7 +11,7 @@ from math import sqrt
 
 import numpy as np
 
-from reference.solver.chain import eliminate_chain, feed_back, load_chain, move_chain
+from reference.solver.chain import CHANNEL_ROUNDING, eliminate_chain, feed_back, load_chain, move_chain
 from reference.solver.collocation import A2, AT_START, NODES, STAGES, A
 from reference.solver.compiled import compiled
 from reference.solver.equations import vertical_acceleration
@@ -24,6 +24,7 @@ from reference.solver.system import OPEN, PAINLEVE, REST, RIM, SOLVED, UNSOLVED,
 ITERATIONS = 14
 SLOW = 0.1  # a change that shrinks by less asks for a new derivative
 ROUNDING = 1e-13  # of the forces: what rounding leaves of the defect at the start of a step
+SETTLED = 4e-15  # of the accelerations: rounding alone changes them by this much from one iteration to the next
 CLOSE_TO_RIM = 0.99  # of the squared radius
 
 
@@ -50,7 +51,8 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
     Newton's method for the stage accelerations of the platform, the chain eliminated exactly.
 
     `a[0]` holds the first guess on entry. `tolerance`, m/s^2: the iteration ends when the change is below it. A
-    derivative serves several iterations while these converge fast, so what is left is far smaller.
+    derivative serves several iterations while these converge fast, so what is left is far smaller. A tolerance below
+    what rounding does to the accelerations is met at that level.
     """
     ground_at_stages(system, phase, t, h, work)
     eliminate_chain(system, work, h)
@@ -60,6 +62,7 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
     fresh, before = True, 0.0
     for iteration in range(ITERATIONS):
         place_platform(work, h, system.axes)
+        size = 0.0
         for k in range(STAGES):
             if stage[0, k] ** 2 + stage[1, k] ** 2 >= system.radius**2:
                 return beyond_rim(system, work)
@@ -73,6 +76,7 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
             if not determinant > 0.0:
                 return PAINLEVE
             stage[8, k] = determinant
+            size = max(size, abs(ax) + abs(ay))
             work.residual[k] = ax - a[0, 0, k]
             work.residual[STAGES + k] = ay - a[0, 1, k]
         if fresh:
@@ -87,9 +91,10 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
                 correction = work.residual[axis * STAGES + k]
                 a[0, axis, k] += correction
                 change = max(change, abs(correction))
-        if not np.isfinite(change) or (iteration > 1 and fresh and change > before):
+        settled = change <= max(tolerance, SETTLED * size)
+        if not np.isfinite(change) or (iteration > 1 and fresh and change > before and not settled):
             return UNSOLVED
-        if change <= tolerance:
+        if settled:
             place_platform(work, h, system.axes)
             move_chain(system, work, h)
             absolute_accelerations(system, work, contact)
@@ -166,18 +171,22 @@ def absolute_accelerations(system: System, work: Work, contact: int) -> None:
 
 
 @compiled
-def step_error(work: Work) -> float:
+def step_error(work: Work, tolerance: float) -> float:
     """
     Error of the absolute accelerations inside the step over `scale` (N,), the largest over the bodies.
 
     The interpolating polynomial, evaluated at the start of the step, misses the acceleration known there by the
-    interpolation error of the step, which falls like h^7.
+    interpolation error of the step, which falls like h^7. What rounding in the chain's channels may do is at most
+    `tolerance`: it falls with no step.
     """
     total, total0 = work.total, work.total0
     load = abs(total0[0, 2])
     for k in range(STAGES):
         load = max(load, abs(work.stage[4, k]) + abs(work.stage[5, k]))
+        # friction may decelerate a platform that nothing drives
+        load = max(load, abs(work.a[0, 0, k]) + abs(work.a[0, 1, k]))
     noise = ROUNDING * load
+    channels = noise + (CHANNEL_ROUNDING * load if work.x.shape[0] > 1 else 0.0)
     worst = 0.0
     for i in range(work.x.shape[0]):
         squared = 0.0
@@ -187,5 +196,6 @@ def step_error(work: Work) -> float:
                 defect += AT_START[k] * total[i, axis, k]
             squared += defect * defect
         work.defect[i] = sqrt(squared)
-        worst = max(worst, (work.defect[i] - noise) / work.scale[i])
+        error = (work.defect[i] - noise) / work.scale[i]
+        worst = max(worst, min(error, tolerance) if work.defect[i] <= channels else error)
     return worst

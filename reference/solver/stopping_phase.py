@@ -50,6 +50,10 @@ BRIEF = 1e-4  # of the period: time left at a stop within which forces are froze
 STRAIGHT = 1e-6  # of the friction: a slide that turns by less turns back on its own line
 REVERSED = 1e-12  # of the loading's velocity: a straight slide that friction cannot hold has come to its turning point
 NEWTON = 1e-3  # of the tolerance
+# Time and place are integrals of v and v^2 over tau. Where forces stay as they are no acceleration shows their error,
+# which ln v may change by so much in one step without making 1e-8 of what is left of the slide where it is entered
+CHANGE = 2.0  # in the first step
+RELAXED = 0.7  # and more, per unit by which ln v has fallen since
 
 
 @compiled
@@ -104,6 +108,17 @@ def has_stopped(system: System, phase: Array, work: Work, demand: Demand) -> int
     return REST
 
 
+@compiled
+def longest(work: Work, entered: float, axes: int) -> float:
+    """The longest step in tau that keeps time and place, `entered` being ln v where the phase began."""
+    ex, ey = heading(work.run[ANGLE], axes)
+    along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
+    change = CHANGE + RELAXED * max(0.0, entered - work.run[LOG_SPEED])
+    if along > 0.0:  # the end of the step counts, not its start
+        change /= 1.0 + RELAXED
+    return change / max(abs(along), 1e-300)
+
+
 @merged
 def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> tuple[int, int]:
     """(how it went, what the contact does next); see march.py."""
@@ -114,9 +129,11 @@ def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, rec
     level = log(system.v_reg) if regularized else 0.0
     counted = log(demand.cutoff) if demand.cutoff > 0.0 else -1e300
     values = np.empty(STAGES)
+    entered = run[LOG_SPEED]
     while True:
         if not next_step(work, demand):
             return STEP_LIMIT, STOPPING
+        h = min(h, longest(work, entered, system.axes))
         if system.fastest > 0.0:
             h = min(h, CALM / (system.fastest * exp(run[LOG_SPEED])))
         if h * exp(run[LOG_SPEED]) < SHORTEST * demand.period * 1e-3 * exp(min(0.0, run[LOG_SPEED])):
@@ -129,7 +146,7 @@ def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, rec
                 return code, STOPPING
             h *= 0.3
             continue
-        error = step_error(work)
+        error = step_error(work, demand.tolerance)
         factor = length_factor(error, demand.tolerance)
         if not error <= demand.tolerance:
             h *= min(0.7, factor)

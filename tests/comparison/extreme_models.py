@@ -31,6 +31,17 @@ def unable(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Ampli
 
 def hangs(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
     while True:
+        pass
+
+
+def is_kept_waiting(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+    """What a busy machine does to a model: it takes long, and computes little."""
+    time.sleep(2.5)
+    return honest(scene, phases, tolerance)
+
+
+def waits_for_ever(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
+    while True:
         time.sleep(1.0)
 
 

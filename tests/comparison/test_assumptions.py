@@ -105,7 +105,9 @@ def test_cells_compare_the_two_engine_models_of_the_ladder_in_every_scene_that_h
 
 def test_a_model_that_raises_leaves_no_value_and_says_why() -> None:
     study = Study((STATED,), 2, 1e-3, fake_ladder("always_raising"))
-    for cell in assumption_cells(study, 2, ThreadPoolExecutor):
+    cells = assumption_cells(study, 2, ThreadPoolExecutor)
+    assert [cell.variation for cell in cells] == list(FEW)
+    for cell in cells:
         assert np.isnan(cell.change).all()
         assert cell.fault == "RuntimeError: the matrix is singular"
         assert not cell.holds(1, 0.05)

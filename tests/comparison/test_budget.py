@@ -115,7 +115,9 @@ def test_uncertainties_of_the_two_rungs_add_in_quadrature() -> None:
 def test_a_point_without_a_value_is_left_out_of_the_steps_to_and_from_it_and_of_the_sum() -> None:
     study, surfaces = _solved(errors_in({"translational": 0.02}))
     surfaces["mu"].loc[{"model": "exact", "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][6]}] = np.nan
-    for key, entry in _table(study, surfaces).items():
+    table = _table(study, surfaces)
+    assert {"exact", "resolved", "translational", TOTAL} <= set(table)
+    for key, entry in table.items():
         assert entry.points == entry.asked - (key in ("exact", "resolved"))
         assert np.isfinite(entry.rms)
     assert closure(steps(study, surfaces, "fig3-I", 1)) < 1e-14

@@ -54,7 +54,9 @@ def test_the_order_in_v_reg_is_that_of_the_law(monkeypatch: pytest.MonkeyPatch, 
     monkeypatch.setattr(convergence, "amplification", _regularised(power))
     monkeypatch.setattr(convergence, "engine_amplification", _regularised(power))
     for number in (0, 2):  # the equations and the engine, against the resolved peak
-        for found in limit_trends((load_scene("fig3-I"), number)):
+        trends = list(limit_trends((load_scene("fig3-I"), number)))
+        assert trends
+        for found in trends:
             assert found.verdict == says
             assert found.slope.exponent == pytest.approx(power, abs=1e-6)
 

@@ -211,4 +211,5 @@ def test_a_real_run_killed_among_its_analyses_reports_the_same_numbers(tmp_path:
     assert begun("killed").wait() == 0
     again, parts = numbers("killed")
     assert again == whole
+    assert parts
     assert all(part["stored_before"] == part["tasks"] for part in parts.values()), "nothing is computed"

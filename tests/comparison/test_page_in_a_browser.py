@@ -138,6 +138,8 @@ def test_another_phase_pair_and_other_models_are_chosen_without_a_mouse(visit: V
     wanted = "document.querySelectorAll('.motions')[1].data?.[0].name === 'exact equations, v<sub>reg</sub>'"
     page.wait_for_function(wanted)
     page.get_by_role("button", name="total").click()
+    page.wait_for_function(wanted.replace("===", "!=="))
+    assert page.evaluate("document.querySelectorAll('.motions')[1].data[0].name") == "small equations"
 
 
 def test_a_click_on_a_heading_sorts_by_it(visit: Visit) -> None:

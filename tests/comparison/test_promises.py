@@ -52,6 +52,7 @@ def share_met(found: Choice, scene: Scene, rung: Rung) -> tuple[float, int]:
 def test_the_accuracy_asked_is_met_on_a_scene_that_was_never_recorded() -> None:
     scene = tower().model_copy(update={"duration": 3.0})
     found = chosen(scene, 1e-3, 6, 2)
+    assert {rung.side for rung in found.study.ladder} == {"reference", "engine"}
     for rung in found.study.ladder:
         if rung.key != "spatial":
             share, points = share_met(found, scene, rung)
@@ -63,7 +64,9 @@ def test_the_accuracy_asked_is_met_on_a_scene_that_was_never_recorded() -> None:
 @pytest.mark.parametrize("name", [*builtin_scenes(), "tower"])
 def test_the_accuracy_asked_is_met_at_99_percent_of_the_points(name: str, tolerance: float) -> None:
     scene = tower() if name == "tower" else load_scene(name)
-    found = chosen(scene, tolerance, 16, 4)
+    # the engine is held against runs a hundred times tighter: few phases but at the usual tolerance
+    found = chosen(scene, tolerance, 16, 4 if tolerance == 1e-3 else 2)
+    assert found.study.ladder
     for rung in found.study.ladder:
         if rung.applies(scene):
             share, points = share_met(found, scene, rung)
@@ -73,14 +76,24 @@ def test_the_accuracy_asked_is_met_at_99_percent_of_the_points(name: str, tolera
 
 @pytest.mark.long
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-7])
-@pytest.mark.parametrize("name", [*builtin_scenes(), "tower"])
-def test_the_cost_is_within_a_factor_1_5_of_what_was_expected(name: str, tolerance: float) -> None:
-    scene = tower() if name == "tower" else load_scene(name)
-    found = chosen(scene, tolerance, 24, 4)
-    expected = sum(found.study.seconds(rung) for rung in found.study.ladder)
-    begin = time.process_time()
-    for tile in found.study.tiles():
-        solve_tile(tile)
-    spent = time.process_time() - begin
-    print(f"{name} {tolerance:.0e}: {spent:.2f} s where {expected:.2f} s were expected, {spent / expected:.2f} times")
-    assert 1.0 / 1.5 <= spent / expected <= 1.5
+@pytest.mark.parametrize("names", [builtin_scenes(), ["tower"]], ids=["the paper's scenes", "tower"])
+def test_the_cost_is_within_a_factor_1_5_of_what_was_expected(names: list[str], tolerance: float) -> None:
+    """
+    What the record says, times this machine's speed, which is measured in the same minute.
+
+    The record has one cost per tolerance, a mean over the paper's scenes: it holds for them together, within a factor 2
+    for each.
+    """
+    expected, spent = [], []
+    for name in names:
+        scene = tower() if name == "tower" else load_scene(name)
+        found = chosen(scene, tolerance, 24, 4)
+        expected.append(sum(found.study.seconds(rung) for rung in found.study.ladder))
+        begin = time.process_time()
+        for tile in found.study.tiles():
+            solve_tile(tile)
+        spent.append(time.process_time() - begin)
+        print(f"{name} {tolerance:.0e}: {spent[-1]:.2f} s where {expected[-1]:.2f} s were expected")
+    ratio = np.divide(spent, expected)
+    assert 1.0 / 1.5 <= sum(spent) / sum(expected) <= 1.5
+    assert ((ratio >= 0.5) & (ratio <= 2.0)).all(), ratio

@@ -19,7 +19,9 @@ def test_there_are_two_command_lines_each_of_one_line() -> None:
 
 
 def test_every_file_the_readme_points_to_exists() -> None:
-    for target in re.findall(r"\]\((?!http)([^)]+)\)", README):
+    targets = re.findall(r"\]\((?!http)([^)]+)\)", README)
+    assert "comparison/README.md" in targets
+    for target in targets:
         assert (ROOT / target).exists(), target
 
 

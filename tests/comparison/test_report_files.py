@@ -46,6 +46,7 @@ def test_surfaces_are_labelled_by_scene_model_body_and_phases(surfaces: xr.Datas
 def test_every_value_stands_at_its_own_phases(surfaces: xr.Dataset) -> None:
     """The fake reference answers 2 + i + cos a1 + sin a2, which no exchange of axes or order leaves alone."""
     expected = 2.0 + surfaces["body"] + np.cos(surfaces["alpha1"]) + np.sin(surfaces["alpha2"])
+    assert surfaces["scene"].values.tolist() == ["fig3-I", "fig4-viscous"]
     for scene in surfaces["scene"].values:
         for model, factor in (("small", 1.0), ("exact", 1.0), ("translational", 1.01)):
             found = surfaces["mu"].sel(scene=scene, model=model)

@@ -70,15 +70,15 @@ def test_the_error_of_the_reference_falls_with_its_tolerance(trade: Trade, quest
     for method in ("reference, one run", "reference, two runs and an estimate"):
         errors = np.array([one.most for one in trade.methods(question)[method]], dtype=float)
         # from 1e-1 to 1e-8: a method of order 13 with steps of order 7 gains far more than a thousand
-        assert (errors[-1] < 1e-3 * errors[0]).all() or (errors[-1] < 1e-8).all()
         assert (errors[-1] < 1e-8).all()
 
 
 def test_every_error_estimate_of_the_reference_holds_at_95_percent_of_the_points(trade: Trade) -> None:
-    for one in trade.entries:
-        if one.controlled and one.method.startswith("reference"):
-            for error, claimed in zip(one.most, one.claimed):
-                assert error <= max(claimed, 1e-10), one  # the truth is not known better
+    own = [one for one in trade.entries if one.controlled and one.method.startswith("reference")]
+    assert own
+    for one in own:
+        for error, claimed in zip(one.most, one.claimed, strict=True):
+            assert error <= max(claimed, 1e-10), one  # the truth is not known better
 
 
 def test_scipy_and_the_engine_tend_to_the_truth_of_the_reference(trade: Trade) -> None:
@@ -95,6 +95,7 @@ def test_scipy_and_the_engine_tend_to_the_truth_of_the_reference(trade: Trade) -
 def test_v_reg_is_a_model_error_that_falls_towards_the_peak_that_motion_resolves(trade: Trade) -> None:
     own = [one for one in trade.of("exact") if "faster than v_reg" in one.method]
     errors = np.array([one.most for one in own], dtype=float)
+    assert len(own) > 2
     assert all(one.model_error and not any(one.front) for one in own)
     assert (np.diff(errors[:, 1]) < 0.0).all(), "mu_2 is well conditioned: in proportion to v_reg"
 

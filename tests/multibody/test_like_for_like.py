@@ -29,7 +29,7 @@ def test_every_factor_lies_within_its_error_of_the_exact_equations(scene: str, r
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("scene", "tolerance", "count", "largest"),
-    [("fig3-I", 1e-3, 256, 2e-3), ("fig3-II", 1e-3, 256, 2e-3), ("fig3-I", 1e-5, 16, 2e-5)],
+    [("fig3-I", 1e-3, 256, 2e-3), ("fig3-II", 1e-3, 128, 2e-3)],
 )
 def test_a_whole_surface_lies_within_its_errors(scene: str, tolerance: float, count: int, largest: float) -> None:
     phases = np.random.default_rng(11).uniform(0.0, 2.0 * np.pi, (count, 2))
@@ -40,6 +40,28 @@ def test_a_whole_surface_lies_within_its_errors(scene: str, tolerance: float, co
     assert (gap <= engine.error + equations.error).all()
     assert (gap <= largest * equations.mu).all()
     assert (np.median(gap / equations.mu, axis=0) <= 1e-4).all()
+
+
+@pytest.mark.long
+def test_asked_for_more_than_its_rounding_allows_the_engine_says_so_and_its_errors_hold() -> None:
+    """
+    At 1e-5 the last levels differ by little more than rounding in the contact, which no finer level removes.
+
+    How many points meet such a tolerance depends on the processor; that each says whether it does, and how far it is
+    off, does not.
+    """
+    tolerance, scene = 1e-5, load_scene("fig3-I")
+    phases = np.random.default_rng(11).uniform(0.0, 2.0 * np.pi, (16, 2))
+    engine = multibody.amplification(scene, phases, regularization=V_REG, tolerance=tolerance)
+    equations = reference.amplification(scene, phases, equations="exact", regularization=V_REG, tolerance=1e-7)
+    met = (engine.error <= tolerance * engine.mu).all(axis=1)
+    assert engine.status.tolist() == [Outcome.OK if one else Outcome.TOLERANCE_NOT_MET for one in met]
+    assert np.isfinite(engine.mu).all()
+    gap = np.abs(engine.mu - equations.mu)
+    assert (gap <= engine.error + equations.error).all()
+    assert (gap <= 2e-5 * equations.mu).all()
+    assert (engine.error <= 1e-4 * engine.mu).all(), "errors that miss the tolerance do not miss it by far"
+    assert (np.median(gap / equations.mu, axis=0) <= 5e-6).all()
 
 
 @pytest.mark.parametrize("regularization", [1e-4, 1e-5])

@@ -83,19 +83,36 @@ def test_swing_down_and_up_the_cap_with_friction_of_the_exact_equations(friction
 
 
 @BOTH
-def test_straight_slide_on_a_nearly_flat_cap_stops_where_and_when_it_should(equations):
-    """A radius of 1e7 m: gravity along the slope is x/rho = 1e-8 of the friction."""
-    friction, speed = 0.3, 2.0
-    scene = chain(1e7, friction, amplitudes=STILL, duration=2.0)
-    run = reference.trajectory(
-        scene, (0.0, 0.0), equations, tolerance=TOLERANCE, initial=state([0.0, 0.0], [0.8 * speed, 0.6 * speed])
-    )
-    assert run.status == "ok"
-    (begin, end), = run.stick  # fmt: skip
-    assert begin == pytest.approx(stopping_time(speed, friction), rel=10 * TOLERANCE + 1e-7)
-    assert end == 2.0
-    distance = stopping_distance(speed, friction)
-    np.testing.assert_allclose(run.position[-1, 0, :2], [0.8 * distance, 0.6 * distance], rtol=10 * TOLERANCE + 1e-7)
+@pytest.mark.parametrize("speed", [0.02, 2.0])
+@pytest.mark.parametrize("radius", [1e4, 1e5, 1e6, 3e6, 1e7, 3e7, 1e8])
+def test_straight_slide_on_a_nearly_flat_cap_stops_where_and_when_it_should_in_every_direction(
+    radius, speed, equations
+):
+    """
+    Nothing drives these slides but their own speed: gravity along the slope is 1e-4 to 1e-13 of the friction.
+
+    A straight slide under the small equations is an oscillation about -mu rho; the exact ones add the centripetal part
+    of the contact force, of relative order v^2/(rho g).
+    """
+    friction, count = 0.3, 12
+    scene = chain(radius, friction, amplitudes=STILL, duration=1.0)
+    frequency = np.sqrt(GRAVITY / radius)
+    way = speed**2 / GRAVITY / (friction + np.sqrt(friction**2 + speed**2 / (GRAVITY * radius)))
+    time = np.arctan(speed / (frequency * friction * radius)) / frequency
+    slope = 2.0 * speed**2 / (friction**2 * GRAVITY * radius)
+    assert way == pytest.approx(stopping_distance(speed, friction), rel=slope)
+    assert time == pytest.approx(stopping_time(speed, friction), rel=slope)
+    allowed = 10 * TOLERANCE + (speed**2 / (GRAVITY * radius) if equations == "exact" else 0.0)
+    for angle in 2.0 * np.pi * np.arange(count) / count:
+        along = np.array([np.cos(angle), np.sin(angle)])
+        run = reference.trajectory(
+            scene, (0.0, 0.0), equations, tolerance=TOLERANCE, initial=state([0.0, 0.0], speed * along)
+        )
+        assert run.status == "ok"
+        (begin, end), = run.stick  # fmt: skip
+        assert begin == pytest.approx(time, rel=allowed)
+        assert end == 1.0
+        np.testing.assert_allclose(run.position[-1, 0, :2], way * along, atol=allowed * way)
 
 
 @pytest.mark.parametrize("swing", [0.01, 0.1, 0.2])

@@ -34,7 +34,7 @@ def ask(entry: dict[str, Any], tolerance: float, cutoff: float | None = None) ->
 @pytest.mark.parametrize("entry", VALUES, ids=lambda entry: entry["name"])
 def test_amplification_is_the_oracle_s(entry):
     """Supremum (or smooth law), and the resolved peak at every cutoff, each body."""
-    for cutoff, mu, error in zip(entry["cutoff"], entry["mu"], entry["error"]):
+    for cutoff, mu, error in zip(entry["cutoff"], entry["mu"], entry["error"], strict=True):
         found = ask(entry, TOLERANCE, cutoff or None)
         assert found.status[0] == "ok"
         slack = CUTOFF_LOSS if cutoff else 1.0
@@ -61,6 +61,7 @@ def test_the_cases_cover_every_law_and_every_phase_of_contact():
     assert [entry["name"] for entry in VALUES] == [case.name for case in CASES]
     assert {entry["equations"] for entry in VALUES} == {"exact", "small"}
     assert {entry["regularization"] for entry in VALUES} == {None, 1e-2, 1e-3, 1e-4, 1e-6}
+    assert all(entry["cutoff"] for entry in VALUES)
     assert any(entry["rests"] and entry["swing"] > 0.6 for entry in VALUES)
     assert max(max(map(max, entry["error"])) for entry in VALUES) < 1e-8
 

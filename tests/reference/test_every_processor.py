@@ -1,0 +1,83 @@
+"""The compiled solver gives the same numbers on every processor and in every process."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import reference
+from reference.problem import load_scene, phase_grid
+from reference.solver.compiled import CACHE_FOLDER
+
+ROOT = Path(__file__).parents[2]
+SCENES = ("fig3-I", "fig4-dry", "fig4-viscous")
+TOLERANCE = 1e-7
+ASKED = f"""
+import sys
+import numpy as np
+import reference
+from reference.problem import load_scene, phase_grid
+laws = [("exact", None), ("exact", 1e-3), ("small", None)]
+np.save(sys.argv[1], [
+    reference.amplification(load_scene(name), phase_grid(3), *law, tolerance={TOLERANCE}, full=True).mu
+    for name in {SCENES} for law in laws
+])
+"""
+
+
+def computed(file: Path, **environment: str) -> np.ndarray:
+    """What another process computes, mu of every scene and law."""
+    words = [sys.executable, "-c", ASKED, str(file)]
+    subprocess.run(words, cwd=ROOT, env={**os.environ, "PYTHONPATH": str(ROOT), **environment}, check=True)
+    return np.load(file)
+
+
+@pytest.fixture(scope="module")
+def here() -> np.ndarray:
+    return np.array(
+        [
+            reference.amplification(load_scene(name), phase_grid(3), *law, tolerance=TOLERANCE, full=True).mu
+            for name in SCENES
+            for law in (("exact", None), ("exact", 1e-3), ("small", None))
+        ]
+    )
+
+
+@pytest.mark.long
+def test_a_generic_processor_gives_the_same_factors(tmp_path: Path, here: np.ndarray) -> None:
+    """Not a bit differs where the C library computes alike; 1e-9 is what a user may count on."""
+    other = computed(tmp_path / "mu.npy", NUMBA_CPU_NAME="generic", NUMBA_CACHE_DIR=str(tmp_path / "build"))
+    np.testing.assert_allclose(other, here, rtol=1e-9)
+
+
+@pytest.mark.long
+def test_the_process_that_compiles_and_one_that_loads_the_build_agree_to_the_last_bit(tmp_path: Path) -> None:
+    build = tmp_path / "build"
+    compiling, loading = (
+        computed(tmp_path / f"{name}.npy", NUMBA_CACHE_DIR=str(build)) for name in ("first", "second")
+    )
+    assert list(build.glob("*/*/*.nbc")), "the first left a build"
+    np.testing.assert_array_equal(loading, compiling)
+
+
+def test_no_part_of_the_solver_is_compiled_with_the_freedom_to_reorder_sums() -> None:
+    """Such freedom is used otherwise on another processor, and otherwise where a part is not inlined."""
+    from reference.solver.runs import runs
+
+    assert not runs.targetoptions.get("fastmath")
+
+
+def test_a_cache_folder_of_the_user_s_choice_holds_a_build_per_version_of_the_source(tmp_path: Path) -> None:
+    ask = "from reference.solver.compiled import CACHE_FOLDER; print(CACHE_FOLDER)"
+    words = [sys.executable, "-c", ask]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(tmp_path)}
+    found = Path(
+        subprocess.run(words, cwd=ROOT, env=environment, check=True, capture_output=True, text=True).stdout.strip()
+    )
+    assert found.parent == tmp_path
+    assert found.name == Path(CACHE_FOLDER).name
