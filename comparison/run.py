@@ -1,20 +1,25 @@
 """
 The study on the command line: `python -m comparison.run [SCENE ...]`.
 
-Exit codes: 0 done; 1 a limit of --check is broken; 2 a wrong scene or option, before anything is computed;
-3 the report or a finished tile could not be written; 4 the cluster was lost; 128 + number of the signal, 130 for
-Ctrl-C: stopped. After 3, 4 and a signal the same command goes on where it stopped.
+Exit codes: 0 done; 1 a limit of --check is broken; 2 a wrong scene or option, before anything is computed; 3 something
+could not be written, or an unexpected error; 4 the cluster was lost; 128 + number of the signal, 130 for Ctrl-C; 141
+whoever read the output closed it. After 3, 4 and a signal the same command goes on where it stopped.
 """
 
 from __future__ import annotations
 
 import signal
+
+if __name__ == "__main__" and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # while modules load Ctrl-C ends the command without a traceback
+
 import sys
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import Any
 
 import xarray as xr
@@ -34,20 +39,20 @@ from comparison.plan.choice import Asked, BudgetError, Choice, choice
 from comparison.plan.ladder import LADDER, Rung
 from comparison.plan.study import Study
 from comparison.provenance import provenance
-from comparison.report.aside import clear_dead
 from comparison.report.findings import findings
-from comparison.report.store import replaced_when_complete
+from comparison.storage.cache import Cache, StoreError, store_beside
+from comparison.storage.output import clear_dead, on_stderr, replaced_when_complete
 from comparison.sweep.answers import Answers
 from comparison.sweep.cluster import cluster
 from comparison.sweep.compute import computed, fetched
 from comparison.sweep.executors import ExecutorLostError, Pool, factory, process_pool
 from comparison.sweep.going_on import command_line, going_on, here
+from comparison.sweep.keys import tile_key
 from comparison.sweep.progress import wide_console
-from comparison.sweep.stopping import stoppable
-from comparison.sweep.tile_store import StoreError, TileStore, store_beside
 from comparison.terminal import print_choice, print_differences, print_plan, print_promises
 from comparison.tradeoff.trade import read as stored_trades
 from reference.problem import SceneError
+from reference.problem.command import run_command, stoppable
 
 
 def main(
@@ -74,7 +79,7 @@ def main(
                 return 0
             if options.by_trade:
                 print_choice(console, chosen, options)
-            store = TileStore(store_beside(options.out))
+            store = Cache(store_beside(options.out))
             return _ended(chosen, options, console, words, executor, store)
         except (SceneError, UsageError) as fault:
             print(fault, file=sys.stderr)
@@ -94,7 +99,7 @@ def _chosen(options: Options, ladder: Sequence[Rung]) -> Choice:
 
 
 def _ended(
-    chosen: Choice, options: Options, console: Console, words: Sequence[str], executor: Pool, store: TileStore
+    chosen: Choice, options: Options, console: Console, words: Sequence[str], executor: Pool, store: Cache
 ) -> int:
     """The exit code; whatever ends the run early, what is finished is kept, and the line printed says how to go on."""
     study = chosen.study
@@ -128,7 +133,7 @@ def _run(
     console: Console,
     command: str,
     executor: Callable[[int], Executor],
-    store: TileStore,
+    store: Cache,
 ) -> int:
     # plotting libraries: not needed to refuse a command or to plan
     from comparison.drawing import pictures as drawing
@@ -138,9 +143,10 @@ def _run(
     clear_dead(options.out)
     study = chosen.study
     tiles = study.tiles()
-    store.trim(tiles)
+    keys = [tile_key(tile) for tile in tiles]
+    store.trim(keys)
     if options.fresh:
-        store.forget(tiles)
+        store.forget(keys)
     known = Answers(store, options.fresh)
     done = computed(study, store, console, options.jobs, executor, errands(study, chosen.whole), known)
     seconds, answers = time.monotonic() - begin, done.answers
@@ -153,7 +159,7 @@ def _run(
     effective = effective_values(study, options.jobs, executor)
     effects = slip_effects(study, options.jobs, executor)
     more = _more(study, surfaces, options, executor) if chosen.whole else {}
-    beside = {"extremes": stored_extremes(options.out), "tradeoff": stored_trades(options.out)}
+    beside = {"extremes": _taken_up(stored_extremes, options.out), "tradeoff": _taken_up(stored_trades, options.out)}
     families = [family for family in options.families if len(family.scenes) > 1] or None
     titles = {rung.key: rung.title for rung in study.ladder}
     faults = sorted(
@@ -178,15 +184,16 @@ def _run(
     of_run = {"families": families, "pictures": pictures}
     found = findings(study, surfaces, effective, effects, faults, run, **of_run, **beside, **more)
     console.print("Writing the report.")
-    with replaced_when_complete(options.out) as folder:
-        write_report(folder, found)
+    with replaced_when_complete(options.out) as report:
+        write_report(report.folder, found)
     for line in faults:
         print(f"solver: {line}", file=sys.stderr)
     for line in found.broken if options.check else []:
         print(f"limit broken: {line}", file=sys.stderr)
     if options.by_trade:
         print_promises(console, run["choice"], time.monotonic() - begin)
-    _print_closing(console, options, run, time.monotonic() - begin)
+    place = options.out if report.place == options.out.resolve() else report.place
+    _print_closing(console, options, place, run, time.monotonic() - begin)
     print_differences(console, found.rows)
     return 1 if options.check and found.broken else 0
 
@@ -200,15 +207,24 @@ def _more(study: Study, surfaces: xr.Dataset, options: Options, executor: Callab
     }
 
 
-def _print_closing(console: Console, options: Options, run: dict[str, object], seconds: float) -> None:
+def _taken_up(read: Callable[[Path], Any], out: Path) -> Any:
+    """What another command left beside the report; a file that has appeared since and is none of theirs is left."""
+    try:
+        return read(out)
+    except (OSError, ValueError) as fault:
+        on_stderr(str(fault))
+        return None
+
+
+def _print_closing(console: Console, options: Options, report: Path, run: dict[str, object], seconds: float) -> None:
     console.print(
         f"{seconds:.0f} s with {options.jobs} workers: {run['compute_seconds']} s of compute "
         f"({run['predicted_compute_seconds']} s predicted)."
     )
-    console.print(f"Report: {options.out / 'index.html'}", soft_wrap=True)  # a path is copied whole
+    console.print(f"Report: {report / 'index.html'}", soft_wrap=True)  # a path is copied whole
     console.print("Next: open it in a browser; a finer look: --grid N with a larger N; what that costs: --plan.")
     console.print("Relative differences over the phases, per body:")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run_command(main)

@@ -17,8 +17,9 @@ from comparison.plan.ladder import RECORDED_ON
 from comparison.plan.left_out import left_out
 from comparison.plan.overhead import START_UP, WRITING
 from comparison.plan.study import Study
+from comparison.storage.cache import Cache, store_beside
 from comparison.sweep.answers import Answers
-from comparison.sweep.tile_store import TileStore, store_beside
+from comparison.sweep.keys import tile_key
 
 
 def print_plan(console: Console, study: Study, options: Options, whole: bool = True) -> None:
@@ -44,8 +45,8 @@ def print_plan(console: Console, study: Study, options: Options, whole: bool = T
     if len(study.phased) < len(study.scenes):
         console.print("A recorded motion has no phases: one point per model.")
     console.print(f"{study.grid} x {study.grid} phases, {options.jobs} worker processes: about {wall:.0f} s.")
-    store, tiles = TileStore(store_beside(options.out)), study.tiles()
-    if not options.fresh and (stored := sum(map(store.holds, tiles))):
+    store, tiles = Cache(store_beside(options.out)), study.tiles()
+    if not options.fresh and (stored := sum(store.holds(tile_key(tile)) for tile in tiles)):
         asked, known = errands(study, whole), Answers(store)
         analyses = f"{sum(map(known.holds, asked))} of {len(asked)} analyses"
         console.print(
