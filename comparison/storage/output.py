@@ -251,7 +251,8 @@ def foreign(folder: Path) -> list[str]:
         name = path.relative_to(folder).as_posix()
         if name != MANIFEST and not (name in folders if is_folder else _is_own(path, own.get(name))):
             strangers.append(name)
-    return sorted(strangers)
+    # of a folder that is not ours the files in it say more
+    return sorted(name for name in strangers if not any(other.startswith(f"{name}/") for other in strangers))
 
 
 def read_manifest(folder: Path) -> dict[str, Own]:

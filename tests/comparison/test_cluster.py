@@ -95,10 +95,11 @@ def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on_in_process(
     assert set(names) == {tile_key(tile).name for tile in study.tiles()}
 
 
-def test_no_scheduler_is_a_wrong_option(command: Callable[..., Run]) -> None:
-    run = command("fig3-I", "--scheduler", "nowhere", ladder=fake_ladder("forbidden"))
+@pytest.mark.parametrize("address", ["nowhere", "tls://127.0.0.1:1", "ucx://127.0.0.1:1"])
+def test_no_scheduler_is_a_wrong_option(command: Callable[..., Run], address: str) -> None:
+    run = command("fig3-I", "--scheduler", address, ladder=fake_ladder("forbidden"))
     assert run.code == 2
-    assert run.err.startswith("command line: --scheduler = 'nowhere': no scheduler answers there: ")
+    assert run.err.startswith(f"command line: --scheduler = {address!r}: no scheduler answers there: ")
     assert run.err.count("\n") == 1
     both = command("fig3-I", "--scheduler", "nowhere", "--jobs", "3")
     assert both.code == 2
