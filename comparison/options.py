@@ -11,11 +11,13 @@ from typing import NoReturn
 
 from pydantic import ValidationError
 
+from comparison.extremes.matrix import read as stored_extremes
 from comparison.plan.choice import AMBITIONS, DEFAULT, DEFAULT_TOLERANCE, tightest
 from comparison.plan.study import refuse_same_names
-from comparison.report.store import refuse_foreign
+from comparison.storage.cache import refuse_foreign_store
+from comparison.storage.output import destination, refuse_foreign_report
 from comparison.sweep.executors import cores
-from comparison.sweep.tile_store import refuse_foreign_store
+from comparison.tradeoff.trade import read as stored_trades
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
 from reference.problem.scene_error import first_fault
 
@@ -64,7 +66,7 @@ def parsed(argv: Sequence[str] | None) -> Options:
     options = Options(
         families=tuple(_family(name, amplitude) for name in names),
         grid=None if given.grid is None else _whole("--grid", given.grid, 2, 512),
-        out=given.out,
+        out=destination(given.out),
         jobs=cores() if given.jobs is None else _whole("--jobs", given.jobs, 1, 1024),
         tolerance=_given("--tolerance", given.tolerance, tightest(), 0.1, "relative error of mu"),
         budget=_given("--budget", given.budget, 1.0, 1e7, "s of the whole run"),
@@ -84,7 +86,13 @@ def parsed(argv: Sequence[str] | None) -> Options:
         rule = "is kept by what this machine is measured to do, --scheduler computes on others: give one of the two"
         raise SceneError("command line", "--budget", given.budget, rule)
     if not options.plan:
-        refuse_foreign(options.out)
+        try:
+            stored_extremes(options.out)
+            stored_trades(options.out)
+        except (OSError, ValueError) as fault:
+            rule = f"the report cannot take up {fault}"
+            raise SceneError("command line", "--out", str(options.out), rule) from None
+        refuse_foreign_report(options.out)
         refuse_foreign_store(options.out)
     return options
 

@@ -1,20 +1,25 @@
 """
 The study on the command line: `python -m comparison.run [SCENE ...]`.
 
-Exit codes: 0 done; 1 a limit of --check is broken; 2 a wrong scene or option, before anything is computed;
-3 the report or a finished tile could not be written; 4 the cluster was lost; 128 + number of the signal, 130 for
-Ctrl-C: stopped. After 3, 4 and a signal the same command goes on where it stopped.
+Exit codes: 0 done; 1 a limit of --check is broken; 2 a wrong scene or option, before anything is computed; 3 something
+could not be written, or an unexpected error; 4 the cluster was lost; 128 + number of the signal, 130 for Ctrl-C; 141
+whoever read the output closed it. After 3, 4 and a signal the same command goes on where it stopped.
 """
 
 from __future__ import annotations
 
 import signal
+
+if __name__ == "__main__" and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # while modules load Ctrl-C ends the command without a traceback
+
 import sys
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import Any
 
 import xarray as xr
@@ -35,20 +40,20 @@ from comparison.plan.choice import Asked, BudgetError, Choice, choice
 from comparison.plan.ladder import LADDER, Rung
 from comparison.plan.study import Study
 from comparison.provenance import provenance
-from comparison.report.aside import clear_dead
 from comparison.report.findings import Findings, findings
-from comparison.report.store import replaced_when_complete
+from comparison.storage.cache import Cache, StoreError, store_beside
+from comparison.storage.output import clear_dead, on_stderr, replaced_when_complete
 from comparison.sweep.answers import Answers
 from comparison.sweep.cluster import cluster
 from comparison.sweep.compute import computed, fetched
 from comparison.sweep.executors import ExecutorLostError, Pool, factory, process_pool
 from comparison.sweep.going_on import command_line, going_on, here
+from comparison.sweep.keys import tile_key
 from comparison.sweep.progress import wide_console
-from comparison.sweep.stopping import stoppable
-from comparison.sweep.tile_store import StoreError, TileStore, store_beside
 from comparison.terminal import print_choice, print_differences, print_plan, print_promises, print_unanswered
 from comparison.tradeoff.trade import read as stored_trades
 from reference.problem import SceneError
+from reference.problem.command import run_command, stoppable
 
 
 def main(
@@ -75,7 +80,7 @@ def main(
                 return 0
             if options.by_trade:
                 print_choice(console, chosen, options)
-            store = TileStore(store_beside(options.out))
+            store = Cache(store_beside(options.out))
             return _ended(chosen, options, console, words, executor, store)
         except (SceneError, UsageError) as fault:
             print(fault, file=sys.stderr)
@@ -95,7 +100,7 @@ def _chosen(options: Options, ladder: Sequence[Rung]) -> Choice:
 
 
 def _ended(
-    chosen: Choice, options: Options, console: Console, words: Sequence[str], executor: Pool, store: TileStore
+    chosen: Choice, options: Options, console: Console, words: Sequence[str], executor: Pool, store: Cache
 ) -> int:
     """The exit code; whatever ends the run early, what is finished is kept, and the line printed says how to go on."""
     study = chosen.study
@@ -129,7 +134,7 @@ def _run(
     console: Console,
     command: str,
     executor: Callable[[int], Executor],
-    store: TileStore,
+    store: Cache,
 ) -> int:
     # plotting libraries: not needed to refuse a command or to plan
     from comparison.drawing import pictures as drawing
@@ -139,9 +144,10 @@ def _run(
     clear_dead(options.out)
     study = chosen.study
     tiles = study.tiles()
-    store.trim(tiles)
+    keys = [tile_key(tile) for tile in tiles]
+    store.trim(keys)
     if options.fresh:
-        store.forget(tiles)
+        store.forget(keys)
     known = Answers(store, options.fresh)
     done = computed(study, store, console, options.jobs, executor, errands(study, chosen.whole), known)
     seconds, answers = time.monotonic() - begin, done.answers
@@ -155,7 +161,7 @@ def _run(
     effective = effective_values(study, options.jobs, executor)
     effects = slip_effects(study, options.jobs, executor)
     more = _more(study, surfaces, options, executor) if chosen.whole else {}
-    beside = {"extremes": stored_extremes(options.out), "tradeoff": stored_trades(options.out)}
+    beside = {"extremes": _taken_up(stored_extremes, options.out), "tradeoff": _taken_up(stored_trades, options.out)}
     families = [family for family in options.families if len(family.scenes) > 1] or None
     titles = {rung.key: rung.title for rung in study.ladder}
     faults = sorted(
@@ -180,8 +186,8 @@ def _run(
     of_run = {"families": families, "pictures": pictures}
     found = findings(study, surfaces, effective, effects, faults, run, **of_run, **beside, **more)
     console.print("Writing the report.")
-    with replaced_when_complete(options.out) as folder:
-        write_report(folder, found)
+    with replaced_when_complete(options.out) as report:
+        write_report(report.folder, found)
     for line in faults:
         print(f"solver: {line}", file=sys.stderr)
     for line in _checked(found) if options.check else []:
@@ -189,7 +195,8 @@ def _run(
     if options.by_trade:
         print_promises(console, run["choice"], time.monotonic() - begin)
     print_unanswered(console, found.unanswered)
-    _print_closing(console, options, run, time.monotonic() - begin, bool(study.phased))
+    place = options.out if report.place == options.out.resolve() else report.place
+    _print_closing(console, options, place, run, time.monotonic() - begin, bool(study.phased))
     print_differences(console, found.rows)
     return 1 if options.check and found.broken else 0
 
@@ -214,16 +221,27 @@ def _more(study: Study, surfaces: xr.Dataset, options: Options, executor: Callab
     }
 
 
-def _print_closing(console: Console, options: Options, run: dict[str, object], seconds: float, phased: bool) -> None:
+def _taken_up(read: Callable[[Path], Any], out: Path) -> Any:
+    """What another command left beside the report; a file that has appeared since and is none of theirs is left."""
+    try:
+        return read(out)
+    except (OSError, ValueError) as fault:
+        on_stderr(str(fault))
+        return None
+
+
+def _print_closing(
+    console: Console, options: Options, report: Path, run: dict[str, object], seconds: float, phased: bool
+) -> None:
     console.print(
         f"{seconds:.0f} s with {options.jobs} workers: {run['compute_seconds']} s of compute "
         f"({run['predicted_compute_seconds']} s predicted)."
     )
-    console.print(f"Report: {options.out / 'index.html'}", soft_wrap=True)  # a path is copied whole
+    console.print(f"Report: {report / 'index.html'}", soft_wrap=True)  # a path is copied whole
     finer = "; a finer look: --grid N with a larger N; what that costs: --plan" if phased else ""
     console.print(f"Next: open it in a browser{finer}.")
     console.print(f"Relative differences{' over the phases' if phased else ''}, per body:")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run_command(main)

@@ -20,8 +20,9 @@ from comparison.plan.overhead import COMPILED_ONCE, START_UP, WRITING
 from comparison.plan.recorded import recorded
 from comparison.plan.study import Study
 from comparison.plan.tiles import refusal_of
+from comparison.storage.cache import Cache, store_beside
 from comparison.sweep.answers import Answers
-from comparison.sweep.tile_store import TileStore, store_beside
+from comparison.sweep.keys import tile_key
 
 
 def print_plan(console: Console, study: Study, options: Options, whole: bool = True) -> None:
@@ -52,8 +53,8 @@ def print_plan(console: Console, study: Study, options: Options, whole: bool = T
         console.print(f"{line}.", soft_wrap=True)
     over = f"{study.grid} x {study.grid} phases, " if study.phased else ""
     console.print(f"{over}{options.jobs} worker processes: about {wall:.0f} s.")
-    store, tiles = TileStore(store_beside(options.out)), study.tiles()
-    if not options.fresh and (stored := sum(map(store.holds, tiles))):
+    store, tiles = Cache(store_beside(options.out)), study.tiles()
+    if not options.fresh and (stored := sum(store.holds(tile_key(tile)) for tile in tiles)):
         asked, known = errands(study, whole), Answers(store)
         analyses = f"{sum(map(known.holds, asked))} of {len(asked)} analyses"
         console.print(

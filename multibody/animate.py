@@ -9,9 +9,15 @@ on the same model.
 
 from __future__ import annotations
 
+import signal
+
+if __name__ == "__main__" and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # while modules load Ctrl-C ends the command without a traceback
+
 import argparse
 import os
 import sys
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +41,8 @@ from reference.problem import (
     load_scene,
     verbatim,
 )
+from reference.problem.command import run_command
+from reference.problem.files import write_new
 
 Array = NDArray[np.float64]
 
@@ -113,8 +121,15 @@ def refuse_film(scene: Scene, out: Path, stretch: float, speed: float) -> None:
         raise ValueError(f"--out: {out}: cannot be written")
 
 
-def draw(scene: Scene, motion: Trajectory, out: Path, *, stretch: float, speed: float) -> None:
-    """Write the animation to `out`, GIF; displacements drawn `stretch` times. The motion has at least one instant."""
+def draw(scene: Scene, motion: Trajectory, out: Path, *, stretch: float, speed: float) -> Path:
+    """
+    Write the animation to `out`, GIF; displacements drawn `stretch` times. The motion has at least one instant.
+
+    Returns
+    -------
+    Path
+        The film: `out`, or beside it under the next free name if something is there.
+    """
     import matplotlib
 
     matplotlib.use("Agg")
@@ -187,8 +202,11 @@ def draw(scene: Scene, motion: Trajectory, out: Path, *, stretch: float, speed: 
         return [title, points, *lines, *masts, *(outline for outline, _, _ in outlines)]
 
     animation = FuncAnimation(figure, show, frames=len(shifts), blit=False)
-    animation.save(str(out), writer=PillowWriter(fps=FRAMES_PER_SECOND))
-    plt.close(figure)
+    with tempfile.TemporaryDirectory() as folder:
+        film = Path(folder) / out.name
+        animation.save(str(film), writer=PillowWriter(fps=FRAMES_PER_SECOND))
+        plt.close(figure)
+        return write_new(out, film.read_bytes())
 
 
 def view(scene: Scene, phase: Array, model: str, regularization: float | None) -> None:
@@ -260,10 +278,12 @@ def main(words: list[str] | None = None) -> int:
     except (SceneError, ValueError) as fault:
         print(fault, file=sys.stderr)
         return 2
-    draw(scene, motion, given.out, stretch=given.stretch, speed=given.speed)
-    print(f"{given.out}: {motion.time[-1]:.2f} s of motion, status {motion.status}")
+    film = draw(scene, motion, given.out, stretch=given.stretch, speed=given.speed)
+    if film != given.out:
+        print(f"{given.out} exists and stays: the film is in {film}", file=sys.stderr)
+    print(f"{film}: {motion.time[-1]:.2f} s of motion, status {motion.status}")
     return 0
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    run_command(main)

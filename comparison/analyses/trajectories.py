@@ -54,6 +54,12 @@ class StoredMotion:
     status: str = Outcome.OK.value
     fault: str = ""
 
+    def __post_init__(self) -> None:
+        bodies = self.position.shape[1:2]
+        shape = (len(self.time), *bodies, 2)
+        if self.time.ndim != 1 or self.position.shape != shape or self.acceleration.shape != shape:
+            raise ValueError(f"{self.time.shape} instants of {self.position.shape} and {self.acceleration.shape}")
+
 
 Task = tuple[Scene, Rung, float, Place, tuple[float, float]]
 

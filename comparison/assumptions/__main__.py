@@ -2,10 +2,15 @@
 How far the paper's assumptions carry: `python -m comparison.assumptions [SCENE ...]`.
 
 Varies the ring of supports and the heights of the bodies and prints how far mu_i then is from the translational result,
-and where it stays within 1 % and 5 %. Exit codes: 0 done; 2 a wrong scene or option; 130 interrupted.
+and where it stays within 1 % and 5 %. Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
 """
 
 from __future__ import annotations
+
+import signal
+
+if __name__ == "__main__" and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # while modules load Ctrl-C ends the command without a traceback
 
 import argparse
 import sys
@@ -19,11 +24,14 @@ from rich.table import Table
 
 from comparison.assumptions.reach import said
 from comparison.assumptions.variations import DURATION, MANY, PHASES, Cell, assumption_cells, ranges
+from comparison.drawing.file_names import figure_file
 from comparison.plan.ladder import has_spatial_data
 from comparison.plan.study import Study, refuse_same_names
+from comparison.storage.output import destination, made_by, publish, refuse_foreign_files
 from comparison.sweep.executors import process_pool
 from comparison.sweep.progress import description, wide_console
 from reference.problem import Scene, SceneError, builtin_scenes, load_scene
+from reference.problem.command import run_command
 
 TOLERANCE = 1e-3
 
@@ -45,7 +53,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         scenes = [_spatial(name) for name in names]
         refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
         if given.figures:
-            given.figures.mkdir(parents=True, exist_ok=True)
+            given.figures = destination(given.figures, "--figures")
+            pictures = [figure_file(s.name, "assumptions", ending=end) for s in scenes for end in (".png", ".pdf")]
+            refuse_foreign_files(given.figures, pictures, "--figures")
     except SceneError as fault:
         print(fault, file=sys.stderr)
         return 2
@@ -56,18 +66,20 @@ def main(argv: Sequence[str] | None = None) -> int:
     console.print(
         f"{len(MANY)} variations at {len(PHASES)} phase pairs over {DURATION:g} s of motion: minutes for each scene."
     )
-    try:
-        for scene in scenes:
-            cells = _watched(console, scene, given.jobs)
-            _print(console, scene, cells)
-            if given.figures:
-                from comparison.assumptions.figure import assumption_figure_name, draw_assumptions
-
-                draw_assumptions(given.figures / assumption_figure_name(scene), scene, cells)
-    except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
-        return 130
+    for scene in scenes:
+        cells = _watched(console, scene, given.jobs)
+        _print(console, scene, cells)
+        if given.figures:
+            _draw(given.figures, scene, cells)
     return 0
+
+
+def _draw(folder: Path, scene: Scene, cells: Sequence[Cell]) -> None:
+    """Write the picture of a scene."""
+    from comparison.assumptions.figure import assumption_figure_name, draw_assumptions  # plotting: not needed to refuse
+
+    files = made_by(lambda new: draw_assumptions(new / assumption_figure_name(scene), scene, cells))
+    publish(folder, files, "comparison.assumptions")
 
 
 def _spatial(name: str) -> Scene:
@@ -113,4 +125,4 @@ def _print(console: Console, scene: Scene, cells: Sequence[Cell]) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run_command(main)

@@ -116,6 +116,10 @@ class Solved:
     fault: str
     cost: float
 
+    def __post_init__(self) -> None:
+        if self.mu.ndim != 2 or self.error.shape != self.mu.shape or len(self.status) != len(self.mu):
+            raise ValueError(f"mu {self.mu.shape}, error {self.error.shape}, {len(self.status)} statuses")
+
 
 def variation_tasks(study: Study, variations: Sequence[Variation] = FEW) -> list[Task]:
     """The translational model and every variation of the spatial one, for every scene to which both apply."""

@@ -4,8 +4,12 @@ The claims of section 5 against readings of the paper: `python -m comparison.cla
 
 from __future__ import annotations
 
+import signal
+
+if __name__ == "__main__" and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # while modules load Ctrl-C ends the command without a traceback
+
 import argparse
-import sys
 from collections.abc import Callable, Sequence
 
 from rich.console import Console
@@ -16,6 +20,7 @@ from comparison.claims.readings import EVERY_READING, READINGS
 from comparison.claims.table import GRID, SECONDS, SIGNS, ClaimTable, claims_tested, questions
 from comparison.sweep.executors import Pool, cores, process_pool
 from comparison.sweep.progress import Stage, progress, wide_console
+from reference.problem.command import run_command
 
 
 def main(argv: Sequence[str] | None = None, executor: Pool = process_pool) -> int:
@@ -69,4 +74,4 @@ def _at_least(least: int) -> Callable[[str], int]:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run_command(main)

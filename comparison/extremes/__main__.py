@@ -2,10 +2,16 @@
 Numerical stability at the extremes: `python -m comparison.extremes [--out DIR]`.
 
 Every model meets every extreme of `rows` in a process that can be killed, and its answer is judged by a finer
-run. Writes extremes.json and extremes.png. Exit codes: 0 no cell failed; 1 some did; 2 a wrong option; 130 interrupted.
+run. Writes extremes.json and extremes.png. Exit codes: 0 no cell failed; 1 some did; 2 a wrong option;
+3 the files could not be written; others as in `run_command`.
 """
 
 from __future__ import annotations
+
+import signal
+
+if __name__ == "__main__" and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # while modules load Ctrl-C ends the command without a traceback
 
 import argparse
 import shlex
@@ -20,13 +26,16 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
 
 from comparison.extremes.cells import Cell, Solved, cells, solve_cell
-from comparison.extremes.matrix import FILE, Matrix, as_entry, matrix, written
+from comparison.extremes.matrix import FILE, PICTURE, Matrix, as_entry, matrix, written
 from comparison.extremes.rows import COLUMNS, EQUATIONS, REFERENCE, Column, Row, rows
 from comparison.extremes.verdicts import Verdict
 from comparison.extremes.worker import answers
 from comparison.provenance import provenance
+from comparison.storage.output import destination, made_by, publish, refuse_foreign_files
 from comparison.sweep.executors import cores
 from comparison.sweep.progress import description, wide_console
+from reference.problem import SceneError
+from reference.problem.command import run_command
 
 BRIEF = {"lubrication, s/m", "start at the friction limit", "outside the rules"}  # for the engine's models, too
 LIMIT = 180.0  # s of processor time for one cell with its finer runs: four times what the dearest takes
@@ -46,23 +55,25 @@ def main(argv: Sequence[str] | None = None) -> int:
     if not cells(chosen, columns):
         print(f"command line: --only = {given.only!r}: no cell is left: take part of a row's name", file=sys.stderr)
         return 2
-    words = sys.argv[1:] if argv is None else argv
     try:
-        given.out.mkdir(parents=True, exist_ok=True)
-        command = shlex.join(["python", "-m", "comparison.extremes", *words])
-        found = run(chosen, given.jobs, given.limit, console, command, columns)
-        from comparison.extremes.figure import PICTURE, draw_extremes  # matplotlib: not needed to refuse a command
-
-        draw_extremes(given.out / PICTURE, found)
-        file = written(found, given.out)
-    except KeyboardInterrupt:
-        print("interrupted: nothing was written", file=sys.stderr)
-        return 130
-    except OSError as fault:
-        print(f"command line: --out = {str(given.out)!r}: could not be written: {fault}", file=sys.stderr)
+        out = destination(given.out)
+        refuse_foreign_files(out, [FILE, PICTURE])
+    except SceneError as fault:
+        print(fault, file=sys.stderr)
         return 2
+    words = sys.argv[1:] if argv is None else argv
+    command = shlex.join(["python", "-m", "comparison.extremes", *words])
+    found = run(chosen, given.jobs, given.limit, console, command, columns)
+    from comparison.extremes.figure import draw_extremes  # matplotlib: not needed to refuse a command
+
+    picture = made_by(lambda folder: draw_extremes(folder / PICTURE, found))
+    try:
+        files = publish(out, {FILE: written(found), **picture}, "comparison.extremes")
+    except OSError as fault:
+        print(f"command line: --out = {str(out)!r}: could not be written: {fault}", file=sys.stderr)
+        return 3
     _tell(console, found)
-    console.print(f"Matrix: {file}, {given.out / PICTURE}", soft_wrap=True)
+    console.print(f"Matrix: {', '.join(map(str, files))}", soft_wrap=True)
     console.print("A report written into the same directory by comparison.run shows it.")
     return 1 if found.counts()[Verdict.FAILED] else 0
 
@@ -157,4 +168,4 @@ def _parser() -> argparse.ArgumentParser:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run_command(main)

@@ -29,7 +29,6 @@ MEANING = {
     Verdict.FAILED: "FAILED: no answer, or a wrong one",
 }
 HEIGHT, WIDTH, LABELS, MARGIN, TOP = 0.2, 0.9, 1.75, 0.2, 1.15  # of fields, labels and borders, inches
-PICTURE = "extremes.png"
 PANELS = 2  # side by side, so that the whole fits a screen
 
 

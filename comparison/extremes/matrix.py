@@ -16,7 +16,7 @@ from comparison.extremes.rows import Column
 from comparison.extremes.verdicts import Judged, Verdict
 from comparison.extremes.worker import NoAnswer
 
-FILE = "extremes.json"
+FILE, PICTURE = "extremes.json", "extremes.png"
 
 
 @dataclass(frozen=True)
@@ -91,14 +91,9 @@ def as_entry(result: Solved | NoAnswer) -> Entry:
     return Entry(verdict.verdict.value, verdict.reason, error, round(result.seconds, 3), round(result.total, 3))
 
 
-def written(found: Matrix, folder: Path) -> Path:
-    """Write `found` into the folder; the file."""
-    file = folder / FILE
-    text = json.dumps(asdict(found), indent=1, ensure_ascii=False, allow_nan=False)
-    aside = file.with_suffix(".part")
-    aside.write_text(text + "\n", encoding="utf-8")
-    aside.replace(file)
-    return file
+def written(found: Matrix) -> bytes:
+    """The content of the file."""
+    return (json.dumps(asdict(found), indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
 
 
 def read(folder: Path) -> Matrix | None:

@@ -31,8 +31,8 @@ from comparison.claims.table import SIGNS
 from comparison.drawing.budget_figure import budget_figure_name
 from comparison.drawing.figures import figure_name
 from comparison.drawing.pictures import PAGE, for_page, smaller
-from comparison.extremes.figure import COLOURS, MEANING, PICTURE, draw_extremes, said
-from comparison.extremes.matrix import written
+from comparison.extremes.figure import COLOURS, MEANING, draw_extremes, said
+from comparison.extremes.matrix import PICTURE
 from comparison.extremes.verdicts import Verdict
 from comparison.plan.ladder import Pair, rungs_of
 from comparison.plan.study import Study
@@ -148,8 +148,6 @@ def write_report(folder: Path, found: Findings) -> None:
     (folder / "summary.json").write_text(text, encoding="utf-8")
     (folder / "summary.md").write_text(summary_text(found), encoding="utf-8")
     (folder / "junit.xml").write_text(junit(found), encoding="utf-8")
-    if found.extremes:
-        written(found.extremes, folder)
     figures = folder / "figures"
     figures.mkdir()
     for name, content in found.pictures.items():

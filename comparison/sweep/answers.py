@@ -1,5 +1,5 @@
 """
-The errands of a study, each from the store if it is there, else computed and stored at once.
+The errands of a study, each from the cache if it is there, else computed and stored at once.
 
 The analyses ask an executor, see `sweep`; one made by `Answers.on` knows what has been fetched before. So everything
 that a study can ask at once goes through the workers in one sweep, without a pause between one analysis and the next.
@@ -7,25 +7,15 @@ that a study can ask at once goes through the workers in one sweep, without a pa
 
 from __future__ import annotations
 
-import io
-import json
-import os
-import pickle
 from collections import defaultdict
 from collections.abc import Callable, Iterable
 from concurrent.futures import Executor, Future
-from contextlib import suppress
-from dataclasses import dataclass, is_dataclass
-from importlib import import_module
-from pathlib import Path
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, get_type_hints
 
-from comparison.sweep.errands import Errand, Fetched, fingerprint, named
-from comparison.sweep.surroundings import answer_surroundings
-from comparison.sweep.tile_store import MARK, TileStore, key_of
-
-FORMAT = 1  # of a stored answer
-NUMPY = {"_reconstruct", "dtype", "ndarray", "scalar"}  # what arrays are put together from
+from comparison.storage.cache import Cache
+from comparison.sweep.errands import Errand, Fetched
+from comparison.sweep.keys import errand_key
 
 
 @dataclass
@@ -39,11 +29,11 @@ class Part:
 
 class Answers:
     """
-    What errands gave, in memory and in `store`; nothing is read from there if `fresh`. parts: what each stage cost.
+    What errands gave, in memory and in `cache`; nothing is read from there if `fresh`. parts: what each stage cost.
     """
 
-    def __init__(self, store: TileStore, fresh: bool = False) -> None:
-        self._store, self._fresh = store, fresh
+    def __init__(self, cache: Cache, fresh: bool = False) -> None:
+        self._cache, self._fresh = cache, fresh
         self._known: dict[str, Any] = {}
         self.parts: dict[str, Part] = defaultdict(Part)
 
@@ -53,7 +43,7 @@ class Answers:
 
     def holds(self, errand: Errand) -> bool:
         """Whether there is a file for it, whatever its state."""
-        return not self._fresh and self._place(errand).exists()
+        return not self._fresh and self._cache.holds(errand_key(errand))
 
     def put(self, errand: Errand, fetched: Fetched | None) -> None:
         """
@@ -64,10 +54,7 @@ class Answers:
         if fetched is None:
             return
         self._know(errand, fetched)
-        if not faulty(fetched.result):
-            content = pickle.dumps(fetched, protocol=4)
-            self._store.write(self._place(errand), content, _described(errand), "a finished analysis")
-            self._store.others += 1
+        self._cache.put(errand_key(errand), (fetched.result, fetched.cost))
 
     def on(self, make: Callable[[int], Executor]) -> Callable[[int], Executor]:
         """An executor for N jobs that answers what is known at once and hands on the rest to that of `make`."""
@@ -81,20 +68,13 @@ class Answers:
     def _read(self, errand: Errand) -> bool:
         if self._fresh:
             return False
-        place = self._place(errand)
-        try:
-            fetched = _Unpickler(io.BytesIO(self._store.read(place))).load()
-        except (OSError, ValueError, KeyError, AttributeError, EOFError, ImportError, pickle.UnpicklingError):
+        declared: Any = get_type_hints(errand.solve)["return"]
+        stored = self._cache.get(errand_key(errand), tuple[declared, float])
+        if stored is None:
             return False
-        with suppress(OSError):
-            os.utime(place.parent)  # lately used
-        self._know(errand, fetched)
+        self._know(errand, Fetched(*stored))
         self.parts[errand.stage].stored += 1
-        self._store.others += 1
         return True
-
-    def _place(self, errand: Errand) -> Path:
-        return self._store.folder / key_of(_described(errand)) / f"{errand.key[:24]}.answer"
 
 
 class _Knowing(Executor):
@@ -128,31 +108,3 @@ class _Knowing(Executor):
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         if self._inner is not None:
             self._inner.shutdown(wait=wait, cancel_futures=cancel_futures)
-
-
-class _Unpickler(pickle.Unpickler):
-    """Makes nothing but this study's records and arrays, whatever the file says."""
-
-    def find_class(self, module: str, name: str) -> Any:
-        found = getattr(import_module(module), name) if module.split(".")[0] in ("comparison", "numpy") else None
-        if (isinstance(found, type) and is_dataclass(found)) or (module.startswith("numpy") and name in NUMPY):
-            return found
-        raise pickle.UnpicklingError(f"{module}.{name} has no place in a stored answer")
-
-
-def faulty(result: Any) -> bool:
-    """Whether a result, or a part of it, names a fault."""
-    if isinstance(result, tuple | list):
-        return any(map(faulty, result))
-    return bool(getattr(result, "fault", ""))
-
-
-def _described(errand: Errand) -> str:
-    content = {
-        "what": MARK,
-        "format": FORMAT,
-        "answers of": named(errand.solve),
-        "about": fingerprint(errand.about),
-        "surroundings": answer_surroundings(errand.solve.__module__),
-    }
-    return json.dumps(content, indent=1, sort_keys=True)

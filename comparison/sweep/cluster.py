@@ -59,7 +59,7 @@ def cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]:
     try:
         asyncio.run(knock())  # a client that reaches nobody leaves threads behind
         client = Client(address, timeout=ANSWER, set_as_default=False)
-    except (OSError, ValueError) as fault:
+    except (OSError, TypeError, ValueError) as fault:  # TypeError: TLS without a configuration
         raise refusal(f"no scheduler answers there: {' '.join(str(fault).split())}") from None
     try:
         _same_code(client, models, refusal)

@@ -1,5 +1,5 @@
 """
-The tiles and errands of a study, each from the store if it is there, else computed, stored at once, shown as progress.
+The tiles and errands of a study, each from the cache if it is there, else computed, stored at once, shown as progress.
 """
 
 from __future__ import annotations
@@ -12,13 +12,14 @@ from rich.console import Console
 from comparison.plan.overhead import COMPILED_ONCE, START_UP
 from comparison.plan.study import Study
 from comparison.plan.tiles import Answer, Tile, solve_tile, unanswered
+from comparison.storage.cache import Cache
 from comparison.sweep.answers import Answers
 from comparison.sweep.errands import Errand, Fetched, run_errand
 from comparison.sweep.executors import Pool
 from comparison.sweep.halves import halves, joined
+from comparison.sweep.keys import stored_tile, tile_key
 from comparison.sweep.progress import Stage, progress
 from comparison.sweep.sweep import sweep
-from comparison.sweep.tile_store import TileStore
 from comparison.sweep.warm_up import WARM_UP, warm_up
 from reference.problem import Outcome
 
@@ -36,7 +37,7 @@ class Computed:
 
 def computed(
     study: Study,
-    store: TileStore,
+    cache: Cache,
     console: Console,
     jobs: int,
     executor: Pool,
@@ -48,19 +49,19 @@ def computed(
 
     What errands gave is in `answers`. Raises StoreError and ExecutorLostError.
     """
-    answers = Answers(store) if answers is None else answers
+    answers = Answers(cache) if answers is None else answers
     tiles = study.tiles()
-    found = {place: answer for place, tile in enumerate(tiles) if (answer := store.get(tile)) is not None}
+    found = {place: answer for place, tile in enumerate(tiles) if (answer := stored_tile(cache, tile)) is not None}
     missing = [place for place in range(len(tiles)) if place not in found]
     open_ = answers.missing(errands)
     stages = _stages(study, tiles, missing, errands, open_)
     if found:
         others = f", {len(errands) - len(open_)} of {len(errands)} analyses" if errands else ""
-        stored = f"{len(found)} of {len(tiles)} tiles{others} are in {store.folder}: only the others are computed."
+        stored = f"{len(found)} of {len(tiles)} tiles{others} are in {cache.folder}: only the others are computed."
         console.print(stored, soft_wrap=True)  # a path is copied whole
     if missing or open_:
         rest = [tiles[place] for place in missing]
-        found |= zip(missing, _solved(study, rest, open_, store, answers, console, stages, jobs, executor))
+        found |= zip(missing, _solved(study, rest, open_, cache, answers, console, stages, jobs, executor))
     return Computed(tiles, [found[place] for place in range(len(tiles))], len(tiles) - len(missing))
 
 
@@ -104,7 +105,7 @@ def _solved(
     study: Study,
     tiles: Sequence[Tile],
     errands: Sequence[Errand],
-    store: TileStore,
+    cache: Cache,
     answers: Answers,
     console: Console,
     stages: dict[str, Stage],
@@ -125,7 +126,7 @@ def _solved(
                 return
             assert isinstance(answer, Answer)
             if piece.rung != WARM_UP:
-                store.put(piece, answer)
+                cache.put(tile_key(piece), answer)
             pending.discard(piece.rung)
             display.advance(titles[piece.rung], len(piece.phases))
 

@@ -6,7 +6,8 @@ import shlex
 from collections.abc import Sequence
 
 from comparison.plan.study import Study
-from comparison.sweep.tile_store import TileStore
+from comparison.storage.cache import Cache
+from comparison.sweep.keys import ANSWER, TILE
 
 
 def command_line(words: Sequence[str]) -> str:
@@ -14,11 +15,11 @@ def command_line(words: Sequence[str]) -> str:
     return shlex.join(["python", "-m", "comparison.run", *words])
 
 
-def going_on(store: TileStore, study: Study, words: Sequence[str]) -> str:
+def going_on(cache: Cache, study: Study, words: Sequence[str]) -> str:
     """How much is kept where, and the command for the rest: the same one, without what would throw it away."""
     rest = [word for word in words if word != "--fresh"]
-    others = f" and {store.others} analyses" if store.others else ""
-    kept = f"{store.kept} of {len(study.tiles())} tiles{others} are kept in {str(store.folder)!r}"
+    others = f" and {cache.kept[ANSWER]} analyses" if cache.kept[ANSWER] else ""
+    kept = f"{cache.kept[TILE]} of {len(study.tiles())} tiles{others} are kept in {str(cache.folder)!r}"
     return f"{kept}; go on with: {command_line(rest)}"
 
 

@@ -3,10 +3,15 @@ Speed for accuracy: `python -m comparison.tradeoff [SCENE ...] [--quick] [--out 
 
 Measures the error of mu_i against compute time per point, for every model and every numerical parameter, and writes
 tradeoff.json, in which other scenes stay, SCENE-tradeoff.nc and SCENE-tradeoff.png. Exit codes: 0 done; 2 a wrong scene
-or option; 130 interrupted.
+or option; 3 the files could not be written; others as in `run_command`.
 """
 
 from __future__ import annotations
+
+import signal
+
+if __name__ == "__main__" and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # while modules load Ctrl-C ends the command without a traceback
 
 import argparse
 import shlex
@@ -22,16 +27,20 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from comparison.drawing.file_names import with_ending
+from comparison.drawing.file_names import figure_file, with_ending
 from comparison.plan.study import refuse_same_names
 from comparison.provenance import provenance
+from comparison.storage.output import destination, made_by, publish, refuse_foreign_files
 from comparison.sweep.executors import Pool, cores, process_pool
 from comparison.sweep.progress import Stage, progress, wide_console
 from comparison.tradeoff.measure import Task, measured, tasks
-from comparison.tradeoff.trade import Trade, read, written
+from comparison.tradeoff.trade import FILE, Trade, read, written
 from reference.problem import Scene, SceneError, load_scene
+from reference.problem.command import run_command
 
 DEFAULT = "fig3-I"
+COMMAND = "comparison.tradeoff"
+ENDINGS = "png", "pdf", "nc"  # of the files of a scene
 STARTING = 8.0  # s of a worker before its first task: imports, compiled code loaded
 
 
@@ -50,23 +59,24 @@ def main(argv: Sequence[str] | None = None, executor: Pool = process_pool) -> in
                 rule = "its truths are for phases, which a recorded motion has not: give a scene of two frequencies"
                 raise SceneError(scene.name, "excitation.record", scene.name, rule)
         refuse_same_names((scene.name, scene.name) for scene in scenes)
-        given.out.mkdir(parents=True, exist_ok=True)
-        before = {trade.scene: trade for trade in read(given.out) or []}
+        out = destination(given.out)
+        read(out)  # a file that is no trade is refused before anything is measured
+        pictures = [figure_file(scene.name, "tradeoff", ending=f".{end}") for scene in scenes for end in ENDINGS]
+        refuse_foreign_files(out, [FILE, *pictures])
         trades = []
         for scene in scenes:
             trade, data = watched(scene, given.quick, given.jobs, console, words, executor)
             trades.append(trade)
-            _kept(trade, data, given.out)
-        file = written(list((before | {trade.scene: trade for trade in trades}).values()), given.out)
+            publish(out, _files(trade, data), COMMAND)
+        before = {trade.scene: trade for trade in read(out) or []}
+        kept = list((before | {trade.scene: trade for trade in trades}).values())
+        (file,) = publish(out, {FILE: written(kept)}, COMMAND)
     except (SceneError, ValueError) as fault:
         print(fault, file=sys.stderr)
         return 2
-    except KeyboardInterrupt:
-        print("interrupted: nothing more was written", file=sys.stderr)
-        return 130
     except OSError as fault:
         print(f"command line: --out = {str(given.out)!r}: could not be written: {fault}", file=sys.stderr)
-        return 2
+        return 3
     for trade in trades:
         print_trade(console, trade)
     console.print(f"Trade: {file}, and SCENE-tradeoff.png and .nc beside it.", soft_wrap=True)
@@ -109,13 +119,15 @@ def _stage(task: Task) -> str:
     return "reference" if "reference" in path else f"{given['model']} engine"
 
 
-def _kept(trade: Trade, data: xr.Dataset, folder: Path) -> None:
-    """Values and picture of one scene."""
+def _files(trade: Trade, data: xr.Dataset) -> dict[str, bytes]:
+    """Values and pictures of one scene."""
     from comparison.tradeoff.figure import draw_tradeoff, tradeoff_figure_name  # plotting: not needed to refuse
 
-    picture = folder / tradeoff_figure_name(trade.scene)
-    data.to_netcdf(with_ending(picture, ".nc"), engine="h5netcdf")
-    draw_tradeoff(picture, trade)
+    picture = tradeoff_figure_name(trade.scene)
+    return made_by(
+        lambda folder: data.to_netcdf(with_ending(folder / picture, ".nc"), engine="h5netcdf"),
+        lambda folder: draw_tradeoff(folder / picture, trade),
+    )
 
 
 def print_trade(console: Console, trade: Trade) -> None:
@@ -149,4 +161,4 @@ def _parser() -> argparse.ArgumentParser:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run_command(main)

@@ -22,6 +22,7 @@ from comparison.provenance import provenance
 from comparison.tradeoff.measure import Found, Task, sample, solve
 from comparison.tradeoff.settings import SPATIAL_TIGHT, TIGHT
 from reference.problem import Scene, builtin_scenes, load_scene
+from reference.problem.files import write_atomically
 
 Array = NDArray[np.float64]
 
@@ -46,7 +47,7 @@ def main() -> int:
         print(rung.key, *(f"{row['tolerance']:.0e}: {row['cost']:.2f}, {row['met']:.3f}" for row in rows), sep="  ")
     record["seconds"] = seconds
     record["yardsticks"] = {side: float(np.median([one[side] for one in took])) for side in took[0]}
-    FILE.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    write_atomically(FILE, (json.dumps(record, indent=1) + "\n").encode())
     print(f"{ENGINE_POINTS} point(s) of the engine as yardstick: {record['yardsticks']}; written: {FILE}")
     return 0
 

@@ -114,14 +114,10 @@ def with_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
     return [Entry(**{**vars(entry), "front": tuple(marks[place])}) for place, entry in enumerate(entries)]
 
 
-def written(found: Sequence[Trade], folder: Path) -> Path:
-    """Write the trades into the folder, whole or not at all; the file."""
-    file = folder / FILE
+def written(found: Sequence[Trade]) -> bytes:
+    """The content of the file."""
     content = {"schema": SCHEMA, "trades": [asdict(trade) for trade in found]}
-    aside = file.with_suffix(".part")
-    aside.write_text(json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
-    aside.replace(file)
-    return file
+    return (json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
 
 
 def read(folder: Path) -> list[Trade] | None:

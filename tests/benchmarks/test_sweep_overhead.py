@@ -25,10 +25,10 @@ from fake_models import fake_ladder
 from local_cluster import LocalCluster
 
 from comparison.plan.study import Study
+from comparison.storage.cache import Cache
 from comparison.sweep.cluster import cluster
 from comparison.sweep.compute import computed
 from comparison.sweep.executors import Pool, process_pool
-from comparison.sweep.tile_store import TileStore
 from reference.problem import Amplification, Scene, load_scene
 
 TILE = 0.5  # s a tile takes; the study's take about one
@@ -62,7 +62,7 @@ def measured(folder: Path, executor: Pool) -> Measured:
     rung = replace(fake_ladder(tile=1)[0], amplification="test_sweep_overhead:timed")
     study = Study((load_scene("fig3-I"),), 4, 1e-3, [rung])
     begin = time.process_time()
-    found = computed(study, TileStore(folder), Console(quiet=True), WORKERS, executor)
+    found = computed(study, Cache(folder), Console(quiet=True), WORKERS, executor)
     spent = time.process_time() - begin
     assert len(list(folder.glob("*/*.tile"))) == len(found.answers) == TILES
     waits = []

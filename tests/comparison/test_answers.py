@@ -20,11 +20,11 @@ from comparison.analyses.errands import errands, paper_complete
 from comparison.analyses.slips import Effect
 from comparison.analyses.trajectories import Place, StoredMotion
 from comparison.plan.study import Study
+from comparison.storage.cache import Cache
 from comparison.sweep.answers import Answers
 from comparison.sweep.compute import fetched
 from comparison.sweep.errands import Errand, Fetched, fingerprint
 from comparison.sweep.sweep import sweep
-from comparison.sweep.tile_store import TileStore
 from reference.problem import Outcome, builtin_scenes, load_scene
 
 QUIET = Console(quiet=True)
@@ -33,8 +33,8 @@ calls: list[object] = []
 
 def motion(task: tuple[object, ...]) -> StoredMotion:
     calls.append(task)
-    numbers = np.array([0.1, np.nan, -0.0, 1e-300])
-    return StoredMotion(Place("s", 1, 2, ""), "small", numbers, numbers.reshape(2, 1, 2), numbers.reshape(2, 1, 2))
+    numbers, two = np.array([0.1, np.nan, -0.0, 1e-300]), np.array([0.0, 1e300])
+    return StoredMotion(Place("s", 1, 2, ""), "small", two, numbers.reshape(2, 1, 2), numbers.reshape(2, 1, 2))
 
 
 def another(task: tuple[object, ...]) -> StoredMotion:
@@ -55,7 +55,7 @@ def _errand(task: tuple[Any, ...] = (load_scene("fig3-I"), 1, 0.5, np.arange(3.0
 
 
 def _fetched(errand: Errand, folder: Path, make: Callable[[int], Executor] = ThreadPoolExecutor) -> Answers:
-    answers = Answers(TileStore(folder))
+    answers = Answers(Cache(folder))
     fetched([errand], answers, QUIET, 1, make)
     return answers
 
@@ -66,9 +66,9 @@ def test_an_answer_comes_back_to_the_last_bit_and_is_not_computed_twice(tmp_path
     assert [answers.parts["motions"].stored for answers in found] == [0, 1]
     first, second = (answers.on(forbidden)(1).submit(motion, errand.task).result() for answers in found)
     assert pickle.dumps(first) == pickle.dumps(second) == pickle.dumps(motion(errand.task))
-    assert Answers(TileStore(tmp_path)).holds(errand)
-    assert not Answers(TileStore(tmp_path), fresh=True).holds(errand)
-    assert Answers(TileStore(tmp_path), fresh=True).missing([errand]) == [errand]
+    assert Answers(Cache(tmp_path)).holds(errand)
+    assert not Answers(Cache(tmp_path), fresh=True).holds(errand)
+    assert Answers(Cache(tmp_path), fresh=True).missing([errand]) == [errand]
 
 
 def test_it_belongs_to_function_task_versions_and_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -85,12 +85,12 @@ def test_it_belongs_to_function_task_versions_and_source(tmp_path: Path, monkeyp
         "shape": _errand((scene, 1, 0.5, np.arange(3.0)[None])),
     }
     for name, other in others.items():
-        assert Answers(TileStore(tmp_path)).missing([other]), name
+        assert Answers(Cache(tmp_path)).missing([other]), name
     for name in ("_version", "source_digest"):
         with monkeypatch.context() as patch:
             patch.setattr(f"comparison.sweep.surroundings.{name}", lambda package: "changed")
-            assert Answers(TileStore(tmp_path)).missing([errand]), name
-    assert not Answers(TileStore(tmp_path)).missing([errand])
+            assert Answers(Cache(tmp_path)).missing([errand]), name
+    assert not Answers(Cache(tmp_path)).missing([errand])
 
 
 def test_a_model_is_known_by_its_source_too(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -134,7 +134,7 @@ def test_an_analysis_asks_itself_for_what_was_not_fetched(tmp_path: Path) -> Non
 
 
 def test_an_errand_whose_worker_died_is_left_to_its_analysis() -> None:
-    answers = Answers(TileStore(Path("unused")))
+    answers = Answers(Cache(Path("unused")))
     answers.put(_errand(), None)
     assert answers.missing([_errand()])
     answers.put(Errand("slips", broken, 1, 0.1), Fetched(Effect("s", 1, fault=str(Outcome.WORKER_DIED)), 0.0))
@@ -153,6 +153,6 @@ def test_every_errand_of_a_study_has_a_place_of_its_own() -> None:
 
 
 def test_effective_values_without_a_motion_are_not_kept_for_good(tmp_path: Path) -> None:
-    answers = Answers(TileStore(tmp_path))
+    answers = Answers(Cache(tmp_path))
     answers.put(Errand("effective values", broken, 1, 0.1), Fetched(Effective("s", "small", fault="it ended"), 0.1))
     assert not list(tmp_path.glob("*/*"))

@@ -124,7 +124,7 @@ def test_out_refuses_a_file_and_the_working_directory(
 ) -> None:
     file = tmp_path / "report.html"
     file.write_text("", encoding="utf-8")
-    assert "is a file: give the directory the report goes to" in command("--out", str(file)).err
+    assert "is a file: give a directory" in command("--out", str(file)).err
     empty = tmp_path / "here"
     empty.mkdir()
     monkeypatch.chdir(empty)

@@ -14,10 +14,11 @@ from local_cluster import LocalCluster
 
 from comparison.plan.study import Study
 from comparison.plan.tiles import Answer, Tile, solve_tile, unanswered
+from comparison.storage.cache import Cache, Key
 from comparison.sweep.cluster import cluster
 from comparison.sweep.halves import halves, joined
+from comparison.sweep.keys import tile_key
 from comparison.sweep.sweep import sweep
-from comparison.sweep.tile_store import TileStore
 from reference.problem import load_scene
 
 
@@ -63,16 +64,16 @@ def test_the_numbers_are_those_of_this_machine_even_when_a_worker_is_killed_in_t
 def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on_in_process(
     workers: LocalCluster, command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    put = TileStore.put
-    stored: list[Tile] = []
+    put = Cache.put
+    stored: list[Key] = []
 
-    def put_and_kill(store: TileStore, tile: Tile, answer: Answer) -> None:
-        put(store, tile, answer)
-        stored.append(tile)
+    def put_and_kill(cache: Cache, key: Key, answer: object) -> None:
+        put(cache, key, answer)
+        stored.append(key)
         if len(stored) == 5:
             workers.kill_the_scheduler()
 
-    monkeypatch.setattr(TileStore, "put", put_and_kill)
+    monkeypatch.setattr(Cache, "put", put_and_kill)
     ladder = fake_ladder("uneven", tile=1)
     study = Study((load_scene("fig3-I"),), 4, 1e-3, ladder)
     run = command("fig3-I", "--grid", "4", "--scheduler", workers.address, ladder=ladder)
@@ -88,16 +89,17 @@ def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on_in_process(
     before = len(stored)
     again = command("fig3-I", "--grid", "4", "--jobs", "2", ladder=ladder)
     assert again.code == 0
-    names = [str(TileStore(tmp_path)._place(tile)) for tile in stored]
+    names = [key.name for key in stored]
     assert 5 <= before < len(stored)
     assert not set(names[:before]) & set(names[before:]), "only what was missing was computed"
-    assert set(names) == {str(TileStore(tmp_path)._place(tile)) for tile in study.tiles()}
+    assert set(names) == {tile_key(tile).name for tile in study.tiles()}
 
 
-def test_no_scheduler_is_a_wrong_option(command: Callable[..., Run]) -> None:
-    run = command("fig3-I", "--scheduler", "nowhere", ladder=fake_ladder("forbidden"))
+@pytest.mark.parametrize("address", ["nowhere", "tls://127.0.0.1:1", "ucx://127.0.0.1:1"])
+def test_no_scheduler_is_a_wrong_option(command: Callable[..., Run], address: str) -> None:
+    run = command("fig3-I", "--scheduler", address, ladder=fake_ladder("forbidden"))
     assert run.code == 2
-    assert run.err.startswith("command line: --scheduler = 'nowhere': no scheduler answers there: ")
+    assert run.err.startswith(f"command line: --scheduler = {address!r}: no scheduler answers there: ")
     assert run.err.count("\n") == 1
     both = command("fig3-I", "--scheduler", "nowhere", "--jobs", "3")
     assert both.code == 2

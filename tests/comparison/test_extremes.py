@@ -15,7 +15,7 @@ from comparison.extremes.__main__ import main, reduced, run
 from comparison.extremes.cells import Cell, _scene, cells, solve_cell
 from comparison.extremes.engine import amplification
 from comparison.extremes.figure import draw_extremes
-from comparison.extremes.matrix import Entry, Matrix, read, written
+from comparison.extremes.matrix import FILE, Entry, Matrix, read, written
 from comparison.extremes.rows import COLUMNS, Column, Row, rows, scene
 from comparison.extremes.verdicts import Verdict
 
@@ -168,7 +168,7 @@ def test_the_file_is_read_back_as_it_was_and_another_file_is_refused(tmp_path: P
         {"command": "a test", "seconds": 1.0, "cpu_seconds": 2.0},
     )
     assert read(tmp_path) is None
-    written(found, tmp_path)
+    (tmp_path / FILE).write_bytes(written(found))
     assert read(tmp_path) == found
     draw_extremes(tmp_path / "picture.png", found)
     (tmp_path / "extremes.json").write_text(json.dumps({"rows": []}), encoding="utf-8")

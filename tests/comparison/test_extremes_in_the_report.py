@@ -11,7 +11,8 @@ from conftest import Run
 from jsonschema import Draft202012Validator
 
 from comparison.extremes.figure import draw_extremes
-from comparison.extremes.matrix import Entry, Extreme, Matrix, written
+from comparison.extremes.matrix import FILE, PICTURE, Entry, Extreme, Matrix, written
+from comparison.storage.output import made_by, publish
 
 SMALL = ["fig3-I", "--grid", "2"]
 RUN = {"command": "made by a test", "began": "then", "seconds": 1.0, "cpu_seconds": 2.0, "jobs": 1}
@@ -28,9 +29,8 @@ FOUND = Matrix(
 
 def beside(report: Path) -> None:
     """What `python -m comparison.extremes --out` of the report's directory leaves there."""
-    report.mkdir(exist_ok=True)
-    written(FOUND, report)
-    draw_extremes(report / "extremes.png", FOUND)
+    picture = made_by(lambda folder: draw_extremes(folder / PICTURE, FOUND))
+    publish(report, {FILE: written(FOUND), **picture}, "comparison.extremes")
 
 
 def test_the_matrix_beside_a_report_is_part_of_the_next_and_stays_there(command: Callable[..., Run]) -> None:

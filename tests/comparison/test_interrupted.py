@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from comparison.plan.ladder import LADDER
+from comparison.storage.output import publish
 
 HERE = Path(__file__).parent
 SCRIPT = """
@@ -41,8 +42,7 @@ def _runs(pid: int) -> bool:
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["Ctrl-C", "SIGTERM"])
 def test_a_stopped_run_keeps_what_is_finished_and_says_how_to_go_on(tmp_path: Path, number: int, code: int) -> None:
     old = tmp_path / "report"
-    old.mkdir()
-    (old / "summary.json").write_text('{"schema": "phase-resonance/summary"}', encoding="utf-8")
+    publish(old, {"summary.json": b'{"schema": "phase-resonance/summary"}'}, "comparison.run")
     script = SCRIPT.format(here=str(HERE), root=str(HERE.parents[1]))
     process = subprocess.Popen(
         [sys.executable, "-c", script],
@@ -73,7 +73,7 @@ def test_a_stopped_run_keeps_what_is_finished_and_says_how_to_go_on(tmp_path: Pa
     assert int(stopped[1]) == 256 * sum(rung.side == "reference" for rung in LADDER) < int(stopped[2])
     assert len(list(tmp_path.glob("report.tiles/*/*.tile"))) == 256, "one model under several names is stored once"
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["report", "report.tiles"]
-    assert [entry.name for entry in old.iterdir()] == ["summary.json"]
+    assert sorted(entry.name for entry in old.iterdir()) == ["manifest.json", "summary.json"]
     deadline = time.monotonic() + 5.0
     while (left := [worker for worker in workers if _runs(worker)]) and time.monotonic() < deadline:
         time.sleep(0.1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import io
 import json
 import os
 import subprocess
@@ -11,6 +12,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,10 +23,10 @@ from rich.console import Console
 from comparison.analyses.trajectories import Place, StoredMotion
 from comparison.plan.study import Study
 from comparison.plan.tiles import Answer
+from comparison.storage.cache import Cache, store_beside
 from comparison.sweep.answers import Answers
 from comparison.sweep.compute import computed, fetched
 from comparison.sweep.errands import Errand
-from comparison.sweep.tile_store import TileStore, store_beside
 from reference.problem import load_scene
 
 HERE = Path(__file__).parent
@@ -86,7 +88,7 @@ def motion(number: int) -> StoredMotion:
 
 def whole_run(folder: Path, console: Console) -> tuple[list[Answer], list[object], int, int]:
     """Tiles with 24 errands beside them and 24 after them; what was found, and how much of either was there before."""
-    store = TileStore(folder)
+    store = Cache(folder)
     answers = Answers(store)
     found = computed(study(), store, console, 2, ThreadPoolExecutor, _errands(0, 24), answers)
     fetched(_errands(24, 24), answers, console, 2, ThreadPoolExecutor)
@@ -100,7 +102,7 @@ def whole_run(folder: Path, console: Console) -> tuple[list[Answer], list[object
     )
 
 
-def _computed(study: Study, store: TileStore) -> tuple[list[Answer], int]:
+def _computed(study: Study, store: Cache) -> tuple[list[Answer], int]:
     """The answers, and how many tiles were there before."""
     found = computed(study, store, Console(quiet=True), 2, ThreadPoolExecutor)
     return list(found.answers), found.stored
@@ -149,28 +151,27 @@ def test_the_same_command_computes_nothing_twice_and_fresh_computes_all(command:
 def test_a_full_disk_is_one_line_exit_3_and_the_run_goes_on_later(
     command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    write = Path.write_bytes
-    written: list[Path] = []
+    written: list[str] = []
 
-    def full(path: Path, content: bytes) -> int:
-        if path.name.endswith(".tile"):
-            written.append(path)
+    class Full(io.FileIO):
+        def write(self, content: Any) -> int:
+            written.append(str(self.name))
             if len(written) > 3:
-                write(path, content[:100])  # as much as there was room for
+                super().write(content[:100])  # as much as there was room for
                 raise OSError(errno.ENOSPC, "No space left on device")
-        return write(path, content)
+            return super().write(content)
 
     words = ["fig3-I", "--grid", "4"]
     with monkeypatch.context() as patch:
-        patch.setattr(Path, "write_bytes", full)
+        patch.setattr("reference.problem.files.os.fdopen", lambda handle, mode: Full(handle, mode))
         run = command(*words)
     assert run.code == 3
     assert run.err.count("\n") == 1
-    assert "a finished tile could not be stored: No space left on device; 3 of " in run.err
+    assert "a result could not be stored: No space left on device; 3 of " in run.err
     assert "go on with: python -m comparison.run fig3-I --grid 4 " in run.err
     store = store_beside(run.report)
     assert len(list(store.glob("*/*.tile"))) == 3
-    assert not list(store.glob("*/.aside*"))
+    assert not list(store.glob("*/.phase*"))
     assert not run.report.exists()
     again = command(*words)
     assert again.code == 0

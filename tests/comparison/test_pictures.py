@@ -19,9 +19,9 @@ from comparison.drawing import pictures
 from comparison.drawing.pictures import PAGE, all_drawn, for_page, picture_errands
 from comparison.plan.study import Study
 from comparison.plan.tiles import solve_tile
+from comparison.storage.cache import Cache
 from comparison.sweep.answers import Answers
 from comparison.sweep.compute import fetched
-from comparison.sweep.tile_store import TileStore
 from reference.problem import load_scene
 
 
@@ -69,7 +69,7 @@ def test_what_no_worker_draws_is_drawn_at_home() -> None:
 @pytest.mark.usefixtures("quick")
 def test_pictures_are_stored_and_belong_to_their_numbers(tmp_path: Path) -> None:
     def drawn_anew(study: Study, surfaces: xr.Dataset) -> int:
-        answers = Answers(TileStore(tmp_path))
+        answers = Answers(Cache(tmp_path))
         errands = picture_errands(study, surfaces)
         fetched(errands, answers, Console(quiet=True), 1, ThreadPoolExecutor)
         return len(errands) - answers.parts["pictures"].stored

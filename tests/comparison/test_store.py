@@ -14,8 +14,7 @@ from conftest import Run
 from fake_models import fake_ladder
 
 from comparison.report import report
-from comparison.report.aside import clear_dead
-from comparison.report.store import replaced_when_complete
+from comparison.storage.output import clear_dead, publish, replaced_when_complete
 
 SMALL = ["fig3-I", "--grid", "2"]
 
@@ -53,8 +52,8 @@ def test_a_report_that_cannot_be_finished_leaves_the_old_one(
 
 def test_nothing_is_made_when_the_first_report_cannot_be_finished(tmp_path: Path) -> None:
     def half() -> None:
-        with replaced_when_complete(tmp_path / "a" / "b" / "report") as folder:
-            (folder / "index.html").write_text("half", encoding="utf-8")
+        with replaced_when_complete(tmp_path / "a" / "b" / "report") as report:
+            (report.folder / "index.html").write_text("half", encoding="utf-8")
             raise RuntimeError("the second half")
 
     with pytest.raises(RuntimeError, match="the second half"):
@@ -66,8 +65,7 @@ def test_the_swap_puts_the_old_report_back_when_the_new_one_cannot_move(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     place = tmp_path / "report"
-    place.mkdir()
-    (place / "index.html").write_text("old", encoding="utf-8")
+    publish(place, {"index.html": b"old"}, "comparison.run")
     rename = os.rename
 
     def second_fails(source: Path, target: Path) -> None:
@@ -76,8 +74,8 @@ def test_the_swap_puts_the_old_report_back_when_the_new_one_cannot_move(
         rename(source, target)
 
     monkeypatch.setattr(os, "rename", second_fails)
-    with pytest.raises(OSError, match="no"), replaced_when_complete(place) as folder:
-        (folder / "index.html").write_text("new", encoding="utf-8")
+    with pytest.raises(OSError, match="no"), replaced_when_complete(place) as report:
+        (report.folder / "index.html").write_text("new", encoding="utf-8")
     assert (place / "index.html").read_text(encoding="utf-8") == "old"
     assert list(tmp_path.iterdir()) == [place]
 
@@ -91,14 +89,14 @@ KILLED = """
 import os, signal, sys
 from pathlib import Path
 sys.path.insert(0, {root!r})
-from comparison.report import store
+from comparison.storage import output as store
 def killed(*rest):
     os.kill(os.getpid(), signal.SIGKILL)
 if {late}:
     move = os.rename
     os.rename = lambda source, target: killed() if Path(source).name == "new" else move(source, target)
-with store.replaced_when_complete(Path("report")) as folder:
-    (folder / "index.html").write_text("half")
+with store.replaced_when_complete(Path("report")) as report:
+    (report.folder / "index.html").write_text("half")
     print("writing", flush=True)
     if not {late}:
         sys.stdin.read()
@@ -125,8 +123,7 @@ def test_what_a_killed_run_left_is_cleared_but_not_what_a_living_one_writes(tmp_
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kill -9")
 def test_a_report_taken_away_by_a_run_that_was_then_killed_is_put_back(tmp_path: Path) -> None:
-    (tmp_path / "report").mkdir()
-    (tmp_path / "report" / "index.html").write_text("old", encoding="utf-8")
+    publish(tmp_path / "report", {"index.html": b"old"}, "comparison.run")
     script = KILLED.format(root=str(Path(__file__).parents[2]), late=True)
     done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, stdout=subprocess.PIPE, check=False)
     assert done.returncode == -signal.SIGKILL

@@ -117,7 +117,7 @@ def test_the_command_writes_what_the_report_reads(
     monkeypatch.setattr(command, "watched", lambda *arguments: (trade, data))
     assert command.main(["fig3-I", "--quick", "--out", str(tmp_path / "out")]) == 0
     names = {file.name for file in (tmp_path / "out").iterdir()}
-    assert names == {FILE, "fig3-I-tradeoff.nc", "fig3-I-tradeoff.png", "fig3-I-tradeoff.pdf"}
+    assert names == {FILE, "fig3-I-tradeoff.nc", "fig3-I-tradeoff.png", "fig3-I-tradeoff.pdf", "manifest.json"}
     again = read(tmp_path / "out")
     assert again is not None
     assert json.loads(json.dumps(again[0].__dict__, default=vars)) == json.loads(

@@ -68,6 +68,18 @@ def test_a_dollar_in_a_title_is_a_letter_of_the_film(tmp_path: Path) -> None:
     assert out.exists()
 
 
+def test_a_film_never_takes_the_place_of_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "short.toml").write_text(SHORT)
+    out = tmp_path / "run.gif"
+    out.write_bytes(b"mine")
+    assert main([str(tmp_path / "short.toml"), "--phases", "0.3", "1.1", "--out", str(out)]) == 0
+    assert out.read_bytes() == b"mine"
+    said = capsys.readouterr()
+    assert said.err == f"{out} exists and stays: the film is in {tmp_path / 'run-2.gif'}\n"
+    with Image.open(tmp_path / "run-2.gif") as film:
+        assert film.n_frames == 6
+
+
 class Screen:
     """Stands in for the engine's renderer and solver: notes what it is asked for."""
 

@@ -15,9 +15,10 @@ from rich.console import Console
 
 from comparison.plan.study import Study
 from comparison.plan.tiles import Answer, solve_tile, unanswered
+from comparison.storage.cache import MAGIC, Cache
 from comparison.sweep.compute import computed
+from comparison.sweep.keys import stored_tile, tile_key
 from comparison.sweep.surroundings import source_digest
-from comparison.sweep.tile_store import TileStore, surface_key
 from reference.problem import Outcome, load_scene
 
 
@@ -25,7 +26,7 @@ def _study(grid: int = 4) -> Study:
     return Study((load_scene("fig3-I"),), grid, 1e-3, fake_ladder(tile=1))
 
 
-def _computed(study: Study, store: TileStore) -> tuple[list[Answer], int]:
+def _computed(study: Study, store: Cache) -> tuple[list[Answer], int]:
     """The answers, and how many tiles were there before."""
     found = computed(study, store, Console(quiet=True), 2, ThreadPoolExecutor)
     return list(found.answers), found.stored
@@ -39,9 +40,9 @@ def test_a_tile_belongs_to_scene_model_settings_versions_and_source(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tile = _study().tiles()[0]
-    store = TileStore(tmp_path)
-    store.put(tile, solve_tile(tile))
-    assert store.get(tile) is not None
+    store = Cache(tmp_path)
+    store.put(tile_key(tile), solve_tile(tile))
+    assert stored_tile(store, tile) is not None
     others = {
         "scene": replace(tile, scene=tile.scene.model_copy(update={"duration": 3.0})),
         "model": replace(tile, amplification="fake_models:uneven"),
@@ -49,13 +50,13 @@ def test_a_tile_belongs_to_scene_model_settings_versions_and_source(
         "phases": replace(tile, phases=tile.phases + 1e-15),
     }
     for name, other in others.items():
-        assert store.get(other) is None, name
+        assert stored_tile(store, other) is None, name
     renamed = tile.scene.model_copy(update={"name": "other", "title": "another title"})
-    assert store.get(replace(tile, scene=renamed)) is not None, "a name changes no number"
+    assert stored_tile(store, replace(tile, scene=renamed)) is not None, "a name changes no number"
     for name, value in (("_version", "9.9"), ("source_digest", "changed")):
         with monkeypatch.context() as patch:
             patch.setattr(f"comparison.sweep.surroundings.{name}", lambda package, value=value: value)
-            assert store.get(tile) is None, name
+            assert stored_tile(store, tile) is None, name
 
 
 def test_changed_source_is_another_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -78,50 +79,51 @@ def test_changed_source_is_another_source(tmp_path: Path, monkeypatch: pytest.Mo
     ids=["empty", "truncated", "one bit"],
 )
 def test_a_damaged_tile_is_computed_again(tmp_path: Path, damage: Callable[[bytes], bytes]) -> None:
-    study, store = _study(), TileStore(tmp_path)
+    study, store = _study(), Cache(tmp_path)
     whole, _ = _computed(study, store)
     files = sorted(tmp_path.glob("*/*.tile"))
     files[0].write_bytes(damage(files[0].read_bytes()))
-    assert sum(TileStore(tmp_path).get(tile) is None for tile in study.tiles()) > 0
-    again, stored = _computed(study, TileStore(tmp_path))
+    assert sum(stored_tile(Cache(tmp_path), tile) is None for tile in study.tiles()) > 0
+    again, stored = _computed(study, Cache(tmp_path))
     assert stored < len(whole)
     assert _bytes(again) == _bytes(whole)
-    assert all(TileStore(tmp_path).get(tile) is not None for tile in study.tiles()), "and mended"
+    assert all(stored_tile(Cache(tmp_path), tile) is not None for tile in study.tiles()), "and mended"
 
 
 def test_the_file_of_another_tile_is_not_taken_for_this_one(tmp_path: Path) -> None:
     one, other = _study().tiles()[:2]
-    store = TileStore(tmp_path)
-    store.put(one, solve_tile(one))
-    store._place(one).rename(store._place(other))
-    assert store.get(other) is None
+    store = Cache(tmp_path)
+    store.put(tile_key(one), solve_tile(one))
+    (tmp_path / tile_key(one).name).rename(tmp_path / tile_key(other).name)
+    assert stored_tile(store, other) is None
 
 
 def test_what_raised_or_died_is_tried_again(tmp_path: Path) -> None:
     tile = _study().tiles()[0]
-    store = TileStore(tmp_path)
-    store.put(tile, unanswered(tile, Outcome.WORKER_DIED, "the worker process died 2 times"))
-    assert store.get(tile) is None
+    store = Cache(tmp_path)
+    store.put(tile_key(tile), unanswered(tile, Outcome.WORKER_DIED, "the worker process died 2 times"))
+    assert stored_tile(store, tile) is None
 
 
 def test_the_store_is_bounded_and_keeps_what_the_study_needs(tmp_path: Path) -> None:
     needed = _study().tiles()
+    keys = [tile_key(tile) for tile in needed]
     old, new = (replace(needed[0], settings={"tolerance": tolerance}) for tolerance in (0.01, 0.02))
-    store = TileStore(tmp_path)
+    store = Cache(tmp_path)
     for age, tile in enumerate((needed[0], old, new)):
-        store.put(tile, solve_tile(tile))
-        os.utime(tmp_path / surface_key(tile), (1000.0 + age, 1000.0 + age))
-    aside = tmp_path / surface_key(new) / ".aside-1-x"
-    aside.write_bytes(b"torn")
+        store.put(tile_key(tile), solve_tile(tile))
+        os.utime(tmp_path / tile_key(tile).group, (1000.0 + age, 1000.0 + age))
+    sizes = [sum(4096 for _ in (tmp_path / tile_key(tile).group).iterdir()) for tile in (needed[0], old, new)]
+    aside = tmp_path / tile_key(new).group / ".phase-resonance-1-x"
+    aside.write_bytes(MAGIC + b"torn")
     os.utime(aside, (1000.0, 1000.0))
-    sizes = [sum(4096 for _ in (tmp_path / surface_key(tile)).iterdir()) for tile in (needed[0], old, new)]
-    store.trim(needed, limit=sum(sizes))
+    store.trim(keys, limit=sum(sizes))
     assert len(list(tmp_path.iterdir())) == 3, "within the limit nothing goes"
     assert not aside.exists(), "except what a killed run left long ago"
-    store.trim(needed, limit=sizes[0] + sizes[2])
-    assert {entry.name for entry in tmp_path.iterdir()} == {surface_key(needed[0]), surface_key(new)}
-    store.trim(needed, limit=0)
-    assert {entry.name for entry in tmp_path.iterdir()} == {surface_key(needed[0])}
+    store.trim(keys, limit=sizes[0] + sizes[2])
+    assert {entry.name for entry in tmp_path.iterdir()} == {tile_key(needed[0]).group, tile_key(new).group}
+    store.trim(keys, limit=0)
+    assert {entry.name for entry in tmp_path.iterdir()} == {tile_key(needed[0]).group}
 
 
 def test_what_is_no_store_is_left_alone(command: Callable[..., Run], tmp_path: Path) -> None:
@@ -130,5 +132,8 @@ def test_what_is_no_store_is_left_alone(command: Callable[..., Run], tmp_path: P
     (foreign / "bathroom.txt").write_text("terracotta", encoding="utf-8")
     run = command("fig3-I", ladder=fake_ladder("forbidden"))
     assert run.code == 2
-    assert "'report.tiles' beside it is not a store of tiles of this study: move it away" in run.err
+    assert (
+        "'report.tiles' beside it is not a store of results of this study, it holds 'bathroom.txt': move it away"
+        in run.err
+    )
     assert [entry.name for entry in foreign.iterdir()] == ["bathroom.txt"]

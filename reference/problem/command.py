@@ -1,0 +1,183 @@
+"""
+How every command ends: its exit code, one line for whatever went wrong, and never a traceback on the terminal.
+
+Beside what a command defines for itself: 2 for wrong input; 3 for an unexpected error, whose traceback goes to a file,
+and for a file or an output that cannot be written; 128 + number for a signal, 130 for Ctrl-C; 141 if whoever read the
+output has closed it, as `head` does.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import signal
+import sys
+import tempfile
+import threading
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from types import FrameType
+from typing import Any, NoReturn, TextIO, cast
+
+from reference.problem.scene_error import SceneError
+
+UNEXPECTED, CLOSED = 3, 141
+SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+
+
+class StoppedError(KeyboardInterrupt):
+    """The run was asked to end by signal `number`."""
+
+    def __init__(self, number: int = signal.SIGINT) -> None:
+        super().__init__(number)
+        self.number = number
+
+
+class OutputError(Exception):
+    """Standard output takes nothing more. No OSError: it must not be taken for a file that cannot be written."""
+
+    def __init__(self, fault: OSError) -> None:
+        super().__init__(fault.strerror or str(fault))
+        self.closed = isinstance(fault, BrokenPipeError)
+
+
+def run_command(main: Callable[[], int]) -> NoReturn:
+    """Run `main`, a command of this project, and end the process with its exit code."""
+    if sys.stdout is None:  # closed by whoever started the command
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115
+    output = sys.stdout
+    if isinstance(output, io.TextIOWrapper):
+        output.reconfigure(errors="backslashreplace")
+    sys.stdout = cast(TextIO, _Output(output))
+    try:
+        with stoppable():
+            code = _code(main)
+    finally:
+        sys.stdout = output
+        _flush_at_last(output)
+    raise SystemExit(code)
+
+
+@contextmanager
+def stoppable() -> Iterator[None]:
+    """
+    The first signal that ends a process raises StoppedError in the block; more of them do not disturb the end.
+
+    A signal that is ignored, as under nohup, stays so.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield  # only the main thread may handle signals
+        return
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+    heard = [number for number in SIGNALS if before[number] is not signal.SIG_IGN]
+
+    def stop(number: int, frame: FrameType | None) -> NoReturn:
+        for each in heard:
+            signal.signal(each, signal.SIG_IGN)
+        raise StoppedError(number)
+
+    for number in heard:
+        signal.signal(number, stop)
+    try:
+        yield
+    finally:
+        for number in heard:
+            signal.signal(number, before[number])
+
+
+class _Output:
+    """Standard output that says by an error of its own that it cannot be written."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def write(self, text: str) -> int:
+        try:
+            return self._stream.write(text)
+        except OSError as fault:
+            raise OutputError(fault) from None
+
+    def flush(self) -> None:
+        try:
+            self._stream.flush()
+        except OSError as fault:
+            raise OutputError(fault) from None
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+
+def _code(main: Callable[[], int]) -> int:
+    """The exit code of `main`, whatever it does."""
+    try:
+        for word in sys.argv[1:]:
+            if not _is_text(word):
+                _say(f"command line: {word!r}: is not text in UTF-8: rename the file, or give another")
+                return 2
+        code = main()
+        sys.stdout.flush()
+        return code
+    except SceneError as fault:
+        _say(str(fault))
+        return 2
+    except KeyboardInterrupt as stop:
+        _say("interrupted")
+        return 128 + int(getattr(stop, "number", signal.SIGINT))
+    except OutputError as fault:
+        _say(f"standard output cannot be written: {fault}: the command ended early")
+        return CLOSED if fault.closed else UNEXPECTED
+    except SystemExit as end:  # of argparse
+        return _after_exit(end)
+    except Exception as fault:
+        what = " ".join(f"{type(fault).__name__}: {fault}".split())
+        _say(f"unexpected error: {what[:500]}; {_details()}")
+        return UNEXPECTED
+
+
+def _after_exit(end: SystemExit) -> int:
+    """The code of a parser that ends the process by itself, when what it printed is out."""
+    try:
+        sys.stdout.flush()
+    except OutputError as fault:
+        _say(f"standard output cannot be written: {fault}")
+        return CLOSED if fault.closed else UNEXPECTED
+    return end.code if isinstance(end.code, int) else 0 if end.code is None else UNEXPECTED
+
+
+def _details() -> str:
+    """Where the traceback of the error at hand was written."""
+    text = f"{sys.argv}\n{sys.version}\n{traceback.format_exc()}"
+    try:
+        handle, name = tempfile.mkstemp(prefix="phase-resonance-", suffix=".log")
+        with os.fdopen(handle, "w", encoding="utf-8", errors="backslashreplace") as file:
+            file.write(text)
+    except OSError as fault:
+        return f"the details could not be written: {fault.strerror}"
+    return f"details: {name}"
+
+
+def _say(line: str) -> None:
+    with suppress(Exception):  # nobody listens
+        print(line, file=sys.stderr, flush=True)
+
+
+def _is_text(word: str) -> bool:
+    try:
+        word.encode()
+    except UnicodeError:
+        return False
+    return True
+
+
+def _flush_at_last(output: TextIO) -> None:
+    """Leave nothing for the interpreter to complain about at its end."""
+    for stream in (output, sys.stderr):
+        try:
+            if stream is not None:
+                stream.flush()
+        except (OSError, ValueError):
+            with suppress(OSError, ValueError):
+                nowhere = os.open(os.devnull, os.O_WRONLY)
+                os.dup2(nowhere, stream.fileno())
+                os.close(nowhere)

@@ -1,0 +1,186 @@
+"""
+Files and directories that appear whole or not at all, and never in the place of what somebody else wrote.
+
+A file is written under a temporary name beside its place and renamed. A directory is written in a staging directory
+beside its place; the staging directory carries a mark that names the place, and a lock that ends with the process,
+however that ends. A marked directory without a lock belongs to nobody who lives. Without locks (Windows) none is taken
+for dead.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import secrets
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+try:
+    import fcntl
+except ImportError:
+    fcntl = None  # type: ignore[assignment]
+
+TEMPORARY = ".phase-resonance-"  # how the names of temporary files and staging directories begin; no proof of anything
+MARK = "staging.json"  # file in a staging directory that says what it is and for which place
+NEW, OLD = "new", "old"  # in a staging directory: what is being written; what it replaces, for a moment
+
+
+def write_atomically(file: Path, content: bytes) -> None:
+    """
+    Write a file of our own, whole or not at all, in place of the one that is there.
+
+    Parameters
+    ----------
+    file : Path
+        Replaced if it exists: the caller knows that it is ours.
+    content : bytes
+
+    Raises
+    ------
+    OSError
+        What was there is still there then.
+    """
+    part = _part(file, content)
+    try:
+        os.replace(part, file)
+    except BaseException:
+        _discard(part)
+        raise
+
+
+def write_new(file: Path, content: bytes) -> Path:
+    """
+    Write a file under a name that nothing has: the one given, or the next free one (`run-2.gif` for `run.gif`).
+
+    Returns
+    -------
+    Path
+        The file written. Nothing that existed was touched.
+
+    Raises
+    ------
+    OSError
+    """
+    part = _part(file, content)
+    try:
+        for place in names_after(file):
+            with suppress(FileExistsError):
+                _move_to_free(part, place)
+                return place
+        raise AssertionError("the names do not end")
+    finally:
+        _discard(part)
+
+
+def names_after(place: Path) -> Iterator[Path]:
+    """`place` itself, then the same name numbered from 2, before its suffix."""
+    yield place
+    number = 2
+    while True:
+        yield place.with_name(f"{place.stem}-{number}{place.suffix}")
+        number += 1
+
+
+@contextmanager
+def locked(folder: Path, wait: bool = True) -> Iterator[bool]:
+    """
+    Hold the lock of a directory for the block; it also ends with the process.
+
+    Yields
+    ------
+    bool
+        Whether it is held: not if somebody else has it and `wait` is false, or where there are no locks.
+    """
+    handle = -1
+    try:
+        if fcntl is not None:
+            with suppress(OSError):
+                handle = os.open(folder, os.O_RDONLY)
+        held = False
+        if handle >= 0:
+            with suppress(OSError):  # held, or a file system without locks
+                fcntl.flock(handle, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+                held = True
+        yield held
+    finally:
+        if handle >= 0:
+            os.close(handle)
+
+
+@contextmanager
+def staging(place: Path) -> Iterator[Path]:
+    """
+    A locked directory beside `place` for the block, with an empty directory NEW in it.
+
+    It is gone after the block, except OLD with what was put there.
+    """
+    folder = Path(tempfile.mkdtemp(dir=place.parent, prefix=TEMPORARY))
+    with locked(folder, wait=False):
+        try:
+            write_atomically(folder / MARK, _mark(folder, place))
+            (folder / NEW).mkdir()
+            yield folder
+        finally:
+            clear_staging(folder)
+
+
+def dead_staging(place: Path) -> Iterator[Path]:
+    """The staging directories of `place` that belong to no living process, each locked while it is looked at."""
+    with suppress(OSError):
+        for folder in sorted(place.parent.iterdir()):
+            if folder.name.startswith(TEMPORARY) and not folder.is_symlink() and _is_marked(folder, place):
+                with locked(folder, wait=False) as held:
+                    if held:
+                        yield folder
+
+
+def clear_staging(folder: Path) -> None:
+    """Remove a staging directory of our own; OLD with what is in it stays, until somebody has moved or removed it."""
+    shutil.rmtree(folder / NEW, ignore_errors=True)
+    if not (folder / OLD).exists():
+        _discard(folder / MARK)
+        with suppress(OSError):
+            folder.rmdir()
+
+
+def _mark(folder: Path, place: Path) -> bytes:
+    return json.dumps({"what": "staging directory of phase-resonance", "name": folder.name, "for": place.name}).encode()
+
+
+def _is_marked(folder: Path, place: Path) -> bool:
+    try:
+        return (folder / MARK).read_bytes() == _mark(folder, place)
+    except OSError:
+        return False
+
+
+def _part(file: Path, content: bytes) -> Path:
+    """A temporary file with the content, beside `file`. Raises OSError."""
+    part = file.with_name(f"{TEMPORARY}{os.getpid()}-{secrets.token_hex(6)}")
+    handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(content)
+    except BaseException:
+        _discard(part)
+        raise
+    return part
+
+
+def _move_to_free(part: Path, place: Path) -> None:
+    """Give a temporary file its name. Raises FileExistsError if something has it, even since a moment ago."""
+    try:
+        os.link(part, place)
+    except FileExistsError:
+        raise
+    except OSError:  # a file system without hard links: an empty file takes the name first
+        os.close(os.open(place, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+        os.replace(part, place)
+
+
+def _discard(file: Path) -> None:
+    with suppress(OSError):
+        file.unlink()

@@ -1,0 +1,126 @@
+"""However a command ends, it ends with its exit code and one line at most: never with a traceback on the terminal."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+COMMANDS = (
+    "comparison.run",
+    "comparison.claims",
+    "comparison.assumptions",
+    "comparison.extremes",
+    "comparison.tradeoff",
+    "multibody.animate",
+)
+BEGIN = """
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background inherits it ignored
+sys.path.insert(0, {root!r})
+from reference.problem.command import run_command
+def main():
+    {body}
+run_command(main)
+"""
+POSIX = pytest.mark.skipif(sys.platform == "win32", reason="pipes and devices")
+
+
+def ended(body: str, **more: object) -> subprocess.CompletedProcess[str]:
+    """A command whose main does `body`."""
+    script = BEGIN.format(root=str(ROOT), body=body)
+    more = {"stdout": subprocess.PIPE, **more}
+    return subprocess.run([sys.executable, "-c", script], stderr=subprocess.PIPE, text=True, check=False, **more)  # type: ignore[call-overload, no-any-return]
+
+
+def begun(module: str, *words: str, **more: object) -> subprocess.Popen[str]:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-m", module, *words]
+    return subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True, **more)  # type: ignore[call-overload, no-any-return]
+
+
+def test_an_unexpected_error_is_exit_3_and_one_line_that_says_where_the_details_are(tmp_path: Path) -> None:
+    body = "raise ZeroDivisionError('two\\nlines')"
+    run = ended(body.replace("\n", "\\n"), env={**os.environ, "TMPDIR": str(tmp_path)})
+    assert run.returncode == 3
+    assert run.stderr.startswith("unexpected error: ZeroDivisionError: two lines; details: ")
+    assert run.stderr.count("\n") == 1
+    details = Path(run.stderr.split("details: ")[1].strip())
+    assert details.parent == tmp_path
+    assert "Traceback" in details.read_text(encoding="utf-8")
+
+
+def test_an_exit_code_of_the_command_is_that_of_the_process() -> None:
+    for code in (0, 1, 4):
+        run = ended(f"return {code}")
+        assert (run.returncode, run.stderr) == (code, "")
+
+
+@POSIX
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_is_one_line_and_its_exit_code(number: int) -> None:
+    run = ended(f"import os; os.kill(os.getpid(), {int(number)})")
+    assert (run.returncode, run.stderr) == (128 + number, "interrupted\n")
+
+
+@POSIX
+def test_a_reader_that_leaves_is_no_traceback_and_no_broken_limit() -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    for body in ("print('x' * 100000)", "from rich.console import Console; Console().print('x')", "print(1)"):
+        run = ended(f"{body}; return 0", stdout=writer)
+        assert run.returncode == 141, body
+        assert run.stderr == "standard output cannot be written: Broken pipe: the command ended early\n"
+    os.close(writer)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="/dev/full")
+@pytest.mark.parametrize("words", [["fig3-I", "--grid", "2", "--plan"], ["--help"]])
+def test_a_full_output_is_one_line_and_exit_3(words: list[str], tmp_path: Path) -> None:
+    with open("/dev/full", "w") as full:
+        process = begun("comparison.run", *words, stdout=full, cwd=tmp_path)
+        _, err = process.communicate(timeout=120)
+    assert process.returncode == 3
+    assert err.startswith("standard output cannot be written: No space left on device")
+    assert err.count("\n") == 1
+
+
+@POSIX
+def test_a_closed_or_full_output_of_errors_does_not_hide_the_exit_code() -> None:
+    script = BEGIN.format(root=str(ROOT), body="raise ValueError('nobody hears it')")
+    for redirection in ("2>&-", ">&- 2>&-", "2>/dev/full"):
+        command = f"'{sys.executable}' -c \"$SCRIPT\" {redirection}"
+        environment = {**os.environ, "SCRIPT": script}
+        assert subprocess.run(["sh", "-c", command], env=environment, check=False).returncode == 3
+
+
+@pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="what a process has loaded")
+@pytest.mark.parametrize("module", COMMANDS)
+def test_ctrl_c_while_modules_load_is_no_traceback(module: str, tmp_path: Path) -> None:
+    process = begun(module, "--help", stdout=subprocess.DEVNULL, cwd=tmp_path, preexec_fn=_hears_ctrl_c)
+    while "numpy" not in Path(f"/proc/{process.pid}/maps").read_text(encoding="utf-8") and process.poll() is None:
+        time.sleep(0.002)  # numpy is loaded among the first
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=120)
+    assert process.returncode in (-signal.SIGINT, 130)
+    assert err in ("", "interrupted\n")
+
+
+def _hears_ctrl_c() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # what runs in the background inherits it ignored
+
+
+@POSIX
+@pytest.mark.parametrize("module", COMMANDS)
+def test_every_command_refuses_words_that_are_no_text(module: str, tmp_path: Path) -> None:
+    process = begun(module, b"caf\xe9", cwd=tmp_path, stdout=subprocess.PIPE)  # type: ignore[arg-type]
+    out, err = process.communicate(timeout=120)
+    assert (process.returncode, out) == (2, "")
+    assert "is not text in UTF-8" in err
+    assert err.count("\n") == 1

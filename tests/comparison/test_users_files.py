@@ -1,0 +1,403 @@
+"""What the study did not write is never deleted, replaced or run: it stays, and the study's own files go beside it."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from conftest import Run
+from fake_models import fake_ladder
+from test_extremes_in_the_report import FOUND
+
+import comparison.run
+from comparison.extremes import __main__ as extremes
+from comparison.plan.study import Study
+from comparison.plan.tiles import solve_tile
+from comparison.storage.cache import Cache
+from comparison.storage.output import (
+    MANIFEST,
+    Own,
+    clear_dead,
+    foreign,
+    publish,
+    read_manifest,
+    refuse_foreign_files,
+    replaced_when_complete,
+    write_manifest,
+)
+from comparison.sweep.keys import tile_key
+from comparison.tradeoff import __main__ as tradeoff
+from reference.problem import load_scene
+from reference.problem.files import TEMPORARY, write_new
+
+SMALL = ["fig3-I", "--grid", "2"]
+ROOT = Path(__file__).parents[2]
+
+
+def put(folder: Path, *names: str, content: str = "new") -> tuple[Path, list[str]]:
+    """A report of these files; where it went, and what was said."""
+    said: list[str] = []
+    with replaced_when_complete(folder, said.append) as report:
+        for name in names or ("index.html",):
+            (report.folder / name).parent.mkdir(exist_ok=True)
+            (report.folder / name).write_text(content, encoding="utf-8")
+    return report.place, said
+
+
+APPEARS = {
+    "a new folder": ("thesis.txt", False),
+    "a file in a finished report": ("notes.txt", True),
+    "a picture among the figures": ("figures/my.png", True),
+    "a picture deeper": ("figures/for-paper/fig.svg", True),
+    "a changed page": ("index.html", True),
+    "a manifest": (MANIFEST, False),
+}
+
+
+@pytest.mark.parametrize(("name", "finished"), APPEARS.values(), ids=APPEARS.keys())
+def test_what_appears_in_out_meanwhile_stays_and_the_report_goes_beside(
+    tmp_path: Path, name: str, finished: bool
+) -> None:
+    if finished:
+        put(tmp_path / "report", "index.html", "figures/ours.png")
+    said: list[str] = []
+    with replaced_when_complete(tmp_path / "report", said.append) as report:
+        (report.folder / "index.html").write_text("new", encoding="utf-8")
+        file = tmp_path / "report" / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text("years of work", encoding="utf-8")
+    assert (tmp_path / "report" / name).read_text(encoding="utf-8") == "years of work"
+    assert report.place == tmp_path / "report-2"
+    assert (tmp_path / "report-2" / "index.html").read_text(encoding="utf-8") == "new"
+    assert foreign(tmp_path / "report-2") == []
+    assert len(said) == 1
+    assert repr(name) in said[0]
+    assert "report-2" in said[0]
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["report", "report-2"]
+
+
+def test_a_study_whose_out_was_used_meanwhile_says_where_its_report_is(
+    command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write = comparison.run.findings
+
+    def meanwhile(*arguments: object, **more: object) -> object:
+        (tmp_path / "report").mkdir()
+        (tmp_path / "report" / "thesis.txt").write_text("years of work", encoding="utf-8")
+        return write(*arguments, **more)
+
+    monkeypatch.setattr(comparison.run, "findings", meanwhile)
+    run = command(*SMALL)
+    assert run.code == 0
+    assert (tmp_path / "report" / "thesis.txt").read_text(encoding="utf-8") == "years of work"
+    assert run.err.count("\n") == 1
+    assert "'thesis.txt' there is not a file of this study" in run.err
+    assert str(tmp_path / "report-2" / "index.html") in run.out.replace("\n", "")
+    again = command(*SMALL, ladder=fake_ladder("forbidden"))
+    assert again.code == 2, "now it is known at the start"
+
+
+@pytest.mark.parametrize("name", ["figures/my.png", "figures/for-paper/fig.svg", "old-tradeoff.nc/x", "empty/"])
+def test_a_file_of_the_user_anywhere_in_a_report_is_refused_at_the_start(
+    command: Callable[..., Run], tmp_path: Path, name: str
+) -> None:
+    put(tmp_path / "report", "figures/ours.png")
+    file = tmp_path / "report" / name
+    (file if name.endswith("/") else file.parent).mkdir(parents=True, exist_ok=True)
+    if not name.endswith("/"):
+        file.write_text("mine", encoding="utf-8")
+    run = command(*SMALL, ladder=fake_ladder("forbidden"))
+    assert run.code == 2
+    assert "which would be lost: move it away" in run.err
+    assert run.err.count("\n") == 1
+    assert file.exists()
+
+
+def test_a_file_or_link_that_appears_in_place_of_the_report_stays(tmp_path: Path) -> None:
+    with replaced_when_complete(tmp_path / "report", lambda line: None) as report:
+        (report.folder / "index.html").write_text("new", encoding="utf-8")
+        (tmp_path / "report").write_text("mine", encoding="utf-8")
+    assert (tmp_path / "report").read_text(encoding="utf-8") == "mine"
+    (tmp_path / "elsewhere").mkdir()
+    with replaced_when_complete(tmp_path / "other", lambda line: None) as report:
+        (report.folder / "index.html").write_text("new", encoding="utf-8")
+        (tmp_path / "other").symlink_to(tmp_path / "elsewhere")
+    assert (tmp_path / "other").is_symlink()
+    assert (tmp_path / "other-2" / "index.html").exists()
+
+
+def test_what_is_added_while_the_old_report_is_removed_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Somebody who has the old folder open writes into it after it was looked at."""
+    put(tmp_path / "report", content="old")
+    rename = os.rename
+
+    def late(source: Path, target: Path) -> None:
+        rename(source, target)
+        if Path(source).name == "new":
+            (Path(source).parent / "old" / "late.txt").write_text("mine", encoding="utf-8")
+
+    monkeypatch.setattr(os, "rename", late)
+    place, said = put(tmp_path / "report")
+    assert place == tmp_path / "report"
+    assert (tmp_path / "report-2" / "late.txt").read_text(encoding="utf-8") == "mine"
+    assert len(said) == 1
+    assert not list(tmp_path.glob(f"{TEMPORARY}*"))
+
+
+DYING = """
+import os, signal, sys
+from pathlib import Path
+sys.path.insert(0, {root!r})
+from comparison.storage.output import replaced_when_complete
+move = os.rename
+def die_between(source, target):
+    if Path(source).name == "new":
+        os.kill(os.getpid(), signal.SIGKILL)
+    move(source, target)
+os.rename = die_between
+with replaced_when_complete(Path({name!r})) as report:
+    (report.folder / "index.html").write_text("half")
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kill -9")
+@pytest.mark.parametrize(
+    ("dying", "other"), [("report-2", "report"), ("studyA", "study?"), ("run[1]", "run1"), ("a*", "ab")]
+)
+def test_a_report_whose_run_died_between_the_renames_is_not_lost_to_one_of_another_name(
+    tmp_path: Path, dying: str, other: str
+) -> None:
+    put(tmp_path / dying, content="the only copy")
+    script = DYING.format(root=str(ROOT), name=dying)
+    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, check=False)
+    assert done.returncode == -signal.SIGKILL
+    assert not (tmp_path / dying).exists()
+    clear_dead(tmp_path / other)
+    put(tmp_path / other)
+    assert not (tmp_path / dying).exists(), "it is not taken for the other's"
+    clear_dead(tmp_path / dying)
+    assert (tmp_path / dying / "index.html").read_text(encoding="utf-8") == "the only copy"
+    assert not list(tmp_path.glob(f"{TEMPORARY}*"))
+
+
+def test_a_folder_that_only_looks_like_a_left_over_one_stays(tmp_path: Path) -> None:
+    for name in (".report-x", f"{TEMPORARY}holiday"):
+        (tmp_path / name / "old").mkdir(parents=True)
+        (tmp_path / name / "old" / "photo.jpg").write_text("mine", encoding="utf-8")
+        (tmp_path / name / "staging.json").write_text("{}", encoding="utf-8")
+    clear_dead(tmp_path / "report")
+    put(tmp_path / "report")
+    assert len(list(tmp_path.glob(".*/old/photo.jpg"))) == 2
+
+
+def test_a_manifest_that_was_tampered_with_proves_nothing(tmp_path: Path) -> None:
+    put(tmp_path / "report")
+    (tmp_path / "thesis.txt").write_text("mine", encoding="utf-8")
+    (tmp_path / "report" / "notes.txt").write_text("mine", encoding="utf-8")
+    text = json.loads((tmp_path / "report" / MANIFEST).read_text(encoding="utf-8"))
+    text["files"]["notes.txt"] = {"command": "comparison.run", "sha256": ["0" * 64]}
+    (tmp_path / "report" / MANIFEST).write_text(json.dumps(text), encoding="utf-8")
+    assert read_manifest(tmp_path / "report") == {}
+    assert put(tmp_path / "report")[0].name == "report-2"
+    # one with a right checksum that names a file outside
+    own = read_manifest(tmp_path / "report-2")
+    write_manifest(tmp_path / "report-2", own | {"../thesis.txt": Own("comparison.extremes", ("0" * 64,))})
+    assert put(tmp_path / "report-2")[0].name == "report-2"
+    assert (tmp_path / "thesis.txt").read_text(encoding="utf-8") == "mine"
+    assert (tmp_path / "report" / "notes.txt").read_text(encoding="utf-8") == "mine"
+
+
+def test_a_folder_of_24_letters_in_the_store_is_never_trimmed(tmp_path: Path) -> None:
+    tiles = Study((load_scene("fig3-I"),), 2, 1e-3, fake_ladder()).tiles()
+    cache = Cache(tmp_path / "e.tiles")
+    old = replace(tiles[0], settings={"tolerance": 0.02})
+    cache.put(tile_key(old), solve_tile(old))
+    photos = tmp_path / "e.tiles" / "my-photos-of-summer-2024"
+    photos.mkdir()
+    mine = [photos / "a.jpg", photos / "b.tile", tmp_path / "e.tiles" / tile_key(old).group / "c.tile"]
+    for file in mine:
+        file.write_bytes(b"mine")
+    (tmp_path / "e.tiles" / "link").symlink_to(photos)
+    cache.trim([tile_key(tiles[0])], limit=0)
+    assert all(file.read_bytes() == b"mine" for file in mine)
+    assert not (tmp_path / "e.tiles" / tile_key(old).name).exists(), "what is the study's own is"
+    cache.put(tile_key(old), solve_tile(old))
+    cache.forget([tile_key(old)])
+    assert mine[2].read_bytes() == b"mine"
+
+
+def test_a_foreign_folder_in_the_store_is_refused_at_the_start(command: Callable[..., Run], tmp_path: Path) -> None:
+    (tmp_path / "report.tiles" / "my-photos-of-summer-2024").mkdir(parents=True)
+    run = command(*SMALL, ladder=fake_ladder("forbidden"))
+    assert run.code == 2
+    assert "it holds 'my-photos-of-summer-2024': move it away" in run.err
+
+
+EXTREMES = ["--only", "amplitude", "--models", "small", "--jobs", "1"]
+
+
+@pytest.mark.parametrize("name", ["extremes.json", "extremes.png", MANIFEST])
+def test_a_foreign_file_where_the_extremes_go_is_refused_at_the_start(
+    tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / name).write_text("mine", encoding="utf-8")
+    monkeypatch.setattr(extremes, "run", lambda *rest: pytest.fail("it was computed"))
+    assert extremes.main([*EXTREMES, "--out", str(tmp_path)]) == 2
+    assert f"holds {name!r}, which this study did not write" in capsys.readouterr().err
+    assert (tmp_path / name).read_text(encoding="utf-8") == "mine"
+
+
+def test_a_foreign_file_that_appears_meanwhile_stays_and_the_extremes_go_beside(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mine = [tmp_path / name for name in ("extremes.json", "extremes.png", "extremes.part")]
+
+    def meanwhile(*rest: object) -> object:
+        for file in mine:
+            file.write_text("mine", encoding="utf-8")
+        return FOUND
+
+    monkeypatch.setattr(extremes, "run", meanwhile)
+    extremes.main([*EXTREMES, "--out", str(tmp_path)])
+    assert [file.read_text(encoding="utf-8") for file in mine] == ["mine"] * 3
+    assert {"extremes-2.json", "extremes-2.png"} <= {entry.name for entry in tmp_path.iterdir()}
+    assert capsys.readouterr().err.count("not a file of this study") == 2
+
+
+def test_the_extremes_replace_their_own_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(extremes, "run", lambda *rest: FOUND)
+    for _ in range(2):
+        extremes.main([*EXTREMES, "--out", str(tmp_path)])
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["extremes.json", "extremes.png", MANIFEST]
+
+
+def test_a_foreign_diagram_is_refused_before_anything_is_measured(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "fig3-I-tradeoff.pdf").write_text("mine", encoding="utf-8")
+    monkeypatch.setattr(tradeoff, "watched", lambda *rest: pytest.fail("it was measured"))
+    assert tradeoff.main(["fig3-I", "--out", str(tmp_path)]) == 2
+    assert "holds 'fig3-I-tradeoff.pdf', which this study did not write" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="kill -9")
+@pytest.mark.parametrize("deaths", range(6))
+def test_a_file_that_was_being_replaced_when_its_command_was_killed_is_still_the_studys(
+    tmp_path: Path, deaths: int
+) -> None:
+    publish(tmp_path, {"extremes.json": b"old"}, "comparison.extremes")
+    child = os.fork()
+    if child == 0:
+        done = 0
+        move = os.replace
+
+        def dies(source: Path, target: Path) -> None:
+            nonlocal done
+            if done == deaths:
+                os.kill(os.getpid(), signal.SIGKILL)
+            move(source, target)
+            done += 1
+
+        os.replace = dies  # type: ignore[assignment]
+        publish(tmp_path, {"extremes.json": b"new", "extremes.png": b"new"}, "comparison.extremes")
+        os._exit(0)
+    os.waitpid(child, 0)
+    refuse_foreign_files(tmp_path, ["extremes.json", "extremes.png"])
+
+
+def test_a_new_file_never_takes_a_name_that_something_has(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "run.gif").write_bytes(b"mine")
+    (tmp_path / "run-2.gif").symlink_to(tmp_path / "nowhere")
+    assert write_new(tmp_path / "run.gif", b"film") == tmp_path / "run-3.gif"
+
+    def unsupported(*names: object) -> None:
+        raise PermissionError("no hard links here")
+
+    monkeypatch.setattr(os, "link", unsupported)
+    assert write_new(tmp_path / "run.gif", b"film") == tmp_path / "run-4.gif"
+    assert (tmp_path / "run.gif").read_bytes() == b"mine"
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["run-2.gif", "run-3.gif", "run-4.gif", "run.gif"]
+
+
+def test_files_of_other_commands_written_while_the_report_is_written_are_kept(tmp_path: Path) -> None:
+    put(tmp_path / "report")
+    with replaced_when_complete(tmp_path / "report") as report:
+        (report.folder / "index.html").write_text("newer", encoding="utf-8")
+        publish(tmp_path / "report", {"extremes.json": b"{}"}, "comparison.extremes")
+    assert report.place == tmp_path / "report"
+    assert (tmp_path / "report" / "extremes.json").read_bytes() == b"{}"
+    assert foreign(tmp_path / "report") == []
+
+
+PLACES: Mapping[str, tuple[str, str]] = {
+    "ends in two dots": ("a/b/..", "ends in '..'"),
+    "300 letters": ("x" * 300, "File name too long"),
+    "245 letters": ("x" * 245, "has a name of more than 240 bytes"),
+    "bytes that are no text": ("caf\udce9", "is not text in UTF-8"),
+    "a link that leads back": ("loop", "leads back to itself"),
+    "a link with another's store beside what it means": ("link", "beside it is not a store of results"),
+    "a store that is a link": ("linked-store", "beside it is not the folder that keeps results"),
+    "a mount point": ("mount", "is a mount point, which cannot be replaced"),
+}
+
+
+@pytest.mark.parametrize(("name", "rule"), PLACES.values(), ids=PLACES.keys())
+def test_an_odd_place_is_refused_at_the_start_in_one_line(
+    command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, rule: str
+) -> None:
+    (tmp_path / "mount").mkdir()
+    (tmp_path / "loop").symlink_to(tmp_path / "loop")
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "elsewhere")
+    (tmp_path / "elsewhere.tiles").mkdir()
+    (tmp_path / "elsewhere.tiles" / "mine.txt").write_text("mine", encoding="utf-8")
+    (tmp_path / "linked-store.tiles").symlink_to(tmp_path / "elsewhere")
+    ismount = os.path.ismount
+    monkeypatch.setattr(os.path, "ismount", lambda path: Path(path).name == "mount" or ismount(path))
+    before = sorted(str(path) for path in tmp_path.rglob("*"))
+    run = command(*SMALL, "--out", f"{tmp_path}/{name}", ladder=fake_ladder("forbidden"))
+    assert run.code == 2
+    assert rule in run.err
+    assert run.err.count("\n") == 1
+    assert sorted(str(path) for path in tmp_path.rglob("*")) == before
+
+
+def test_a_place_that_can_no_longer_be_replaced_at_the_end_does_not_cost_the_report(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    put(tmp_path / "report", content="old")
+    rename = os.rename
+
+    def busy(source: Path, target: Path) -> None:
+        if Path(source).name == "report":
+            raise OSError(16, "Device or resource busy")
+        rename(source, target)
+
+    monkeypatch.setattr(os, "rename", busy)
+    place, said = put(tmp_path / "report")
+    assert place == tmp_path / "report-2"
+    assert "Device or resource busy" in said[0]
+    assert (tmp_path / "report" / "index.html").read_text(encoding="utf-8") == "old"
+
+
+def test_a_link_to_a_report_stays_a_link_and_the_store_is_beside_what_it_means(
+    command: Callable[..., Run], tmp_path: Path
+) -> None:
+    (tmp_path / "link").symlink_to(tmp_path / "report")
+    for _ in range(2):
+        assert command(*SMALL, "--out", str(tmp_path / "link")).code == 0
+    assert (tmp_path / "link").is_symlink()
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["link", "report", "report.tiles"]
+
+
+def test_the_manifest_names_every_file_of_the_report(command: Callable[..., Run]) -> None:
+    report = command(*SMALL).report
+    files = {path.relative_to(report).as_posix() for path in report.rglob("*") if path.is_file()}
+    assert set(read_manifest(report)) == files - {MANIFEST}
