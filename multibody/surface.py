@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
+from multibody.engine import reset_with
 from multibody.integrate import silence
 from multibody.plate import LOADINGS
 from multibody.refine import refine
@@ -50,7 +51,9 @@ def assembled(
         checked("regularization", regularization)
     elif not scene.lubricated and scene.friction_coefficient > 0.0:
         raise ValueError("regularization: None: the engine's dry friction needs v_reg in m/s, greater than 0")
-    return BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **more)
+    built = BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **more)
+    reset_with(built, built.container)
+    return built
 
 
 def checked(name: str, value: float) -> float:

@@ -59,7 +59,7 @@ class EngineModel:
     contact is open. slippery: takes the friction away, or gives it back; None if the start needs no balance. rigid:
     whether the contact stands for a rigid one, and its compliance for an error. rounding: of a contact force times its
     penetration, in units of weight times length. moving_plate: whether the loading moves the plate, whose coordinates
-    are then the system's last. keep_alive: what the engine only points to.
+    are then the system's last. keep_alive: the engine's container of the system, and what the engine only points to.
     """
 
     mbs: Any
@@ -79,6 +79,11 @@ class EngineModel:
     rounding: float
     moving_plate: bool
     keep_alive: tuple[Any, ...]
+
+    @property
+    def container(self) -> Any:
+        """The engine's container of the system."""
+        return self.keep_alive[0]
 
     @property
     def coordinates(self) -> int:
