@@ -52,7 +52,7 @@ def assembled(
     elif not scene.lubricated and scene.friction_coefficient > 0.0:
         raise ValueError("regularization: None: the engine's dry friction needs v_reg in m/s, greater than 0")
     built = BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **more)
-    reset_with(built, built.container)
+    reset_with(built.recorders, built.container)  # which a copy of the model with other settings shares
     return built
 
 

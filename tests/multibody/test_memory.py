@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import gc
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
+
+from multibody.surface import assembled
+from reference.problem import load_scene
 
 CALLS = 60
 ALLOWED = 0.01  # MB per call: allocators keep a little; a system that is never reset keeps 0.05 and more
@@ -47,3 +52,10 @@ def test_calls_of_the_engine_do_not_grow_the_memory(scene: str, function: str, p
     script = SCRIPT.format(scene=scene, function=function, phases=phases, settings=settings, calls=CALLS)
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert float(done.stdout) < ALLOWED
+
+
+def test_a_copy_of_a_model_outlives_the_model() -> None:
+    scene = load_scene("fig3-I")
+    copied = replace(assembled(scene, "translational", 1e-3), rigid=True)
+    gc.collect()
+    assert copied.coordinates == 8, "three displacements and rotations of the platform, two of the second body"
