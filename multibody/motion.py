@@ -7,8 +7,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from multibody.integrate import Motion, silence
 from multibody.refine import refine
-from multibody.surface import assembled, checked
-from reference.problem import Scene, State, Trajectory, checked_phases, ground_acceleration
+from multibody.surface import assembled
+from reference.problem import Scene, State, Trajectory, checked_phase, ground_acceleration
+from reference.problem.ranges import TOLERANCE, checked_number, checked_state
 
 
 def trajectory(
@@ -33,8 +34,10 @@ def trajectory(
     Rx(a) Ry(b) Rz(c), and liftoff (L, 3): support, start and end, s, of every time a contact is open. Raises ValueError
     for wrong arguments.
     """
-    pair = checked_phases(np.reshape(np.asarray(phase, float), (1, -1)))[0]
-    checked("tolerance", tolerance)
+    pair = checked_phase(phase)
+    tolerance = checked_number("tolerance", tolerance, TOLERANCE)
+    if initial is not None:
+        initial = State(*checked_state(initial, len(scene.bodies), scene.radius))
     with silence():
         built = assembled(scene, model, regularization, loading=loading, contact_force=True)
         point = refine(scene, built, pair, tolerance, initial=initial, keep=True)

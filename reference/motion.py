@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.problem import Outcome, Scene, State, Trajectory, checked_phases, loading_period
+from reference.problem import Outcome, Scene, State, Trajectory, checked_phase, loading_period
+from reference.problem.ranges import checked_array, checked_state
 from reference.solver.runs import runs
 from reference.solver.samples import sampled
 from reference.solver.system import Array, Demand, Record, System, record_of
@@ -34,13 +35,13 @@ def trajectory(
     A motion that ends early (status, instant) has samples up to that instant. `stick` holds the intervals of rest, or
     of creep below v_reg. Raises ValueError for arguments outside these rules.
     """
-    pair = checked_phases(np.reshape(np.asarray(phase, float), (1, -1)))[0]
+    pair = checked_phase(phase)
     system, demand = checked_demand(scene, equations, regularization, tolerance, None, rest_condition)
     instants = _checked_times(scene, times)
     bodies = len(scene.bodies)
     x, v = np.zeros((bodies, 2)), np.zeros((bodies, 2))
     if initial is not None:
-        x, v = _checked_state(initial, system, bodies)
+        x, v = checked_state(initial, bodies, system.radius)
         demand = demand._replace(unit=demand.unit + _acceleration(system, x, v))
     outcome, instant, record = Outcome.NON_FINITE_LOAD, 0.0, record_of(0, bodies)
     if loads_are_finite(system):
@@ -88,20 +89,12 @@ def _checked_times(scene: Scene, times: ArrayLike | None) -> Array:
     if times is None:
         samples = int(np.ceil(scene.duration / loading_period(scene) * SAMPLES_PER_PERIOD)) + 1
         return np.linspace(0.0, scene.duration, min(samples, MOST_SAMPLES))
-    instants = np.ascontiguousarray(times, dtype=float)
+    rule = f"must be rising instants (T,) from 0 to the duration, {scene.duration} s"
+    instants = checked_array("times", times, rule)
     inside = instants.ndim == 1 and np.all((instants >= 0.0) & (instants <= scene.duration))
     if not inside or np.any(np.diff(instants) <= 0.0):
-        raise ValueError(f"times: must be rising instants (T,) from 0 to the duration, {scene.duration} s")
+        raise ValueError(f"times: {rule}")
     return instants
-
-
-def _checked_state(initial: State, system: System, bodies: int) -> tuple[Array, Array]:
-    x, v = np.asarray(initial.position, float), np.asarray(initial.velocity, float)
-    if x.shape != (bodies, 2) or v.shape != (bodies, 2) or not (np.isfinite(x).all() and np.isfinite(v).all()):
-        raise ValueError(f"initial: position and velocity must be finite and of shape ({bodies}, 2)")
-    if float(np.hypot(*x[0])) >= system.radius:
-        raise ValueError(f"initial: the platform must start inside the rim (4.1), rho = {system.radius:.6g} m")
-    return x, v
 
 
 def _vertical(x: Array, v: Array, system: System) -> tuple[Array, Array]:
