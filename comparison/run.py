@@ -21,7 +21,7 @@ import xarray as xr
 from rich.console import Console
 
 from comparison.account.promises import kept_promises
-from comparison.account.surfaces import labelled_surfaces
+from comparison.account.surfaces import labelled_surfaces, wide_swings
 from comparison.analyses.effective import effective_values
 from comparison.analyses.errands import errands, motion_errands, seconds_beside
 from comparison.analyses.further import further_findings
@@ -182,6 +182,8 @@ def _run(
         write_report(folder, found)
     for line in faults:
         print(f"solver: {line}", file=sys.stderr)
+    for line in wide_swings(study, surfaces):
+        print(f"note: {line}", file=sys.stderr)
     for line in found.broken if options.check else []:
         print(f"limit broken: {line}", file=sys.stderr)
     if options.by_trade:

@@ -81,6 +81,7 @@ def amplification(
     shape = (len(pairs), len(scene.bodies))
     mu, error = np.full(shape, np.nan), np.full(shape, np.nan)
     status, instant = np.full(len(pairs), Outcome.OK.value, dtype="U32"), np.full(len(pairs), np.nan)
+    cap_share = np.full(len(pairs), np.nan)
     ground = ground_peak(scene, pairs)
     level = model == "spatial" and not full and untilted(scene).allowed
     chosen = "translational" if level else model
@@ -101,4 +102,6 @@ def amplification(
                     point = refine(scene, whole, phase, tolerance)
                 status[m], instant[m] = point.outcome, point.instant
                 mu[m], error[m] = point.peaks / ground[m], point.errors / ground[m]
-    return Amplification(mu, error, status, instant, time.process_time() - clock)
+                if np.isfinite(point.peaks).all():
+                    cap_share[m] = point.finest.reach
+    return Amplification(mu, error, status, instant, time.process_time() - clock, cap_share)

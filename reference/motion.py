@@ -32,8 +32,9 @@ def trajectory(
 
     equations, regularization, rest_condition: as in `amplification`. tolerance: relative error of the accelerations
     inside each step. times: rising instants (T,), s, within the duration; by default 64 per shorter loading period.
-    A motion that ends early (status, instant) has samples up to that instant. `stick` holds the intervals of rest, or
-    of creep below v_reg. Raises ValueError for arguments outside these rules.
+    The samples miss the largest accelerations, which `peak` has. A motion that ends early (status, instant) has samples
+    up to that instant. `stick` holds the intervals of rest, or of creep below v_reg. Raises ValueError for arguments
+    outside these rules.
     """
     pair = checked_phase(phase)
     system, demand = checked_demand(scene, equations, regularization, tolerance, None, rest_condition)
@@ -44,8 +45,9 @@ def trajectory(
         x, v = checked_state(initial, bodies, system.radius)
         demand = demand._replace(unit=demand.unit + _acceleration(system, x, v))
     outcome, instant, record = Outcome.NON_FINITE_LOAD, 0.0, record_of(0, bodies)
+    peak = np.full(bodies, np.nan)
     if loads_are_finite(system):
-        outcome, instant, record = _recorded(system, pair, x, v, demand)
+        outcome, instant, record, peak = _recorded(system, pair, x, v, demand)
     instants = instants[instants <= instant] if outcome != Outcome.OK else instants
     steps, sticks = (int(number) for number in record.made)
     instants = instants if steps else instants[:0]
@@ -61,20 +63,21 @@ def trajectory(
         stick=[(float(a), float(b)) for a, b in record.sticks[:sticks]],
         status=outcome.value,
         instant=np.nan if outcome == Outcome.OK else instant,
+        peak=peak,
     )
 
 
-def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) -> tuple[Outcome, float, Record]:
-    """The run with all its steps, however many: (how and when it ended, s, its record)."""
+def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) -> tuple[Outcome, float, Record, Array]:
+    """The run with all its steps, however many: (how and when it ended, s, its record, its peaks, m/s^2)."""
     bodies = len(x)
     room = ROOM
     while True:
         record = record_of(room, bodies)
         peaks, doubts = np.empty((1, bodies)), np.empty((1, bodies))
-        codes, instants, steps = np.empty(1), np.empty(1), np.empty(1)
-        runs(system, phase[None], x, v, demand, record, peaks, doubts, codes, instants, steps)
+        codes, instants, steps, reach = (np.empty(1) for _ in range(4))
+        runs(system, phase[None], x, v, demand, record, peaks, doubts, codes, instants, steps, reach)
         if record.made.max() <= room:
-            return OUTCOMES[int(codes[0])], float(instants[0]), record
+            return OUTCOMES[int(codes[0])], float(instants[0]), record, peaks[0]
         room = int(record.made.max())
 
 

@@ -84,9 +84,9 @@ def amplification(
     motion, even where the scene does not require it (reference.problem.reductions). The range of every argument stands
     in `reference.problem.ranges`.
 
-    Returns mu and error (M, N), status and instant (M,), cost. Statuses: ok; tolerance not met (mu and its larger error
-    are given); and with mu NaN: rim reached (4.1), contact lost, painleve paradox, non-finite load, no ground motion,
-    step limit, solver failed. Raises ValueError for arguments outside these rules.
+    Returns mu and error (M, N), status, instant and cap_share (M,), cost. Statuses: ok; tolerance not met (mu and its
+    larger error are given); and with mu NaN: rim reached (4.1), contact lost, painleve paradox, non-finite load, no
+    ground motion, step limit, solver failed. Raises ValueError for arguments outside these rules.
     """
     pairs = checked_phases(phases)
     flat = not full and rest_condition == "consistent" and planar(scene).allowed  # (4.6) as printed knows directions
@@ -94,7 +94,7 @@ def amplification(
     system, demand = checked_demand(moving, equations, regularization, tolerance, cutoff, rest_condition, axes)
     count, bodies = len(pairs), len(scene.bodies)
     mu, error = np.full((count, bodies), np.nan), np.full((count, bodies), np.nan)
-    instant = np.full(count, np.nan)
+    instant, cap_share = np.full(count, np.nan), np.full(count, np.nan)
     status = np.full(count, Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")
     if not loads_are_finite(system):
         return Amplification(mu, error, status, np.zeros(count), 0.0)
@@ -114,6 +114,7 @@ def amplification(
         known = (outcomes == Outcome.OK) | (outcomes == Outcome.TOLERANCE_NOT_MET)
         status[places] = [outcome.value for outcome in outcomes]
         mu[places[known]] = peaks.value[known] / ground[shaken][known, None]
+        cap_share[places[known]] = peaks.reach[known] / scene.radius
         error[places[known]] = peaks.error[known] / ground[shaken][known, None]
         instant[part] = 0.0
         instant[places] = np.where(outcomes == Outcome.OK, np.nan, peaks.instant)
@@ -126,15 +127,15 @@ def amplification(
         solve(slice(0, 1))  # compiled once, before the threads need it
         with ThreadPoolExecutor(threads) as pool:
             cost = sum(pool.map(solve, parts(count, PARTS * threads)))
-    return Amplification(mu, error, status, instant, cost)
+    return Amplification(mu, error, status, instant, cost, cap_share)
 
 
 def superposed(scene: Scene, system: System, phases: Array, demand: Demand) -> Peaks:
     """The peaks of a linear scene, from one motion per harmonic; runs only where it may reach the rim (4.1)."""
-    value, error, at_rim = frictionless_peaks(scene, phases)
+    value, error, reach, at_rim = frictionless_peaks(scene, phases)
     met = (error <= demand.tolerance * value).all(axis=1)
     nothing = np.zeros(len(phases))
-    found = Peaks(value, error, np.where(met, SOLVED, NOT_MET), nothing, nothing.copy())
+    found = Peaks(value, error, np.where(met, SOLVED, NOT_MET), nothing, nothing.copy(), reach)
     if at_rim.any():  # whether it does, and when, is for the run to say
         for whole, ran in zip(found, certified_peaks(system, phases[at_rim], demand)):
             whole[at_rim] = ran

@@ -20,6 +20,7 @@ import xarray as xr
 from plotly.offline import get_plotlyjs
 
 from comparison.account.differences import Difference
+from comparison.account.surfaces import wide_swings
 from comparison.account.verdicts import bar, verdict
 from comparison.analyses.effective import PHASES
 from comparison.analyses.slips import SLIPS, Effect
@@ -197,6 +198,7 @@ def _page(figures: Path, found: Findings) -> str:
         advice=ADVICE,
         broken=found.broken,
         faults=found.faults,
+        wide_swings=wide_swings(study, found.surfaces),
         style=(templates / "report.css").read_text(encoding="utf-8"),
         scripts=[(templates / name).read_text(encoding="utf-8") for name in SCRIPTS],
         plotly=packed(get_plotlyjs().encode()),

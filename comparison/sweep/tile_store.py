@@ -27,7 +27,7 @@ from comparison.plan.tiles import Answer, Tile
 from comparison.sweep.surroundings import surroundings
 from reference.problem import SceneError
 
-FORMAT = 1  # of a tile's file
+FORMAT = 2  # of a tile's file
 LIMIT = 2**30  # bytes: above this, surfaces that the present study does not need are dropped, least recently used first
 STALE = 3600.0  # s: what a killed run left written aside; a writing takes milliseconds
 MARK = "phase-resonance/tiles"
@@ -164,6 +164,7 @@ def _packed(answer: Answer) -> bytes:
         mu=answer.mu,
         error=answer.error,
         instant=answer.instant,
+        cap_share=answer.cap_share,
         status=np.array(answer.status, dtype=np.str_),
         cost=np.array(answer.cost),
     )
@@ -173,10 +174,11 @@ def _packed(answer: Answer) -> bytes:
 def _unpacked(content: bytes, tile: Tile) -> Answer:
     """The answer written in a tile's file. Raises ValueError or KeyError if that is not what it holds."""
     with np.load(io.BytesIO(content), allow_pickle=False) as parts:
-        mu, error, instant, status = (parts[part] for part in ("mu", "error", "instant", "status"))
+        names = ("mu", "error", "instant", "status", "cap_share")
+        mu, error, instant, status, cap_share = (parts[part] for part in names)
         if mu.shape != (len(tile.phases), len(tile.scene.bodies)):
             raise ValueError("of another shape")
-        return Answer(mu, error, status.tolist(), instant, float(parts["cost"]))
+        return Answer(mu, error, status.tolist(), instant, float(parts["cost"]), "", cap_share)
 
 
 def _write(place: Path, content: bytes) -> None:

@@ -40,9 +40,9 @@ def checked_phases(phases: ArrayLike) -> Array:
 
 def checked_phase(phase: ArrayLike) -> Array:
     """One phase pair as an array (2,), rad; as `checked_phases`."""
-    pair = checked_array("phase", phase, f"must be (2,), {PHASE.rule}")
+    pair = checked_array("phases", phase, f"must be (2,), {PHASE.rule}")
     if pair.size != 2:
-        raise ValueError(f"phase: shape {pair.shape}: must be (2,), rad")
+        raise ValueError(f"phases: shape {pair.shape}: must be (2,), rad")
     return checked_phases(pair.reshape(1, 2))[0]
 
 

@@ -53,7 +53,7 @@ SCENE: dict[str, Range] = {
     "bodies.stiffness": Range(1e-30, 1e30, "N/m"),
     "bodies.height": Range(0.0, 1e6, "m"),
     "bodies.size": Range(1e-9, 1e6, "m"),
-    "excitation.amplitudes": Range(-1e307, 1e307, "m/s^2"),  # from about 1e150 on the outcome is "non-finite load"
+    "excitation.amplitudes": Range(-1e308, 1e308, "m/s^2"),  # from about 1e150 on the outcome is "non-finite load"
     "excitation.periods": Range(1e-9, 1e12, "s"),
     "excitation.decay": Range(0.0, 1e12, "1/s"),
 }
