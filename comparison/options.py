@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
 
-from pydantic import ValidationError
-
 from comparison.extremes.matrix import read as stored_extremes
 from comparison.plan.choice import AMBITIONS, DEFAULT, DEFAULT_TOLERANCE, tightest
 from comparison.plan.study import refuse_same_names
@@ -19,7 +17,6 @@ from comparison.storage.output import destination, refuse_foreign_report
 from comparison.sweep.executors import cores
 from comparison.tradeoff.trade import read as stored_trades
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
-from reference.problem.scene_error import first_fault
 
 
 @dataclass(frozen=True)
@@ -64,7 +61,7 @@ def parsed(argv: Sequence[str] | None) -> Options:
     names: list[str] = given.scenes or builtin_scenes()
     amplitude = None if given.amplitude is None else _number("--amplitude", given.amplitude, 1e-12, 1e6, "m/s^2")
     options = Options(
-        families=tuple(_family(name, amplitude) for name in names),
+        families=tuple(load_family(name, amplitude) for name in names),
         grid=None if given.grid is None else _whole("--grid", given.grid, 2, 512),
         out=destination(given.out),
         jobs=cores() if given.jobs is None else _whole("--jobs", given.jobs, 1, 1024),
@@ -140,13 +137,6 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--check", action="store_true", help="exit 1 if a scene's acceptance limits are broken")
     parser.add_argument("--plan", action="store_true", help="print what would be computed and its cost; run nothing")
     return parser
-
-
-def _family(name: str, amplitude: float | None) -> Family:
-    try:
-        return load_family(name, amplitude)
-    except ValidationError as fault:  # the amplitude asked for makes the scene impossible
-        raise first_fault(name, fault) from None
 
 
 def _whole(key: str, text: str, least: int, most: int) -> int:

@@ -26,7 +26,7 @@ import xarray as xr
 from rich.console import Console
 
 from comparison.account.promises import kept_promises
-from comparison.account.surfaces import labelled_surfaces
+from comparison.account.surfaces import labelled_surfaces, wide_swings
 from comparison.account.unanswered import with_silent_models
 from comparison.analyses.effective import effective_values
 from comparison.analyses.errands import errands, motion_errands, seconds_beside
@@ -190,6 +190,8 @@ def _run(
         write_report(report.folder, found)
     for line in faults:
         print(f"solver: {line}", file=sys.stderr)
+    for line in wide_swings(study, surfaces):
+        print(f"note: {line}", file=sys.stderr)
     for line in _checked(found) if options.check else []:
         print(line, file=sys.stderr)
     if options.by_trade:

@@ -224,7 +224,7 @@ def view(scene: Scene, phase: Array, model: str, regularization: float | None) -
     settings.timeIntegration.numberOfSteps = round(scene.duration * 1000.0)
     settings.timeIntegration.realtime.active = True
     settings.timeIntegration.realtime.factor = 1.0 / built.units.time
-    container = built.keep_alive[0]
+    container = built.container
     container.renderer.Start()
     container.renderer.DoIdleTasks()
     built.mbs.SolveDynamic(settings)

@@ -35,6 +35,15 @@ def corner_and_relaxation(scene: Scene, regularization: float | None, units: Uni
     return threshold, float(scene.masses[0]) / scene.total_mass * threshold / friction
 
 
+def viscous_relaxation(scene: Scene, units: Units) -> float:
+    """
+    Time m1 / (f_c m_sum g) in which a lubricated platform takes on the slip speed that its drive asks for, in units of
+    time; inf without lubrication.
+    """
+    friction = scene.friction_coefficient * units.velocity if scene.lubricated else 0.0
+    return float(scene.masses[0]) / scene.total_mass / friction if friction > 0.0 else math.inf
+
+
 def pressed_in(offset: Array, speed: Array, ground: Array, penetration: float) -> tuple[Array, Array, float, float]:
     """
     Platform on the sphere, moving along it, pressed in by as much as a single body would be; in units of the model.

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import weakref
 from importlib import import_module
 from typing import Any
 
 exudyn: Any = import_module("exudyn")
 items: Any = import_module("exudyn.itemInterface")
 symbolic_function: Any = import_module("exudyn.advancedUtilities").CreateSymbolicUserFunction
+
+
+def reset_with(owner: Any, container: Any) -> None:
+    """Reset the system container when `owner` is no longer used: until then the engine keeps its memory allocated."""
+    weakref.finalize(owner, container.Reset).atexit = False

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from multibody.contact import viscous_relaxation
 from multibody.supports import GIVES_WAY
 from multibody.system import EngineModel
 from multibody.units import link_stiffness
@@ -44,8 +45,8 @@ class Level:
     penetration: of the contact under the weight, of rho. newton: relative tolerance of the forces. deepest: how often
     the largest step may be divided by `RATIO`. chance: relative error that this level typically has, and below which no
     agreement with another one tells anything. gives_way: of supports against warping under the weight, of rho. decays:
-    for every harmonic that dies faster than the largest step resolves, the instant until which it lasts and the step up
-    to there.
+    for everything that dies faster than the largest step resolves (`brief_motions`), the instant until which it lasts
+    and the step up to there.
     """
 
     step: float
@@ -90,9 +91,15 @@ def largest_step(scene: Scene, model: EngineModel) -> float:
     return min(fastest, *slow) / STEPS_PER_PERIOD
 
 
-def brief_harmonics(scene: Scene, model: EngineModel, step: float) -> list[tuple[float, float]]:
-    """Until when the harmonics last that `step` does not resolve, and the step they ask for, at level 0."""
+def brief_motions(scene: Scene, model: EngineModel, step: float) -> list[tuple[float, float]]:
+    """
+    Until when the harmonics last that `step` does not resolve, and the step they ask for, at level 0.
+
+    So does the start of a lubricated platform: from rest it takes on the speed that balances the loading within its
+    relaxation time. Over steps much longer than that the integrator's acceleration would overshoot by as much again.
+    """
     rates: list[float] = [] if scene.recorded else list(-exponents(scene).real * model.units.time)
+    rates.append(1.0 / viscous_relaxation(scene, model.units))
     times = [1.0 / rate for rate in rates if rate > 0.0]
     return [(LASTS * time, time / STEPS_PER_DECAY) for time in times if time / STEPS_PER_DECAY < step]
 
@@ -101,12 +108,12 @@ def levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
     """All levels for a relative error of `tolerance`; the penetration stays where rounding would take over."""
     step = largest_step(scene, model)
     stiffest = min(model.rounding / (NOISE * PEAK * tolerance), PENETRATION / FALL)
-    softest = float(np.clip((LAG * model.relaxation) ** 2, stiffest, PENETRATION))
+    softest = float(np.clip(min(LAG * model.relaxation, 1.0) ** 2, stiffest, PENETRATION))
     stiffenings = math.floor(math.log(softest / stiffest, FALL) + 1e-9)
     penetrations = [softest / FALL ** min(level, stiffenings) for level in range(LEVELS)]
     gives_way = float(np.clip(GIVES_WAY * USUAL / tolerance, GIVES_WAY, MOST))
     at_stop = FINEST * TURN * model.relaxation
-    brief = brief_harmonics(scene, model, step)
+    brief = brief_motions(scene, model, step)
     smallest = min([at_stop, *(needed for _, needed in brief)])
     deepest = max(SHALLOWEST, math.ceil(math.log(step / smallest, RATIO))) if smallest < step else SHALLOWEST
     return [

@@ -70,6 +70,7 @@ class March:
     steps: int = 0
     runs: int = 0
     warping: float = 0.0  # largest load that supports on a plane would not carry, in shares of the weight
+    reach: float = 0.0  # largest horizontal displacement of the platform, in units of length
     chunks: list[Motion] = field(default_factory=list)
 
 
@@ -125,6 +126,7 @@ def march(
             if outcome != Outcome.OK:
                 return _ended(result, outcome, float(kept.time[row]))
             result.warping = max(result.warping, _warping(kept, engine, level))
+            result.reach = max(result.reach, _reach(kept, model.bodies[0, :2]))
             result.peaks.add(kept.time, absolute[: last + 1], kept.slip)
             state, time = kept.state(last), float(kept.time[last])
             ahead = _steps_ahead(kept, engine, level)
@@ -136,6 +138,18 @@ def march(
         elif depth > 0 and excess[-LATEST:].max() * RATIO < 1.0:
             depth -= 1
     return result
+
+
+def _reach(motion: Motion, axes: NDArray[np.int_]) -> float:
+    """Largest displacement along two coordinates: where its rate changes sign, that is linear in between."""
+    place = motion.coordinates[:, axes]
+    square, rate = (place**2).sum(axis=1), (place * motion.velocities[:, axes]).sum(axis=1)
+    before, behind = rate[:-1], rate[1:]
+    turns = (before > 0.0) & (behind < 0.0)
+    summits = square[:-1] + np.divide(before**2, before - behind, where=turns, out=np.zeros_like(before)) * np.diff(
+        motion.time
+    )
+    return float(np.sqrt(max(square.max(), summits.max(initial=0.0, where=turns))))
 
 
 def _ended(result: March, outcome: Outcome, instant: float) -> March:

@@ -7,8 +7,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from multibody.integrate import Motion, silence
 from multibody.refine import refine
-from multibody.surface import assembled, checked
-from reference.problem import Scene, State, Trajectory, checked_phases, ground_acceleration
+from multibody.surface import assembled
+from reference.problem import Scene, State, Trajectory, checked_phase, ground_acceleration
+from reference.problem.ranges import TOLERANCE, checked_number, checked_state
 
 
 def trajectory(
@@ -25,16 +26,18 @@ def trajectory(
 
     Other arguments as in `amplification`.
 
-    The instants are the engine's own, closer at stops; they are those of the run whose peaks meet `tolerance`, as in
-    `amplification`, with the same statuses; a run that ends early is returned up to there. `contact_force`: sum over
-    the supports. `stick`: intervals in which every support slips slower than v_reg. `extra`: slip_speed (T, K), m/s,
-    and support_force (T, K), N, of K contacts (one in the translational model); the spatial model adds yaw and tilt of
-    the platform (T,), rad, turns (T, N, 3), rad, the angles a, b, c of every body, which is turned against the plate by
-    Rx(a) Ry(b) Rz(c), and liftoff (L, 3): support, start and end, s, of every time a contact is open. Raises ValueError
-    for wrong arguments.
+    The instants are the engine's own, closer at stops, and miss the largest accelerations, which `peak` has; they are
+    those of the run whose peaks meet `tolerance`, as in `amplification`, with the same statuses; a run that ends early
+    is returned up to there. `contact_force`: sum over the supports. `stick`: intervals in which every support slips
+    slower than v_reg. `extra`: slip_speed (T, K), m/s, and support_force (T, K), N, of K contacts (one in the
+    translational model); the spatial model adds yaw and tilt of the platform (T,), rad, turns (T, N, 3), rad, the
+    angles a, b, c of every body, which is turned against the plate by Rx(a) Ry(b) Rz(c), and liftoff (L, 3): support,
+    start and end, s, of every time a contact is open. Raises ValueError for wrong arguments.
     """
-    pair = checked_phases(np.reshape(np.asarray(phase, float), (1, -1)))[0]
-    checked("tolerance", tolerance)
+    pair = checked_phase(phase)
+    tolerance = checked_number("tolerance", tolerance, TOLERANCE)
+    if initial is not None:
+        initial = State(*checked_state(initial, len(scene.bodies), scene.radius))
     with silence():
         built = assembled(scene, model, regularization, loading=loading, contact_force=True)
         point = refine(scene, built, pair, tolerance, initial=initial, keep=True)
@@ -58,6 +61,7 @@ def trajectory(
         status=point.outcome,
         instant=point.instant,
         extra=extra,
+        peak=point.finest.peaks.value * units.acceleration if len(time) else np.full(len(bodies), np.nan),
     )
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
+from multibody.engine import reset_with
 from multibody.integrate import silence
 from multibody.plate import LOADINGS
 from multibody.refine import refine
@@ -24,6 +25,7 @@ from reference.problem import (
     planar_chain,
     untilted,
 )
+from reference.problem.ranges import LEAST_ACCELERATION, REGULARIZATION, TOLERANCE, checked_choice, checked_number
 
 BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": translational, "spatial": spatial}
 
@@ -42,22 +44,15 @@ def assembled(
 
     Raises ValueError for an unknown model or loading, a wrong or missing v_reg.
     """
-    if loading not in LOADINGS:
-        raise ValueError(f"loading: {loading!r}: must be one of {', '.join(LOADINGS)}")
-    if model not in BUILDERS:
-        raise ValueError(f"model: {model!r}: must be one of {', '.join(sorted(BUILDERS))}")
+    checked_choice("loading", loading, LOADINGS)
+    checked_choice("model", model, sorted(BUILDERS))
     if regularization is not None:
-        checked("regularization", regularization)
+        regularization = checked_number("regularization", regularization, REGULARIZATION)
     elif not scene.lubricated and scene.friction_coefficient > 0.0:
         raise ValueError("regularization: None: the engine's dry friction needs v_reg in m/s, greater than 0")
-    return BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **more)
-
-
-def checked(name: str, value: float) -> float:
-    """`value` if it is finite and positive. Raises ValueError."""
-    if not (np.isfinite(value) and value > 0.0):
-        raise ValueError(f"{name}: {value!r}: must be finite and greater than 0")
-    return float(value)
+    built = BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **more)
+    reset_with(built.recorders, built.container)  # which a copy of the model with other settings shares
+    return built
 
 
 def amplification(
@@ -81,11 +76,12 @@ def amplification(
     ground motion"; "tolerance not met" keeps its mu with the error reached. Raises ValueError for wrong arguments.
     """
     pairs = checked_phases(phases)
-    checked("tolerance", tolerance)
+    tolerance = checked_number("tolerance", tolerance, TOLERANCE)
     clock = time.process_time()
     shape = (len(pairs), len(scene.bodies))
     mu, error = np.full(shape, np.nan), np.full(shape, np.nan)
     status, instant = np.full(len(pairs), Outcome.OK.value, dtype="U32"), np.full(len(pairs), np.nan)
+    cap_share = np.full(len(pairs), np.nan)
     ground = ground_peak(scene, pairs)
     level = model == "spatial" and not full and untilted(scene).allowed
     chosen = "translational" if level else model
@@ -95,7 +91,7 @@ def amplification(
         more = {"axes": 1} if flat else {}
         built = assembled(moving, chosen, regularization, loading=loading, contact_force=False, **more)
         for m, phase in enumerate(pairs):
-            if ground[m] == 0.0:
+            if ground[m] < LEAST_ACCELERATION:
                 status[m], instant[m] = Outcome.NO_GROUND_MOTION, 0.0
             elif not np.isfinite(ground[m]):
                 status[m], instant[m] = Outcome.NON_FINITE_LOAD, 0.0
@@ -106,4 +102,6 @@ def amplification(
                     point = refine(scene, whole, phase, tolerance)
                 status[m], instant[m] = point.outcome, point.instant
                 mu[m], error[m] = point.peaks / ground[m], point.errors / ground[m]
-    return Amplification(mu, error, status, instant, time.process_time() - clock)
+                if np.isfinite(point.peaks).all():
+                    cap_share[m] = point.finest.reach
+    return Amplification(mu, error, status, instant, time.process_time() - clock, cap_share)

@@ -58,11 +58,11 @@ class EngineModel:
     law is linear; inf if it has no such corner. relaxation: time in which a slip below it dies out, in units of time;
     inf likewise. rounding: of a contact force times its penetration, in units of weight times length. moving_plate:
     whether the loading moves the plate, whose coordinates are then the system's last. carried: (C, 3), index of the
-    coordinates that the plate carries along x, y, z. keep_alive: what the engine only points to. liftoff: whether the
-    model goes on when every contact is open. slippery: takes the friction away, or gives it back; None if the start
-    needs no balance. warped: how far the supports of coordinates (T, n) are from a plane, (T,), in units of length;
-    None if the model has no supports that share the load. bearings: penetration by the weight that the scene states, in
-    units of length, or 0.
+    coordinates that the plate carries along x, y, z. keep_alive: the engine's container of the system, and what the
+    engine only points to. liftoff: whether the model goes on when every contact is open. slippery: takes the friction
+    away, or gives it back; None if the start needs no balance. warped: how far the supports of coordinates (T, n) are
+    from a plane, (T,), in units of length; None if the model has no supports that share the load. bearings: penetration
+    by the weight that the scene states, in units of length, or 0.
     """
 
     mbs: Any
@@ -84,6 +84,11 @@ class EngineModel:
     slippery: Callable[[bool], None] | None = None
     warped: Callable[[Array], Array] | None = None
     bearings: float = 0.0
+
+    @property
+    def container(self) -> Any:
+        """The engine's container of the system."""
+        return self.keep_alive[0]
 
     @property
     def coordinates(self) -> int:

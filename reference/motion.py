@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.problem import Outcome, Scene, State, Trajectory, checked_phases, loading_period
+from reference.problem import Outcome, Scene, State, Trajectory, checked_phase, loading_period
+from reference.problem.ranges import checked_array, checked_state
 from reference.solver.runs import runs
 from reference.solver.samples import sampled
 from reference.solver.system import Array, Demand, Record, System, record_of
@@ -31,20 +32,22 @@ def trajectory(
 
     equations, regularization, rest_condition: as in `amplification`. tolerance: relative error of the accelerations
     inside each step. times: rising instants (T,), s, within the duration; by default 64 per shorter loading period.
-    A motion that ends early (status, instant) has samples up to that instant. `stick` holds the intervals of rest, or
-    of creep below v_reg. Raises ValueError for arguments outside these rules.
+    The samples miss the largest accelerations, which `peak` has. A motion that ends early (status, instant) has samples
+    up to that instant. `stick` holds the intervals of rest, or of creep below v_reg. Raises ValueError for arguments
+    outside these rules.
     """
-    pair = checked_phases(np.reshape(np.asarray(phase, float), (1, -1)))[0]
+    pair = checked_phase(phase)
     system, demand = checked_demand(scene, equations, regularization, tolerance, None, rest_condition)
     instants = _checked_times(scene, times)
     bodies = len(scene.bodies)
     x, v = np.zeros((bodies, 2)), np.zeros((bodies, 2))
     if initial is not None:
-        x, v = _checked_state(initial, system, bodies)
+        x, v = checked_state(initial, bodies, system.radius)
         demand = demand._replace(unit=demand.unit + _acceleration(system, x, v))
     outcome, instant, record = Outcome.NON_FINITE_LOAD, 0.0, record_of(0, bodies)
+    peak = np.full(bodies, np.nan)
     if loads_are_finite(system):
-        outcome, instant, record = _recorded(system, pair, x, v, demand)
+        outcome, instant, record, peak = _recorded(system, pair, x, v, demand)
     instants = instants[instants <= instant] if outcome != Outcome.OK else instants
     steps, sticks = (int(number) for number in record.made)
     instants = instants if steps else instants[:0]
@@ -60,20 +63,21 @@ def trajectory(
         stick=[(float(a), float(b)) for a, b in record.sticks[:sticks]],
         status=outcome.value,
         instant=np.nan if outcome == Outcome.OK else instant,
+        peak=peak,
     )
 
 
-def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) -> tuple[Outcome, float, Record]:
-    """The run with all its steps, however many: (how and when it ended, s, its record)."""
+def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) -> tuple[Outcome, float, Record, Array]:
+    """The run with all its steps, however many: (how and when it ended, s, its record, its peaks, m/s^2)."""
     bodies = len(x)
     room = ROOM
     while True:
         record = record_of(room, bodies)
         peaks, doubts = np.empty((1, bodies)), np.empty((1, bodies))
-        codes, instants, steps = np.empty(1), np.empty(1), np.empty(1)
-        runs(system, phase[None], x, v, demand, record, peaks, doubts, codes, instants, steps)
+        codes, instants, steps, reach = (np.empty(1) for _ in range(4))
+        runs(system, phase[None], x, v, demand, record, peaks, doubts, codes, instants, steps, reach)
         if record.made.max() <= room:
-            return OUTCOMES[int(codes[0])], float(instants[0]), record
+            return OUTCOMES[int(codes[0])], float(instants[0]), record, peaks[0]
         room = int(record.made.max())
 
 
@@ -88,20 +92,12 @@ def _checked_times(scene: Scene, times: ArrayLike | None) -> Array:
     if times is None:
         samples = int(np.ceil(scene.duration / loading_period(scene) * SAMPLES_PER_PERIOD)) + 1
         return np.linspace(0.0, scene.duration, min(samples, MOST_SAMPLES))
-    instants = np.ascontiguousarray(times, dtype=float)
+    rule = f"must be rising instants (T,) from 0 to the duration, {scene.duration} s"
+    instants = checked_array("times", times, rule)
     inside = instants.ndim == 1 and np.all((instants >= 0.0) & (instants <= scene.duration))
     if not inside or np.any(np.diff(instants) <= 0.0):
-        raise ValueError(f"times: must be rising instants (T,) from 0 to the duration, {scene.duration} s")
+        raise ValueError(f"times: {rule}")
     return instants
-
-
-def _checked_state(initial: State, system: System, bodies: int) -> tuple[Array, Array]:
-    x, v = np.asarray(initial.position, float), np.asarray(initial.velocity, float)
-    if x.shape != (bodies, 2) or v.shape != (bodies, 2) or not (np.isfinite(x).all() and np.isfinite(v).all()):
-        raise ValueError(f"initial: position and velocity must be finite and of shape ({bodies}, 2)")
-    if float(np.hypot(*x[0])) >= system.radius:
-        raise ValueError(f"initial: the platform must start inside the rim (4.1), rho = {system.radius:.6g} m")
-    return x, v
 
 
 def _vertical(x: Array, v: Array, system: System) -> tuple[Array, Array]:

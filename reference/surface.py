@@ -24,6 +24,14 @@ from reference.problem import (
     loading_period,
     planar,
 )
+from reference.problem.ranges import (
+    CUTOFF,
+    LEAST_ACCELERATION,
+    REGULARIZATION,
+    TOLERANCE,
+    checked_choice,
+    checked_number,
+)
 from reference.solver.certified import NOT_MET, Peaks, certified_peaks
 from reference.solver.system import (
     OPEN,
@@ -52,6 +60,7 @@ STEPS_PER_KNOT = 10  # of a record, besides
 STEPS_PER_VIBRATION, MOST_FOR_VIBRATIONS = 30, 300_000  # of the chain's fastest, besides
 VIBRATIONS = 10.0  # of the chain during which forces hardly change: stiff links follow without swinging
 FIRST_STEPS = 20_000
+MOST_STEPS = 3_000_000  # half a minute for two bodies
 PARTS = 8  # pieces of the surface per thread, so that none waits long for another
 
 
@@ -70,13 +79,14 @@ def amplification(
 
     phases: (M, 2), rad. equations: "exact" (3.9)-(3.13) or "small" (4.3)-(4.4). regularization: v_reg, m/s, below
     which dry friction is linear, or None for the set-valued law; a lubricated scene needs none. tolerance: relative
-    error asked of every mu, 1e-10 to 0.1. cutoff: v_c, m/s, of the resolved peak (set-valued law only), or None for
-    the supremum with its one-sided limits. rest_condition: "consistent", or "printed" for (4.6) as it stands. full:
-    integrate every motion, even where the scene does not require it (reference.problem.reductions).
+    error asked of every mu. cutoff: v_c, m/s, of the resolved peak (set-valued law only), or None for the supremum with
+    its one-sided limits. rest_condition: "consistent", or "printed" for (4.6) as it stands. full: integrate every
+    motion, even where the scene does not require it (reference.problem.reductions). The range of every argument stands
+    in `reference.problem.ranges`.
 
-    Returns mu and error (M, N), status and instant (M,), cost. Statuses: ok; tolerance not met (mu and its larger error
-    are given); and with mu NaN: rim reached (4.1), contact lost, painleve paradox, non-finite load, no ground motion,
-    step limit, solver failed. Raises ValueError for arguments outside these rules.
+    Returns mu and error (M, N), status, instant and cap_share (M,), cost. Statuses: ok; tolerance not met (mu and its
+    larger error are given); and with mu NaN: rim reached (4.1), contact lost, painleve paradox, non-finite load, no
+    ground motion, step limit, solver failed. Raises ValueError for arguments outside these rules.
     """
     pairs = checked_phases(phases)
     flat = not full and rest_condition == "consistent" and planar(scene).allowed  # (4.6) as printed knows directions
@@ -84,7 +94,7 @@ def amplification(
     system, demand = checked_demand(moving, equations, regularization, tolerance, cutoff, rest_condition, axes)
     count, bodies = len(pairs), len(scene.bodies)
     mu, error = np.full((count, bodies), np.nan), np.full((count, bodies), np.nan)
-    instant = np.full(count, np.nan)
+    instant, cap_share = np.full(count, np.nan), np.full(count, np.nan)
     status = np.full(count, Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")
     if not loads_are_finite(system):
         return Amplification(mu, error, status, np.zeros(count), 0.0)
@@ -94,7 +104,7 @@ def amplification(
     def solve(part: slice) -> float:
         begin = time.thread_time()
         ground = ground_peak(scene, pairs[part])
-        shaken = ground > 0.0
+        shaken = ground >= LEAST_ACCELERATION
         status[part] = Outcome.NO_GROUND_MOTION.value
         places = np.arange(count)[part][shaken]
         some = pairs[places]
@@ -104,6 +114,7 @@ def amplification(
         known = (outcomes == Outcome.OK) | (outcomes == Outcome.TOLERANCE_NOT_MET)
         status[places] = [outcome.value for outcome in outcomes]
         mu[places[known]] = peaks.value[known] / ground[shaken][known, None]
+        cap_share[places[known]] = peaks.reach[known] / scene.radius
         error[places[known]] = peaks.error[known] / ground[shaken][known, None]
         instant[part] = 0.0
         instant[places] = np.where(outcomes == Outcome.OK, np.nan, peaks.instant)
@@ -116,15 +127,15 @@ def amplification(
         solve(slice(0, 1))  # compiled once, before the threads need it
         with ThreadPoolExecutor(threads) as pool:
             cost = sum(pool.map(solve, parts(count, PARTS * threads)))
-    return Amplification(mu, error, status, instant, cost)
+    return Amplification(mu, error, status, instant, cost, cap_share)
 
 
 def superposed(scene: Scene, system: System, phases: Array, demand: Demand) -> Peaks:
     """The peaks of a linear scene, from one motion per harmonic; runs only where it may reach the rim (4.1)."""
-    value, error, at_rim = frictionless_peaks(scene, phases)
+    value, error, reach, at_rim = frictionless_peaks(scene, phases)
     met = (error <= demand.tolerance * value).all(axis=1)
     nothing = np.zeros(len(phases))
-    found = Peaks(value, error, np.where(met, SOLVED, NOT_MET), nothing, nothing.copy())
+    found = Peaks(value, error, np.where(met, SOLVED, NOT_MET), nothing, nothing.copy(), reach)
     if at_rim.any():  # whether it does, and when, is for the run to say
         for whole, ran in zip(found, certified_peaks(system, phases[at_rim], demand)):
             whole[at_rim] = ran
@@ -147,15 +158,13 @@ def checked_demand(
     axes: int = 2,
 ) -> tuple[System, Demand]:
     """The scene in compiled form and what is asked of a run. Raises ValueError, one line, for a wrong argument."""
-    if equations not in ("exact", "small"):
-        raise ValueError(f"equations = {equations!r}: must be 'exact' or 'small'")
-    if rest_condition not in ("consistent", "printed"):
-        raise ValueError(f"rest_condition = {rest_condition!r}: must be 'consistent' or 'printed'")
-    if not 1e-10 <= tolerance <= 0.1:
-        raise ValueError(f"tolerance = {tolerance!r}: must be from 1e-10 to 0.1, relative error of mu")
-    for name, speed in (("regularization", regularization), ("cutoff", cutoff)):
-        if speed is not None and not (np.isfinite(speed) and speed > 0.0):
-            raise ValueError(f"{name} = {speed!r}: must be a finite speed greater than 0 m/s, or None")
+    checked_choice("equations", equations, ("exact", "small"))
+    checked_choice("rest_condition", rest_condition, ("consistent", "printed"))
+    tolerance = checked_number("tolerance", tolerance, TOLERANCE)
+    if regularization is not None:
+        regularization = checked_number("regularization", regularization, REGULARIZATION)
+    if cutoff is not None:
+        cutoff = checked_number("cutoff", cutoff, CUTOFF)
     if cutoff is not None and regularization is not None:
         raise ValueError(f"cutoff = {cutoff!r}: belongs to the set-valued law; give no regularization with it")
     system = pack(scene, equations == "small", regularization, rest_condition == "printed", axes)
@@ -165,11 +174,11 @@ def checked_demand(
         unit = float(np.sqrt((np.abs(system.amplitudes).sum(axis=1) ** 2).sum()))
         unit += float(np.sqrt((system.record[:, 1:] ** 2).sum(axis=1)).max(initial=0.0))
     return system, Demand(
-        tolerance=float(tolerance),
+        tolerance=tolerance,
         unit=unit,
         period=time_scale(scene, unit, system.fastest),
-        cutoff=0.0 if cutoff is None else float(cutoff),
-        step_limit=FIRST_STEPS + int(min(1e9, STEPS_PER_PERIOD * scene.duration / period + vibrations + knots)),
+        cutoff=0.0 if cutoff is None else cutoff,
+        step_limit=FIRST_STEPS + int(min(MOST_STEPS, STEPS_PER_PERIOD * scene.duration / period + vibrations + knots)),
     )
 
 

@@ -13,6 +13,7 @@ from comparison.plan.study import Study
 from comparison.plan.tiles import Answer, Tile
 
 NOT_APPLICABLE = "not applicable"  # status of a model that the scene gives nothing to add
+WIDE = 0.5  # of rho: a displacement of the platform that is said
 NOT_ASKED = "not asked"  # status of the phases between those of a model that computes every k-th
 
 
@@ -23,7 +24,7 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
     `mu` and `error` (absolute, estimated) are NaN where a point has no answer, where a model does not apply to the
     scene, between the phases of a model with a `stride` above 1 (a `recorded` scene has one point, the first), and in
     bodies a scene does not have (`bodies` counts them). `status` names each point's outcome, `instant` (s) when it
-    arose. `cost` (scene, model) is s of compute.
+    arose; `cap_share` is the largest displacement of the platform over rho. `cost` (scene, model) is s of compute.
     """
     names = [scene.name for scene in study.scenes]
     models = [rung.key for rung in study.ladder]
@@ -32,6 +33,7 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
     mu = np.full((*plane, bodies), np.nan)
     error = np.full((*plane, bodies), np.nan)
     instant = np.full(plane, np.nan)
+    cap_share = np.full(plane, np.nan)
     status = np.full(plane, NOT_APPLICABLE, dtype=object)
     for index, scene in enumerate(study.scenes):
         status[index, [models.index(rung.key) for rung in rungs_of(scene, study.ladder)]] = NOT_ASKED
@@ -48,12 +50,13 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
         mu[where][span, :count] = answer.mu
         error[where][span, :count] = answer.error
         instant[where][span] = answer.instant
+        cap_share[where][span] = answer.cap_share
         status[where][span] = answer.status
         cost[where] += answer.cost
     for row, scene in enumerate(study.scenes):
         for rung in rungs_of(scene, study.ladder):
             column, place, source = models.index(rung.key), study.places(rung, scene), study.sources(scene, rung)
-            for array in (mu, error, instant, status):
+            for array in (mu, error, instant, cap_share, status):
                 array[row, column, place] = array[row, column, source]
     square = (len(names), len(models), study.grid, study.grid)
     axis = 2.0 * np.pi * np.arange(study.grid) / study.grid
@@ -68,6 +71,11 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
             "error": (surface, per_body(error), {"units": "1", "long_name": "estimated absolute error of mu"}),
             "status": (point, status.reshape(square), {"long_name": "named outcome of the point"}),
             "instant": (point, instant.reshape(square), {"units": "s", "long_name": "time when the outcome arose"}),
+            "cap_share": (
+                point,
+                cap_share.reshape(square),
+                {"units": "1", "long_name": "largest horizontal displacement of the platform over rho"},
+            ),
             "cost": (("scene", "model"), cost, {"units": "s", "long_name": "compute time of the surface"}),
             "stride": (
                 ("scene", "model"),
@@ -91,6 +99,23 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
         },
         attrs={"title": "phase-resonance surfaces", "tolerance": study.tolerance},
     )
+
+
+def largest_cap_share(surfaces: xr.Dataset, scene: str, model: str) -> float:
+    """Largest displacement of the platform over rho among the phases of a model; NaN where none has an answer."""
+    share = surfaces["cap_share"].sel(scene=scene, model=model)
+    return float(share.max())  # skips NaN
+
+
+def wide_swings(study: Study, surfaces: xr.Dataset) -> list[str]:
+    """One line for every model whose platform uses more than half of the cap."""
+    return [
+        f"{scene.name}, {rung.title}: the platform moves up to {100.0 * share:.1f} % of rho from the middle; "
+        "the model assumes a cap that reaches so far"
+        for scene in study.scenes
+        for rung in rungs_of(scene, study.ladder)
+        if (share := largest_cap_share(surfaces, scene.name, rung.key)) > WIDE
+    ]
 
 
 def common_phases(surfaces: xr.Dataset, scene: str, models: Sequence[str]) -> xr.Dataset:

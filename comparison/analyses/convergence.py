@@ -106,7 +106,7 @@ def _against(
 
 def _short(scene: Scene, periods: float) -> Scene:
     longest = float(2.0 * np.pi / exponents(scene).imag.min())
-    return scene.model_copy(update={"duration": min(scene.duration, periods * longest)})
+    return scene.with_values({"duration": min(scene.duration, periods * longest)})
 
 
 def _stiffened(scene: Scene) -> Values:

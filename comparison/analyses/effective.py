@@ -82,7 +82,7 @@ def read_back(task: tuple[Scene, Rung]) -> Effective:
     scene, rung = task
     nothing = Effective(scene.name, rung.key)
     lasting = scene.duration if scene.recorded else min(scene.duration, DURATION)
-    short = scene.model_copy(update={"duration": lasting})
+    short = scene.with_values({"duration": lasting})
     settings = {key: value for key, value in rung.settings.items() if key != "cutoff"}  # a way to read, not to move
     try:
         motion: Trajectory = imported(rung.trajectory)(short, PHASES, **settings)

@@ -9,6 +9,8 @@ shrink like s^2 too, which the second trend shows.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,11 +35,10 @@ Task = tuple[Scene, bool]  # and whether the supremum is taken
 
 def scaled(scene: Scene, s: float) -> Scene:
     """The scene with loading and dry friction times s."""
-    table = scene.model_dump(exclude_none=True)
-    table["excitation"]["amplitudes"] = (s * scene.amplitudes).tolist()
+    values: dict[str, Any] = {"excitation.amplitudes": s * scene.amplitudes}
     if not scene.lubricated:
-        table["isolator"]["friction"] = s * scene.friction_coefficient
-    return Scene.model_validate(table)
+        values["isolator.friction"] = s * scene.friction_coefficient
+    return scene.with_values(values)
 
 
 def scaling_tasks(study: Study) -> list[Task]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,19 +31,17 @@ Measure = Callable[[Scene], Array | None]  # relative change of mu (M, N), NaN w
 
 def _softened(scene: Scene) -> Array | None:
     """Every link 144 times softer: 12 n E J / l^3 read as n E J / (12 l^3)."""
-    soft = scene.model_dump(exclude_none=True)
-    for body, link in zip(soft["bodies"][1:], scene.stiffness):
-        body.pop("period", None)
-        body["stiffness"] = (link / 144.0).tolist()
-    return _change(amplification(Scene.model_validate(soft), PHASES).mu, amplification(scene, PHASES).mu)
+    softer: dict[str, Any] = {}
+    for number, link in enumerate(scene.stiffness, start=1):
+        softer |= {f"bodies.{number}.period": None, f"bodies.{number}.stiffness": link / 144.0}
+    return _change(amplification(scene.with_values(softer), PHASES).mu, amplification(scene, PHASES).mu)
 
 
 def _without_coefficient(scene: Scene) -> Array | None:
     """Friction as large as the normal force: mu = 1."""
     if scene.lubricated:
         return None
-    isolator = scene.isolator.model_copy(update={"friction": 1.0})
-    rough = scene.model_copy(update={"isolator": isolator})
+    rough = scene.with_values({"isolator.friction": 1.0})
     return _change(amplification(rough, PHASES).mu, amplification(scene, PHASES).mu)
 
 
@@ -178,7 +177,7 @@ def measured(task: tuple[Scene, int]) -> Effect:
     measure = SLIPS[number].measure
     assert measure is not None
     try:
-        change = measure(scene.model_copy(update={"duration": min(scene.duration, DURATION)}))
+        change = measure(scene.with_values({"duration": min(scene.duration, DURATION)}))
     except Exception as fault:
         return Effect(scene.name, number, fault=f"{type(fault).__name__}: {fault}")
     return Effect(scene.name, number, () if change is None else tuple(tuple(map(float, row)) for row in change))

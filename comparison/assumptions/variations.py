@@ -36,12 +36,14 @@ class Variation:
     supports: int | None = None
 
     def of(self, scene: Scene) -> Scene:
-        data: dict[str, Any] = scene.model_dump(exclude_none=True)
-        data["isolator"]["ring"] *= self.ring
-        data["isolator"]["supports"] = self.supports or data["isolator"]["supports"]
-        for body in data["bodies"]:
-            body["height"] *= self.height
-        return Scene.model_validate(data)
+        isolator = scene.isolator
+        assert isolator.ring is not None
+        values: dict[str, Any] = {"isolator.ring": isolator.ring * self.ring}
+        values["isolator.supports"] = self.supports or isolator.supports
+        for number, body in enumerate(scene.bodies):
+            assert body.height is not None
+            values[f"bodies.{number}.height"] = body.height * self.height
+        return scene.with_values(values)
 
 
 FEW = (
@@ -155,7 +157,7 @@ def assumption_cells(
 def varied(task: Task) -> Solved:
     """One task at PHASES."""
     scene, rung, variation, tolerance = task
-    short = scene.model_copy(update={"duration": min(scene.duration, DURATION)})
+    short = scene.with_values({"duration": min(scene.duration, DURATION)})
     model = short if variation is None else variation.of(short)
     whole = {"full": True} if untilted(model) else {}  # a check of assumption (vi) must not make use of it
     try:

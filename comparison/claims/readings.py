@@ -67,16 +67,16 @@ EVERY_READING = (
 
 
 def _read(name: str, reading: Reading) -> Scene:
-    scene = _changed(load_scene(name, reading.amplitude), name=name, duration=reading.duration)
+    scene = load_scene(name, reading.amplitude).with_values({"name": name, "duration": reading.duration})
     if not scene.lubricated:
         return scene
-    return _changed(scene, isolator={"period": scene.isolator.period, "lubrication": reading.lubrication})
+    return scene.with_values({"isolator": {"period": scene.isolator.period, "lubrication": reading.lubrication}})
 
 
 def _alone(name: str, reading: Reading) -> Scene:
     """The platform without what stands on it."""
     scene = _read(name, reading)
-    return _changed(scene, name=f"{name} alone", bodies=[scene.bodies[0].model_dump(exclude_none=True)])
+    return scene.with_values({"name": f"{name} alone", "bodies": [scene.bodies[0].model_dump(exclude_none=True)]})
 
 
 def _oscillator(name: str, reading: Reading) -> Scene:
@@ -84,12 +84,7 @@ def _oscillator(name: str, reading: Reading) -> Scene:
     scene = _alone(name, reading)
     second = load_scene(name).bodies[1].period
     assert second is not None
-    return _changed(scene, name=f"{name} oscillator", isolator={"period": second[0], "friction": 0.0})
-
-
-def _changed(scene: Scene, **parts: object) -> Scene:
-    """Another scene, validated anew: a copy would keep arrays that were made from the old parts."""
-    return Scene.model_validate({**scene.model_dump(exclude_none=True), **parts})
+    return scene.with_values({"name": f"{name} oscillator", "isolator": {"period": second[0], "friction": 0.0}})
 
 
 CASES: Mapping[str, Callable[[Reading], Scene]] = {

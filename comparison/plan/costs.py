@@ -109,7 +109,7 @@ def _pilot(scene: Scene, rung: Rung, points: int, full: bool) -> float:
     phases = np.random.default_rng(SEED).uniform(0.0, 2.0 * np.pi, (points, 2))
     asked = {**rung.settings, "tolerance": USUAL[rung.side], **({"full": True} if full else {})}
     answer = imported(rung.amplification)
-    answer(scene.model_copy(update={"duration": min(0.2, scene.duration)}), phases[:1], **asked)
+    answer(scene.with_values({"duration": min(0.2, scene.duration)}), phases[:1], **asked)
     clock = time.process_time()
     answer(scene, phases, **asked)
     return (time.process_time() - clock) / points

@@ -27,7 +27,7 @@ def _seconds(rung: Rung, tolerance: float, points: int) -> float:
     scene = load_scene(SCENE)
     phases = np.random.default_rng(SEED).uniform(0.0, 2.0 * np.pi, (points, 2))
     answer = imported(rung.amplification)
-    answer(scene.model_copy(update={"duration": 0.2}), phases[:1], **rung.settings, tolerance=1e-2)
+    answer(scene.with_values({"duration": 0.2}), phases[:1], **rung.settings, tolerance=1e-2)
     clock = time.process_time()
     answer(scene, phases, **rung.settings, tolerance=tolerance)
     return time.process_time() - clock

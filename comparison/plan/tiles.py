@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any
 
@@ -38,6 +38,11 @@ class Answer:
     instant: Array
     cost: float
     fault: str = ""
+    cap_share: Array = field(default_factory=lambda: np.empty(0))
+
+    def __post_init__(self) -> None:
+        if not len(self.cap_share):
+            object.__setattr__(self, "cap_share", np.full(len(self.mu), np.nan))
 
 
 def imported(path: str) -> Any:
@@ -59,10 +64,11 @@ def solve_tile(tile: Tile) -> Answer:
     points, bodies = len(tile.phases), len(tile.scene.bodies)
     try:
         result = imported(tile.amplification)(tile.scene, tile.phases, **tile.settings)
-        mu, error, instant = (np.array(part, dtype=float) for part in (result.mu, result.error, result.instant))
+        parts = (result.mu, result.error, result.instant, result.cap_share)
+        mu, error, instant, cap_share = (np.array(part, dtype=float) for part in parts)
         status = [str(outcome) for outcome in result.status]
-        shapes = mu.shape, error.shape, (len(status),), instant.shape
-        if shapes != ((points, bodies), (points, bodies), (points,), (points,)):
+        shapes = mu.shape, error.shape, (len(status),), instant.shape, cap_share.shape
+        if shapes != ((points, bodies), (points, bodies), (points,), (points,), (points,)):
             raise ValueError(f"{tile.amplification} answered {mu.shape} for {points} phases and {bodies} bodies")
     except Exception as fault:
         return unanswered(tile, Outcome.SOLVER_FAILED, f"{type(fault).__name__}: {fault}")
@@ -71,7 +77,7 @@ def solve_tile(tile: Tile) -> Answer:
         if status[index] == Outcome.OK:  # never let a number that is none pass as an answer
             status[index] = Outcome.SOLVER_FAILED.value
             named = f"{tile.amplification} called a non-finite answer ok"
-    return Answer(mu, error, status, instant, float(result.cost), named)
+    return Answer(mu, error, status, instant, float(result.cost), named, cap_share)
 
 
 def unanswered(tile: Tile, outcome: Outcome, fault: str) -> Answer:

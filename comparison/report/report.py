@@ -20,7 +20,7 @@ import xarray as xr
 from plotly.offline import get_plotlyjs
 
 from comparison.account.differences import Difference
-from comparison.account.surfaces import outcome_counts
+from comparison.account.surfaces import outcome_counts, wide_swings
 from comparison.account.unanswered import advice
 from comparison.account.verdicts import bar, verdict
 from comparison.analyses.effective import PHASES
@@ -205,6 +205,7 @@ def _page(figures: Path, found: Findings) -> str:
         outcomes=_outcomes(study, found.surfaces),
         broken=found.broken,
         faults=found.faults,
+        wide_swings=wide_swings(study, found.surfaces),
         style=(templates / "report.css").read_text(encoding="utf-8"),
         scripts=[(templates / name).read_text(encoding="utf-8") for name in SCRIPTS],
         plotly=packed(get_plotlyjs().encode()),

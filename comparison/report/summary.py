@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from comparison.account.surfaces import outcome_counts
+from comparison.account.surfaces import largest_cap_share, outcome_counts
 from comparison.account.verdicts import verdict
 from comparison.analyses.further import claims_summary, trends_summary
 from comparison.analyses.slips import SLIPS
@@ -86,6 +86,7 @@ def _scene(found: Findings, scene: Scene) -> dict[str, Any]:
             rung.key: {
                 "phases_per_axis": len(found.study.axis(rung, scene)),
                 "outcomes": outcome_counts(found.surfaces, scene.name, rung.key),
+                "cap_share": _finite(largest_cap_share(found.surfaces, scene.name, rung.key)),
                 "cost": float(found.surfaces["cost"].sel(scene=scene.name, model=rung.key)),
             }
             for rung in rungs_of(scene, found.study.ladder)

@@ -21,9 +21,10 @@ def halves(tile: Tile) -> list[Tile]:
 
 def joined(tile: Tile, answers: Sequence[Answer]) -> Answer:
     """The answer of the tile from those of its parts, in order; costs add up, complaints are kept once each."""
-    mu, error, instant = (
-        np.concatenate([getattr(answer, name) for answer in answers]) for name in ("mu", "error", "instant")
+    mu, error, instant, cap_share = (
+        np.concatenate([getattr(answer, name) for answer in answers])
+        for name in ("mu", "error", "instant", "cap_share")
     )
     status = [outcome for answer in answers for outcome in answer.status]
     fault = "; ".join(dict.fromkeys(answer.fault for answer in answers if answer.fault))
-    return Answer(mu, error, status, instant, sum(answer.cost for answer in answers), fault)
+    return Answer(mu, error, status, instant, sum(answer.cost for answer in answers), fault, cap_share)

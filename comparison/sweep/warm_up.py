@@ -23,5 +23,5 @@ def warm_up(study: Study) -> Tile:
     """
     tiles = study.tiles()
     tile = next((tile for tile in tiles if tile.rung == "exact"), tiles[0])
-    scene = tile.scene.model_copy(update={"duration": DURATION})
+    scene = tile.scene.with_values({"duration": DURATION})
     return replace(tile, rung=WARM_UP, scene=scene, phases=tile.phases[:1])

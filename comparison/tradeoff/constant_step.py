@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from multibody.contact import DAMPING, contact_law
-from multibody.engine import exudyn, items
+from multibody.engine import exudyn, items, reset_with
 from multibody.integrate import CONTRACTIVITY, SPECTRAL_RADIUS, silence
 from multibody.loading import Ground, SymbolicGround, symbolic_load
 from multibody.surface import assembled
@@ -130,7 +130,9 @@ def prismatic_tree(scene: Scene, penetration: float, v_reg: float = V_REG) -> Ca
         vertical = np.broadcast_to(values[:, None, 2:3], (*relative.shape[:2], 1))
         return np.concatenate([np.cumsum(relative, axis=1), vertical], axis=2)
 
-    return Candidate(mbs, ground, [recorder], absolute, start, (container, expressions))
+    candidate = Candidate(mbs, ground, [recorder], absolute, start, (container, expressions))
+    reset_with(candidate, container)
+    return candidate
 
 
 def _inertial(ground: SymbolicGround, mass: float) -> Any:

@@ -68,7 +68,7 @@ def solve(task: Task) -> Found:
     path, given = task.function
     if path not in _warm:
         _warm.add(path)
-        _asked(task.scene.model_copy(update={"duration": SHORT}), task.phases[:1], path, given)
+        _asked(task.scene.with_values({"duration": SHORT}), task.phases[:1], path, given)
     return _asked(task.scene, task.phases, path, given)
 
 

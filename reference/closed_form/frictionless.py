@@ -47,9 +47,10 @@ def frictionless_amplification(scene: Scene, phases: ArrayLike) -> Array:
     return result
 
 
-def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
     """
-    Largest absolute accelerations, m/s^2, and their errors, (M, N) each; at which phases the rim (4.1) may be reached.
+    Largest absolute accelerations, m/s^2, and their errors, (M, N) each; largest displacement of the platform, m, (M,);
+    at which phases the rim (4.1) may be reached.
 
     Raises as `frictionless_motion`. A motion to the rim has left the small equations: its peaks mean nothing.
     """
@@ -65,7 +66,8 @@ def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, NDArr
     path = Series.of(_responses(scene, natural, centres, ORDERS, absolute=False, bodies=1), half)
     peaks, doubt = largest(series, phases)
     uncertain = ROUNDING * (10.0 + float(natural.frequency.max()) * scene.duration)
-    return peaks, doubt + uncertain * series.envelope, reached(path, phases, scene.radius)
+    reach = largest(path, phases)[0][:, 0]
+    return peaks, doubt + uncertain * series.envelope, reach, reached(path, phases, scene.radius)
 
 
 def _check(scene: Scene) -> None:

@@ -1,6 +1,6 @@
 """The question both sides answer: scene, loading, measured quantity. The only thing they share."""
 
-from reference.problem.amplification import checked_phases, ground_peak, phase_grid
+from reference.problem.amplification import checked_phase, checked_phases, ground_peak, phase_grid
 from reference.problem.excitation import (
     exponents,
     ground_acceleration,
@@ -40,6 +40,7 @@ __all__ = [
     "State",
     "Trajectory",
     "builtin_scenes",
+    "checked_phase",
     "checked_phases",
     "even_ring",
     "example_scenes",

@@ -118,7 +118,12 @@ def _named(files: Files) -> str:
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # an integer beyond double precision
+        return False
 
 
 def _texts(label: str, key: str, values: Sequence[Value]) -> list[str]:

@@ -16,6 +16,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.problem.ranges import brief
+
 Array = NDArray[np.float64]
 
 GRAVITY = 9.81  # m/s^2, the paper's value (section 5): a record in g keeps its ratio to the weight
@@ -27,7 +29,14 @@ UNITS |= {"cm/s²": 0.01, "gal": 0.01}
 COLUMN = re.compile(r"(\w+)\s*(?:[\[(]\s*(.*?)\s*[\])])?")
 NEW_HEADER = re.compile(r"NPTS\s*=\s*([^\s,]+)[\s,]+DT\s*=\s*([^\s,]+)", re.IGNORECASE)
 OLD_HEADER = re.compile(r"([^\s,]+)[\s,]+([^\s,]+)[\s,]+NPTS[\s,]+DT", re.IGNORECASE)
-HEADER_LINES = 4
+MOST_HEADER_LINES = 20
+UNIT_LINE = re.compile(r"\bUNITS\b", re.IGNORECASE)
+UNIT_OF_G = re.compile(r"\bUNITS\s*(?:OF|ARE|:|=)?\s*(?:G|\(G\)|\[G\])\s*(?:\.(?:\s.*)?)?", re.IGNORECASE)
+NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?", re.IGNORECASE | re.ASCII)
+NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE | re.ASCII)
+MOST_DIGITS = 9  # of NPTS
+LARGEST = 1e300  # finite in any unit
+SHORTEST_INTERVAL = 1e-9  # s, between samples
 SAME_STEP = 1e-6  # relative: DT is printed with four to six digits
 
 
@@ -46,16 +55,16 @@ def csv_samples(text: str) -> Array:
     if not rows:
         raise RecordError("empty: must have a header, as time [s], ax [m/s^2], ay [m/s^2], and samples")
     head, header = rows[0]
-    columns = [_column(head, cell) for cell in _cells(header)]
+    columns = [_column(head, cell) for cell in _cells(head, header)]
     names = [name for name, _ in columns]
     for name in names:
         if names.count(name) > 1:
             raise RecordError(f"line {head}: column {name} is there twice")
     if "time" not in names or len(names) < 2:
-        raise RecordError(f"line {head}: {header.strip()!r}: must have time and at least one of ax, ay, az")
+        raise RecordError(f"line {head}: {brief(header.strip())}: must have time and at least one of ax, ay, az")
     samples = np.zeros((len(rows) - 1, 4))
     for row, (number, line) in enumerate(rows[1:]):
-        cells = _cells(line)
+        cells = _cells(number, line)
         if len(cells) != len(columns):
             raise RecordError(f"line {number}: {len(cells)} values: the header names {len(columns)} columns")
         for (name, unit), cell in zip(columns, cells):
@@ -87,54 +96,78 @@ def at2_samples(texts: Mapping[str, str]) -> Array:
 def _at2(axis: str, text: str) -> tuple[float, Array]:
     """DT, s, and the accelerations of one file, in g."""
     lines = text.splitlines()
-    head = "\n".join(lines[:HEADER_LINES])
-    if not re.search(r"UNITS OF G\b", head, re.IGNORECASE):
-        raise RecordError(f"{axis}: the header names no unit: one of its four lines must say 'IN UNITS OF G'")
-    found = next((match for line in lines[:HEADER_LINES] if (match := _sizes(line))), None)
+    found = next(((row, match) for row, line in enumerate(lines[:MOST_HEADER_LINES]) if (match := _sizes(line))), None)
     if found is None:
+        _check_unit(axis, lines[:MOST_HEADER_LINES])
         raise RecordError(f"{axis}: the header must have a line 'NPTS= 1000, DT= .0100 SEC'")
-    count, step = found.groups()
-    if not (count.isdecimal() and int(count) > 0):
-        raise RecordError(f"{axis}: NPTS = {count!r}: must be a whole number greater than 0")
-    spacing = _number(HEADER_LINES, step)
+    last, sizes = found
+    while last + 1 < min(len(lines), MOST_HEADER_LINES) and not _begins_with_a_number(lines[last + 1]):
+        last += 1
+    _check_unit(axis, lines[: last + 1])
+    count, step = sizes.groups()
+    whole = count.isascii() and count.isdecimal() and len(count) <= MOST_DIGITS
+    if not (whole and int(count) > 0):
+        rule = f"must be a whole number greater than 0 of at most {MOST_DIGITS} digits"
+        raise RecordError(f"{axis}: NPTS = {brief(count)}: {rule}")
+    spacing = _number(found[0] + 1, step)
     if spacing <= 0.0:
         raise RecordError(f"{axis}: DT = {step} s: must be greater than 0")
-    values = [_number(number, cell) for number, line in enumerate(lines, 1) if number > HEADER_LINES
-              for cell in line.split()]  # fmt: skip
+    values = [
+        _number(number, cell) for number, line in enumerate(lines, 1) if number > last + 1 for cell in line.split()
+    ]
     if len(values) != int(count):
         raise RecordError(f"{axis}: {len(values)} values: the header says NPTS = {count}")
     return spacing, np.array(values)
+
+
+def _check_unit(axis: str, header: list[str]) -> None:
+    """Raise RecordError unless the header names g as the unit, and no other."""
+    lines = [line.strip() for line in header if UNIT_LINE.search(line)]
+    for line in lines or [""]:
+        at = UNIT_LINE.search(line)
+        if at is None or not UNIT_OF_G.fullmatch(line[at.start() :]):
+            said = f": {brief(line)}" if line else ""
+            raise RecordError(f"{axis}: the header names no unit that is known{said}: must say 'IN UNITS OF G'")
 
 
 def _sizes(line: str) -> re.Match[str] | None:
     return NEW_HEADER.search(line) or OLD_HEADER.search(line)
 
 
-def _cells(line: str) -> list[str]:
-    return [cell.strip() for cell in next(csv.reader(io.StringIO(line)))]
+def _begins_with_a_number(line: str) -> bool:
+    first = line.split()[:1]
+    return bool(first) and bool(NUMBER.fullmatch(first[0]) or NOT_FINITE.fullmatch(first[0]))
+
+
+def _cells(number: int, line: str) -> list[str]:
+    try:
+        return [cell.strip() for cell in next(csv.reader(io.StringIO(line)))]
+    except csv.Error as fault:
+        raise RecordError(f"line {number}: {brief(line)}: {fault}") from None
 
 
 def _column(line: int, cell: str) -> tuple[str, float]:
     """Name of a column and its unit in SI."""
     match = COLUMN.fullmatch(cell)
     if match is None or match[1].lower() not in COLUMNS:
-        raise RecordError(f"line {line}: column {cell!r}: must be one of time, ax, ay, az with its unit")
+        raise RecordError(f"line {line}: column {brief(cell)}: must be one of time, ax, ay, az with its unit")
     name, unit = match[1].lower(), (match[2] or "").lower()
     units = {"s": 1.0} if name == "time" else UNITS
     allowed = "time [s]" if name == "time" else f"{name} [m/s^2], {name} [g] or {name} [cm/s^2]"
     if unit not in units:
-        said = f"unknown unit {match[2]!r}" if unit else "no unit"
-        raise RecordError(f"line {line}: column {cell!r}: {said}: write {allowed}")
+        said = f"unknown unit {brief(match[2])}" if unit else "no unit"
+        raise RecordError(f"line {line}: column {brief(cell)}: {said}: write {allowed}")
     return name, units[unit]
 
 
 def _number(line: int, cell: str) -> float:
-    try:
-        value = float(cell)
-    except ValueError:
-        raise RecordError(f"line {line}: {cell!r}: must be a number") from None
-    if not np.isfinite(value):
+    if NOT_FINITE.fullmatch(cell):
         raise RecordError(f"line {line}: {cell}: must be finite")
+    if not NUMBER.fullmatch(cell):
+        raise RecordError(f"line {line}: {brief(cell)}: must be a number")
+    value = float(cell)
+    if abs(value) > LARGEST:
+        raise RecordError(f"line {line}: {brief(cell)}: must be finite, at most {LARGEST:g} in size")
     return value
 
 
@@ -142,4 +175,7 @@ def _checked(samples: Array) -> Array:
     if len(samples) < 2:
         raise RecordError(f"{len(samples)} samples: must have at least 2")
     samples[:, 0] -= samples[0, 0]
+    shortest = float(np.diff(samples[:, 0]).min())
+    if shortest < SHORTEST_INTERVAL:
+        raise RecordError(f"{shortest:g} s from sample to sample: must be at least {SHORTEST_INTERVAL:g} s")
     return samples

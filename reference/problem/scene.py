@@ -5,43 +5,68 @@ from __future__ import annotations
 import hashlib
 import math
 import tomllib
+import unicodedata
 from collections.abc import Mapping
 from functools import cached_property
 from importlib import resources
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, ValidationError, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, ValidationError, model_validator
 
+from reference.problem.ranges import MOST_CYCLES, SCENE
 from reference.problem.record_files import GRAVITY as GRAVITY
 from reference.problem.recorded import EXAMPLES, with_samples
-from reference.problem.scene_error import EXCITATIONS, MisfitError, SceneError, UnknownKeyError, first_fault
+from reference.problem.scene_error import EXCITATIONS, MisfitError, SceneError, first_fault, unknown_key
 
+MOST_BODIES = 10_000
 SOFTEST = 0.1  # of the radius: what supports may give way by under the weight
+ROUNDING = 1e-12  # relative, of a value that follows from others
+DEEPEST = 10  # tables and lists within one another in a scene file
+USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
+
+
+def within(key: str) -> AfterValidator:
+    """The rule that a number lies within the range of `key` in `ranges.SCENE`."""
+    allowed = SCENE[key]
+
+    def check(value: float) -> float:
+        if value not in allowed:
+            raise ValueError(allowed.rule)
+        return value
+
+    return AfterValidator(check)
+
+
+def _without_control_characters(text: str) -> str:
+    if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in text):
+        raise ValueError("must have no control characters")
+    return text
+
+
+Text = Annotated[str, AfterValidator(_without_control_characters)]
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
-PerAxis = Annotated[list[Positive], Field(min_length=2, max_length=2)]
-PerHarmonic = Annotated[list[float], Field(min_length=2, max_length=2)]
-
-
-UNWRITTEN = ("name", "samples")  # fields that no scene file holds
+LinkPeriods = Annotated[list[Annotated[Positive, within("bodies.period")]], Field(min_length=2, max_length=2)]
+LinkStiffness = Annotated[list[Annotated[Positive, within("bodies.stiffness")]], Field(min_length=2, max_length=2)]
+Size = Annotated[list[Annotated[Positive, within("bodies.size")]], Field(min_length=3, max_length=3)]
+Row = Annotated[list[Annotated[float, within("excitation.amplitudes")]], Field(min_length=2, max_length=2)]
+Periods = Annotated[list[Annotated[Positive, within("excitation.periods")]], Field(min_length=2, max_length=2)]
+Decay = Annotated[list[Annotated[NonNegative, within("excitation.decay")]], Field(min_length=2, max_length=2)]
 
 
 class Table(BaseModel):
-    """One table of the file: unknown keys, wrong types and non-finite numbers are refused."""
+    """One table of the file: unknown keys, wrong types and numbers outside their range are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
-    @model_validator(mode="before")
-    @classmethod
-    def _known_keys(cls, data: Any) -> Any:
-        """Refuse an unknown key with the nearest valid ones. Raises UnknownKeyError."""
-        for key in data if isinstance(data, dict) else ():
-            if key not in cls.model_fields:
-                raise UnknownKeyError(str(key), data[key], [name for name in cls.model_fields if name not in UNWRITTEN])
-        return data
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """A copy without changes. Raises ValueError with `update`, which pydantic would not validate."""
+        if update:
+            raise ValueError(USE_WITH_VALUES)
+        return super().model_copy(deep=deep)
 
 
 def exactly_one(table: BaseModel, first: str, second: str) -> None:
@@ -53,14 +78,14 @@ def exactly_one(table: BaseModel, first: str, second: str) -> None:
 class Isolator(Table):
     """Spherical gravity-friction isolator. Exactly one of period and radius, one of friction and lubrication."""
 
-    period: Positive | None = None  # s, of one mass alone on the isolator, T_c
-    radius: Positive | None = None  # m, rho = R - r
-    friction: NonNegative | None = None  # dry friction coefficient, mu of (2.5)
-    lubrication: NonNegative | None = None  # s/m, f_c of (3.14)
-    supports: Annotated[int, Field(ge=3)] | None = None  # K, spatial model
-    ring: Positive | None = None  # m, radius of the circle of supports, spatial model
-    sphere_radius: Positive | None = None  # m, r
-    support_stiffness: Positive | None = None  # N/m, vertical, of one support; without it supports are rigid
+    period: Annotated[Positive, within("isolator.period")] | None = None  # s, of one mass alone on the isolator, T_c
+    radius: Annotated[Positive, within("isolator.radius")] | None = None  # m, rho = R - r
+    friction: Annotated[NonNegative, within("isolator.friction")] | None = None  # dry friction coefficient, mu of (2.5)
+    lubrication: Annotated[NonNegative, within("isolator.lubrication")] | None = None  # s/m, f_c of (3.14)
+    supports: Annotated[int, Field(ge=3, le=int(SCENE["isolator.supports"].highest))] | None = None  # K, spatial model
+    ring: Annotated[Positive, within("isolator.ring")] | None = None  # m, circle of supports, spatial model
+    sphere_radius: Annotated[Positive, within("isolator.sphere_radius")] | None = None  # m, r
+    support_stiffness: Annotated[Positive, within("isolator.support_stiffness")] | None = None  # N/m, vertical, each
 
     @model_validator(mode="after")
     def _alternatives(self) -> Isolator:
@@ -72,25 +97,25 @@ class Isolator(Table):
 class Body(Table):
     """One rigid body; the first is the platform, every other one is linked to the body before it."""
 
-    mass: Positive  # kg
-    period: PerAxis | None = None  # s, 2 pi sqrt(m / k) in x and y, of the link to the body below
-    stiffness: PerAxis | None = None  # N/m, k^x and k^y of that link
-    height: NonNegative | None = None  # m above the plane of the depression centres, spatial model
-    size: Annotated[list[Positive], Field(min_length=3, max_length=3)] | None = None  # m, box
+    mass: Annotated[Positive, within("bodies.mass")]  # kg
+    period: LinkPeriods | None = None  # s, 2 pi sqrt(m / k) in x and y, of the link to the body below
+    stiffness: LinkStiffness | None = None  # N/m, k^x and k^y of that link
+    height: Annotated[NonNegative, within("bodies.height")] | None = None  # m above the depression centers, spatial
+    size: Size | None = None  # m, box
 
 
 class Excitation(Table):
     """Two-frequency damped ground acceleration (5.2)-(5.4): rows x, y and optionally z, columns the harmonics."""
 
-    amplitudes: Annotated[list[PerHarmonic], Field(min_length=2, max_length=3)]  # m/s^2, a_ki
-    periods: PerAxis  # s, T_i of the harmonics
-    decay: Annotated[list[NonNegative], Field(min_length=2, max_length=2)]  # 1/s, lambda_i
+    amplitudes: Annotated[list[Row], Field(min_length=2, max_length=3)]  # m/s^2, a_ki
+    periods: Periods  # s, T_i of the harmonics
+    decay: Decay  # 1/s, lambda_i
 
 
 class Record(Table):
     """Recorded ground acceleration in place of the two frequencies: its files, and the samples read from them."""
 
-    record: str | dict[str, str]  # a CSV file, or .AT2 files by direction, as written in the scene
+    record: Text | dict[str, Text]  # a CSV file, or .AT2 files by direction, as written in the scene
     scale: Positive = 1.0  # factor of every acceleration
     samples: list[Annotated[list[float], Field(min_length=4, max_length=4)]]  # s and m/s^2 along x, y, z, unscaled
 
@@ -159,15 +184,15 @@ class Acceptance(Limits):
 class Scene(Table):
     """A validated scene. Arrays are SI; body index 0 is the platform, axis index 0 is x."""
 
-    title: str
-    duration: Positive  # s
+    title: Text
+    duration: Annotated[Positive, within("duration")]  # s
     isolator: Isolator
-    bodies: Annotated[list[Body], Field(min_length=1)]
+    bodies: Annotated[list[Body], Field(min_length=1, max_length=MOST_BODIES)]
     excitation: Annotated[
         Annotated[Excitation, Tag(EXCITATIONS[0])] | Annotated[Record, Tag(EXCITATIONS[1])], Discriminator(_kind)
     ]
     acceptance: Acceptance = Acceptance()
-    name: str = "scene"  # file stem or built-in name; set by load_scene
+    name: Text = "scene"  # file stem or built-in name; set by load_scene
 
     @model_validator(mode="after")
     def _links(self) -> Scene:
@@ -180,19 +205,7 @@ class Scene(Table):
                 exactly_one(body, "period", "stiffness")
             except ValueError as fault:
                 raise MisfitError(f"bodies.{number}", body.model_dump(exclude_none=True), str(fault)) from None
-        derived = {"isolator: radius in m": self.radius, "bodies: total mass in kg": self.total_mass}
-        derived |= {
-            f"bodies.{i + 1}: k^{'xy'[axis]} in N/m": float(k) for (i, axis), k in np.ndenumerate(self.stiffness)
-        }
-        for key, value in derived.items():
-            if not (math.isfinite(value) and value > 0.0):
-                raise MisfitError(key, value, "must be finite and positive in double precision")
-        bearings = self.isolator.support_stiffness
-        if bearings is not None:
-            share = self.total_mass * GRAVITY / ((self.isolator.supports or 1) * bearings * self.radius)
-            if not share <= SOFTEST:
-                rule = f"gives way by {share:.3g} of the radius under the weight: must be at most {SOFTEST:g}"
-                raise MisfitError("isolator.support_stiffness", bearings, rule)
+        self._check_derived()
         if isinstance(self.excitation, Record) and not np.isfinite(self.record).all():
             raise MisfitError("excitation.scale", self.excitation.scale, "must leave every sample finite")
         return self
@@ -200,13 +213,67 @@ class Scene(Table):
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Scene) and self.model_dump() == other.model_dump()
 
-    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Scene:
-        """A copy with some keys changed, not validated; what follows from them (masses, ...) is computed anew."""
-        copy = super().model_copy(update=update, deep=deep)
-        for name, member in vars(Scene).items():
-            if isinstance(member, cached_property):
-                copy.__dict__.pop(name, None)
-        return copy
+    def _check_derived(self) -> None:
+        """What follows from several values must be within its range as well."""
+        derived = {
+            "isolator: radius in m": (self.radius, SCENE["isolator.radius"]),
+            "bodies: total mass in kg": (self.total_mass, SCENE["bodies.mass"]),
+        }
+        with np.errstate(over="ignore", divide="ignore"):
+            periods = 2.0 * np.pi * np.sqrt(self.masses[1:, None] / self.stiffness)
+        for (i, axis), k in np.ndenumerate(self.stiffness):
+            derived[f"bodies.{i + 1}: k^{'xy'[axis]} in N/m"] = float(k), SCENE["bodies.stiffness"]
+            derived[f"bodies.{i + 1}: period along {'xy'[axis]} in s"] = float(periods[i, axis]), SCENE["bodies.period"]
+        for key, (value, allowed) in derived.items():
+            if not allowed.lowest * (1.0 - ROUNDING) <= value <= allowed.highest * (1.0 + ROUNDING):
+                raise MisfitError(key, value, allowed.rule)
+        shortest = 2.0 * math.pi * math.sqrt(self.radius / GRAVITY)
+        if isinstance(self.excitation, Excitation):
+            shortest = min(shortest, *self.excitation.periods)
+        if self.duration > MOST_CYCLES * shortest:
+            rule = f"must be at most {MOST_CYCLES:g} periods of {shortest:.4g} s, the shortest of loading and pendulum"
+            raise MisfitError("duration", self.duration, rule)
+
+        bearings = self.isolator.support_stiffness
+        if bearings is not None:
+            share = self.total_mass * GRAVITY / ((self.isolator.supports or 1) * bearings * self.radius)
+            if not share <= SOFTEST:
+                rule = f"gives way by {share:.3g} of the radius under the weight: must be at most {SOFTEST:g}"
+                raise MisfitError("isolator.support_stiffness", bearings, rule)
+
+    def with_values(self, values: Mapping[str, Any]) -> Scene:
+        """
+        The same scene with other values, validated like a scene file.
+
+        Parameters
+        ----------
+        values : mapping of str to object
+            New values by dotted key as in the scene file, ``"isolator.friction"`` or ``"bodies.1.height"`` (the first
+            body is 0), or whole tables, ``"bodies"``. None leaves an optional key out. ``"name"`` may be given, too.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        SceneError
+            For an unknown key, with the nearest valid ones, and for every value that a scene file may not hold.
+
+        Examples
+        --------
+        >>> scene = load_scene("fig3-I")
+        >>> lubricated = {"isolator.friction": None, "isolator.lubrication": 0.5}
+        >>> scene.with_values({**lubricated, "bodies.1.height": 0.4}).friction_coefficient
+        0.5
+        """
+        data = self.model_dump(exclude_none=True)
+        for key, value in values.items():
+            _put(self.name, data, str(key), value)
+        try:
+            return Scene.model_validate(data)
+        except ValidationError as fault:
+            raise first_fault(self.name, fault, KEYS) from None
 
     @property
     def radius(self) -> float:
@@ -291,17 +358,14 @@ class Scene(Table):
         """
         samples = self.record[:, 1:] if self.recorded else self.amplitudes
         largest = float(np.abs(samples).max())
-        if not (math.isfinite(amplitude) and amplitude > 0.0):
+        if not (isinstance(amplitude, int | float) and 0.0 < amplitude <= SCENE["excitation.amplitudes"].highest):
             raise SceneError(self.name, "amplitude", amplitude, "must be finite and greater than 0 m/s^2")
         if largest == 0.0:
             key = "record" if self.recorded else "amplitudes"
             raise SceneError(self.name, f"excitation.{key}", 0.0, "all entries are 0: nothing to scale")
-        data = self.model_dump(exclude_none=True)
-        if self.recorded:
-            data["excitation"]["scale"] *= amplitude / largest
-        else:
-            data["excitation"]["amplitudes"] = ((self.amplitudes / largest) * amplitude).tolist()
-        return Scene.model_validate(data)
+        if isinstance(self.excitation, Record):
+            return self.with_values({"excitation.scale": self.excitation.scale * (amplitude / largest)})
+        return self.with_values({"excitation.amplitudes": (self.amplitudes / largest) * amplitude})
 
     def digest(self) -> str:
         """Hash of everything that enters a result, for stores of results and for provenance."""
@@ -309,6 +373,47 @@ class Scene(Table):
             exclude={"title": True, "name": True, "acceptance": True, "excitation": {"record": True}}
         )
         return hashlib.sha256(content.encode()).hexdigest()[:16]
+
+
+KEYS: dict[str, tuple[str, ...]] = {
+    "": tuple(Scene.model_fields),
+    "isolator": tuple(Isolator.model_fields),
+    "bodies": tuple(Body.model_fields),
+    "acceptance": tuple(Acceptance.model_fields),
+    **{f"acceptance.{pair}": tuple(Limits.model_fields) for pair in ("like_for_like", "total", "translational")},
+    "excitation": (*Excitation.model_fields, "record", "scale"),
+    f"excitation.{EXCITATIONS[0]}": tuple(Excitation.model_fields),
+    f"excitation.{EXCITATIONS[1]}": ("record", "scale"),
+}
+"""Keys of every table by its name, with the kind of the excitation where that is known."""
+
+
+def _put(scene: str, data: dict[str, Any], key: str, value: Any) -> None:
+    """Set one value by its dotted key in the tables of a scene, or leave the key out. Raises SceneError."""
+    parts = key.split(".")
+    if key == "excitation.record":
+        raise SceneError(scene, key, value, "the files of a record are read by load_scene: write a scene file")
+    place: Any = data
+    for depth, part in enumerate(parts):
+        last = depth == len(parts) - 1
+        if isinstance(place, list):
+            if not (part.isascii() and part.isdecimal() and len(part) < 9 and int(part) < len(place)):
+                rule = f"{'.'.join(parts[:depth])} has the indices 0 to {len(place) - 1}"
+                raise SceneError(scene, key, value, rule)
+            index: Any = int(part)
+        else:
+            table = ".".join(name for name in parts[:depth] if not name.isdecimal())
+            if not (isinstance(place, dict) and part in KEYS.get(table, ()) and (last or part in place)):
+                raise unknown_key(scene, ".".join(parts[: depth + 1]), value, KEYS.get(table, ()))
+            index = part
+        if not last:
+            place = place[index]
+        elif value is not None:
+            place[index] = value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+        elif isinstance(place, dict):
+            place.pop(index, None)
+        else:
+            raise SceneError(scene, key, value, "must be a number")
 
 
 def builtin_scenes() -> list[str]:
@@ -356,9 +461,11 @@ def parse_scene(text: bytes, label: str) -> Scene:
 def scene_tables(text: bytes, label: str) -> dict[str, Any]:
     """The tables of a scene file, not validated. Raises SceneError if they cannot be read."""
     try:
-        data: dict[str, Any] = tomllib.loads(text.decode())
+        data: dict[str, Any] = tomllib.loads(text.decode("utf-8-sig"))
     except (ValueError, RecursionError) as fault:
         raise SceneError(label, "file", str(fault), "must be valid TOML in UTF-8") from None
+    if _deeper(data, DEEPEST):
+        raise SceneError(label, "file", label, f"must have at most {DEEPEST} tables and lists within one another")
     if "name" in data:
         raise SceneError(label, "name", data["name"], "unknown key; the scene is named after its file")
     return data
@@ -369,4 +476,10 @@ def validated_scene(data: dict[str, Any], label: str, name: str) -> Scene:
     try:
         return Scene.model_validate({**with_samples(data, label), "name": name})
     except ValidationError as fault:
-        raise first_fault(label, fault) from None
+        raise first_fault(label, fault, KEYS) from None
+
+
+def _deeper(data: Any, levels: int) -> bool:
+    """Whether tables and lists are nested in more than so many levels."""
+    inner = data.values() if isinstance(data, dict) else data if isinstance(data, list) else ()
+    return any(levels == 0 or _deeper(part, levels - 1) for part in inner if isinstance(part, dict | list))

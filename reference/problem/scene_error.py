@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any
 
 from pydantic import ValidationError
 
+from reference.problem.ranges import brief
+
+LONGEST = 300  # letters of a path or a key in an error
 EXCITATIONS = ("two frequencies", "recorded motion")  # pydantic puts which was meant into the place of a fault
 
 
@@ -15,7 +19,7 @@ class SceneError(ValueError):
 
     def __init__(self, file: str, key: str, value: Any, rule: str) -> None:
         self.file, self.key, self.value, self.rule = file, key, value, rule
-        super().__init__(f"{one_line(file)}: {one_line(key)} = {shortened(value)}: {rule}")
+        super().__init__(f"{one_line(file)}: {one_line(key)} = {brief(value)}: {rule}")
 
     def __reduce__(self) -> tuple[type[SceneError], tuple[str, str, Any, str]]:
         return SceneError, (self.file, self.key, self.value, self.rule)  # worker processes send it home
@@ -29,39 +33,33 @@ class MisfitError(ValueError):
         super().__init__(f"{key}: {rule}")
 
 
-class UnknownKeyError(ValueError):
-    """A key that its table does not know; the message names the most similar of the `valid` ones."""
-
-    def __init__(self, key: str, value: Any, valid: list[str]) -> None:
-        self.key, self.value = key, value
-        near = get_close_matches(key, valid, 1)
-        help_ = f"did you mean {near[0]!r}?" if near else f"valid here: {', '.join(valid)}"
-        super().__init__(f"unknown key; {help_}")
-
-
 def one_line(text: str) -> str:
-    """The text, or its Python literal if it would break the line."""
+    """The text, cut to LONGEST letters, or its Python literal if it would break the line."""
+    if len(text) > LONGEST:
+        text = f"{text[: LONGEST - 3]}..."
     return text if text.isprintable() else repr(text)
 
 
-def shortened(value: Any, longest: int = 80) -> str:
-    text = " ".join(repr(value).split())
-    return text if len(text) <= longest else text[: longest - 3] + "..."
+def unknown_key(file: str, key: str, value: Any, valid: Sequence[str]) -> SceneError:
+    """The error for the dotted `key` where the keys `valid` belong: it names the nearest of them."""
+    nearest = get_close_matches(key.rpartition(".")[2][:LONGEST], valid, n=2, cutoff=0.5)
+    way_out = f"did you mean {' or '.join(nearest)}?" if nearest else f"the keys here are {', '.join(valid)}"
+    return SceneError(file, key, value, f"unknown key; {way_out}")
 
 
-def first_fault(file: str, fault: ValidationError) -> SceneError:
-    """The first thing pydantic found wrong, said in the words of the scene file."""
+def first_fault(file: str, fault: ValidationError, keys: Mapping[str, Sequence[str]]) -> SceneError:
+    """The first thing pydantic found wrong, in the words of the scene file; keys: those of every table, by its name."""
     errors = fault.errors(include_url=False)
     # a misspelt key is unknown and its right name is missing: the first says more
-    causes = [error.get("ctx", {}).get("error") for error in errors]
-    unknown = next((place for place, cause in enumerate(causes) if isinstance(cause, UnknownKeyError)), 0)
-    error, misfit = errors[unknown], causes[unknown]
+    error = next((error for error in errors if error["type"] == "extra_forbidden"), errors[0])
+    misfit = error.get("ctx", {}).get("error")
     if isinstance(misfit, MisfitError):
         return SceneError(file, misfit.key, misfit.value, misfit.rule)
-    key = ".".join(str(part) for part in error["loc"] if part not in EXCITATIONS) or "scene"
-    if isinstance(misfit, UnknownKeyError):
-        path = misfit.key if key == "scene" else f"{key}.{misfit.key}"
-        return SceneError(file, path, misfit.value, str(misfit))
+    place = [part for part in error["loc"] if part not in EXCITATIONS]
+    key = ".".join(map(str, place)) or "scene"
+    if error["type"] == "extra_forbidden":
+        table = ".".join(str(part) for part in error["loc"][:-1] if not isinstance(part, int))
+        return unknown_key(file, key, error["input"], keys[table])
     if error["type"] == "missing":
         return SceneError(file, key, None, "this key is required")
     rule = error["msg"].removeprefix("Value error, ")

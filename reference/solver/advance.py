@@ -8,7 +8,7 @@ from reference.solver.chain import chain_acceleration
 from reference.solver.collocation import MONOMIALS, NODES, STAGES
 from reference.solver.compiled import compiled
 from reference.solver.ground import ground_at, knot_after
-from reference.solver.peaks import take_peaks
+from reference.solver.peaks import take_peaks, take_reach
 from reference.solver.platform import moving
 from reference.solver.record import record_step
 from reference.solver.steps import lifted
@@ -162,6 +162,8 @@ def commit(work: Work, record: Record, h: float, contact: int, low: float, high:
         record_step(work, record, h, contact)
     if high > low:
         take_peaks(work, low, high)
+    if contact != REST:
+        take_reach(work, h, contact == STOPPING)
     for axis in range(2):
         for k in range(STAGES):
             coefficient = 0.0

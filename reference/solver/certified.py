@@ -32,15 +32,14 @@ class Peaks(NamedTuple):
     code: Array  # (M,)
     instant: Array  # (M,) s
     steps: Array  # (M,) of the last run
+    reach: Array  # (M,) m, largest horizontal displacement of the platform
 
 
 def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float) -> Peaks:
     """One run from rest for every phase pair (M, 2), this tolerance inside the steps; errors are those of reading."""
     count, bodies = len(phases), len(system.below)
     rest = np.zeros((bodies, 2))
-    peaks = Peaks(
-        np.empty((count, bodies)), np.empty((count, bodies)), np.empty(count), np.empty(count), np.empty(count)
-    )
+    peaks = Peaks(np.empty((count, bodies)), np.empty((count, bodies)), *(np.empty(count) for _ in range(4)))
     asked = demand._replace(tolerance=tolerance)
     runs(system, phases, rest, rest, asked, record_of(0, bodies), *peaks)
     return peaks

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from math import sqrt
+
 from reference.solver.collocation import DENSE, DENSE_VALUES, MONOMIALS, NODES, STAGES
 from reference.solver.compiled import compiled
-from reference.solver.system import Array, Work
+from reference.solver.system import REACH, Array, Work
 
 # A step resolved to the tolerance turns by a small part of a wave between two stages: a peak between them stands less
 # than this share above the higher one.
 MARGIN = 0.2
+PARTS = 8  # of a step, at which the platform's displacement is looked at
+FARTHER = 1.5  # times the larger speed at its ends: more than any way back and forth within a step
 
 
 @compiled
@@ -84,3 +88,70 @@ def take_peaks(work: Work, low: float, high: float) -> None:
         if top > work.best[i]:
             work.best[i] = top
             work.doubt[i] = interpolation_error(theta) * work.defect[i]
+
+
+@compiled
+def take_reach(work: Work, h: float, stretched: bool) -> None:
+    """
+    Raises work.run[REACH] by the largest |x|^2 of the platform in the step just made.
+
+    From the polynomial of its acceleration through the stages; in stretched time near a stop, where h is no length of
+    time, at the stages: the way left there is short.
+    """
+    far = work.run[REACH]
+    speed2 = 0.0
+    for axis in range(2):
+        speed2 = max(speed2, work.v[0, axis] ** 2, work.v1[0, axis] ** 2)
+    start = work.x[0, 0] ** 2 + work.x[0, 1] ** 2
+    end = work.x1[0, 0] ** 2 + work.x1[0, 1] ** 2
+    far = max(far, start, end)
+    if stretched:
+        for k in range(STAGES):
+            far = max(far, work.chain[0, 0, k] ** 2 + work.chain[0, 1, k] ** 2)
+    elif sqrt(max(start, end)) + FARTHER * h * sqrt(speed2) > sqrt(far):
+        far = max(far, largest_square(work, h))
+    work.run[REACH] = far
+
+
+@compiled
+def largest_square(work: Work, h: float) -> float:
+    """Largest |x|^2 of the platform over the step: at equal parts of it, and by Newton's method from the largest."""
+    coefficients = work.powers
+    for axis in range(2):
+        for m in range(STAGES):
+            c = 0.0
+            for k in range(STAGES):
+                c += MONOMIALS[m, k] * work.a[0, axis, k]
+            coefficients[axis, m] = h * h * c / ((m + 1.0) * (m + 2.0))
+    best, place = -1.0, 0.0
+    for n in range(PARTS + 1):
+        value, _, _ = place_squares(work, h, n / PARTS)
+        if value > best:
+            best, place = value, n / PARTS
+    for _ in range(4):
+        _, slope, curvature = place_squares(work, h, place)
+        if not curvature < 0.0:
+            break
+        place = min(max(place - slope / curvature, 0.0), 1.0)
+        value, _, _ = place_squares(work, h, place)
+        best = max(best, value)
+    return best
+
+
+@compiled
+def place_squares(work: Work, h: float, theta: float) -> tuple[float, float, float]:
+    """|x|^2 of the platform at theta and half of its first two derivatives."""
+    value = slope = curvature = 0.0
+    for axis in range(2):
+        p = dp = ddp = 0.0
+        for m in range(STAGES - 1, -1, -1):
+            c = work.powers[axis, m]
+            p = (p + c) * theta
+            dp = dp * theta + (m + 2.0) * c
+            ddp = ddp * theta + (m + 2.0) * (m + 1.0) * c
+        p = work.x[0, axis] + theta * (h * work.v[0, axis] + p)
+        dp = h * work.v[0, axis] + theta * dp
+        value += p * p
+        slope += p * dp
+        curvature += dp * dp + p * ddp
+    return value, slope, curvature

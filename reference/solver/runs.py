@@ -6,19 +6,20 @@ from math import sqrt
 
 from reference.solver.compiled import entry
 from reference.solver.march import march
-from reference.solver.system import STEPS, TIME, Array, Demand, Record, System, workspace
+from reference.solver.system import REACH, STEPS, TIME, Array, Demand, Record, System, workspace
 
 
 @entry
 def runs(
     system: System, phases: Array, x: Array, v: Array, demand: Demand, record: Record,
-    peaks: Array, doubts: Array, codes: Array, instants: Array, steps: Array,
+    peaks: Array, doubts: Array, codes: Array, instants: Array, steps: Array, reach: Array,
 ) -> None:  # fmt: skip
     """
     Follow the motion from x, v (N, 2) for every phase pair (M, 2), rad.
 
     Fills peaks (M, N), the largest absolute accelerations, m/s^2, and doubts (M, N), the error of reading them; how
-    (system.py), when (s) and after how many steps each run ended (M,).
+    (system.py), when (s) and after how many steps each run ended (M,); reach (M,), m, the platform's
+    largest displacement.
     """
     work = workspace(peaks.shape[1])
     for m in range(phases.shape[0]):
@@ -29,6 +30,7 @@ def runs(
         codes[m] = march(system, phases[m], work, demand, record)
         instants[m] = work.run[TIME]
         steps[m] = work.run[STEPS]
+        reach[m] = sqrt(work.run[REACH])
         for i in range(peaks.shape[1]):
             peaks[m, i] = sqrt(work.best[i])
             doubts[m, i] = work.doubt[i]

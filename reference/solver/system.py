@@ -26,7 +26,7 @@ REST, SLIDING, CREEPING, WETTED, STOPPING = cast("tuple[int, ...]", tuple(map(np
 # how the equations of one step, or a whole run, ended
 SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT = range(6)
 # entries of Work.run, the state of a run that is not an array
-TIME, LENGTH, OLD_LENGTH, ANGLE, LOG_SPEED, HELD, STEPS, LEFT = range(8)
+TIME, LENGTH, OLD_LENGTH, ANGLE, LOG_SPEED, HELD, STEPS, LEFT, REACH = range(9)
 
 
 class System(NamedTuple):
@@ -87,7 +87,7 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     powers: Array  # (5, S) coefficients of the powers of theta where a step is looked at closely
     guess: Array  # (2, S) coefficients of the platform's acceleration in the step before
     scale: Array  # (N,) m/s^2, what errors are measured against
-    run: Array  # (8,)
+    run: Array  # (9,)
     best: Array  # (N,) largest squared absolute acceleration so far
     doubt: Array  # (N,) m/s^2, error of reading it inside its step
     defect: Array  # (N,) m/s^2, interpolation error of the step at its start
@@ -182,7 +182,7 @@ def workspace(bodies: int) -> Work:
         powers=np.zeros((5, s)),
         guess=np.zeros((2, s)),
         scale=np.zeros(n),
-        run=np.zeros(8),
+        run=np.zeros(9),
         best=np.zeros(n),
         doubt=np.zeros(n),
         defect=np.zeros(n),

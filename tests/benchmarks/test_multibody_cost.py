@@ -21,7 +21,7 @@ PHASE = np.array([0.3, 1.1])
 
 
 def short(duration: float) -> Any:
-    return load_scene("fig3-I").model_copy(update={"duration": duration})
+    return load_scene("fig3-I").with_values({"duration": duration})
 
 
 @pytest.mark.parametrize("solver", SOLVERS)

@@ -77,8 +77,8 @@ def test_it_belongs_to_function_task_versions_and_source(tmp_path: Path, monkeyp
     scene, *rest = errand.task
     others = {
         "function": replace(errand, solve=another),
-        "scene": _errand((scene.model_copy(update={"duration": 3.0}), *rest)),
-        "name, which the answer may hold": _errand((scene.model_copy(update={"name": "other"}), *rest)),
+        "scene": _errand((scene.with_values({"duration": 3.0}), *rest)),
+        "name, which the answer may hold": _errand((scene.with_values({"name": "other"}), *rest)),
         "number": _errand((scene, 2, *rest[1:])),
         "last bit": _errand((scene, 1, np.nextafter(0.5, 1.0), rest[2])),
         "array": _errand((scene, 1, 0.5, np.arange(3.0) + 1e-16 * np.array([1.0, 0.0, 0.0]))),

@@ -133,7 +133,7 @@ def test_a_scene_without_supports_is_refused_in_one_line(tmp_path: Path, capsys:
 
 
 def _turning(scene: Scene, variations: Sequence[Variation]) -> list[Cell]:
-    study = Study((scene.model_copy(update={"duration": 2.0}),), 1, 1e-3, LADDER)
+    study = Study((scene.with_values({"duration": 2.0}),), 1, 1e-3, LADDER)
     return assumption_cells(study, 1, ThreadPoolExecutor, variations)
 
 

@@ -44,14 +44,14 @@ def test_a_tile_belongs_to_scene_model_settings_versions_and_source(
     store.put(tile_key(tile), solve_tile(tile))
     assert stored_tile(store, tile) is not None
     others = {
-        "scene": replace(tile, scene=tile.scene.model_copy(update={"duration": 3.0})),
+        "scene": replace(tile, scene=tile.scene.with_values({"duration": 3.0})),
         "model": replace(tile, amplification="fake_models:uneven"),
         "settings": replace(tile, settings={**tile.settings, "tolerance": 2e-6}),
         "phases": replace(tile, phases=tile.phases + 1e-15),
     }
     for name, other in others.items():
         assert stored_tile(store, other) is None, name
-    renamed = tile.scene.model_copy(update={"name": "other", "title": "another title"})
+    renamed = tile.scene.with_values({"name": "other", "title": "another title"})
     assert stored_tile(store, replace(tile, scene=renamed)) is not None, "a name changes no number"
     for name, value in (("_version", "9.9"), ("source_digest", "changed")):
         with monkeypatch.context() as patch:

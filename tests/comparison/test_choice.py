@@ -18,7 +18,7 @@ from comparison.plan.study import Study
 from reference.problem import load_scene
 
 SCENE = load_scene("fig3-I")
-NEW = SCENE.model_copy(update={"duration": 5.0})  # not in the record
+NEW = SCENE.with_values({"duration": 5.0})  # not in the record
 TOLERANCES = (1e-2, 5e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 
 
@@ -90,7 +90,7 @@ def test_without_an_option_the_study_is_the_default_one_and_nothing_is_measured(
         raise AssertionError("nothing should be measured")
 
     monkeypatch.setattr(cost_of, "yardsticks", forbidden)
-    found = choice(Asked((SCENE, NEW.model_copy(update={"name": "new"}))))
+    found = choice(Asked((SCENE, NEW.with_values({"name": "new"}))))
     assert found.study.grid == 48
     assert [(rung.key, rung.tolerance(1e-3), rung.most) for rung in found.study.ladder] == [
         (rung.key, 1e-6 if rung.side == "reference" else 1e-3, rung.most) for rung in LADDER
@@ -150,7 +150,7 @@ def test_a_slower_machine_and_a_longer_motion_are_expected_to_take_longer(monkey
 
 
 def test_a_scene_that_is_not_in_the_record_is_tried_and_others_of_its_family_go_by_that() -> None:
-    family = tuple(NEW.model_copy(update={"name": f"new[{n}]", "duration": 5.0 + n}) for n in range(4))
+    family = tuple(NEW.with_values({"name": f"new[{n}]", "duration": 5.0 + n}) for n in range(4))
     found = cost_of.costs(family, LADDER, True).seconds
     assert found["new[0]", "translational"] == found["new[3]", "translational"] == 0.1
     assert found["new[0]", "exact"] == 0.1

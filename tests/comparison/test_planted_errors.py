@@ -76,7 +76,7 @@ class Solved:
 
     @staticmethod
     def by(ladder: tuple[Rung, ...]) -> Solved:
-        scene = load_scene(SCENE).model_copy(update={"duration": DURATION})
+        scene = load_scene(SCENE).with_values({"duration": DURATION})
         study = Study((scene,), GRID, 1e-3, ladder)
         tiles = study.tiles()
         answers = [solve_tile(tile) for tile in tiles]

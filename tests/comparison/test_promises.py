@@ -50,7 +50,7 @@ def share_met(found: Choice, scene: Scene, rung: Rung) -> tuple[float, int]:
 
 
 def test_the_accuracy_asked_is_met_on_a_scene_that_was_never_recorded() -> None:
-    scene = tower().model_copy(update={"duration": 3.0})
+    scene = tower().with_values({"duration": 3.0})
     found = chosen(scene, 1e-3, 6, 2)
     assert {rung.side for rung in found.study.ladder} == {"reference", "engine"}
     for rung in found.study.ladder:

@@ -33,7 +33,7 @@ GRID = 4
 
 
 def surfaces(scene: Scene, rungs: list[Rung], full: bool):
-    study = Study((scene.model_copy(update={"duration": 4.0}),), GRID, 1e-3, rungs, full)
+    study = Study((scene.with_values({"duration": 4.0}),), GRID, 1e-3, rungs, full)
     tiles = study.tiles()
     return sum(len(tile.phases) for tile in tiles), labelled_surfaces(
         study, tiles, [solve_tile(tile) for tile in tiles]

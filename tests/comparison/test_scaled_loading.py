@@ -76,7 +76,7 @@ def test_a_lubricated_scene_has_one_peak_and_one_that_fails_says_why(monkeypatch
 @pytest.mark.parametrize("name", ["fig3-II", "fig4-viscous"])
 def test_the_scaled_scene_moves_as_the_scene_scaled(name: str) -> None:
     """Small equations without the kept terms would do so exactly; with them to s^2 of the swing, 1e-2 here."""
-    scene = load_scene(name).model_copy(update={"duration": 2.0})
+    scene = load_scene(name).with_values({"duration": 2.0})
     one, other = (trajectory(scaled(scene, s), (2.0, 0.7), equations="small").position for s in (0.25, 0.125))
     np.testing.assert_allclose(one, 2.0 * other, atol=1e-2 * np.abs(one).max())
 

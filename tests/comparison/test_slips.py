@@ -64,25 +64,25 @@ def test_the_report_and_the_summary_show_the_effects(finished: Path) -> None:
 @pytest.mark.parametrize("name", ["fig3-I", "fig4-viscous"])
 def test_the_matrices_with_every_slip_mended_are_the_exact_equations(name: str) -> None:
     """Written apart from the reference; what is left is peaks read every 2 ms, 1e-4, and the integrator, 1e-6."""
-    scene = load_scene(name).model_copy(update={"duration": 3.0})
+    scene = load_scene(name).with_values({"duration": 3.0})
     expected = amplification(scene, PHASES, regularization=None if scene.lubricated else V_REG).mu
     np.testing.assert_allclose(printed_amplification(scene, PHASES), expected, rtol=1e-4)
 
 
 @pytest.mark.long
 def test_a_slip_changes_only_what_it_names() -> None:
-    wet = load_scene("fig4-viscous").model_copy(update={"duration": 2.0})  # T_3x = T_3y: the springs are alike
+    wet = load_scene("fig4-viscous").with_values({"duration": 2.0})  # T_3x = T_3y: the springs are alike
     mended = printed_amplification(wet, PHASES)
     np.testing.assert_array_equal(printed_amplification(wet, PHASES, [WRONG_SPRING]), mended)
     assert np.abs(printed_amplification(wet, PHASES, [WRONG_DAMPING]) / mended - 1.0).max() > 1e-4
-    unequal = load_scene("fig3-II").model_copy(update={"duration": 2.0})
+    unequal = load_scene("fig3-II").with_values({"duration": 2.0})
     mended = printed_amplification(unequal, PHASES[:1])
     assert np.abs(printed_amplification(unequal, PHASES[:1], [WRONG_SPRING]) / mended - 1.0).max() > 1e-2
 
 
 @pytest.mark.long
 def test_the_printed_rest_condition_and_the_missing_coefficient_change_mu() -> None:
-    scene = load_scene("fig3-I").model_copy(update={"duration": 3.0})
+    scene = load_scene("fig3-I").with_values({"duration": 3.0})
     places = ("after (2.3)", "after (2.5)", "(4.6)")
     effects = {slip.where: measured((scene, number)) for number, slip in enumerate(SLIPS) if slip.where in places}
     assert set(effects) == set(places)
@@ -95,6 +95,6 @@ def test_the_printed_rest_condition_and_the_missing_coefficient_change_mu() -> N
 @pytest.mark.long
 def test_the_motion_along_x_equal_beta_y_stays_there() -> None:
     """(4.7), not the printed x + beta y = 0: fig4-dry has xi'' = eta'' and equal springs, so beta = 1."""
-    scene = load_scene("fig4-dry").model_copy(update={"duration": 6.0})
+    scene = load_scene("fig4-dry").with_values({"duration": 6.0})
     place = trajectory(scene, PHASES[0], equations="small").position
     assert np.abs(place[..., 0] - place[..., 1]).max() < 1e-9 * np.abs(place[..., 0]).max()

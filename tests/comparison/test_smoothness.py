@@ -49,7 +49,7 @@ def test_a_place_without_a_value_is_no_answer() -> None:
 
 
 def _short(name: str) -> Scene:
-    return load_scene(name).model_copy(update={"duration": 1.5})
+    return load_scene(name).with_values({"duration": 1.5})
 
 
 @pytest.mark.parametrize(("name", "share"), [("fig3-I", 4), ("fig3-II", 2), ("fig4-viscous", 2)])

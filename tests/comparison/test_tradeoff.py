@@ -23,7 +23,7 @@ SECONDS = 2.0  # of motion: a few slides and stops
 
 @pytest.fixture(scope="module")
 def scene() -> Scene:
-    return load_scene("fig3-I").model_copy(update={"duration": SECONDS})
+    return load_scene("fig3-I").with_values({"duration": SECONDS})
 
 
 @pytest.fixture(scope="module")

@@ -100,7 +100,7 @@ def test_wrong_arguments_are_refused_by_name(options: dict[str, object], message
 
 def test_a_point_whose_budget_ends_after_one_level_is_refused() -> None:
     """One answer alone says nothing about its error."""
-    scene = load_scene("fig3-I").model_copy(update={"duration": 0.5})
+    scene = load_scene("fig3-I").with_values({"duration": 0.5})
     model = assembled(scene, "translational", 1e-3)
     one = refine.refine(scene, model, np.array([0.3, 1.1]), 1e-3, plan=levels(scene, model, 1e-3)[:1])
     assert one.outcome == Outcome.STEP_LIMIT

@@ -95,6 +95,62 @@ def test_csv_that_is_none_is_refused_in_one_line(text, said):
     assert "\n" not in str(refusal.value)
 
 
+OF_THE_GROUND = "0.00630 0.00364 0.00099\n-0.00128 0.00368 0.00864\n"
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "Data for El Centro 1940 North South Component\n6 points at equal spacing of 0.02 sec\n"
+        "Points are listed in the format of 8F10.5\nThe units are (g)\nNPTS=  6, DT= .02000 SEC\n",
+        "Data for El Centro 1940 North South Component\n6 points at equal spacing of 0.02 sec\nin a row\n"
+        "The units are (g)\n*** Begin data ***\nNPTS=  6, DT= .02000 SEC\n",
+        "El Centro\n6 points\nThe units are (g)\nNPTS=  6, DT= .02000 SEC\n*** Begin data ***\n",
+        "PEER\nIMPERIAL VALLEY\nACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.2 Hz LP=40.0 Hz\n"
+        "NPTS=  6, DT= .02000 SEC\n",
+    ],
+)
+def test_at2_headers_of_any_length_that_name_g_are_read(header):
+    samples = at2_samples({"x": header + OF_THE_GROUND})
+    assert samples[:, 0] == pytest.approx(0.02 * np.arange(6))
+    assert samples[:, 1] == pytest.approx(GRAVITY * np.array([0.0063, 0.00364, 0.00099, -0.00128, 0.00368, 0.00864]))
+
+
+@pytest.mark.parametrize("unit", ["G*1000", "G/10", "G * 10", "G x 10", "G'S/2", "0.1 G", "MG", "GAL", "(G)/10", "G.5"])
+def test_a_multiple_of_g_is_not_read_as_g(unit):
+    with pytest.raises(RecordError, match=r"names no unit that is known.*UNITS"):
+        at2_samples({"x": at2([1.0, 2.0], unit=f"UNITS OF {unit}")})
+
+
+@pytest.mark.parametrize("cell", ["1_0", "１", "0x10", "1e", "--1", "+-1", "1.0.0", "1,0", "٣"])
+def test_a_cell_that_is_no_plain_number_is_refused(cell):
+    with pytest.raises(RecordError, match=r"line 3: .*(must be a number|3 values)"):
+        csv_samples(PLAIN.replace("0.2", cell))
+
+
+@pytest.mark.parametrize("cell", ["1", "-1.", ".5", "+1e-3", "1E2", "0.100"])
+def test_plain_numbers_are_read(cell):
+    assert csv_samples(PLAIN.replace("0.2", cell))[1, 1] == GRAVITY * float(cell)
+
+
+@pytest.mark.parametrize(
+    ("read", "text"),
+    [
+        (csv_samples, PLAIN.replace("0.2", "9" * 140_000)),
+        (csv_samples, PLAIN.replace("0.2", '"' + "x" * 140_000 + '"')),
+        (csv_samples, PLAIN.replace("ax", "x" * 140_000)),
+        (csv_samples, PLAIN.replace("0.01", "1e-300").replace("0,0.1", "0,0.1")),
+        (lambda text: at2_samples({"x": text}), at2([1.0, 2.0], count=0).replace(" 0,", " " + "9" * 5000 + ",")),
+        (lambda text: at2_samples({"x": text}), at2([1e308, 2.0])),
+    ],
+)
+def test_what_no_double_holds_is_refused_in_one_short_line(read, text):
+    with pytest.raises(RecordError) as refusal:
+        read(text)
+    assert "\n" not in str(refusal.value)
+    assert len(str(refusal.value)) < 300
+
+
 @pytest.mark.parametrize(
     ("files", "said"),
     [

@@ -187,6 +187,6 @@ def test_a_copy_with_other_bodies_has_their_masses_and_links():
     scene = load_scene("fig3-I")
     assert len(scene.masses) == 2
     assert scene.stiffness.shape == (1, 2)
-    alone = scene.model_copy(update={"bodies": scene.bodies[:1]})
+    alone = scene.with_values({"bodies": scene.bodies[:1]})
     assert alone.masses.tolist() == [scene.bodies[0].mass]
     assert alone.stiffness.shape == (0, 2)

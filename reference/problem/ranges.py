@@ -1,0 +1,147 @@
+"""
+The range of every quantity of a scene and of every argument of both sides, and the checks of arguments.
+
+Inside its range a value is answered, or refused under a named outcome; outside it is refused in one line that states
+the range. The ranges are far wider than any isolator: they end where double precision or the work would.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from numbers import Real
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Range:
+    """Finite numbers from `lowest` to `highest`, both included, in `unit`."""
+
+    lowest: float
+    highest: float
+    unit: str = ""
+
+    @property
+    def rule(self) -> str:
+        """The range as the end of an error message."""
+        unit = f" {self.unit}" if self.unit else ""
+        if self.lowest > 0.0:
+            return f"must be finite and positive, from {self.lowest:g} to {self.highest:g}{unit}"
+        return f"must be finite, from {self.lowest:g} to {self.highest:g}{unit}"
+
+    def __contains__(self, value: float) -> bool:
+        return bool(self.lowest <= value <= self.highest)
+
+
+SCENE: dict[str, Range] = {
+    "duration": Range(1e-6, 1e9, "s"),
+    "isolator.period": Range(1e-3, 1e6, "s"),
+    "isolator.radius": Range(1e-7, 1e12, "m"),
+    "isolator.friction": Range(0.0, 1e3),
+    "isolator.lubrication": Range(0.0, 1e9, "s/m"),
+    "isolator.supports": Range(3, 1000),
+    "isolator.ring": Range(1e-6, 1e6, "m"),
+    "isolator.support_stiffness": Range(1e-12, 1e18, "N/m"),
+    "isolator.sphere_radius": Range(1e-9, 1e6, "m"),
+    "bodies.mass": Range(1e-12, 1e15, "kg"),
+    "bodies.period": Range(1e-7, 1e9, "s"),
+    "bodies.stiffness": Range(1e-30, 1e30, "N/m"),
+    "bodies.height": Range(0.0, 1e6, "m"),
+    "bodies.size": Range(1e-9, 1e6, "m"),
+    "excitation.amplitudes": Range(-1e308, 1e308, "m/s^2"),  # from about 1e150 on the outcome is "non-finite load"
+    "excitation.periods": Range(1e-9, 1e12, "s"),
+    "excitation.decay": Range(0.0, 1e12, "1/s"),
+}
+MOST_CYCLES = 1e6  # of the loading's shortest period, and of the pendulum's, in the duration
+
+# rad; beyond, neighboring double-precision numbers are more than 1.2e-10 rad apart, the strictest tolerance
+PHASE = Range(-1e6, 1e6, "rad")
+REGULARIZATION = Range(1e-12, 1e6, "m/s")
+CUTOFF = Range(1e-15, 1e6, "m/s")
+POSITION = Range(-1e12, 1e12, "m")  # of an initial state
+VELOCITY = Range(-1e9, 1e9, "m/s")
+TOLERANCE = Range(1e-10, 0.1)
+
+LEAST_ACCELERATION = 1e-140  # m/s^2: squares of smaller accelerations lose digits; the ground is at rest
+
+
+def checked_number(name: str, value: Any, allowed: Range) -> float:
+    """`value` as a float. Raises ValueError, one line, if it is not a number within the range."""
+    try:
+        number = float(value) if isinstance(value, Real) and not isinstance(value, bool) else math.nan
+    except OverflowError:
+        number = math.inf
+    if number not in allowed:
+        raise ValueError(f"{name} = {brief(value)}: {allowed.rule}")
+    return number
+
+
+def checked_choice(name: str, value: Any, allowed: Sequence[str]) -> str:
+    """`value` if it is one of the texts `allowed`. Raises ValueError, one line."""
+    if not (isinstance(value, str) and value in allowed):
+        raise ValueError(f"{name} = {brief(value)}: must be one of {', '.join(allowed)}")
+    return value
+
+
+def checked_array(name: str, values: Any, rule: str) -> Array:
+    """
+    `values` as a contiguous array of finite numbers. Raises ValueError, one line that ends with `rule`.
+
+    Masked entries, texts, None and nested lists of uneven length are no numbers.
+    """
+    if _is_masked(values):
+        raise ValueError(f"{name}: has masked entries: {rule}")
+    try:
+        array = np.asarray(values)
+    except ValueError:  # uneven rows
+        array = np.empty(0, dtype=object)
+    if array.dtype.kind not in "iuf":
+        raise ValueError(f"{name} = {brief(values)}: must be numbers: {rule}")
+    array = np.ascontiguousarray(array, dtype=float)
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name}: must be finite: {rule}")
+    return array
+
+
+def _is_masked(values: Any) -> bool:
+    """Whether an array, or one within lists, has masked entries."""
+    if isinstance(values, list | tuple):
+        return any(map(_is_masked, values))
+    return bool(np.ma.is_masked(values))
+
+
+def checked_state(initial: Any, bodies: int, radius: float) -> tuple[Array, Array]:
+    """
+    Position and velocity (N, 2) of an initial `State`, m and m/s. Raises ValueError, one line.
+
+    The platform must start inside the rim (4.1), `radius` in m.
+    """
+    rule = f"must have finite position and velocity of shape ({bodies}, 2)"
+    try:
+        x, v = checked_array("initial", initial.position, rule), checked_array("initial", initial.velocity, rule)
+    except AttributeError:
+        raise ValueError(f"initial = {brief(initial)}: must be a reference.problem.State") from None
+    if x.shape != (bodies, 2) or v.shape != (bodies, 2):
+        raise ValueError(f"initial: {rule}")
+    for values, allowed in ((x, POSITION), (v, VELOCITY)):
+        if np.abs(values).max() > allowed.highest:
+            raise ValueError(f"initial: {values.flat[np.abs(values).argmax()]:g}: {allowed.rule}")
+    if float(np.hypot(*x[0])) >= radius:
+        raise ValueError(f"initial: the platform must start inside the rim (4.1), rho = {radius:.6g} m")
+    return x, v
+
+
+def brief(value: Any, longest: int = 80) -> str:
+    """`repr` of a value in one line of at most `longest` letters."""
+    try:
+        text = repr(value[: 2 * longest] if isinstance(value, str) else value)
+    except (ValueError, RecursionError):  # an integer of more digits than Python prints, tables thousands deep
+        text = f"<{type(value).__name__}>"
+    text = " ".join(text.split())
+    return text if len(text) <= longest else text[: longest - 3] + "..."
