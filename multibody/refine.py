@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.balance import balanced
-from multibody.estimate import from_compliance, from_levels, from_sharing
+from multibody.estimate import WARPING, from_compliance, from_levels, from_sharing
 from multibody.integrate import Engine
-from multibody.level import FALL, Level, levels
+from multibody.level import FALL, MOST, Level, levels
 from multibody.march import LONG, Budget, March, march
 from multibody.peak import Peaks
 from multibody.system import EngineModel
@@ -29,6 +29,7 @@ Array = NDArray[np.float64]
 WORK = 8e6  # nominal microseconds (see `Budget`) of all runs of one point, before it is given up
 UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
 PREDICTED = 3.0  # steps of the first two levels over those of the first: without both there is no answer
+SHARING = 0.2  # share of the tolerance that the load of warped supports may take as an error
 GROWTH = 2.0  # steps of a level over those of the one before, at most
 
 
@@ -78,7 +79,7 @@ def refine(
     model.ground.set_phase(phase)
     first = ground_acceleration(scene, phase, [0.0])[0]
     budget = Budget.of(WORK, model.coordinates)
-    plan = levels(scene, model, tolerance) if plan is None else plan
+    plan = levels(scene, model, tolerance) if plan is None else list(plan)
     nothing = np.full(len(model.bodies), np.nan)
     if work_needed(model, end, plan[0].step) > 1.0:
         none = March(Peaks(len(model.bodies), model.corner), Outcome.STEP_LIMIT, 0.0)
@@ -114,6 +115,9 @@ def refine(
                 break
             continue
         best = None
+        if now.warping * WARPING > SHARING * tolerance:
+            rest = slice(number + 1, len(plan))
+            plan[rest] = [_yielding(later, now.warping, tolerance) for later in plan[rest]]
         if number == 0 or marches[-2].outcome != now.outcome:
             continue
         marches[-2].chunks.clear()
@@ -145,6 +149,12 @@ def refine(
     if failed is None:  # one level has an answer, and no steps are left for another that tells its error
         return Refined(nothing, nothing, Outcome.STEP_LIMIT, scene.duration, marches[-1])
     return Refined(nothing, nothing, failed.outcome, failed.instant * units.time, failed)
+
+
+def _yielding(level: Level, load: float, tolerance: float) -> Level:
+    """A level whose supports give way enough against warping, which took `load` of the weight in a run before."""
+    wanted = level.gives_way * load * WARPING / (SHARING * tolerance)
+    return replace(level, gives_way=min(wanted, MOST))
 
 
 def _answer(model: EngineModel, finest: March, errors: Array, outcome: Outcome) -> Refined:
