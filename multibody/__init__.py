@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from multibody.motion import trajectory
-    from multibody.refusal import refusal
+    from multibody.work_limit import refusal
     from multibody.surface import amplification
 
 ENGINE = {
     "amplification": "multibody.surface",
-    "refusal": "multibody.refusal",
+    "refusal": "multibody.work_limit",
     "trajectory": "multibody.motion",
 }
 

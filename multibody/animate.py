@@ -29,7 +29,7 @@ from scipy.spatial.transform import Rotation
 from multibody.engine import exudyn
 from multibody.integrate import place
 from multibody.motion import trajectory
-from multibody.refusal import refusal
+from multibody.work_limit import refusal
 from multibody.surface import assembled
 from reference.problem import (
     ADVICE,

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from comparison.sweep.tile_store import TileStore
 
 import multibody
 import reference
@@ -14,7 +13,9 @@ from comparison.account.surfaces import labelled_surfaces, largest_cap_share, wi
 from comparison.plan.ladder import LADDER
 from comparison.plan.study import Study
 from comparison.plan.tiles import solve_tile
+from comparison.storage.cache import Cache
 from comparison.sweep.halves import halves, joined
+from comparison.sweep.keys import stored_tile, tile_key
 from reference.problem import Outcome, Scene, load_scene
 
 PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (4.0, 5.5)])
@@ -69,10 +70,10 @@ def test_the_share_is_stored_joined_labelled_and_said(tmp_path: Path) -> None:
     study = Study((scene,), 2, 1e-3, LADDER[:1])
     tiles = study.tiles()
     answers = [solve_tile(tile) for tile in tiles]
-    store = TileStore(tmp_path)
+    store = Cache(tmp_path)
     for tile, answer in zip(tiles, answers):
-        store.put(tile, answer)
-        kept = store.get(tile)
+        store.put(tile_key(tile), answer)
+        kept = stored_tile(store, tile)
         assert kept is not None
         np.testing.assert_array_equal(kept.cap_share, answer.cap_share)
         parts = halves(tile)
