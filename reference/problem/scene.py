@@ -370,7 +370,8 @@ class Scene(Table):
     def digest(self) -> str:
         """Hash of everything that enters a result, for stores of results and for provenance."""
         content = self.model_dump_json(
-            exclude={"title": True, "name": True, "acceptance": True, "excitation": {"record": True}}
+            exclude={"title": True, "name": True, "acceptance": True, "excitation": {"record": True}},
+            exclude_none=True,  # a key that is not given changes no result
         )
         return hashlib.sha256(content.encode()).hexdigest()[:16]
 

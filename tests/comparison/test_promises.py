@@ -79,20 +79,28 @@ def test_the_accuracy_asked_is_met_at_99_percent_of_the_points(name: str, tolera
 @pytest.mark.parametrize("names", [builtin_scenes(), ["tower"]], ids=["the paper's scenes", "tower"])
 def test_the_cost_is_within_a_factor_1_5_of_what_was_expected(names: list[str], tolerance: float) -> None:
     """
-    What the record says, times this machine's speed, which is measured in the same minute.
+    What the record says, times this machine's speed, which is measured before and after: a busy one is not the same
+    throughout.
 
     The record has one cost per tolerance, a mean over the paper's scenes: it holds for them together, within a factor 2
     for each.
     """
+
+    def foreseen(scene: Scene) -> Choice:
+        return chosen(scene, tolerance, 24, 4)
+
+    def seconds(found: Choice) -> float:
+        return sum(found.study.seconds(rung) for rung in found.study.ladder)
+
     expected, spent = [], []
     for name in names:
         scene = tower() if name == "tower" else load_scene(name)
-        found = chosen(scene, tolerance, 24, 4)
-        expected.append(sum(found.study.seconds(rung) for rung in found.study.ladder))
+        found = foreseen(scene)
         begin = time.process_time()
         for tile in found.study.tiles():
             solve_tile(tile)
         spent.append(time.process_time() - begin)
+        expected.append(0.5 * (seconds(found) + seconds(foreseen(scene))))
         print(f"{name} {tolerance:.0e}: {spent[-1]:.2f} s where {expected[-1]:.2f} s were expected")
     ratio = np.divide(spent, expected)
     assert 1.0 / 1.5 <= sum(spent) / sum(expected) <= 1.5
