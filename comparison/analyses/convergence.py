@@ -152,6 +152,7 @@ class Limit:
     expected: float | None
     measure: Callable[[Scene], Values]
     applies: Callable[[Scene], bool]
+    seconds: float  # predicted cost in one scene, s on `plan.ladder.RECORDED_ON`
 
 
 def _dry(scene: Scene) -> bool:
@@ -167,11 +168,13 @@ def _any(scene: Scene) -> bool:
 
 
 LIMITS = (
-    Limit("exact equations: regularised against resolved", REGULARISATIONS, 1.0, _regularised, _dry),
-    Limit("exact equations: regularised against supremum", REGULARISATIONS, None, _to_supremum, _dry),
-    Limit("engine against resolved", ENGINE_REGULARISATIONS, 1.0, _by_engine, _dry),
-    Limit("bodies that turn: against v_reg = 1e-4 m/s", ENGINE_REGULARISATIONS, 1.0, _with_turning, _dry_on_supports),
-    Limit("elastic contact against rigid", PENETRATIONS, 1.0, _stiffened, _any),
+    Limit("exact equations: regularised against resolved", REGULARISATIONS, 1.0, _regularised, _dry, 0.13),
+    Limit("exact equations: regularised against supremum", REGULARISATIONS, None, _to_supremum, _dry, 0.14),
+    Limit("engine against resolved", ENGINE_REGULARISATIONS, 1.0, _by_engine, _dry, 0.7),
+    Limit(
+        "bodies that turn: against v_reg = 1e-4 m/s", ENGINE_REGULARISATIONS, 1.0, _with_turning, _dry_on_supports, 5.7
+    ),
+    Limit("elastic contact against rigid", PENETRATIONS, 1.0, _stiffened, _any, 2.1),
 )
 
 Task = tuple[Scene, int]  # and the number of the limit

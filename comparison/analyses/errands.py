@@ -39,8 +39,7 @@ def errands(study: Study, whole: bool = True) -> list[Errand]:
         return found
     found += [Errand("scaling test", scene_trends, task, SCALING, task[0]) for task in scaling_tasks(study)]
     for scene, number in convergence_tasks(study):
-        seconds = CONVERGENCE[LIMITS[number].what]
-        found.append(Errand("convergence", limit_trends, (scene, number), seconds, scene))
+        found.append(Errand("convergence", limit_trends, (scene, number), LIMITS[number].seconds, scene))
     if paper_complete(study):
         found += [Errand("claims", gathered, question, SECONDS) for question in questions(READINGS, CLAIMS, GRID)]
     for task in variation_tasks(study):

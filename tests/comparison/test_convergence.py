@@ -10,7 +10,8 @@ import pytest
 from numpy.typing import NDArray
 
 from comparison.analyses import convergence
-from comparison.analyses.convergence import LIMITS, PENETRATIONS, Limit, convergence_trends, limit_trends
+from comparison.analyses.convergence import LIMITS, PENETRATIONS, convergence_trends, limit_trends
+from comparison.analyses.errands import predicted
 from comparison.plan.study import Study
 from reference.problem import Amplification, Scene, load_scene
 
@@ -28,7 +29,7 @@ def test_every_limit_comes_in_order_and_a_lubricated_scene_has_only_the_contact(
         sizes = np.array(PENETRATIONS)[None, :, None] * np.array([1.0, -2.0])[None, None, :]
         return sizes, 1e-3 * np.abs(sizes)
 
-    limits = [Limit(one.what, PENETRATIONS, 1.0, planted, one.applies) for one in LIMITS]
+    limits = [replace(limit, parameter=PENETRATIONS, expected=1.0, measure=planted) for limit in LIMITS]
     monkeypatch.setattr(convergence, "LIMITS", limits)
     found = convergence_trends(_study("fig3-I", "fig4-viscous"), 2, ThreadPoolExecutor)
     assert [(one.scene, one.body) for one in found] == [("fig3-I", 1), ("fig3-I", 2)] * 5 + [
@@ -36,6 +37,13 @@ def test_every_limit_comes_in_order_and_a_lubricated_scene_has_only_the_contact(
         ("fig4-viscous", 2),
     ]
     assert {one.verdict for one in found} == {"like the power 1"}
+
+
+def test_every_limit_has_a_predicted_cost() -> None:
+    tasks, seconds = predicted(_study("fig3-I"))["convergence"]
+    assert tasks == len(LIMITS)
+    assert seconds == pytest.approx(sum(limit.seconds for limit in LIMITS))
+    assert all(limit.seconds > 0.0 for limit in LIMITS)
 
 
 def _regularised(power: float) -> object:
