@@ -8,11 +8,12 @@ whoever read the output closed it. After 3, 4 and a signal the same command goes
 
 from __future__ import annotations
 
+if __name__ == "__main__":
+    from comparison.cli.start import start
+
+    start("comparison.run")  # does not return: the module is loaded once, under its own name
+
 import signal
-
-if __name__ == "__main__" and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # while modules load Ctrl-C ends the command without a traceback
-
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -25,35 +26,35 @@ from typing import Any
 import xarray as xr
 from rich.console import Console
 
-from comparison.account.promises import kept_promises
-from comparison.account.surfaces import labelled_surfaces, wide_swings
-from comparison.account.unanswered import with_silent_models
-from comparison.analyses.effective import effective_values
-from comparison.analyses.errands import errands, motion_errands, seconds_beside
-from comparison.analyses.further import further_findings
-from comparison.analyses.slips import slip_effects
-from comparison.analyses.trajectories import stored_motions
-from comparison.assumptions.reach import Reach
-from comparison.extremes.matrix import read as stored_extremes
-from comparison.options import Options, UsageError, parsed
-from comparison.plan.choice import Asked, BudgetError, Choice, choice
-from comparison.plan.ladder import LADDER, Rung
-from comparison.plan.study import Study
-from comparison.provenance import provenance
+from comparison.analysis.assumptions.validity import Reach
+from comparison.analysis.effective import effective_values
+from comparison.analysis.errata import slip_effects
+from comparison.analysis.extremes.matrix import read as stored_extremes
+from comparison.analysis.further import further_findings
+from comparison.analysis.surfaces import labelled_surfaces, wide_swings
+from comparison.analysis.targets import kept_promises
+from comparison.analysis.tasks import errands, motion_errands, seconds_beside
+from comparison.analysis.tradeoff.trade import read as stored_trades
+from comparison.analysis.trajectories import stored_motions
+from comparison.analysis.unanswered import with_silent_models
+from comparison.cli.options import Options, UsageError, parsed
+from comparison.cli.terminal import print_choice, print_differences, print_plan, print_promises, print_unanswered
+from comparison.execution.cache import Cache, StoreError, store_beside
+from comparison.execution.dask import cluster
+from comparison.execution.executors import ExecutorLostError, Pool, factory, process_pool
+from comparison.execution.keys import tile_key
+from comparison.execution.output import clear_dead, on_stderr, replaced_when_complete
+from comparison.execution.progress import wide_console
+from comparison.execution.provenance import provenance
+from comparison.execution.resume import command_line, going_on, here
+from comparison.execution.runner import computed, fetched
+from comparison.execution.task_cache import Answers
 from comparison.report.findings import Findings, findings
-from comparison.storage.cache import Cache, StoreError, store_beside
-from comparison.storage.output import clear_dead, on_stderr, replaced_when_complete
-from comparison.sweep.answers import Answers
-from comparison.sweep.cluster import cluster
-from comparison.sweep.compute import computed, fetched
-from comparison.sweep.executors import ExecutorLostError, Pool, factory, process_pool
-from comparison.sweep.going_on import command_line, going_on, here
-from comparison.sweep.keys import tile_key
-from comparison.sweep.progress import wide_console
-from comparison.terminal import print_choice, print_differences, print_plan, print_promises, print_unanswered
-from comparison.tradeoff.trade import read as stored_trades
+from comparison.study.models import LADDER, Rung
+from comparison.study.planning import Asked, BudgetError, Choice, choice
+from comparison.study.study import Study
 from reference.problem import SceneError
-from reference.problem.command import run_command, stoppable
+from reference.problem.command import stoppable
 
 
 def main(
@@ -137,7 +138,7 @@ def _run(
     store: Cache,
 ) -> int:
     # plotting libraries: not needed to refuse a command or to plan
-    from comparison.drawing import pictures as drawing
+    from comparison.report.figures import pictures as drawing
     from comparison.report.report import write_report
 
     begin, began = time.monotonic(), datetime.now(UTC)
@@ -243,7 +244,3 @@ def _print_closing(
     finer = "; a finer look: --grid N with a larger N; what that costs: --plan" if phased else ""
     console.print(f"Next: open it in a browser{finer}.")
     console.print(f"Relative differences{' over the phases' if phased else ''}, per body:")
-
-
-if __name__ == "__main__":
-    run_command(main)

@@ -8,19 +8,19 @@ from typing import Any
 
 import xarray as xr
 
-from comparison.account.acceptance import Limit, checked_limits
-from comparison.account.budget import Entry, budget
-from comparison.account.differences import Difference, differences
-from comparison.account.unanswered import Unanswered, unanswered
-from comparison.analyses.effective import Effective
-from comparison.analyses.slips import Effect
-from comparison.analyses.trajectories import StoredMotion
-from comparison.analyses.trends import Trend
-from comparison.assumptions.reach import Reach
-from comparison.claims.table import ClaimTable
-from comparison.extremes.matrix import Matrix
-from comparison.plan.study import Study
-from comparison.tradeoff.trade import Trade
+from comparison.analysis.acceptance import Limit, checked_limits
+from comparison.analysis.assumptions.validity import Reach
+from comparison.analysis.budget import Entry, budget
+from comparison.analysis.claims.table import ClaimTable
+from comparison.analysis.differences import Difference, differences
+from comparison.analysis.effective import Effective
+from comparison.analysis.errata import Effect
+from comparison.analysis.extremes.matrix import Matrix
+from comparison.analysis.tradeoff.trade import Trade
+from comparison.analysis.trajectories import StoredMotion
+from comparison.analysis.trends import Trend
+from comparison.analysis.unanswered import Unanswered, unanswered
+from comparison.study.study import Study
 from reference.problem import Family
 
 

@@ -14,12 +14,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.account.differences import pair_step
-from comparison.account.surfaces import common_phases
-from comparison.analyses.trajectories import Place, StoredMotion
-from comparison.plan.ladder import Pair, rungs_of
-from comparison.plan.study import Study
+from comparison.analysis.differences import pair_step
+from comparison.analysis.surfaces import common_phases
+from comparison.analysis.trajectories import Place, StoredMotion
 from comparison.report.findings import Findings
+from comparison.study.models import Pair, rungs_of
+from comparison.study.study import Study
 from reference.problem import Scene
 
 Array = NDArray[np.float64]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from comparison.plan.ladder import rungs_of
 from comparison.report.findings import Findings
+from comparison.study.models import rungs_of
 from comparison.wording import significant
 from reference.problem import Scene
 

@@ -19,24 +19,23 @@ import numpy as np
 import xarray as xr
 from plotly.offline import get_plotlyjs
 
-from comparison.account.differences import Difference
-from comparison.account.surfaces import outcome_counts, wide_swings
-from comparison.account.unanswered import advice
-from comparison.account.verdicts import bar, verdict
-from comparison.analyses.effective import PHASES
-from comparison.analyses.slips import SLIPS, Effect
-from comparison.assumptions.figure import assumption_figure_name, draw_assumptions
-from comparison.claims.humps import LEAST_SHARE, MOST_SHARE, SHARE
-from comparison.claims.table import SIGNS
-from comparison.drawing.budget_figure import budget_figure_name
-from comparison.drawing.figures import figure_name
-from comparison.drawing.pictures import PAGE, for_page, smaller
-from comparison.extremes.figure import COLOURS, MEANING, draw_extremes, said
-from comparison.extremes.matrix import PICTURE
-from comparison.extremes.verdicts import Verdict
-from comparison.plan.ladder import Pair, rungs_of
-from comparison.plan.study import Study
-from comparison.report.family_figure import draw_families, family_figure_name
+from comparison.analysis.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE
+from comparison.analysis.claims.table import SIGNS
+from comparison.analysis.differences import Difference
+from comparison.analysis.effective import PHASES
+from comparison.analysis.errata import SLIPS, Effect
+from comparison.analysis.extremes.matrix import PICTURE
+from comparison.analysis.extremes.verdicts import Verdict
+from comparison.analysis.surfaces import outcome_counts, wide_swings
+from comparison.analysis.unanswered import advice
+from comparison.analysis.verdicts import bar, verdict
+from comparison.report.figures.assumptions import assumption_figure_name, draw_assumptions
+from comparison.report.figures.budget import budget_figure_name
+from comparison.report.figures.extremes import COLOURS, MEANING, draw_extremes, said
+from comparison.report.figures.families import draw_families, family_figure_name
+from comparison.report.figures.pairs import figure_name
+from comparison.report.figures.pictures import PAGE, for_page, smaller
+from comparison.report.figures.tradeoff import draw_tradeoff, tradeoff_figure_name
 from comparison.report.findings import Findings
 from comparison.report.junit import junit
 from comparison.report.page_data import packed, packed_motions, page_data
@@ -44,7 +43,8 @@ from comparison.report.record_rows import record_rows
 from comparison.report.summary import summary
 from comparison.report.summary_text import summary_text
 from comparison.report.verification import CHECKS
-from comparison.tradeoff.figure import draw_tradeoff, tradeoff_figure_name
+from comparison.study.models import Pair, rungs_of
+from comparison.study.study import Study
 from comparison.wording import degrees, percent, scientific, significant, symbols
 from reference.problem import Outcome, Scene
 

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from comparison.account.surfaces import largest_cap_share, outcome_counts
-from comparison.account.verdicts import verdict
-from comparison.analyses.further import claims_summary, trends_summary
-from comparison.analyses.slips import SLIPS
-from comparison.plan.ladder import rungs_of
+from comparison.analysis.errata import SLIPS
+from comparison.analysis.further import claims_summary, trends_summary
+from comparison.analysis.surfaces import largest_cap_share, outcome_counts
+from comparison.analysis.verdicts import verdict
 from comparison.report.findings import Findings
+from comparison.study.models import rungs_of
 from reference.problem import Scene
 
 SCHEMA = "phase-resonance/summary"

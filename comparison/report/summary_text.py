@@ -6,10 +6,10 @@ import re
 from collections.abc import Sequence
 from math import isnan
 
-from comparison.account.surfaces import outcome_counts
-from comparison.account.verdicts import bar, verdict
-from comparison.plan.ladder import rungs_of
+from comparison.analysis.surfaces import outcome_counts
+from comparison.analysis.verdicts import bar, verdict
 from comparison.report.findings import Findings
+from comparison.study.models import rungs_of
 from comparison.wording import degrees, percent
 from reference.problem import Outcome
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import multibody
-from comparison.tradeoff.constant_step import FORMULATIONS, PENETRATION, SOLVERS, run
+from comparison.analysis.tradeoff.constant_step import FORMULATIONS, PENETRATION, SOLVERS, run
 from multibody import level
 from multibody.integrate import Engine
 from reference.problem import load_scene

@@ -2,7 +2,7 @@
 What is saved where a scene does not require all of a model: processor time in full over that of the reduced one.
 
 Run with `python -m pytest tests/benchmarks/test_reductions.py -m long -s`; reference/README.md has the figures, and
-comparison/plan/savings.py predicts with them. Both of a ratio are measured in turn, so that the load of others falls
+comparison/study/speedup.py predicts with them. Both of a ratio are measured in turn, so that the load of others falls
 on both.
 """
 
@@ -17,8 +17,8 @@ import pytest
 
 import multibody
 import reference
-from comparison.plan.ladder import SMALL, SPATIAL, TRANSLATIONAL
-from comparison.plan.savings import saving
+from comparison.study.models import SMALL, SPATIAL, TRANSLATIONAL
+from comparison.study.speedup import saving
 from reference.problem import Scene, load_scene, phase_grid
 
 ROUNDS = 3

@@ -24,11 +24,11 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "comparison"))
 from fake_models import fake_ladder
 from local_cluster import LocalCluster
 
-from comparison.plan.study import Study
-from comparison.storage.cache import Cache
-from comparison.sweep.cluster import cluster
-from comparison.sweep.compute import computed
-from comparison.sweep.executors import Pool, process_pool
+from comparison.execution.cache import Cache
+from comparison.execution.dask import cluster
+from comparison.execution.executors import Pool, process_pool
+from comparison.execution.runner import computed
+from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
 
 TILE = 0.5  # s a tile takes; the study's take about one

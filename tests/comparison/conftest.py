@@ -13,11 +13,11 @@ from known_further import known_further
 from PIL import Image
 
 import comparison.run
-from comparison.analyses.slips import Effect
-from comparison.drawing import pictures
-from comparison.plan.ladder import Rung
+from comparison.analysis.errata import Effect
 from comparison.report import report
+from comparison.report.figures import pictures
 from comparison.run import main
+from comparison.study.models import Rung
 
 
 @dataclass(frozen=True)

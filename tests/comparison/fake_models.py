@@ -15,9 +15,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.analyses.trajectories import StoredMotion, chosen_places, shown_rungs
-from comparison.plan.ladder import LADDER, Rung, never
-from comparison.plan.study import Study
+from comparison.analysis.trajectories import StoredMotion, chosen_places, shown_rungs
+from comparison.study.models import LADDER, Rung, never
+from comparison.study.study import Study
 from reference.problem import GRAVITY, Amplification, Outcome, Scene, Trajectory
 
 DEADLY = 2.0 * np.pi * 3 / 4  # alpha1, alpha2 of the one point of a 4 x 4 grid that a failing model fails at

@@ -15,16 +15,16 @@ import pytest
 from fake_models import fake_ladder
 from rich.console import Console
 
-from comparison.analyses.effective import Effective
-from comparison.analyses.errands import errands, paper_complete
-from comparison.analyses.slips import Effect
-from comparison.analyses.trajectories import Place, StoredMotion
-from comparison.plan.study import Study
-from comparison.storage.cache import Cache
-from comparison.sweep.answers import Answers
-from comparison.sweep.compute import fetched
-from comparison.sweep.errands import Errand, Fetched, fingerprint
-from comparison.sweep.sweep import sweep
+from comparison.analysis.effective import Effective
+from comparison.analysis.errata import Effect
+from comparison.analysis.tasks import errands, paper_complete
+from comparison.analysis.trajectories import Place, StoredMotion
+from comparison.execution.cache import Cache
+from comparison.execution.runner import fetched
+from comparison.execution.sweep import sweep
+from comparison.execution.task import Errand, Fetched, fingerprint
+from comparison.execution.task_cache import Answers
+from comparison.study.study import Study
 from reference.problem import Outcome, builtin_scenes, load_scene
 
 QUIET = Console(quiet=True)
@@ -88,7 +88,7 @@ def test_it_belongs_to_function_task_versions_and_source(tmp_path: Path, monkeyp
         assert Answers(Cache(tmp_path)).missing([other]), name
     for name in ("_version", "source_digest"):
         with monkeypatch.context() as patch:
-            patch.setattr(f"comparison.sweep.surroundings.{name}", lambda package: "changed")
+            patch.setattr(f"comparison.execution.environment.{name}", lambda package: "changed")
             assert Answers(Cache(tmp_path)).missing([errand]), name
     assert not Answers(Cache(tmp_path)).missing([errand])
 
@@ -97,7 +97,7 @@ def test_a_model_is_known_by_its_source_too(monkeypatch: pytest.MonkeyPatch) -> 
     rung = fake_ladder()[0]
     before = fingerprint(rung)
     assert fingerprint(replace(rung, settings={"gap": 2.0})) != before
-    monkeypatch.setattr("comparison.sweep.surroundings.source_digest", lambda name: "changed")
+    monkeypatch.setattr("comparison.execution.environment.source_digest", lambda name: "changed")
     assert fingerprint(rung) != before
 
 

@@ -12,12 +12,12 @@ import pytest
 from fake_models import fake_ladder
 from matplotlib.image import imread
 
-from comparison.assumptions.__main__ import main
-from comparison.assumptions.figure import assumption_figure_name, draw_assumptions
-from comparison.assumptions.reach import ASSUMPTIONS, Reach, said
-from comparison.assumptions.variations import FEW, MANY, PHASES, Cell, Variation, assumption_cells, ranges
-from comparison.plan.ladder import LADDER
-from comparison.plan.study import Study
+from comparison.analysis.assumptions.validity import ASSUMPTIONS, Reach, said
+from comparison.analysis.assumptions.variations import FEW, MANY, PHASES, Cell, Variation, assumption_cells, ranges
+from comparison.cli.assumptions import main
+from comparison.report.figures.assumptions import assumption_figure_name, draw_assumptions
+from comparison.study.models import LADDER
+from comparison.study.study import Study
 from reference.problem import Scene, load_scene, parse_scene
 
 STATED = load_scene("fig3-I")

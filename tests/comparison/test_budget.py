@@ -10,11 +10,11 @@ import xarray as xr
 from fake_models import errors_in, fake_ladder
 from numpy.typing import NDArray
 
-from comparison.account.budget import TOTAL, Entry, budget, closure, steps, torus_distance
-from comparison.account.surfaces import labelled_surfaces
-from comparison.plan.ladder import Rung
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
+from comparison.analysis.budget import TOTAL, Entry, budget, closure, steps, torus_distance
+from comparison.analysis.surfaces import labelled_surfaces
+from comparison.study.batches import solve_tile
+from comparison.study.models import Rung
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 GRID = 8

@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparison.account.acceptance import checked_limits
-from comparison.account.budget import budget, closure, steps
-from comparison.account.differences import differences
-from comparison.account.surfaces import labelled_surfaces
-from comparison.account.unanswered import unanswered
-from comparison.plan.ladder import Rung
-from comparison.plan.study import Study
-from comparison.plan.tiles import imported, solve_tile
+from comparison.analysis.acceptance import checked_limits
+from comparison.analysis.budget import budget, closure, steps
+from comparison.analysis.differences import differences
+from comparison.analysis.surfaces import labelled_surfaces
+from comparison.analysis.unanswered import unanswered
+from comparison.study.batches import imported, solve_tile
+from comparison.study.models import Rung
+from comparison.study.study import Study
 from reference.problem import builtin_scenes, load_scene
 
 pytestmark = pytest.mark.long

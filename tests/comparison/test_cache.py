@@ -13,12 +13,12 @@ from conftest import Run
 from fake_models import fake_ladder
 from rich.console import Console
 
-from comparison.plan.study import Study
-from comparison.plan.tiles import Answer, solve_tile, unanswered
-from comparison.storage.cache import MAGIC, Cache
-from comparison.sweep.compute import computed
-from comparison.sweep.keys import stored_tile, tile_key
-from comparison.sweep.surroundings import source_digest
+from comparison.execution.cache import MAGIC, Cache
+from comparison.execution.environment import source_digest
+from comparison.execution.keys import stored_tile, tile_key
+from comparison.execution.runner import computed
+from comparison.study.batches import Answer, solve_tile, unanswered
+from comparison.study.study import Study
 from reference.problem import Outcome, load_scene
 
 
@@ -55,7 +55,7 @@ def test_a_tile_belongs_to_scene_model_settings_versions_and_source(
     assert stored_tile(store, replace(tile, scene=renamed)) is not None, "a name changes no number"
     for name, value in (("_version", "9.9"), ("source_digest", "changed")):
         with monkeypatch.context() as patch:
-            patch.setattr(f"comparison.sweep.surroundings.{name}", lambda package, value=value: value)
+            patch.setattr(f"comparison.execution.environment.{name}", lambda package, value=value: value)
             assert stored_tile(store, tile) is None, name
 
 

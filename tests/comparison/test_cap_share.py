@@ -9,13 +9,13 @@ import pytest
 
 import multibody
 import reference
-from comparison.account.surfaces import labelled_surfaces, largest_cap_share, wide_swings
-from comparison.plan.ladder import LADDER
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
-from comparison.storage.cache import Cache
-from comparison.sweep.halves import halves, joined
-from comparison.sweep.keys import stored_tile, tile_key
+from comparison.analysis.surfaces import labelled_surfaces, largest_cap_share, wide_swings
+from comparison.execution.cache import Cache
+from comparison.execution.keys import stored_tile, tile_key
+from comparison.execution.splitting import halves, joined
+from comparison.study.batches import solve_tile
+from comparison.study.models import LADDER
+from comparison.study.study import Study
 from reference.problem import Outcome, Scene, load_scene
 
 PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (4.0, 5.5)])

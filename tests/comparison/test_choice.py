@@ -9,12 +9,12 @@ from dataclasses import replace
 import pytest
 from conftest import Run
 
-from comparison.plan import choice as place
-from comparison.plan import costs as cost_of
-from comparison.plan.choice import AMBITIONS, DEFAULT, Asked, BudgetError, choice, setting, tightest
-from comparison.plan.ladder import EXACT, LADDER, TRANSLATIONAL
-from comparison.plan.recorded import FILE, SHARE, Reach, Recorded, recorded
-from comparison.plan.study import Study
+from comparison.study import costs as cost_of
+from comparison.study import planning as place
+from comparison.study.accuracy_record import FILE, SHARE, Reach, Recorded, recorded
+from comparison.study.models import EXACT, LADDER, TRANSLATIONAL
+from comparison.study.planning import AMBITIONS, DEFAULT, Asked, BudgetError, choice, setting, tightest
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 SCENE = load_scene("fig3-I")

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from comparison.claims import evidence
-from comparison.claims import table as table_module  # table: what a test made
-from comparison.claims.__main__ import main
-from comparison.claims.checks import Finding, Verdict, judged, similar
-from comparison.claims.claims import CLAIMS, Claim
-from comparison.claims.evidence import Evidence, Question
-from comparison.claims.readings import CASES, EVERY_READING, READINGS, Reading, without_effect
-from comparison.claims.smoothness import Bend
-from comparison.claims.table import claims_tested, questions, tabulated
+from comparison.analysis.claims import evidence
+from comparison.analysis.claims import table as table_module  # table: what a test made
+from comparison.analysis.claims.checks import Finding, Verdict, judged, similar
+from comparison.analysis.claims.claims import CLAIMS, Claim
+from comparison.analysis.claims.evidence import Evidence, Question
+from comparison.analysis.claims.readings import CASES, EVERY_READING, READINGS, Reading, without_effect
+from comparison.analysis.claims.smoothness import Bend
+from comparison.analysis.claims.table import claims_tested, questions, tabulated
+from comparison.cli.claims import main
 
 Array = NDArray[np.float64]
 N = 16

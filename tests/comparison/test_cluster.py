@@ -12,13 +12,13 @@ from conftest import Run
 from fake_models import fake_ladder
 from local_cluster import LocalCluster
 
-from comparison.plan.study import Study
-from comparison.plan.tiles import Answer, Tile, solve_tile, unanswered
-from comparison.storage.cache import Cache, Key
-from comparison.sweep.cluster import cluster
-from comparison.sweep.halves import halves, joined
-from comparison.sweep.keys import tile_key
-from comparison.sweep.sweep import sweep
+from comparison.execution.cache import Cache, Key
+from comparison.execution.dask import cluster
+from comparison.execution.keys import tile_key
+from comparison.execution.splitting import halves, joined
+from comparison.execution.sweep import sweep
+from comparison.study.batches import Answer, Tile, solve_tile, unanswered
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 
@@ -109,7 +109,7 @@ def test_no_scheduler_is_a_wrong_option(command: Callable[..., Run], address: st
 def test_workers_with_other_code_are_refused(
     workers: LocalCluster, command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("comparison.sweep.surroundings._version", lambda name: "9.9")
+    monkeypatch.setattr("comparison.execution.environment._version", lambda name: "9.9")
     run = command("fig3-I", "--scheduler", workers.address, ladder=fake_ladder("forbidden"))
     assert run.code == 2
     assert "here it is 9.9: install the same" in run.err

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from comparison.analyses import convergence
-from comparison.analyses.convergence import LIMITS, PENETRATIONS, convergence_trends, limit_trends
-from comparison.analyses.errands import predicted
-from comparison.plan.study import Study
+from comparison.analysis import convergence
+from comparison.analysis.convergence import LIMITS, PENETRATIONS, convergence_trends, limit_trends
+from comparison.analysis.tasks import predicted
+from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
 
 Array = NDArray[np.float64]

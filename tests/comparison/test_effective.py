@@ -12,9 +12,9 @@ import pytest
 from conftest import Run
 from fake_models import fake_ladder
 
-from comparison.analyses.effective import PHASES, effective_values, read_back, stated
-from comparison.plan.ladder import Rung
-from comparison.plan.study import Study
+from comparison.analysis.effective import PHASES, effective_values, read_back, stated
+from comparison.study.models import Rung
+from comparison.study.study import Study
 from reference.problem import ground_acceleration, load_scene
 
 TRUE = {"radius": 0.31, "friction": 0.123, "mass": 2.2}  # the scene says 0.248 m, 0.1 and 2 kg

@@ -13,11 +13,11 @@ from fake_models import fake_ladder
 from matplotlib.axes import Axes
 from matplotlib.image import imread
 
-from comparison.account.budget import budget
-from comparison.account.surfaces import labelled_surfaces
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
-from comparison.report.family_figure import draw_family, family_figure_name
+from comparison.analysis.budget import budget
+from comparison.analysis.surfaces import labelled_surfaces
+from comparison.report.figures.families import draw_family, family_figure_name
+from comparison.study.batches import solve_tile
+from comparison.study.study import Study
 from reference.problem import load_family
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"

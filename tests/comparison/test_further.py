@@ -11,9 +11,9 @@ from typing import Any
 
 import pytest
 
-from comparison.analyses import further
-from comparison.analyses.further import claims_summary, further_findings, trends_summary
-from comparison.plan.study import Study
+from comparison.analysis import further
+from comparison.analysis.further import claims_summary, further_findings, trends_summary
+from comparison.study.study import Study
 from reference.problem import builtin_scenes, load_scene
 
 

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from comparison.plan.ladder import LADDER
-from comparison.storage.output import publish
+from comparison.execution.output import publish
+from comparison.study.models import LADDER
 
 HERE = Path(__file__).parent
 SCRIPT = """

@@ -7,10 +7,10 @@ from concurrent.futures import ThreadPoolExecutor
 import xarray as xr
 from fake_models import fake_ladder
 
-from comparison.account.surfaces import labelled_surfaces
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile, unanswered
-from comparison.sweep.sweep import sweep
+from comparison.analysis.surfaces import labelled_surfaces
+from comparison.execution.sweep import sweep
+from comparison.study.batches import solve_tile, unanswered
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 

@@ -20,13 +20,13 @@ from conftest import Run
 from fake_models import fake_ladder
 from rich.console import Console
 
-from comparison.analyses.trajectories import Place, StoredMotion
-from comparison.plan.study import Study
-from comparison.plan.tiles import Answer
-from comparison.storage.cache import Cache, store_beside
-from comparison.sweep.answers import Answers
-from comparison.sweep.compute import computed, fetched
-from comparison.sweep.errands import Errand
+from comparison.analysis.trajectories import Place, StoredMotion
+from comparison.execution.cache import Cache, store_beside
+from comparison.execution.runner import computed, fetched
+from comparison.execution.task import Errand
+from comparison.execution.task_cache import Answers
+from comparison.study.batches import Answer
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 HERE = Path(__file__).parent

@@ -13,15 +13,15 @@ from conftest import quick_figure
 from fake_models import fake_ladder
 from rich.console import Console
 
-from comparison.account.surfaces import labelled_surfaces
-from comparison.analyses.errands import predicted
-from comparison.drawing import pictures
-from comparison.drawing.pictures import PAGE, all_drawn, for_page, picture_errands
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
-from comparison.storage.cache import Cache
-from comparison.sweep.answers import Answers
-from comparison.sweep.compute import fetched
+from comparison.analysis.surfaces import labelled_surfaces
+from comparison.analysis.tasks import predicted
+from comparison.execution.cache import Cache
+from comparison.execution.runner import fetched
+from comparison.execution.task_cache import Answers
+from comparison.report.figures import pictures
+from comparison.report.figures.pictures import PAGE, all_drawn, for_page, picture_errands
+from comparison.study.batches import solve_tile
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 

@@ -16,15 +16,15 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from comparison.account.acceptance import checked_limits
-from comparison.account.budget import TOTAL, closure, steps
-from comparison.account.differences import differences
-from comparison.account.steps import RESOLVED
-from comparison.account.surfaces import labelled_surfaces
-from comparison.account.unanswered import unanswered
-from comparison.plan.ladder import LADDER, Rung
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
+from comparison.analysis.acceptance import checked_limits
+from comparison.analysis.budget import TOTAL, closure, steps
+from comparison.analysis.differences import differences
+from comparison.analysis.steps import RESOLVED
+from comparison.analysis.surfaces import labelled_surfaces
+from comparison.analysis.unanswered import unanswered
+from comparison.study.batches import solve_tile
+from comparison.study.models import LADDER, Rung
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 GRID = 2

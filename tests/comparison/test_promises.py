@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparison.plan.choice import Asked, Choice, choice
-from comparison.plan.ladder import Rung
-from comparison.plan.tiles import imported, solve_tile
+from comparison.study.batches import imported, solve_tile
+from comparison.study.models import Rung
+from comparison.study.planning import Asked, Choice, choice
 from reference.problem import Scene, builtin_scenes, load_scene
 
 TIGHTER = 100.0

@@ -16,15 +16,15 @@ from playwright.sync_api import sync_playwright
 from test_page_in_a_browser import CHROMIUM, DESKTOP, FLAGS, LAPTOP, _opened
 
 import comparison.run
-from comparison.account.budget import budget
-from comparison.account.surfaces import NOT_ASKED, labelled_surfaces
-from comparison.analyses.errands import errands, predicted
-from comparison.analyses.trajectories import chosen_places
-from comparison.assumptions.__main__ import main as assumptions
-from comparison.plan.left_out import left_out
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
+from comparison.analysis.budget import budget
+from comparison.analysis.surfaces import NOT_ASKED, labelled_surfaces
+from comparison.analysis.tasks import errands, predicted
+from comparison.analysis.trajectories import chosen_places
+from comparison.cli.assumptions import main as assumptions
 from comparison.run import main
+from comparison.study.batches import solve_tile
+from comparison.study.reductions import left_out
+from comparison.study.study import Study
 from reference.problem import example_scenes, load_family, load_scene
 
 MIXED = ("synthetic-pair", "fig4-viscous")

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 import multibody
-from comparison.account.surfaces import labelled_surfaces
-from comparison.plan.ladder import (
+from comparison.analysis.surfaces import labelled_surfaces
+from comparison.study.batches import solve_tile
+from comparison.study.models import (
     EXACT,
     LADDER,
     REGULARISED,
@@ -22,11 +23,10 @@ from comparison.plan.ladder import (
     never,
     rungs_of,
 )
-from comparison.plan.left_out import left_out
-from comparison.plan.savings import saving
-from comparison.plan.study import Study
-from comparison.plan.symmetry import sources
-from comparison.plan.tiles import solve_tile
+from comparison.study.reductions import left_out
+from comparison.study.speedup import saving
+from comparison.study.study import Study
+from comparison.study.symmetry import sources
 from reference.problem import Scene, builtin_scenes, load_scene
 
 GRID = 4

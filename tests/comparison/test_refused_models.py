@@ -12,13 +12,13 @@ import pytest
 from conftest import Run
 from fake_models import fake_ladder, silenced
 
-from comparison.account.budget import TOTAL, closure, steps
-from comparison.account.surfaces import labelled_surfaces
-from comparison.account.unanswered import unanswered, with_silent_models
-from comparison.account.verdicts import bar, verdict
-from comparison.analyses.trajectories import motion_tasks, moved
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
+from comparison.analysis.budget import TOTAL, closure, steps
+from comparison.analysis.surfaces import labelled_surfaces
+from comparison.analysis.trajectories import motion_tasks, moved
+from comparison.analysis.unanswered import unanswered, with_silent_models
+from comparison.analysis.verdicts import bar, verdict
+from comparison.study.batches import solve_tile
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"

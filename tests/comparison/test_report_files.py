@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 from matplotlib.image import imread
 
-from comparison.plan.ladder import LADDER
+from comparison.study.models import LADDER
 from reference.problem import load_scene
 
 GRID = 4

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from comparison.analyses import slips
-from comparison.analyses.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
-from comparison.analyses.slips import PHASES, SLIPS, Slip, measured, slip_effects
-from comparison.plan.ladder import V_REG
-from comparison.plan.study import Study
+from comparison.analysis import errata
+from comparison.analysis.errata import PHASES, SLIPS, Slip, measured, slip_effects
+from comparison.analysis.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
+from comparison.study.models import V_REG
+from comparison.study.study import Study
 from reference import amplification, trajectory
 from reference.problem import Scene, load_scene
 
@@ -43,7 +43,7 @@ def test_effects_come_in_order_and_a_measure_that_fails_is_named(monkeypatch: py
         raise RuntimeError("singular")
 
     planted = [Slip("a", "p", "c", "w", half), Slip("b", "p", "c", "w", none="n"), Slip("c", "p", "c", "w", breaks)]
-    monkeypatch.setattr(slips, "SLIPS", planted)
+    monkeypatch.setattr(errata, "SLIPS", planted)
     found = slip_effects(_study("fig3-I", "fig3-II"), 2, ThreadPoolExecutor, planted)
     assert [(one.scene, one.slip) for one in found] == [("fig3-I", 0), ("fig3-I", 2), ("fig3-II", 0), ("fig3-II", 2)]
     assert found[0].change == ((0.5, 0.5), (0.5, 0.5))

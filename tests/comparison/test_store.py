@@ -13,8 +13,8 @@ import pytest
 from conftest import Run
 from fake_models import fake_ladder
 
+from comparison.execution.output import clear_dead, publish, replaced_when_complete
 from comparison.report import report
-from comparison.storage.output import clear_dead, publish, replaced_when_complete
 
 SMALL = ["fig3-I", "--grid", "2"]
 
@@ -89,7 +89,7 @@ KILLED = """
 import os, signal, sys
 from pathlib import Path
 sys.path.insert(0, {root!r})
-from comparison.storage import output as store
+from comparison.execution import output as store
 def killed(*rest):
     os.kill(os.getpid(), signal.SIGKILL)
 if {late}:

@@ -17,20 +17,20 @@ import pytest
 from fake_models import fake_ladder
 from numpy.typing import NDArray
 
-from comparison.analyses.convergence import limit_trends
-from comparison.analyses.effective import read_back
-from comparison.analyses.scaling import scene_trends
-from comparison.analyses.slips import measured
-from comparison.analyses.trajectories import Place, StoredMotion, moved
-from comparison.assumptions.variations import varied
-from comparison.claims.evidence import Evidence, gathered
-from comparison.claims.smoothness import Bend
-from comparison.drawing.pictures import drawn
-from comparison.plan.study import Study
-from comparison.plan.tiles import Answer, solve_tile
-from comparison.storage.cache import LENGTH, MAGIC, Cache, Key
-from comparison.storage.encoding import array_of
-from comparison.sweep.keys import stored_tile, tile_key
+from comparison.analysis.assumptions.variations import varied
+from comparison.analysis.claims.evidence import Evidence, gathered
+from comparison.analysis.claims.smoothness import Bend
+from comparison.analysis.convergence import limit_trends
+from comparison.analysis.effective import read_back
+from comparison.analysis.errata import measured
+from comparison.analysis.scaling import scene_trends
+from comparison.analysis.trajectories import Place, StoredMotion, moved
+from comparison.execution.cache import LENGTH, MAGIC, Cache, Key
+from comparison.execution.encoding import array_of
+from comparison.execution.keys import stored_tile, tile_key
+from comparison.report.figures.pictures import drawn
+from comparison.study.batches import Answer, solve_tile
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 KEY = Key('{"a": 1}', "0" * 64, "answer")
@@ -231,4 +231,4 @@ def test_no_module_of_the_study_unpickles_what_is_stored() -> None:
         if "pickle" in path.read_text(encoding="utf-8").replace("allow_pickle=False", "")
     ]
     # a pipe to a process that the study starts itself, and words about the cache
-    assert set(users) <= {"comparison/sweep/warm_up.py", "comparison/storage/cache.py"}
+    assert set(users) <= {"comparison/execution/warm_up.py", "comparison/execution/cache.py"}

@@ -13,19 +13,19 @@ from fake_models import fake_ladder
 from rich.console import Console
 from rich.progress import Progress
 
-from comparison.account.surfaces import labelled_surfaces
-from comparison.assumptions.figure import draw_assumptions
-from comparison.assumptions.variations import FEW, Cell
-from comparison.drawing.file_names import figure_file, with_ending
-from comparison.drawing.paper_figures import draw_paper_figure, paper_figure_name
-from comparison.plan.overhead import COMPILED_ONCE
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
-from comparison.report.family_figure import draw_family
+from comparison.analysis.assumptions.variations import FEW, Cell
+from comparison.analysis.surfaces import labelled_surfaces
+from comparison.execution.progress import description, wide_console
+from comparison.report.figures.assumptions import draw_assumptions
+from comparison.report.figures.families import draw_family
+from comparison.report.figures.file_names import figure_file, with_ending
+from comparison.report.figures.paper import draw_paper_figure, paper_figure_name
 from comparison.report.findings import findings
 from comparison.report.junit import junit
 from comparison.report.summary_text import summary_text
-from comparison.sweep.progress import description, wide_console
+from comparison.study.batches import solve_tile
+from comparison.study.overhead import COMPILED_ONCE
+from comparison.study.study import Study
 from reference.problem import Family, Scene, load_family, load_scene
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from comparison.tradeoff import __main__ as command
-from comparison.tradeoff import measure
-from comparison.tradeoff.measure import Found, entry, measured, sample
-from comparison.tradeoff.settings import QUESTIONS, RUN, Setting, settings
-from comparison.tradeoff.trade import FILE, Trade, on_front, quantile, read, with_fronts
+from comparison.analysis.tradeoff import measure
+from comparison.analysis.tradeoff.measure import Found, entry, measured, sample
+from comparison.analysis.tradeoff.settings import QUESTIONS, RUN, Setting, settings
+from comparison.analysis.tradeoff.trade import FILE, Trade, on_front, quantile, read, with_fronts
+from comparison.cli import tradeoff as command
 from reference.problem import Scene, load_scene
 
 SECONDS = 2.0  # of motion: a few slides and stops

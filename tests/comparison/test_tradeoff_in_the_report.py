@@ -13,8 +13,8 @@ import xarray as xr
 from conftest import Run
 from jsonschema import Draft202012Validator
 
-from comparison.tradeoff import __main__ as tradeoff
-from comparison.tradeoff.trade import FILE, Answered, Entry, Trade, with_fronts
+from comparison.analysis.tradeoff.trade import FILE, Answered, Entry, Trade, with_fronts
+from comparison.cli import tradeoff as tradeoff
 from reference.problem import load_scene
 
 SMALL = ["fig3-I", "--grid", "2"]

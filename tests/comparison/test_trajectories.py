@@ -11,11 +11,11 @@ import xarray as xr
 from fake_models import fake_ladder, sliding
 from numpy.typing import NDArray
 
-import comparison.analyses.trajectories
-from comparison.account.surfaces import labelled_surfaces
-from comparison.analyses.trajectories import SHARE, chosen_places, moved, shown_rungs, stored_motions, thinned
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
+import comparison.analysis.trajectories
+from comparison.analysis.surfaces import labelled_surfaces
+from comparison.analysis.trajectories import SHARE, chosen_places, moved, shown_rungs, stored_motions, thinned
+from comparison.study.batches import solve_tile
+from comparison.study.study import Study
 from reference.problem import Scene, Trajectory, load_scene
 
 
@@ -68,11 +68,11 @@ def test_a_model_with_a_coarse_grid_moves_at_its_own_phases_only(monkeypatch: py
     study, surfaces = _studied(12)
     asked: list[tuple[str, int, int]] = []
 
-    def noted(task: comparison.analyses.trajectories.Task) -> comparison.analyses.trajectories.StoredMotion:
+    def noted(task: comparison.analysis.trajectories.Task) -> comparison.analysis.trajectories.StoredMotion:
         asked.append((task[1].key, task[3].row, task[3].column))
-        return comparison.analyses.trajectories._nothing(task[3], task[1].key, "ok", "")  # type: ignore[arg-type]
+        return comparison.analysis.trajectories._nothing(task[3], task[1].key, "ok", "")  # type: ignore[arg-type]
 
-    monkeypatch.setattr(comparison.analyses.trajectories, "moved", noted)
+    monkeypatch.setattr(comparison.analysis.trajectories, "moved", noted)
     motions = stored_motions(study, surfaces, 1, ThreadPoolExecutor)
     stride = study.strides["spatial"]
     assert stride > 1

@@ -17,11 +17,11 @@ from fake_models import fake_ladder
 from test_extremes_in_the_report import FOUND
 
 import comparison.run
-from comparison.extremes import __main__ as extremes
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
-from comparison.storage.cache import Cache
-from comparison.storage.output import (
+from comparison.cli import extremes as extremes
+from comparison.cli import tradeoff as tradeoff
+from comparison.execution.cache import Cache
+from comparison.execution.keys import tile_key
+from comparison.execution.output import (
     MANIFEST,
     Own,
     clear_dead,
@@ -32,8 +32,8 @@ from comparison.storage.output import (
     replaced_when_complete,
     write_manifest,
 )
-from comparison.sweep.keys import tile_key
-from comparison.tradeoff import __main__ as tradeoff
+from comparison.study.batches import solve_tile
+from comparison.study.study import Study
 from reference.problem import load_scene
 from reference.problem.files import TEMPORARY, write_new
 
@@ -155,7 +155,7 @@ DYING = """
 import os, signal, sys
 from pathlib import Path
 sys.path.insert(0, {root!r})
-from comparison.storage.output import replaced_when_complete
+from comparison.execution.output import replaced_when_complete
 move = os.rename
 def die_between(source, target):
     if Path(source).name == "new":

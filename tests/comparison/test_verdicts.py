@@ -7,11 +7,11 @@ import pytest
 import xarray as xr
 from fake_models import errors_in
 
-from comparison.account.surfaces import labelled_surfaces
-from comparison.account.verdicts import bar, verdict
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
+from comparison.analysis.surfaces import labelled_surfaces
+from comparison.analysis.verdicts import bar, verdict
 from comparison.report.page_data import crossings
+from comparison.study.batches import solve_tile
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 GRID = 8

@@ -7,9 +7,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 from fake_models import fake_ladder
 
-from comparison.plan.study import Study
-from comparison.sweep.sweep import sweep
-from comparison.sweep.warm_up import WARM_UP, warm_up
+from comparison.execution.sweep import sweep
+from comparison.execution.warm_up import WARM_UP, warm_up
+from comparison.study.study import Study
 from reference.problem import Outcome, load_scene
 
 

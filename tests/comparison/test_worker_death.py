@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 from fake_models import fake_ladder
 
-from comparison.plan.study import Study
-from comparison.plan.tiles import Answer, Tile, solve_tile, unanswered
-from comparison.sweep.executors import ExecutorLostError, process_pool
-from comparison.sweep.halves import halves, joined
-from comparison.sweep.sweep import sweep
+from comparison.execution.executors import ExecutorLostError, process_pool
+from comparison.execution.splitting import halves, joined
+from comparison.execution.sweep import sweep
+from comparison.study.batches import Answer, Tile, solve_tile, unanswered
+from comparison.study.study import Study
 from reference.problem import Outcome, load_scene
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="SIGKILL")
