@@ -92,14 +92,14 @@ def _beyond(values: Sequence[tuple[int, float]], allowed: float) -> Faults:
 def _same(study: Study, scene: Scene, pair: str) -> str:
     """The pair under which a study compares these models: the translational difference may be the total one."""
     compared = {one.key: one for one in study.pairs(scene)}
-    engines = [rung.key for rung in study.compared(scene) if rung.side == "engine"]
+    engines = [model.key for model in study.compared(scene) if model.side == "engine"]
     alone = pair == "translational" and pair not in compared and engines == [compared["total"].second.key]
     return "total" if alone else pair
 
 
 def _why_not(study: Study, scene: Scene, pair: str, silent: Sequence[Unanswered]) -> str:
     """Why a pair of models is not compared."""
-    wanted = next((one for one in pairs_of(scene, study.ladder) if one.key == pair), None)
+    wanted = next((one for one in pairs_of(scene, study.hierarchy) if one.key == pair), None)
     if wanted is None:
         return "no engine in this study"
     mute = [one.sentence for one in silent if one.model in (wanted.first.key, wanted.second.key)]

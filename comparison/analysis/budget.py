@@ -1,8 +1,8 @@
 """
-The total difference of a surface, taken apart: what each rung of the ladder adds, with its uncertainty.
+The total difference of a surface, taken apart: what each model of the hierarchy adds, with its uncertainty.
 
-Steps are taken between neighbouring rungs that apply to the scene, so that they add up to the total by construction.
-All are relative to mu of the first rung: their sum is then the relative total.
+Steps are taken between neighboring models that apply to the scene, so that they add up to the total by construction.
+All are relative to mu of the first model: their sum is then the relative total.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Entry:
     or better, |D| > 5 u_D; unresolved: where u_D < |D| <= 5 u_D, not counted as real. uncertain: median of u_D.
     peak_moves: rad on the periodic square, how far the highest point of the surface moves at least; points whose error
     estimates let them be the highest count alike, because symmetric surfaces have several. correlation: of the two
-    surfaces. points: how many phase pairs have a value on both rungs, of the `asked`.
+    surfaces. points: how many phase pairs have a value on both models, of the `asked`.
     """
 
     scene: str
@@ -59,12 +59,12 @@ class Entry:
 
 
 def steps(study: Study, surfaces: xr.Dataset, scene: str, body: int) -> list[Step]:
-    """Every step of one body's surface in the order of the ladder, named after its second rung, then the total."""
-    rungs = study.compared(next(one for one in study.scenes if one.name == scene))
-    pairs = [(second.key, first, second) for first, second in pairwise(rungs)]
+    """The steps of one body's surface in the order of the hierarchy, named after their second model, and the total."""
+    models = study.compared(next(one for one in study.scenes if one.name == scene))
+    pairs = [(second.key, first, second) for first, second in pairwise(models)]
     return [
-        step(surfaces, scene, key, first, second, body, per=rungs[0])
-        for key, first, second in [*pairs, (TOTAL, rungs[0], rungs[-1])]
+        step(surfaces, scene, key, first, second, body, per=models[0])
+        for key, first, second in [*pairs, (TOTAL, models[0], models[-1])]
     ]
 
 
@@ -80,7 +80,7 @@ def budget(study: Study, surfaces: xr.Dataset) -> list[Entry]:
 
 def closure(steps: Sequence[Step]) -> float:
     """
-    Largest |sum of the steps - total| over the points where every rung has a value, relative to mu of the first.
+    Largest |sum of the steps - total| over the points where every model has a value, relative to mu of the first.
 
     Rounding if the budget is sound; NaN without such a point.
     """
@@ -114,7 +114,7 @@ def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> Entry:
         return Entry(**names, **nothing)
     data = common_phases(surfaces, scene, [step.first.key, step.second.key]).sel(body=step.body)
     both, errors = (
-        [np.where(known, data[name].sel(model=rung.key), np.nan) for rung in (step.first, step.second)]
+        [np.where(known, data[name].sel(model=model.key), np.nan) for model in (step.first, step.second)]
         for name in ("mu", "error")
     )
     highest = [_phases_at(step, mu + error >= np.nanmax(mu - error)) for mu, error in zip(both, errors)]

@@ -1,5 +1,5 @@
 """
-What the steps of friction law and contact tend to: regularisation to nothing, contact stiffness to infinity.
+What the steps of friction law and contact tend to: regularization to nothing, contact stiffness to infinity.
 
 Friction linear below v_reg against the set-valued law read at rest and above v_c = v_reg: the same motion but for what
 happens below that speed, so that the difference must vanish with it. The supremum also holds what lies below every
@@ -41,8 +41,8 @@ FEW = PHASES[[0, 3]]  # for the engine
 PERIODS = 6.0  # of the slower harmonic: the loading is strongest in the first of them
 FEW_PERIODS = 3.0  # for the engine
 FEWEST_PERIODS = 2.5  # for the engine at constant step
-REGULARISATIONS = (3e-3, 1e-3, 3e-4, 1e-4, 3e-5)  # m/s
-ENGINE_REGULARISATIONS = (1e-2, 3e-3, 1e-3)  # m/s
+REGULARIZATIONS = (3e-3, 1e-3, 3e-4, 1e-4, 3e-5)  # m/s
+ENGINE_REGULARIZATIONS = (1e-2, 3e-3, 1e-3)  # m/s
 PENETRATIONS = (3e-3, 1e-3, 3e-4)  # of rho, under the weight
 SMALLEST = 1e-4  # m/s, for bodies that turn: stands for their limit
 V_REG = 1e-2  # m/s, for the stiffness: a constant step resolves it
@@ -53,13 +53,13 @@ NEWTON, RESIDUAL = 1e-8, 1e-12  # of the engine's steps
 SAFETY = 1.5  # on the difference of two steps, which is half to once the error of the coarser one
 
 
-def _regularised(scene: Scene) -> Values:
+def _regularized(scene: Scene) -> Values:
     """The equations at v_reg against the resolved peak at the same speed."""
-    return _against(scene, PHASES, REGULARISATIONS, _by_equations, lambda v: v)
+    return _against(scene, PHASES, REGULARIZATIONS, _by_equations, lambda v: v)
 
 
 def _to_supremum(scene: Scene) -> Values:
-    return _against(scene, PHASES, REGULARISATIONS, _by_equations, lambda v: None)
+    return _against(scene, PHASES, REGULARIZATIONS, _by_equations, lambda v: None)
 
 
 def _by_engine(scene: Scene) -> Values:
@@ -67,7 +67,7 @@ def _by_engine(scene: Scene) -> Values:
         answer = engine_amplification(scene, phases, regularization=v, tolerance=ENGINE_TOLERANCE)
         return answer.mu, answer.error
 
-    return _against(_short(scene, FEW_PERIODS), FEW, ENGINE_REGULARISATIONS, solved, lambda v: v)
+    return _against(_short(scene, FEW_PERIODS), FEW, ENGINE_REGULARIZATIONS, solved, lambda v: v)
 
 
 def _with_turning(scene: Scene) -> Values:
@@ -75,7 +75,7 @@ def _with_turning(scene: Scene) -> Values:
     short = _short(scene, FEW_PERIODS)
     limit, *answers = (
         engine_amplification(short, FEW, model="spatial", regularization=v, tolerance=ENGINE_TOLERANCE)
-        for v in (SMALLEST, *ENGINE_REGULARISATIONS)
+        for v in (SMALLEST, *ENGINE_REGULARIZATIONS)
     )
     sizes = np.stack([answer.mu / limit.mu - 1.0 for answer in answers], axis=1)
     return sizes, np.stack([np.hypot(answer.error, limit.error) / limit.mu for answer in answers], axis=1)
@@ -93,7 +93,7 @@ def _against(
     solved: Callable[[Scene, Array, float], Values],
     cutoff: Callable[[float], float | None],
 ) -> Values:
-    """A regularised motion against the set-valued one."""
+    """A regularized motion against the set-valued one."""
     short = _short(scene, PERIODS)
     sizes, errors = [], []
     for v in speeds:
@@ -168,30 +168,30 @@ def _any(scene: Scene) -> bool:
 
 
 LIMITS = (
-    Limit("exact equations: regularised against resolved", REGULARISATIONS, 1.0, _regularised, _dry, 0.13),
-    Limit("exact equations: regularised against supremum", REGULARISATIONS, None, _to_supremum, _dry, 0.14),
-    Limit("engine against resolved", ENGINE_REGULARISATIONS, 1.0, _by_engine, _dry, 0.7),
+    Limit("exact equations: regularized against resolved", REGULARIZATIONS, 1.0, _regularized, _dry, 0.13),
+    Limit("exact equations: regularized against supremum", REGULARIZATIONS, None, _to_supremum, _dry, 0.14),
+    Limit("engine against resolved", ENGINE_REGULARIZATIONS, 1.0, _by_engine, _dry, 0.7),
     Limit(
-        "bodies that turn: against v_reg = 1e-4 m/s", ENGINE_REGULARISATIONS, 1.0, _with_turning, _dry_on_supports, 5.7
+        "bodies that turn: against v_reg = 1e-4 m/s", ENGINE_REGULARIZATIONS, 1.0, _with_turning, _dry_on_supports, 5.7
     ),
     Limit("elastic contact against rigid", PENETRATIONS, 1.0, _stiffened, _any, 2.1),
 )
 
-Task = tuple[Scene, int]  # and the number of the limit
+Arguments = tuple[Scene, int]  # and the number of the limit
 
 
-def convergence_tasks(study: Study) -> list[Task]:
+def convergence_arguments(study: Study) -> list[Arguments]:
     """Every limit with every scene that has it, in the order of LIMITS."""
     return [(scene, number) for number, limit in enumerate(LIMITS) for scene in study.phased if limit.applies(scene)]
 
 
 def convergence_trends(study: Study, jobs: int, executor: Pool = process_pool) -> list[Trend]:
     """Every limit in every scene that has it, for each body, computed on `executor`; in the order of LIMITS."""
-    found = sweep(convergence_tasks(study), limit_trends, _lost, lambda task, trends: None, jobs, executor)
+    found = sweep(convergence_arguments(study), limit_trends, _lost, lambda task, trends: None, jobs, executor)
     return [one for trends in found for one in trends]
 
 
-def limit_trends(task: Task) -> list[Trend]:
+def limit_trends(task: Arguments) -> list[Trend]:
     """One limit in one scene. Runs inside a worker process."""
     scene, number = task
     limit = LIMITS[number]
@@ -205,7 +205,7 @@ def limit_trends(task: Task) -> list[Trend]:
     ]
 
 
-def _lost(task: Task, outcome: Outcome, fault: str) -> list[Trend]:
+def _lost(task: Arguments, outcome: Outcome, fault: str) -> list[Trend]:
     scene, number = task
     limit = LIMITS[number]
     return [

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from comparison.execution.sweep import sweep
 from comparison.study.batches import imported
-from comparison.study.models import Rung, rungs_of
+from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from reference.problem import GRAVITY, Outcome, Scene, Trajectory, ground_acceleration
 
@@ -64,28 +64,28 @@ def stated(scene: Scene) -> Effective:
     )
 
 
-def effective_tasks(study: Study) -> list[tuple[Scene, Rung]]:
+def effective_arguments(study: Study) -> list[tuple[Scene, Model]]:
     """Every model of every scene."""
-    return [(scene, rung) for scene in study.scenes for rung in rungs_of(scene, study.ladder)]
+    return [(scene, model) for scene in study.scenes for model in models_of(scene, study.hierarchy)]
 
 
 def effective_values(study: Study, jobs: int, executor: Callable[[int], Executor]) -> list[Effective]:
     """For every scene what it states, then what the motion of every model shows, computed on `executor(jobs)`."""
-    found = sweep(effective_tasks(study), read_back, _lost, lambda task, value: None, jobs, executor)
+    found = sweep(effective_arguments(study), read_back, _lost, lambda task, value: None, jobs, executor)
     return [
         value for scene in study.scenes for value in (stated(scene), *(one for one in found if one.scene == scene.name))
     ]
 
 
-def read_back(task: tuple[Scene, Rung]) -> Effective:
+def read_back(task: tuple[Scene, Model]) -> Effective:
     """The values of one model. What goes wrong is said in `fault`; a value is never made up."""
-    scene, rung = task
-    nothing = Effective(scene.name, rung.key)
+    scene, model = task
+    nothing = Effective(scene.name, model.key)
     lasting = scene.duration if scene.recorded else min(scene.duration, DURATION)
     short = scene.with_values({"duration": lasting})
-    settings = {key: value for key, value in rung.settings.items() if key != "cutoff"}  # a way to read, not to move
+    settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
     try:
-        motion: Trajectory = imported(rung.trajectory)(short, PHASES, **settings)
+        motion: Trajectory = imported(model.trajectory)(short, PHASES, **settings)
         if motion.status != Outcome.OK:
             return replace(nothing, fault=f"the motion ended: {motion.status}")
         return replace(nothing, **_measured(short, motion))
@@ -93,9 +93,9 @@ def read_back(task: tuple[Scene, Rung]) -> Effective:
         return replace(nothing, fault=f"{type(fault).__name__}: {fault}")
 
 
-def _lost(task: tuple[Scene, Rung], outcome: Outcome, fault: str) -> Effective:
-    scene, rung = task
-    return Effective(scene.name, rung.key, fault=f"{outcome}: {fault}")
+def _lost(task: tuple[Scene, Model], outcome: Outcome, fault: str) -> Effective:
+    scene, model = task
+    return Effective(scene.name, model.key, fault=f"{outcome}: {fault}")
 
 
 def _measured(scene: Scene, motion: Trajectory) -> dict[str, Any]:

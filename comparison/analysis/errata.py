@@ -71,7 +71,7 @@ def _change(printed: Array, mended: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Slip:
+class Erratum:
     """One slip. `measure`: the change of mu it makes in a scene, None in a scene without it; `none`: why there is no
     such measure."""
 
@@ -84,65 +84,67 @@ class Slip:
 
 
 _NAME = "a name or an index; no number depends on it"
-SLIPS: tuple[Slip, ...] = (
-    Slip(
+ERRATA: tuple[Erratum, ...] = (
+    Erratum(
         "after (2.3)",
         "k = n E J / (12 l^3)",
         "k = 12 n E J / l^3",
         "a bar clamped at both ends yields F l^3 / (12 E J) to a lateral force F; printed, links are 144 times softer",
         _softened,
     ),
-    Slip(
+    Erratum(
         "after (2.5)",
         "F_F = -2 lambda_1 sign(lambda_1) rho tau",
         "F_F = -2 mu lambda_1 sign(lambda_1) rho tau",
         "(2.5) makes the printed force the whole normal force; (3.2) has the factor mu",
         _without_coefficient,
     ),
-    Slip("(3.1)", "dPhi_1/dz_i = -1", "dPhi_i/dz_1 = -1", "Phi_i = z_i - z_1, and Phi_1 does not know z_i", none=_NAME),
-    Slip(
+    Erratum(
+        "(3.1)", "dPhi_1/dz_i = -1", "dPhi_i/dz_1 = -1", "Phi_i = z_i - z_1, and Phi_1 does not know z_i", none=_NAME
+    ),
+    Erratum(
         "(3.11)-(3.13)",
         "w and zeta in the brackets",
         "W of (3.5) and zeta''",
         "(3.6)-(3.7) carry W - zeta'' - g; a displacement cannot be added to accelerations",
         none="w is not defined, and zeta = zeta'' = 0 in the paper's scenes",
     ),
-    Slip(
+    Erratum(
         "(3.12)",
         "c_24 = -k^x_21 Delta",
         "c_24 = -k^y_21 Delta",
         "(3.7) has the spring of y; printed, the springs of y do work in every cycle unless T_3x = T_3y",
         _wrong_spring,
     ),
-    Slip(
+    Erratum(
         "(3.12)",
         "c_1e = 0 for e = 4 ... N, c_2e = 0 for e = 5 ... N",
         "up to 2 N",
         "q has 2 N components (3.9)",
         none=_NAME,
     ),
-    Slip(
+    Erratum(
         "(3.15)",
         "h_12, h_21 without rho; h_22 with xi'' Q; h_21 called h_11",
         "factor rho; eta'' Q; its own name",
         "mu = f_c v put into (3.11); the same mu = f_c v also enters M (3.10) and E (3.13)",
         _wrong_damping,
     ),
-    Slip(
+    Erratum(
         "(4.6)",
         "components of F_F are mu N each; F_3 has minus signs before g x_1 / rho and k (x_1 - x_2)",
         "|F_F| = mu N in every direction; F_3 = -(xi'' + (m_sum / m_1)(zeta'' + g) x_1 / rho + (k / m_1)(x_1 - x_2))",
         "printed, |F_F| is sqrt(2) mu N at the origin, and a displaced platform is pushed away; (4.3) at rest",
         _printed_rest,
     ),
-    Slip(
+    Erratum(
         "after (4.7)",
         "motion along x + beta y = 0",
         "along x - beta y = 0",
         "v_i = x_i - beta y_i = 0 is the solution (4.7)",
         none="a statement about the motion; the motion itself stays in the plane x = beta y",
     ),
-    Slip("section 5", "solution (5.7)", "solution (4.7)", "there is no (5.7)", none=_NAME),
+    Erratum("section 5", "solution (5.7)", "solution (4.7)", "there is no (5.7)", none=_NAME),
 )
 
 
@@ -159,22 +161,22 @@ class Effect:
     fault: str = ""
 
 
-def slip_tasks(study: Study, slips: Sequence[Slip] = SLIPS) -> list[tuple[Scene, int]]:
+def errata_arguments(study: Study, slips: Sequence[Erratum] = ERRATA) -> list[tuple[Scene, int]]:
     """Every measurable slip in every scene, in the order scene, slip."""
     return [(scene, number) for scene in study.phased for number, slip in enumerate(slips) if slip.measure]
 
 
-def slip_effects(
-    study: Study, jobs: int, executor: Callable[[int], Executor], slips: Sequence[Slip] = SLIPS
+def errata_effects(
+    study: Study, jobs: int, executor: Callable[[int], Executor], slips: Sequence[Erratum] = ERRATA
 ) -> list[Effect]:
     """Every measurable slip in every scene, computed on `executor(jobs)`, in the order scene, slip."""
-    return sweep(slip_tasks(study, slips), measured, _lost, lambda task, effect: None, jobs, executor)
+    return sweep(errata_arguments(study, slips), measured, _lost, lambda task, effect: None, jobs, executor)
 
 
 def measured(task: tuple[Scene, int]) -> Effect:
     """The effect of one slip in one scene."""
     scene, number = task
-    measure = SLIPS[number].measure
+    measure = ERRATA[number].measure
     assert measure is not None
     try:
         change = measure(scene.with_values({"duration": min(scene.duration, DURATION)}))

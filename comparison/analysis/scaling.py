@@ -30,7 +30,7 @@ CUTOFF = 1e-3  # m/s at s = 1, of the resolved peak; it scales with the motion
 STEP = "exact minus small"
 PRINTED = "small, s minus s/2"
 
-Task = tuple[Scene, bool]  # and whether the supremum is taken
+Arguments = tuple[Scene, bool]  # and whether the supremum is taken
 
 
 def scaled(scene: Scene, s: float) -> Scene:
@@ -41,18 +41,18 @@ def scaled(scene: Scene, s: float) -> Scene:
     return scene.with_values(values)
 
 
-def scaling_tasks(study: Study) -> list[Task]:
+def scaling_arguments(study: Study) -> list[Arguments]:
     """Every scene with its supremum and, where that differs, its resolved peak."""
     return [(scene, peak) for scene in study.phased for peak in (True, False) if peak or _dry(scene)]
 
 
 def scaling_trends(study: Study, jobs: int, executor: Pool = process_pool) -> list[Trend]:
     """The trends of every scene and body, for the supremum and the resolved peak, computed on `executor`."""
-    found = sweep(scaling_tasks(study), scene_trends, _lost, lambda task, trends: None, jobs, executor)
+    found = sweep(scaling_arguments(study), scene_trends, _lost, lambda task, trends: None, jobs, executor)
     return [one for trends in found for one in trends]
 
 
-def scene_trends(task: Task) -> list[Trend]:
+def scene_trends(task: Arguments) -> list[Trend]:
     """Both trends of one scene for each body. Runs inside a worker process."""
     scene, supremum = task
     try:
@@ -82,7 +82,7 @@ def _both(scene: Scene, supremum: bool, s: float) -> tuple[Array, Array]:
     return np.array([answer.mu for answer in answers]), np.array([answer.error for answer in answers])
 
 
-def _lost(task: Task, outcome: Outcome, fault: str) -> list[Trend]:
+def _lost(task: Arguments, outcome: Outcome, fault: str) -> list[Trend]:
     scene, supremum = task
     what = f"{STEP}, {_peak(scene, supremum)}"
     return [

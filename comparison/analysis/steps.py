@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from comparison.analysis.surfaces import common_phases
-from comparison.study.models import Rung
+from comparison.study.models import Model
 
 Array = NDArray[np.float64]
 
@@ -27,8 +27,8 @@ class Step:
     """
 
     key: str
-    first: Rung
-    second: Rung
+    first: Model
+    second: Model
     body: int
     alpha1: Array
     alpha2: Array
@@ -81,7 +81,7 @@ class Step:
         return self.size[:: stride // self.stride, :: stride // self.stride]
 
 
-def step(surfaces: xr.Dataset, scene: str, key: str, first: Rung, second: Rung, body: int, per: Rung) -> Step:
+def step(surfaces: xr.Dataset, scene: str, key: str, first: Model, second: Model, body: int, per: Model) -> Step:
     """
     The difference of two models in one body, as a share of mu of the model `per`, which must be above 0.
 
@@ -89,12 +89,12 @@ def step(surfaces: xr.Dataset, scene: str, key: str, first: Rung, second: Rung, 
     """
     data = common_phases(surfaces, scene, [first.key, second.key, per.key]).sel(body=body)
 
-    def mu(rung: Rung) -> Array:
-        value = np.asarray(data["mu"].sel(model=rung.key), float)
-        return np.where(error(rung) <= WORTHLESS * value, value, np.nan)
+    def mu(model: Model) -> Array:
+        value = np.asarray(data["mu"].sel(model=model.key), float)
+        return np.where(error(model) <= WORTHLESS * value, value, np.nan)
 
-    def error(rung: Rung) -> Array:
-        return np.asarray(data["error"].sel(model=rung.key), float)
+    def error(model: Model) -> Array:
+        return np.asarray(data["error"].sel(model=model.key), float)
 
     scale = np.where(mu(per) > 0.0, mu(per), np.nan)
     return Step(

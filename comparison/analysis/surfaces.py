@@ -1,4 +1,4 @@
-"""The surfaces mu_i(alpha1, alpha2) of every scene and model, labelled, as one xarray data set."""
+"""The surfaces mu_i(alpha1, alpha2) of every scene and model, labeled, as one xarray data set."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from comparison.study.batches import Answer, Tile
-from comparison.study.models import rungs_of
+from comparison.study.batches import Batch, BatchResult
+from comparison.study.models import models_of
 from comparison.study.study import Study
 
 NOT_APPLICABLE = "not applicable"  # status of a model that the scene gives nothing to add
@@ -17,7 +17,7 @@ WIDE = 0.5  # of rho: a displacement of the platform that is said
 NOT_ASKED = "not asked"  # status of the phases between those of a model that computes every k-th
 
 
-def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Answer]) -> xr.Dataset:
+def labeled_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[BatchResult]) -> xr.Dataset:
     """
     The answers on dimensions scene, model, body, alpha1, alpha2 (rad).
 
@@ -27,7 +27,7 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
     arose; `cap_share` is the largest displacement of the platform over rho. `cost` (scene, model) is s of compute.
     """
     names = [scene.name for scene in study.scenes]
-    models = [rung.key for rung in study.ladder]
+    models = [model.key for model in study.hierarchy]
     bodies = max(len(scene.bodies) for scene in study.scenes)
     plane = (len(names), len(models), study.grid**2)
     mu = np.full((*plane, bodies), np.nan)
@@ -36,17 +36,17 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
     cap_share = np.full(plane, np.nan)
     status = np.full(plane, NOT_APPLICABLE, dtype=object)
     for index, scene in enumerate(study.scenes):
-        status[index, [models.index(rung.key) for rung in rungs_of(scene, study.ladder)]] = NOT_ASKED
+        status[index, [models.index(model.key) for model in models_of(scene, study.hierarchy)]] = NOT_ASKED
     solved = {
-        (scene.name, rung.key): study.solved(scene, rung)
+        (scene.name, model.key): study.solved(scene, model)
         for scene in study.scenes
-        for rung in rungs_of(scene, study.ladder)
+        for model in models_of(scene, study.hierarchy)
     }
     cost = np.zeros(plane[:2])
-    for tile, answer in zip(tiles, answers, strict=True):
-        where = names.index(tile.scene.name), models.index(tile.rung)
-        span = solved[tile.scene.name, tile.rung][tile.first : tile.first + len(tile.phases)]
-        count = len(tile.scene.bodies)
+    for batch, answer in zip(batches, answers, strict=True):
+        where = names.index(batch.scene.name), models.index(batch.model)
+        span = solved[batch.scene.name, batch.model][batch.first : batch.first + len(batch.phases)]
+        count = len(batch.scene.bodies)
         mu[where][span, :count] = answer.mu
         error[where][span, :count] = answer.error
         instant[where][span] = answer.instant
@@ -54,8 +54,8 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
         status[where][span] = answer.status
         cost[where] += answer.cost
     for row, scene in enumerate(study.scenes):
-        for rung in rungs_of(scene, study.ladder):
-            column, place, source = models.index(rung.key), study.places(rung, scene), study.sources(scene, rung)
+        for model in models_of(scene, study.hierarchy):
+            column, place, source = models.index(model.key), study.places(model, scene), study.sources(scene, model)
             for array in (mu, error, instant, cap_share, status):
                 array[row, column, place] = array[row, column, source]
     square = (len(names), len(models), study.grid, study.grid)
@@ -79,7 +79,7 @@ def labelled_surfaces(study: Study, tiles: Sequence[Tile], answers: Sequence[Ans
             "cost": (("scene", "model"), cost, {"units": "s", "long_name": "compute time of the surface"}),
             "stride": (
                 ("scene", "model"),
-                [[study.stride(rung, scene) for rung in study.ladder] for scene in study.scenes],
+                [[study.stride(model, scene) for model in study.hierarchy] for scene in study.scenes],
                 {"long_name": "the model has every k-th phase"},
             ),
             "recorded": (
@@ -110,11 +110,11 @@ def largest_cap_share(surfaces: xr.Dataset, scene: str, model: str) -> float:
 def wide_swings(study: Study, surfaces: xr.Dataset) -> list[str]:
     """One line for every model whose platform uses more than half of the cap."""
     return [
-        f"{scene.name}, {rung.title}: the platform moves up to {100.0 * share:.1f} % of rho from the middle; "
+        f"{scene.name}, {model.title}: the platform moves up to {100.0 * share:.1f} % of rho from the middle; "
         "the model assumes a cap that reaches so far"
         for scene in study.scenes
-        for rung in rungs_of(scene, study.ladder)
-        if (share := largest_cap_share(surfaces, scene.name, rung.key)) > WIDE
+        for model in models_of(scene, study.hierarchy)
+        if (share := largest_cap_share(surfaces, scene.name, model.key)) > WIDE
     ]
 
 

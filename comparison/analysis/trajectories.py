@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from comparison.analysis.differences import pair_step
 from comparison.execution.sweep import sweep
 from comparison.study.batches import imported
-from comparison.study.models import Rung
+from comparison.study.models import Model
 from comparison.study.study import Study
 from reference.problem import Outcome, Scene, Trajectory
 
@@ -61,7 +61,7 @@ class StoredMotion:
             raise ValueError(f"{self.time.shape} instants of {self.position.shape} and {self.acceleration.shape}")
 
 
-Task = tuple[Scene, Rung, float, Place, tuple[float, float]]
+Arguments = tuple[Scene, Model, float, Place, tuple[float, float]]
 
 
 def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Place]:
@@ -79,7 +79,7 @@ def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Plac
     return [Place(scene.name, row, column, why) for (row, column), why in places.items()]
 
 
-def motion_tasks(study: Study, surfaces: xr.Dataset) -> list[Task]:
+def motion_arguments(study: Study, surfaces: xr.Dataset) -> list[Arguments]:
     """
     Every place of every scene with every model, in the order scene, place, model.
 
@@ -87,36 +87,36 @@ def motion_tasks(study: Study, surfaces: xr.Dataset) -> list[Task]:
     """
     axes = np.asarray(surfaces["alpha1"]), np.asarray(surfaces["alpha2"])
     return [
-        (scene, rung, rung.tolerance(study.tolerance), place, (axes[0][place.row], axes[1][place.column]))
+        (scene, model, model.tolerance(study.tolerance), place, (axes[0][place.row], axes[1][place.column]))
         for scene in study.scenes
         for place in chosen_places(study, surfaces, scene)
-        for rung in shown_rungs(study, scene)
-        if place.row % study.stride(rung, scene) == place.column % study.stride(rung, scene) == 0
+        for model in shown_models(study, scene)
+        if place.row % study.stride(model, scene) == place.column % study.stride(model, scene) == 0
     ]
 
 
 def stored_motions(
     study: Study, surfaces: xr.Dataset, jobs: int, executor: Callable[[int], Executor]
 ) -> list[StoredMotion]:
-    """The motions of every scene, computed on `executor(jobs)`, in the order of `motion_tasks`."""
-    return sweep(motion_tasks(study, surfaces), moved, _lost, lambda task, motion: None, jobs, executor)
+    """The motions of every scene, computed on `executor(jobs)`, in the order of `motion_arguments`."""
+    return sweep(motion_arguments(study, surfaces), moved, _lost, lambda task, motion: None, jobs, executor)
 
 
-def shown_rungs(study: Study, scene: Scene) -> list[Rung]:
+def shown_models(study: Study, scene: Scene) -> list[Model]:
     """The models whose surfaces the page shows, each once."""
-    return list({rung.key: rung for pair in study.pairs(scene) for rung in (pair.first, pair.second)}.values())
+    return list({model.key: model for pair in study.pairs(scene) for model in (pair.first, pair.second)}.values())
 
 
-def moved(task: Task) -> StoredMotion:
+def moved(task: Arguments) -> StoredMotion:
     """The motion of one task, thinned; what goes wrong is said in `fault`."""
-    scene, rung, tolerance, place, phase = task
-    settings = {key: value for key, value in rung.settings.items() if key != "cutoff"}  # a way to read, not to move
-    if rung.side == "reference":
+    scene, model, tolerance, place, phase = task
+    settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
+    if model.side == "reference":
         settings["times"] = np.linspace(0.0, scene.duration, round(scene.duration / STEP) + 1)
     try:
-        motion: Trajectory = imported(rung.trajectory)(scene, phase, tolerance=tolerance, **settings)
+        motion: Trajectory = imported(model.trajectory)(scene, phase, tolerance=tolerance, **settings)
         if len(motion.time) == 0:  # refused before its first step
-            return _nothing(place, rung.key, Outcome(motion.status), "")
+            return _nothing(place, model.key, Outcome(motion.status), "")
         position, acceleration = motion.position[:, :, :2], motion.absolute_acceleration[:, :, :2]
         size = np.linalg.norm(motion.absolute_acceleration, axis=2)
         if not np.isfinite(size).all():
@@ -124,10 +124,10 @@ def moved(task: Task) -> StoredMotion:
         flat = np.concatenate([position, acceleration], axis=2).reshape(len(motion.time), -1)
         kept = thinned(motion.time, flat, np.unique(np.argmax(size, axis=0)) if len(size) else np.zeros(0, int))
     except Exception as fault:
-        return _nothing(place, rung.key, Outcome.SOLVER_FAILED, f"{type(fault).__name__}: {fault}")
+        return _nothing(place, model.key, Outcome.SOLVER_FAILED, f"{type(fault).__name__}: {fault}")
     stick = tuple((float(start), float(end)) for start, end in motion.stick)
     time, status = motion.time[kept], str(motion.status)
-    return StoredMotion(place, rung.key, time, position[kept], acceleration[kept], stick, status)
+    return StoredMotion(place, model.key, time, position[kept], acceleration[kept], stick, status)
 
 
 def thinned(time: Array, values: Array, peaks: NDArray[np.intp], share: float = SHARE) -> NDArray[np.intp]:
@@ -161,5 +161,5 @@ def _nothing(place: Place, model: str, outcome: Outcome, fault: str) -> StoredMo
     return StoredMotion(place, model, np.zeros(0), empty, empty.copy(), status=outcome.value, fault=fault)
 
 
-def _lost(task: Task, outcome: Outcome, fault: str) -> StoredMotion:
+def _lost(task: Arguments, outcome: Outcome, fault: str) -> StoredMotion:
     return _nothing(task[3], task[1].key, outcome, fault)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from comparison.analysis.steps import WORTHLESS
 from comparison.analysis.surfaces import common_phases, outcome_counts
 from comparison.study.batches import refusal_of
-from comparison.study.models import Rung, rungs_of
+from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from reference.problem import ADVICE, Outcome, Scene
 
@@ -54,9 +54,9 @@ def with_silent_models(study: Study, surfaces: xr.Dataset) -> Study:
     """
     silent = {}
     for scene in study.scenes:
-        rungs = rungs_of(scene, study.ladder)
-        mute = tuple(rung.key for rung in rungs if not _usable(surfaces, scene, rung).any())
-        if mute and len(mute) < len(rungs) - 1:
+        models = models_of(scene, study.hierarchy)
+        mute = tuple(model.key for model in models if not _usable(surfaces, scene, model).any())
+        if mute and len(mute) < len(models) - 1:
             silent[scene.name] = mute
     return replace(study, silent=silent or None)
 
@@ -65,46 +65,46 @@ def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
     """Every model of every scene that lacks a value somewhere, in the order of scenes and models."""
     found = []
     for scene in study.scenes:
-        compared = {rung.key for rung in study.compared(scene)}
-        for rung in rungs_of(scene, study.ladder):
-            lacking = int((~_answered(surfaces, scene, rung)).sum())
-            if lacking or rung.key not in compared:
-                asked, why = study.points(rung, scene), _why(study, surfaces, scene, rung)
-                used = rung.key in compared and lacking < asked
-                found.append(Unanswered(scene.name, rung.key, rung.title, lacking, asked, used, why))
+        compared = {model.key for model in study.compared(scene)}
+        for model in models_of(scene, study.hierarchy):
+            lacking = int((~_answered(surfaces, scene, model)).sum())
+            if lacking or model.key not in compared:
+                asked, why = study.points(model, scene), _why(study, surfaces, scene, model)
+                used = model.key in compared and lacking < asked
+                found.append(Unanswered(scene.name, model.key, model.title, lacking, asked, used, why))
     return found
 
 
-def advice(study: Study, scene: Scene, rung: Rung, outcome: str) -> str:
+def advice(study: Study, scene: Scene, model: Model, outcome: str) -> str:
     """What an outcome of a model on a scene means, and what helps."""
     refused = ""
     if outcome == Outcome.STEP_LIMIT:
-        refused = refusal_of(scene, rung, rung.tolerance(study.tolerance), study.full)
+        refused = refusal_of(scene, model, model.tolerance(study.tolerance), study.full)
     return refused or ADVICE[Outcome(outcome)]
 
 
-def _why(study: Study, surfaces: xr.Dataset, scene: Scene, rung: Rung) -> str:
-    counts = outcome_counts(surfaces, scene.name, rung.key)
+def _why(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> str:
+    counts = outcome_counts(surfaces, scene.name, model.key)
     bad = {outcome: count for outcome, count in counts.items() if outcome != Outcome.OK}
     return "; ".join(
-        f"{f'{count} × ' if len(counts) > 1 else ''}{outcome}: {advice(study, scene, rung, outcome)}"
+        f"{f'{count} × ' if len(counts) > 1 else ''}{outcome}: {advice(study, scene, model, outcome)}"
         for outcome, count in bad.items()
     )
 
 
-def _answered(surfaces: xr.Dataset, scene: Scene, rung: Rung) -> NDArray[np.bool_]:
+def _answered(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
     """At which phase pairs asked of a model every body has a value."""
-    mu, _ = _values(surfaces, scene, rung)
+    mu, _ = _values(surfaces, scene, model)
     return np.asarray(np.isfinite(mu).all(axis=0))
 
 
-def _usable(surfaces: xr.Dataset, scene: Scene, rung: Rung) -> NDArray[np.bool_]:
+def _usable(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
     """At which of them every value is known to half of itself."""
-    mu, error = _values(surfaces, scene, rung)
+    mu, error = _values(surfaces, scene, model)
     return np.asarray((np.isfinite(mu) & (error <= WORTHLESS * mu)).all(axis=0))
 
 
-def _values(surfaces: xr.Dataset, scene: Scene, rung: Rung) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _values(surfaces: xr.Dataset, scene: Scene, model: Model) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """mu and error (N, K, K) at the phase pairs asked of a model."""
-    own = common_phases(surfaces, scene.name, [rung.key]).sel(model=rung.key).isel(body=slice(len(scene.bodies)))
+    own = common_phases(surfaces, scene.name, [model.key]).sel(model=model.key).isel(body=slice(len(scene.bodies)))
     return np.asarray(own["mu"], float), np.asarray(own["error"], float)

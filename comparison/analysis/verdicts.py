@@ -65,8 +65,8 @@ def verdict(study: Study, surfaces: xr.Dataset, scene: Scene) -> Verdict:
     """The verdict of one scene."""
     bodies = range(1, len(scene.bodies) + 1)
     ladders = [steps(study, surfaces, scene.name, body) for body in bodies]
-    sizes = [np.where(ladder[-1].real, np.abs(ladder[-1].size), -1.0) for ladder in ladders]
-    compared = sum(int(ladder[-1].known.sum()) for ladder in ladders)
+    sizes = [np.where(hierarchy[-1].real, np.abs(hierarchy[-1].size), -1.0) for hierarchy in ladders]
+    compared = sum(int(hierarchy[-1].known.sum()) for hierarchy in ladders)
     body, size = max(enumerate(sizes, start=1), key=lambda pair: pair[1].max())
     total = ladders[body - 1][-1]
     between = f"{total.first.title} and {total.second.title}"
@@ -92,9 +92,11 @@ def verdict(study: Study, surfaces: xr.Dataset, scene: Scene) -> Verdict:
     return Verdict(scene.name, found, body, phases, cause, part, real, sentence)
 
 
-def _cause(ladder: Sequence[Step], place: tuple[int, int]) -> tuple[str, float]:
+def _cause(hierarchy: Sequence[Step], place: tuple[int, int]) -> tuple[str, float]:
     """Title and signed size of the largest step at a place of the study's grid."""
-    sizes = [(step.second.title, float(step.size[place[0] // step.stride, place[1] // step.stride])) for step in ladder]
+    sizes = [
+        (step.second.title, float(step.size[place[0] // step.stride, place[1] // step.stride])) for step in hierarchy
+    ]
     return max((one for one in sizes if np.isfinite(one[1])), key=lambda one: abs(one[1]), default=("", float("nan")))
 
 
@@ -106,9 +108,9 @@ def _heights(surfaces: xr.Dataset, scene: str, total: Step, place: tuple[int, in
 
 def bar(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> Bar:
     """The stacked bar of one surface."""
-    ladder = steps(study, surfaces, scene.name, body)
-    coarsest = max(step.stride for step in ladder)
-    sizes = [np.abs(step.every(coarsest)) for step in ladder]
+    hierarchy = steps(study, surfaces, scene.name, body)
+    coarsest = max(step.stride for step in hierarchy)
+    sizes = [np.abs(step.every(coarsest)) for step in hierarchy]
     known = np.isfinite(sizes).all(axis=0)
     if not known.any():
         return Bar(scene.name, body, float("nan"), 0, ())
@@ -116,7 +118,7 @@ def bar(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> Bar:
     whole = sum(means[:-1])
     segments = tuple(
         Segment(step.second.key, mean, mean / whole if whole > 0.0 else 0.0, _real_part(step))
-        for step, mean in zip(ladder[:-1], means)
+        for step, mean in zip(hierarchy[:-1], means)
     )
     return Bar(scene.name, body, means[-1], int(known.sum()), segments)
 

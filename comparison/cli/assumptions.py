@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TimeRemainingColumn
 from rich.table import Table
 
-from comparison.analysis.assumptions.validity import said
+from comparison.analysis.assumptions.validity import describe
 from comparison.analysis.assumptions.variations import DURATION, MANY, PHASES, Cell, assumption_cells, ranges
 from comparison.execution.executors import process_pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
@@ -118,4 +118,4 @@ def _print(console: Console, scene: Scene, cells: Sequence[Cell]) -> None:
     console.print(table)
     console.print(f"{sum(cell.cost for cell in cells):.0f} s of compute")
     for found in ranges([scene], cells):
-        console.print(said(found))
+        console.print(describe(found))

@@ -14,7 +14,7 @@ from comparison.analysis.tradeoff.trade import read as stored_trades
 from comparison.execution.cache import refuse_foreign_store
 from comparison.execution.executors import cores
 from comparison.execution.output import destination, refuse_foreign_report
-from comparison.study.planning import AMBITIONS, DEFAULT, DEFAULT_TOLERANCE, tightest
+from comparison.study.planning import DEFAULT_PRESET, DEFAULT_TOLERANCE, STUDY_PRESETS, tightest
 from comparison.study.study import refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
 
@@ -107,7 +107,7 @@ def _parser() -> argparse.ArgumentParser:
         help=f"TOML files, in which one key may run over a range, or built-in names "
         f"(default: {', '.join(builtin_scenes())}; with a recorded motion: {', '.join(example_scenes())})",
     )
-    parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {AMBITIONS[DEFAULT].grid})")
+    parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {STUDY_PRESETS[DEFAULT_PRESET].grid})")
     parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help="report (default %(default)s)")
     parser.add_argument("--jobs", metavar="N", help=f"worker processes of this machine (default {cores()})")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="compute on the Dask cluster with this scheduler")

@@ -1,7 +1,7 @@
 """
 Records what `--tolerance` and `--budget` of `comparison.run` choose by: `python -m comparison.tradeoff.record`.
 
-For every model of the ladder and every tolerance: what a point costs beside one at the usual tolerance, and at which
+For every model of the hierarchy and every tolerance: what a point costs beside one at the usual tolerance, and at which
 share of the points the accuracy was met, on the paper's scenes. Writes comparison/study/accuracy_record.json.
 """
 
@@ -18,8 +18,8 @@ from comparison.analysis.tradeoff.settings import SPATIAL_TIGHT, TIGHT
 from comparison.execution.provenance import provenance
 from comparison.study.accuracy_record import FILE
 from comparison.study.batches import imported
-from comparison.study.benchmark import ENGINE_POINTS, yardsticks
-from comparison.study.models import LADDER, REFERENCE_TOLERANCE, Rung
+from comparison.study.benchmark import ENGINE_POINTS, machine_benchmark
+from comparison.study.models import MODEL_HIERARCHY, REFERENCE_TOLERANCE, Model
 from reference.problem import Scene, builtin_scenes, load_scene
 from reference.problem.files import write_atomically
 
@@ -34,34 +34,34 @@ def main() -> int:
     """Record, print a line for every model, and write the file."""
     scenes = [load_scene(name) for name in builtin_scenes()]
     record: dict[str, Any] = {"machine": provenance()["processor"], "models": {}}
-    took = [yardsticks()]  # again after every model: what else the machine does falls on both alike
+    took = [machine_benchmark()]  # again after every model: what else the machine does falls on both alike
     seconds: dict[str, dict[str, float]] = {scene.digest(): {} for scene in scenes}
-    for rung in LADDER:
-        own = [scene for scene in scenes if rung.applies(scene)]
-        rows, costs = _rows(rung, own)
-        record["models"][rung.key] = {"usual": _usual(rung), "tolerances": rows}
-        took.append(yardsticks())
+    for model in MODEL_HIERARCHY:
+        own = [scene for scene in scenes if model.applies(scene)]
+        rows, costs = _rows(model, own)
+        record["models"][model.key] = {"usual": _usual(model), "tolerances": rows}
+        took.append(machine_benchmark())
         for scene, cost in zip(own, costs):
-            seconds[scene.digest()][rung.key] = float(f"{cost:.4g}")
-        print(rung.key, *(f"{row['tolerance']:.0e}: {row['cost']:.2f}, {row['met']:.3f}" for row in rows), sep="  ")
+            seconds[scene.digest()][model.key] = float(f"{cost:.4g}")
+        print(model.key, *(f"{row['tolerance']:.0e}: {row['cost']:.2f}, {row['met']:.3f}" for row in rows), sep="  ")
     record["seconds"] = seconds
-    record["yardsticks"] = {side: float(np.median([one[side] for one in took])) for side in took[0]}
+    record["machine_benchmark"] = {side: float(np.median([one[side] for one in took])) for side in took[0]}
     write_atomically(FILE, (json.dumps(record, indent=1) + "\n").encode())
     print(f"{ENGINE_POINTS} point(s) of the engine as yardstick: {record['yardsticks']}; written: {FILE}")
     return 0
 
 
-def _usual(rung: Rung) -> float:
-    return REFERENCE_TOLERANCE if rung.side == "reference" else 1e-3
+def _usual(model: Model) -> float:
+    return REFERENCE_TOLERANCE if model.side == "reference" else 1e-3
 
 
-def _rows(rung: Rung, scenes: list[Scene]) -> tuple[list[dict[str, Any]], list[float]]:
+def _rows(model: Model, scenes: list[Scene]) -> tuple[list[dict[str, Any]], list[float]]:
     """What every tolerance gives in all scenes together; processor time of a point of each scene as usual, s."""
-    phases = sample(POINTS.get(rung.key, POINTS["reference"]))
-    tolerances = REFERENCE_TOLERANCES if rung.side == "reference" else ENGINE_TOLERANCES
-    truths = [_truth(rung, scene, phases) for scene in scenes]
-    found = {tolerance: [_answer(rung, scene, phases, tolerance) for scene in scenes] for tolerance in tolerances}
-    usual = found[_usual(rung)]
+    phases = sample(POINTS.get(model.key, POINTS["reference"]))
+    tolerances = REFERENCE_TOLERANCES if model.side == "reference" else ENGINE_TOLERANCES
+    truths = [_truth(model, scene, phases) for scene in scenes]
+    found = {tolerance: [_answer(model, scene, phases, tolerance) for scene in scenes] for tolerance in tolerances}
+    usual = found[_usual(model)]
     rows = []
     for tolerance, answers in found.items():
         errors = np.concatenate(
@@ -77,21 +77,21 @@ def _rows(rung: Rung, scenes: list[Scene]) -> tuple[list[dict[str, Any]], list[f
                 "claimed": float((np.nan_to_num(claims, nan=np.inf) <= tolerance).mean()),
                 "error": float(f"{np.quantile(errors, 0.99, method='higher'):.2g}"),
                 "points": len(errors),
-                "truth": SPATIAL_TIGHT if rung.key == "spatial" else TIGHT,
+                "truth": SPATIAL_TIGHT if model.key == "spatial" else TIGHT,
             }
         )
     return rows, [one.seconds / len(phases) for one in usual]
 
 
-def _answer(rung: Rung, scene: Scene, phases: Array, tolerance: float) -> Found:
-    return solve(Task(scene, (rung.amplification, {**rung.settings, "tolerance": tolerance}), 0, phases))
+def _answer(model: Model, scene: Scene, phases: Array, tolerance: float) -> Found:
+    return solve(Task(scene, (model.amplification, {**model.settings, "tolerance": tolerance}), 0, phases))
 
 
-def _truth(rung: Rung, scene: Scene, phases: Array) -> Array:
+def _truth(model: Model, scene: Scene, phases: Array) -> Array:
     """mu (M, N): of the same question by the reference, and of the spatial model, which it does not know, by itself."""
-    if rung.key == "spatial":
-        return _answer(rung, scene, phases, SPATIAL_TIGHT).mu
-    if rung.side == "engine":
-        law = {"regularization": None if scene.lubricated else rung.settings["regularization"]}
+    if model.key == "spatial":
+        return _answer(model, scene, phases, SPATIAL_TIGHT).mu
+    if model.side == "engine":
+        law = {"regularization": None if scene.lubricated else model.settings["regularization"]}
         return np.array(imported("reference:amplification")(scene, phases, tolerance=TIGHT, **law).mu)
-    return _answer(rung, scene, phases, TIGHT).mu
+    return _answer(model, scene, phases, TIGHT).mu

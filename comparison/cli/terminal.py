@@ -10,42 +10,42 @@ from rich.console import Console
 from rich.table import Table
 
 from comparison.analysis.differences import Difference
-from comparison.analysis.tasks import errands, predicted
+from comparison.analysis.tasks import analysis_tasks, predicted
 from comparison.analysis.unanswered import Unanswered
 from comparison.cli.options import Options
 from comparison.execution.cache import Cache, store_beside
-from comparison.execution.keys import tile_key
-from comparison.execution.task_cache import Answers
+from comparison.execution.keys import batch_key
+from comparison.execution.task_cache import TaskCache
 from comparison.study.accuracy_record import recorded
 from comparison.study.batches import refusal_of
 from comparison.study.models import RECORDED_ON
 from comparison.study.overhead import COMPILED_ONCE, START_UP, WRITING
-from comparison.study.planning import Choice
-from comparison.study.reductions import left_out
+from comparison.study.planning import StudyPlan
+from comparison.study.reductions import reductions
 from comparison.study.study import Study
 
 
-def print_plan(console: Console, study: Study, options: Options, whole: bool = True) -> None:
+def print_plan(console: Console, study: Study, options: Options, with_analyses: bool = True) -> None:
     """What would be computed and its predicted cost."""
     table = _table("scene", "model", "points", "computed", "tolerance", "s on one core")
     total, refused = 0.0, []
     for scene in study.scenes:
-        for rung in study.ladder:
-            if not rung.applies(scene):
+        for model in study.hierarchy:
+            if not model.applies(scene):
                 continue
-            points, computed = study.points(rung, scene), len(study.solved(scene, rung))
-            reason = refusal_of(scene, rung, rung.tolerance(study.tolerance), study.full)
-            refused += [f"{scene.name}, {rung.title}: {reason}"] if reason else []
-            seconds = 0.0 if reason else study.seconds_of(scene, rung)
+            points, computed = study.points(model, scene), len(study.solved(scene, model))
+            reason = refusal_of(scene, model, model.tolerance(study.tolerance), study.full)
+            refused += [f"{scene.name}, {model.title}: {reason}"] if reason else []
+            seconds = 0.0 if reason else study.seconds_of(scene, model)
             total += seconds
-            cells = str(points), str(computed), f"{rung.tolerance(study.tolerance):.0e}", f"{seconds:.1f}"
-            table.add_row(scene.name, rung.title, *cells)
+            cells = str(points), str(computed), f"{model.tolerance(study.tolerance):.0e}", f"{seconds:.1f}"
+            table.add_row(scene.name, model.title, *cells)
     console.print(table)
-    _print_left_out(console, study)
-    beside = predicted(study, whole)
-    others = ", ".join(f"{name} {seconds:.0f} s ({tasks})" for name, (tasks, seconds) in beside.items() if tasks)
+    _print_reductions(console, study)
+    costs = predicted(study, with_analyses)
+    others = ", ".join(f"{name} {seconds:.0f} s ({tasks})" for name, (tasks, seconds) in costs.items() if tasks)
     console.print(f"Beside the surfaces, s on one core and tasks: {others}.")
-    total += sum(seconds for _, seconds in beside.values())
+    total += sum(seconds for _, seconds in costs.values())
     wall = START_UP + total / options.jobs + WRITING
     if len(study.phased) < len(study.scenes):
         console.print("A recorded motion has no phases: one point per model.")
@@ -53,12 +53,13 @@ def print_plan(console: Console, study: Study, options: Options, whole: bool = T
         console.print(f"{line}.", soft_wrap=True)
     over = f"{study.grid} x {study.grid} phases, " if study.phased else ""
     console.print(f"{over}{options.jobs} worker processes: about {wall:.0f} s.")
-    store, tiles = Cache(store_beside(options.out)), study.tiles()
-    if not options.fresh and (stored := sum(store.holds(tile_key(tile)) for tile in tiles)):
-        asked, known = errands(study, whole), Answers(store)
+    store, batches = Cache(store_beside(options.out)), study.batches()
+    if not options.fresh and (stored := sum(store.holds(batch_key(batch)) for batch in batches)):
+        asked, known = analysis_tasks(study, with_analyses), TaskCache(store)
         analyses = f"{sum(map(known.holds, asked))} of {len(asked)} analyses"
         console.print(
-            f"{stored} of {len(tiles)} tiles are in {store.folder} already, {analyses}: they are not computed again."
+            f"{stored} of {len(batches)} batches are in {store.folder} already, {analyses}: "
+            "they are not computed again."
         )
     if not options.by_trade:
         console.print(f"Costs were recorded on {RECORDED_ON}; another machine scales them all alike.")
@@ -72,11 +73,11 @@ def print_plan(console: Console, study: Study, options: Options, whole: bool = T
     console.print(f"Nothing was computed. The report would go to {options.out}.")
 
 
-def _print_left_out(console: Console, study: Study) -> None:
+def _print_reductions(console: Console, study: Study) -> None:
     """What the scenes do not require, and what that saves."""
     if study.full:
         console.print("Every phase pair and every model is computed in full (--full).")
-    elif rows := left_out(study):
+    elif rows := reductions(study):
         console.print("Left out, because the scene does not require it (--full computes it):")
         for row in rows:
             console.print(f"  {row.scene}: {row.what} ({row.models}): cost {row.cost}: {row.why}")
@@ -84,33 +85,37 @@ def _print_left_out(console: Console, study: Study) -> None:
         console.print("Nothing is left out: the scenes require all of it.")
 
 
-def print_choice(console: Console, chosen: Choice, options: Options) -> None:
+def print_study_plan(console: Console, plan: StudyPlan, options: Options) -> None:
     """What `--tolerance` or `--budget` chose, and what is expected of it."""
-    study = chosen.study
+    study = plan.study
     asked = [f"--tolerance {options.tolerance:g}"] if options.tolerance is not None else []
     asked += [f"--budget {options.budget:g}"] if options.budget is not None else []
     console.print(f"Chosen for {' '.join(asked)}, by the measured trade and the speed of this machine:")
     table = _table("model", "phases per axis", "asked for", "s of compute")
-    for rung in study.ladder:
-        if any(rung.applies(scene) for scene in study.scenes):
-            cells = str(len(study.axis(rung))), f"{rung.tolerance(study.tolerance):.0e}", f"{study.seconds(rung):.1f}"
-            table.add_row(rung.title, *cells)
+    for model in study.hierarchy:
+        if any(model.applies(scene) for scene in study.scenes):
+            cells = (
+                str(len(study.axis(model))),
+                f"{model.tolerance(study.tolerance):.0e}",
+                f"{study.seconds(model):.1f}",
+            )
+            table.add_row(model.title, *cells)
     console.print(table)
-    for line in chosen.left_out:
+    for line in plan.omitted:
         console.print(f"Left out: {line}.")
-    if not any(rung.side == "engine" for rung in study.ladder):
+    if not any(model.side == "engine" for model in study.hierarchy):
         console.print("NO ENGINE MODEL is left: this study compares the equations with each other only.")
-    if not chosen.whole:
+    if not plan.with_analyses:
         console.print(
             "Left out: motions, claims, scaling, convergence, assumptions varied: they do not fit the budget."
         )
     console.print(
-        f"Expected: every mu to {study.tolerance:g} at 99 % of the points; {chosen.compute:.1f} s of compute, "
-        f"about {chosen.wall:.0f} s in all with {options.jobs} workers."
+        f"Expected: every mu to {study.tolerance:g} at 99 % of the points; {plan.compute:.1f} s of compute, "
+        f"about {plan.wall:.0f} s in all with {options.jobs} workers."
     )
 
 
-def print_promises(console: Console, kept: Mapping[str, Any], seconds: float) -> None:
+def print_targets_met(console: Console, kept: Mapping[str, Any], seconds: float) -> None:
     """What came of it."""
     for model in kept["models"]:
         console.print(

@@ -18,14 +18,14 @@ from typing import TYPE_CHECKING, Any
 
 import numba
 
-from comparison.execution.environment import surroundings
+from comparison.execution.environment import environment_fingerprint
 from comparison.execution.executors import ExecutorLostError, WorkerDiedError
 from reference.problem import SceneError
 
 if TYPE_CHECKING:
     from distributed import Client
 
-ANSWER = 10.0  # s for the scheduler to answer
+CONNECT_TIMEOUT = 10.0  # s for the scheduler to answer
 PATIENCE = 60.0  # s without any worker, before the run ends
 RECOUNT = 2.0  # s between counts of the workers: some may join, or leave, at any time
 GONE = "the connection to the scheduler was lost"
@@ -54,11 +54,11 @@ def cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]:
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)  # what goes wrong is said here, in one line
 
     async def knock() -> None:
-        await (await connect(address, timeout=ANSWER)).close()
+        await (await connect(address, timeout=CONNECT_TIMEOUT)).close()
 
     try:
         asyncio.run(knock())  # a client that reaches nobody leaves threads behind
-        client = Client(address, timeout=ANSWER, set_as_default=False)
+        client = Client(address, timeout=CONNECT_TIMEOUT, set_as_default=False)
     except (OSError, TypeError, ValueError) as fault:  # TypeError: TLS without a configuration
         raise refusal(f"no scheduler answers there: {' '.join(str(fault).split())}") from None
     try:
@@ -142,12 +142,12 @@ def _same_code(client: Client, models: set[str], refusal: Callable[[str], SceneE
     """Numbers from other code must not be taken for ours."""
     try:
         client.wait_for_workers(1, timeout=PATIENCE)
-        theirs = client.run(_all_surroundings, sorted(models), on_error="return")
+        theirs = client.run(_all_fingerprints, sorted(models), on_error="return")
     except TimeoutError:
         raise refusal(f"the scheduler has had no worker for {PATIENCE:.0f} s: start some with `dask worker`") from None
     except OSError as fault:
         raise refusal(f"{GONE}: {' '.join(str(fault).split())}") from None
-    ours = _all_surroundings(sorted(models))
+    ours = _all_fingerprints(sorted(models))
     for worker, found in theirs.items():
         if isinstance(found, OSError):
             continue  # it died or left meanwhile
@@ -158,5 +158,5 @@ def _same_code(client: Client, models: set[str], refusal: Callable[[str], SceneE
                 raise refusal(f"worker {worker} has {name} {found.get(name)}, here it is {value}: install the same")
 
 
-def _all_surroundings(models: list[str]) -> dict[str, str]:
-    return {name: value for model in models for name, value in surroundings(model).items()}
+def _all_fingerprints(models: list[str]) -> dict[str, str]:
+    return {name: value for model in models for name, value in environment_fingerprint(model).items()}

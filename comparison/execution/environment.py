@@ -15,7 +15,7 @@ DRAWING = ("matplotlib", "pillow", "xarray")
 ANSWERING = ("reference", "multibody", "comparison.study", "comparison.analysis", "comparison.wording")
 
 
-def surroundings(model: str) -> dict[str, str]:
+def environment_fingerprint(model: str) -> dict[str, str]:
     """Versions of the packages that compute, and hashes of the source behind the function `model` ("package:name")."""
     sources = dict.fromkeys((*SHARED, model.split(":")[0].split(".")[0]))
     return {
@@ -26,7 +26,7 @@ def surroundings(model: str) -> dict[str, str]:
     }
 
 
-def answer_surroundings(module: str) -> dict[str, str]:
+def task_environment_fingerprint(module: str) -> dict[str, str]:
     """The same for what the module computes beside the surfaces: it asks both sides and may draw."""
     sources = (*ANSWERING, module.rpartition(".")[0] or module)
     return {

@@ -105,13 +105,13 @@ def refuse_foreign_report(out: Path) -> None:
         if _is_mount_point(place):
             raise refusal("is a mount point, which cannot be replaced: give a directory inside it")
         try:
-            strangers = foreign(place)
+            uncalibrated = foreign(place)
         except OSError as fault:
             raise refusal(f"cannot be read: {fault.strerror}: give another directory") from None
-        if strangers and not read_manifest(place):
+        if uncalibrated and not read_manifest(place):
             raise refusal("exists and is not a report of this study: give another directory, or empty this one")
-        if strangers:
-            raise refusal(f"the report there also holds {strangers[0]!r}, which would be lost: move it away")
+        if uncalibrated:
+            raise refusal(f"the report there also holds {uncalibrated[0]!r}, which would be lost: move it away")
     refuse_unwritable(out, place.parent)
 
 
@@ -144,7 +144,7 @@ class Report:
 
 
 @contextmanager
-def replaced_when_complete(out: Path, say: Callable[[str], None] = on_stderr) -> Iterator[Report]:
+def atomic_replace(out: Path, say: Callable[[str], None] = on_stderr) -> Iterator[Report]:
     """
     A new directory to write a report into, which takes the place of `out` if the block ends without exception.
 
@@ -246,13 +246,13 @@ def foreign(folder: Path) -> list[str]:
     if not own:
         return sorted(os.listdir(folder))
     folders = {str(parent) for name in own for parent in Path(name).parents}
-    strangers = []
+    uncalibrated = []
     for path, is_folder in _inside(folder):
         name = path.relative_to(folder).as_posix()
         if name != MANIFEST and not (name in folders if is_folder else _is_own(path, own.get(name))):
-            strangers.append(name)
+            uncalibrated.append(name)
     # of a folder that is not ours the files in it say more
-    return sorted(name for name in strangers if not any(other.startswith(f"{name}/") for other in strangers))
+    return sorted(name for name in uncalibrated if not any(other.startswith(f"{name}/") for other in uncalibrated))
 
 
 def read_manifest(folder: Path) -> dict[str, Own]:
@@ -289,8 +289,8 @@ def _put(aside: Path, place: Path, say: Callable[[str], None]) -> Path:
         why = fault.strerror or str(fault)
     try:
         if os.path.lexists(old):
-            if strangers := [place.name] if old.is_symlink() else foreign(old):
-                why = f"{strangers[0]!r} there is not a file of this study"
+            if uncalibrated := [place.name] if old.is_symlink() else foreign(old):
+                why = f"{uncalibrated[0]!r} there is not a file of this study"
                 _put_back(old, place)
             else:
                 own = read_manifest(old)

@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Sequence
 
 from comparison.execution.cache import Cache
-from comparison.execution.keys import ANSWER, TILE
+from comparison.execution.keys import ANALYSIS, BATCH
 from comparison.study.study import Study
 
 
@@ -15,15 +15,15 @@ def command_line(words: Sequence[str]) -> str:
     return shlex.join(["python", "-m", "comparison.run", *words])
 
 
-def going_on(cache: Cache, study: Study, words: Sequence[str]) -> str:
+def resume_hint(cache: Cache, study: Study, words: Sequence[str]) -> str:
     """How much is kept where, and the command for the rest: the same one, without what would throw it away."""
     rest = [word for word in words if word != "--fresh"]
-    others = f" and {cache.kept[ANSWER]} analyses" if cache.kept[ANSWER] else ""
-    kept = f"{cache.kept[TILE]} of {len(study.tiles())} tiles{others} are kept in {str(cache.folder)!r}"
+    others = f" and {cache.kept[ANALYSIS]} analyses" if cache.kept[ANALYSIS] else ""
+    kept = f"{cache.kept[BATCH]} of {len(study.batches())} batches{others} are kept in {str(cache.folder)!r}"
     return f"{kept}; go on with: {command_line(rest)}"
 
 
-def here(words: Sequence[str]) -> list[str]:
+def without_scheduler(words: Sequence[str]) -> list[str]:
     """The words of the command without the cluster: the same numbers from the processes of this machine."""
     rest, words = [], list(words)
     while words:

@@ -1,5 +1,5 @@
 """
-The tiles and errands of a study, each from the cache if it is there, else computed, stored at once, shown as progress.
+The batches and tasks of a study, each from the cache if it is there, else computed, stored at once, shown as progress.
 """
 
 from __future__ import annotations
@@ -11,14 +11,14 @@ from rich.console import Console
 
 from comparison.execution.cache import Cache
 from comparison.execution.executors import Pool
-from comparison.execution.keys import stored_tile, tile_key
+from comparison.execution.keys import batch_key, cached_batch
 from comparison.execution.progress import Stage, progress
-from comparison.execution.splitting import halves, joined
+from comparison.execution.splitting import merge, split_batch
 from comparison.execution.sweep import sweep
-from comparison.execution.task import Errand, Fetched, run_errand
-from comparison.execution.task_cache import Answers
+from comparison.execution.task import Task, TaskResult, execute
+from comparison.execution.task_cache import TaskCache
 from comparison.execution.warm_up import WARM_UP, warm_up
-from comparison.study.batches import Answer, Tile, solve_tile, unanswered
+from comparison.study.batches import Batch, BatchResult, execute_batch, unanswered
 from comparison.study.overhead import COMPILED_ONCE, START_UP
 from comparison.study.study import Study
 from reference.problem import Outcome
@@ -28,10 +28,10 @@ COMPILING = "compiling the reference"
 
 @dataclass(frozen=True)
 class Computed:
-    """`answers` to `tiles`, in their order. stored: how many were there before."""
+    """`answers` to `batches`, in their order. stored: how many were there before."""
 
-    tiles: Sequence[Tile]
-    answers: Sequence[Answer]
+    batches: Sequence[Batch]
+    answers: Sequence[BatchResult]
     stored: int
 
 
@@ -41,125 +41,125 @@ def computed(
     console: Console,
     jobs: int,
     executor: Pool,
-    errands: Sequence[Errand] = (),
-    answers: Answers | None = None,
+    tasks: Sequence[Task] = (),
+    answers: TaskCache | None = None,
 ) -> Computed:
     """
-    Every tile of the study and every errand, the missing ones computed on `executor` in one sweep.
+    Every batch of the study and every task, the missing ones computed on `executor` in one sweep.
 
-    What errands gave is in `answers`. Raises StoreError and ExecutorLostError.
+    What tasks gave is in `answers`. Raises StoreError and ExecutorLostError.
     """
-    answers = Answers(cache) if answers is None else answers
-    tiles = study.tiles()
-    found = {place: answer for place, tile in enumerate(tiles) if (answer := stored_tile(cache, tile)) is not None}
-    missing = [place for place in range(len(tiles)) if place not in found]
-    open_ = answers.missing(errands)
-    stages = _stages(study, tiles, missing, errands, open_)
+    answers = TaskCache(cache) if answers is None else answers
+    batches = study.batches()
+    found = {place: answer for place, batch in enumerate(batches) if (answer := cached_batch(cache, batch)) is not None}
+    missing = [place for place in range(len(batches)) if place not in found]
+    open_ = answers.missing(tasks)
+    stages = _stages(study, batches, missing, tasks, open_)
     if found:
-        others = f", {len(errands) - len(open_)} of {len(errands)} analyses" if errands else ""
-        stored = f"{len(found)} of {len(tiles)} tiles{others} are in {cache.folder}: only the others are computed."
+        others = f", {len(tasks) - len(open_)} of {len(tasks)} analyses" if tasks else ""
+        stored = f"{len(found)} of {len(batches)} batches{others} are in {cache.folder}: only the others are computed."
         console.print(stored, soft_wrap=True)  # a path is copied whole
     if missing or open_:
-        rest = [tiles[place] for place in missing]
+        rest = [batches[place] for place in missing]
         found |= zip(missing, _solved(study, rest, open_, cache, answers, console, stages, jobs, executor))
-    return Computed(tiles, [found[place] for place in range(len(tiles))], len(tiles) - len(missing))
+    return Computed(batches, [found[place] for place in range(len(batches))], len(batches) - len(missing))
 
 
-def fetched(errands: Sequence[Errand], answers: Answers, console: Console, jobs: int, executor: Pool) -> None:
-    """Every errand, the missing ones computed on `executor`; what they gave is in `answers`. Raises as `computed`."""
-    open_ = sorted(answers.missing(errands), key=lambda errand: -errand.seconds)
+def fetched(tasks: Sequence[Task], answers: TaskCache, console: Console, jobs: int, executor: Pool) -> None:
+    """Every task, the missing ones computed on `executor`; what they gave is in `answers`. Raises as `computed`."""
+    open_ = sorted(answers.missing(tasks), key=lambda task: -task.seconds)
     if not open_:
         return
-    with progress(console, _errand_stages(errands, open_), jobs) as display:
+    with progress(console, _task_stages(tasks, open_), jobs) as display:
 
-        def done(errand: Errand, found: Fetched | None) -> None:
-            answers.put(errand, found)
-            display.advance(errand.stage, 1)
+        def done(task: Task, found: TaskResult | None) -> None:
+            answers.put(task, found)
+            display.advance(task.stage, 1)
 
-        sweep(open_, run_errand, _nothing, done, jobs, executor)
+        sweep(open_, execute, _nothing, done, jobs, executor)
 
 
 def _stages(
-    study: Study, tiles: Sequence[Tile], missing: Sequence[int], errands: Sequence[Errand], open_: Sequence[Errand]
+    study: Study, batches: Sequence[Batch], missing: Sequence[int], tasks: Sequence[Task], open_: Sequence[Task]
 ) -> dict[str, Stage]:
     stages = {COMPILING: Stage(1, START_UP)} if missing or open_ else {}
-    for rung in study.ladder:
-        own = {place: len(tile.phases) for place, tile in enumerate(tiles) if tile.rung == rung.key}
+    for model in study.hierarchy:
+        own = {place: len(batch.phases) for place, batch in enumerate(batches) if batch.model == model.key}
         if own:
             points = sum(own.values())
             left = sum(own[place] for place in missing if place in own)
-            stages[rung.title] = Stage(points, study.seconds(rung), points - left)
-    return stages | _errand_stages(errands, open_)
+            stages[model.title] = Stage(points, study.seconds(model), points - left)
+    return stages | _task_stages(tasks, open_)
 
 
-def _errand_stages(errands: Sequence[Errand], open_: Sequence[Errand]) -> dict[str, Stage]:
+def _task_stages(tasks: Sequence[Task], open_: Sequence[Task]) -> dict[str, Stage]:
     stages = {}
-    for name in dict.fromkeys(errand.stage for errand in errands):
-        own = [errand.seconds for errand in errands if errand.stage == name]
-        left = sum(errand.stage == name for errand in open_)
+    for name in dict.fromkeys(task.stage for task in tasks):
+        own = [task.seconds for task in tasks if task.stage == name]
+        left = sum(task.stage == name for task in open_)
         stages[name] = Stage(len(own), sum(own), len(own) - left)
     return stages
 
 
 def _solved(
     study: Study,
-    tiles: Sequence[Tile],
-    errands: Sequence[Errand],
+    batches: Sequence[Batch],
+    tasks: Sequence[Task],
     cache: Cache,
-    answers: Answers,
+    answers: TaskCache,
     console: Console,
     stages: dict[str, Stage],
     jobs: int,
     executor: Pool,
-) -> list[Answer]:
-    titles = {WARM_UP: COMPILING, **{rung.key: rung.title for rung in study.ladder}}
-    compiled = {rung.key for rung in study.ladder if rung.side == "reference"}
+) -> list[BatchResult]:
+    titles = {WARM_UP: COMPILING, **{model.key: model.title for model in study.hierarchy}}
+    compiled = {model.key for model in study.hierarchy if model.side == "reference"}
     pending = {WARM_UP}
     console.print(COMPILED_ONCE)
     with progress(console, stages, jobs) as display:
 
-        def done(piece: Piece, answer: Answer | Fetched | None) -> None:
-            if isinstance(piece, Errand):
-                assert not isinstance(answer, Answer)
+        def done(piece: Piece, answer: BatchResult | TaskResult | None) -> None:
+            if isinstance(piece, Task):
+                assert not isinstance(answer, BatchResult)
                 answers.put(piece, answer)
                 display.advance(piece.stage, 1)
                 return
-            assert isinstance(answer, Answer)
-            if piece.rung != WARM_UP:
-                cache.put(tile_key(piece), answer)
-            pending.discard(piece.rung)
-            display.advance(titles[piece.rung], len(piece.phases))
+            assert isinstance(answer, BatchResult)
+            if piece.model != WARM_UP:
+                cache.put(batch_key(piece), answer)
+            pending.discard(piece.model)
+            display.advance(titles[piece.model], len(piece.phases))
 
         def ready(piece: Piece) -> bool:
-            needs = piece.compiled if isinstance(piece, Errand) else piece.rung in compiled
+            needs = piece.compiled if isinstance(piece, Task) else piece.model in compiled
             return not (pending and needs)
 
-        # the longest errands first: no worker is left with one when the others are done
-        asked: list[Piece] = [warm_up(study), *tiles, *sorted(errands, key=lambda errand: -errand.seconds)]
+        # the longest tasks first: no worker is left with one when the others are done
+        asked: list[Piece] = [warm_up(study), *batches, *sorted(tasks, key=lambda task: -task.seconds)]
         found = sweep(asked, _run, _lost, done, jobs, executor, ready, _split, _join)
-        return [answer for answer in found if isinstance(answer, Answer)][1:]  # without the warm-up
+        return [answer for answer in found if isinstance(answer, BatchResult)][1:]  # without the warm-up
 
 
-Piece = Tile | Errand
+Piece = Batch | Task
 
 
-def _run(piece: Piece) -> Answer | Fetched | None:
-    return run_errand(piece) if isinstance(piece, Errand) else solve_tile(piece)
+def _run(piece: Piece) -> BatchResult | TaskResult | None:
+    return execute(piece) if isinstance(piece, Task) else execute_batch(piece)
 
 
-def _lost(piece: Piece, outcome: Outcome, fault: str) -> Answer | Fetched | None:
-    return None if isinstance(piece, Errand) else unanswered(piece, outcome, fault)
+def _lost(piece: Piece, outcome: Outcome, fault: str) -> BatchResult | TaskResult | None:
+    return None if isinstance(piece, Task) else unanswered(piece, outcome, fault)
 
 
-def _nothing(errand: Errand, outcome: Outcome, fault: str) -> Fetched | None:
+def _nothing(task: Task, outcome: Outcome, fault: str) -> TaskResult | None:
     """The analysis asks again by itself and says in its own way that there is no answer."""
     return None
 
 
 def _split(piece: Piece) -> Sequence[Piece]:
-    return () if isinstance(piece, Errand) else halves(piece)
+    return () if isinstance(piece, Task) else split_batch(piece)
 
 
-def _join(piece: Piece, answers: Sequence[Answer | Fetched | None]) -> Answer | Fetched | None:
-    assert isinstance(piece, Tile), "errands are not split"
-    return joined(piece, [answer for answer in answers if isinstance(answer, Answer)])
+def _join(piece: Piece, answers: Sequence[BatchResult | TaskResult | None]) -> BatchResult | TaskResult | None:
+    assert isinstance(piece, Batch), "tasks are not split"
+    return merge(piece, [answer for answer in answers if isinstance(answer, BatchResult)])

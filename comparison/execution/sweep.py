@@ -53,7 +53,7 @@ class _Work(Generic[Task, Result]):
 def sweep(
     tasks: Sequence[Task],
     solve: Callable[[Task], Result],
-    lost: Callable[[Task, Outcome, str], Result],
+    on_failure: Callable[[Task, Outcome, str], Result],
     done: Callable[[Task, Result], None],
     jobs: int,
     executor: Pool = process_pool,
@@ -73,7 +73,7 @@ def sweep(
     by `lost(part, Outcome.WORKER_DIED, message)`, and `join(task, results of its parts)` puts the task together again.
     Raises ExecutorLostError when the executor cannot go on; results that `done` has seen are the caller's to keep.
     """
-    return _Sweep(tasks, solve, lost, done, ready, split, join).run(factory(executor), jobs)
+    return _Sweep(tasks, solve, on_failure, done, ready, split, join).run(factory(executor), jobs)
 
 
 class _Sweep(Generic[Task, Result]):
@@ -81,13 +81,13 @@ class _Sweep(Generic[Task, Result]):
         self,
         tasks: Sequence[Task],
         solve: Callable[[Task], Result],
-        lost: Callable[[Task, Outcome, str], Result],
+        on_failure: Callable[[Task, Outcome, str], Result],
         done: Callable[[Task, Result], None],
         ready: Callable[[Task], bool],
         split: Callable[[Task], Sequence[Task]],
         join: Callable[[Task, Sequence[Result]], Result] | None,
     ) -> None:
-        self._solve, self._lost, self._done = solve, lost, done
+        self._solve, self._on_failure, self._done = solve, on_failure, done
         self._ready, self._split, self._join = ready, split, join
         self._queue: deque[_Work[Task, Result]] = deque(_Work(task, place) for place, task in enumerate(tasks))
         self._flying: dict[Future[Result], _Work[Task, Result]] = {}
@@ -136,7 +136,7 @@ class _Sweep(Generic[Task, Result]):
             self._died(work, fault.times)
         elif not isinstance(fault, BrokenExecutor | ExecutorLostError):
             message = f"{type(fault).__name__}: {fault}"
-            self._keep(work, self._lost(work.task, Outcome.SOLVER_FAILED, message))
+            self._keep(work, self._on_failure(work.task, Outcome.SOLVER_FAILED, message))
 
     def _fill(self, pool: Executor, jobs: int, more: bool = False) -> bool:
         """
@@ -192,7 +192,9 @@ class _Sweep(Generic[Task, Result]):
             children = [_Work(part, place, work, alone=work.alone) for place, part in enumerate(parts)]
             self._queue.extendleft(reversed(children))
         else:
-            self._keep(work, self._lost(work.task, Outcome.WORKER_DIED, f"the worker process died {work.deaths} times"))
+            self._keep(
+                work, self._on_failure(work.task, Outcome.WORKER_DIED, f"the worker process died {work.deaths} times")
+            )
 
     def _keep(self, work: _Work[Task, Result], result: Result) -> None:
         parent = work.parent

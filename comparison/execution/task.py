@@ -14,22 +14,24 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from comparison.execution.environment import surroundings
-from comparison.study.models import Rung
+from comparison.execution.environment import environment_fingerprint
+from comparison.study.models import Model
 from reference.problem import Scene
 
 
 @dataclass(frozen=True)
-class Errand:
+class Task:
     """
-    `solve(task)`, in a worker process. stage: what the terminal and the account of costs call it. seconds: predicted
-    cost, as `Rung.seconds_per_point`. about: what its directory in the store belongs to. compiled: whether it asks the
-    reference, which is compiled first on a new installation.
+    `function(argument)`, in a worker process.
+
+    stage: its name on the terminal and in the table of costs. seconds: predicted cost, as `Model.seconds_per_point`.
+    about: what its directory in the cache belongs to. compiled: whether it calls the reference, which is compiled
+    first on a new installation.
     """
 
     stage: str
-    solve: Callable[[Any], Any]
-    task: Any
+    function: Callable[[Any], Any]
+    argument: Any
     seconds: float
     about: Any = None
     compiled: bool = True
@@ -37,23 +39,23 @@ class Errand:
     @cached_property
     def key(self) -> str:
         """Hash of the function and all that its task holds."""
-        text = json.dumps([named(self.solve), fingerprint(self.task)])
+        text = json.dumps([named(self.function), fingerprint(self.argument)])
         return hashlib.sha256(text.encode()).hexdigest()
 
 
 @dataclass(frozen=True)
-class Fetched:
-    """What an errand gave, and what it cost: s of processor time."""
+class TaskResult:
+    """What an task gave, and what it cost: s of processor time."""
 
     result: Any
     cost: float
 
 
-def run_errand(errand: Errand) -> Fetched:
+def execute(task: Task) -> TaskResult:
     """Runs inside a worker process."""
     clock = time.process_time()
-    result = errand.solve(errand.task)
-    return Fetched(result, time.process_time() - clock)
+    result = task.function(task.argument)
+    return TaskResult(result, time.process_time() - clock)
 
 
 def named(function: Callable[..., Any]) -> str:
@@ -82,7 +84,7 @@ def fingerprint(value: Any) -> Any:
         return [[key, fingerprint(part)] for key, part in sorted(value.items())]
     if is_dataclass(value) and not isinstance(value, type):
         held = {part.name: getattr(value, part.name) for part in fields(value)}
-        source = surroundings(value.amplification) if isinstance(value, Rung) else {}
+        source = environment_fingerprint(value.amplification) if isinstance(value, Model) else {}
         return [type(value).__qualname__, fingerprint(source), fingerprint(held)]
     if callable(value):
         return named(value)

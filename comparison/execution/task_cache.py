@@ -1,7 +1,7 @@
 """
-The errands of a study, each from the cache if it is there, else computed and stored at once.
+The tasks of a study, each from the cache if it is there, else computed and stored at once.
 
-The analyses ask an executor, see `sweep`; one made by `Answers.on` knows what has been fetched before. So everything
+The analyses ask an executor, see `sweep`; one made by `TaskCache.on` knows what has been fetched before. So everything
 that a study can ask at once goes through the workers in one sweep, without a pause between one analysis and the next.
 """
 
@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from typing import Any, get_type_hints
 
 from comparison.execution.cache import Cache
-from comparison.execution.keys import errand_key
-from comparison.execution.task import Errand, Fetched
+from comparison.execution.keys import task_key
+from comparison.execution.task import Task, TaskResult
 
 
 @dataclass
@@ -27,25 +27,25 @@ class Part:
     seconds: float = 0.0
 
 
-class Answers:
+class TaskCache:
     """
-    What errands gave, in memory and in `cache`; nothing is read from there if `fresh`. parts: what each stage cost.
+    What tasks gave, in memory and in `cache`; nothing is read from there if `fresh`. parts: what each stage cost.
     """
 
     def __init__(self, cache: Cache, fresh: bool = False) -> None:
         self._cache, self._fresh = cache, fresh
-        self._known: dict[str, Any] = {}
+        self._cached: dict[str, Any] = {}
         self.parts: dict[str, Part] = defaultdict(Part)
 
-    def missing(self, errands: Iterable[Errand]) -> list[Errand]:
+    def missing(self, tasks: Iterable[Task]) -> list[Task]:
         """Those that must be computed; the others are read."""
-        return [errand for errand in errands if not (errand.key in self._known or self._read(errand))]
+        return [task for task in tasks if not (task.key in self._cached or self._read(task))]
 
-    def holds(self, errand: Errand) -> bool:
+    def holds(self, task: Task) -> bool:
         """Whether there is a file for it, whatever its state."""
-        return not self._fresh and self._cache.holds(errand_key(errand))
+        return not self._fresh and self._cache.holds(task_key(task))
 
-    def put(self, errand: Errand, fetched: Fetched | None) -> None:
+    def put(self, task: Task, fetched: TaskResult | None) -> None:
         """
         Keep what came back, None if nothing did. Raises StoreError.
 
@@ -53,43 +53,43 @@ class Answers:
         """
         if fetched is None:
             return
-        self._know(errand, fetched)
-        self._cache.put(errand_key(errand), (fetched.result, fetched.cost))
+        self._remember(task, fetched)
+        self._cache.put(task_key(task), (fetched.result, fetched.cost))
 
     def on(self, make: Callable[[int], Executor]) -> Callable[[int], Executor]:
         """An executor for N jobs that answers what is known at once and hands on the rest to that of `make`."""
-        return lambda jobs: _Knowing(self._known, make, jobs)
+        return lambda jobs: _CachedExecutor(self._cached, make, jobs)
 
-    def _know(self, errand: Errand, fetched: Fetched) -> None:
-        self._known[errand.key] = fetched.result
-        self.parts[errand.stage].tasks += 1
-        self.parts[errand.stage].seconds += fetched.cost
+    def _remember(self, task: Task, fetched: TaskResult) -> None:
+        self._cached[task.key] = fetched.result
+        self.parts[task.stage].tasks += 1
+        self.parts[task.stage].seconds += fetched.cost
 
-    def _read(self, errand: Errand) -> bool:
+    def _read(self, task: Task) -> bool:
         if self._fresh:
             return False
-        declared: Any = get_type_hints(errand.solve)["return"]
-        stored = self._cache.get(errand_key(errand), tuple[declared, float])
+        declared: Any = get_type_hints(task.function)["return"]
+        stored = self._cache.get(task_key(task), tuple[declared, float])
         if stored is None:
             return False
-        self._know(errand, Fetched(*stored))
-        self.parts[errand.stage].stored += 1
+        self._remember(task, TaskResult(*stored))
+        self.parts[task.stage].stored += 1
         return True
 
 
-class _Knowing(Executor):
+class _CachedExecutor(Executor):
     """Answers what is known; the executor for the rest is made when there is any."""
 
     def __init__(self, known: dict[str, Any], make: Callable[[int], Executor], jobs: int) -> None:
-        self._known, self._make, self._jobs = known, make, jobs
+        self._cached, self._make, self._jobs = known, make, jobs
         self._inner: Executor | None = None
 
     def submit(self, solve: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        key = Errand("", solve, args[0], 0.0).key
-        if key not in self._known:
+        key = Task("", solve, args[0], 0.0).key
+        if key not in self._cached:
             return self._executor().submit(solve, *args, **kwargs)
         answer: Future[Any] = Future()
-        answer.set_result(self._known[key])
+        answer.set_result(self._cached[key])
         return answer
 
     def _executor(self) -> Executor:

@@ -9,19 +9,19 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from comparison.study.batches import Tile
+from comparison.study.batches import Batch
 from comparison.study.study import Study
 
 DURATION = 0.5  # s of motion: enough to reach every function, and over in milliseconds
-WARM_UP = "warm-up"  # rung of the tile, which belongs to no surface
+WARM_UP = "warm-up"  # model of the batch, which belongs to no surface
 
 
-def warm_up(study: Study) -> Tile:
+def warm_up(study: Study) -> Batch:
     """
     One phase pair of the first scene under the exact equations, which no reduction solves without stepping, or under
     the first model. Over so short a time its numbers mean nothing.
     """
-    tiles = study.tiles()
-    tile = next((tile for tile in tiles if tile.rung == "exact"), tiles[0])
-    scene = tile.scene.with_values({"duration": DURATION})
-    return replace(tile, rung=WARM_UP, scene=scene, phases=tile.phases[:1])
+    batches = study.batches()
+    batch = next((batch for batch in batches if batch.model == "exact"), batches[0])
+    scene = batch.scene.with_values({"duration": DURATION})
+    return replace(batch, model=WARM_UP, scene=scene, phases=batch.phases[:1])

@@ -9,7 +9,7 @@ from typing import Any
 import xarray as xr
 
 from comparison.analysis.acceptance import Limit, checked_limits
-from comparison.analysis.assumptions.validity import Reach
+from comparison.analysis.assumptions.validity import ValidityRanges
 from comparison.analysis.budget import Entry, budget
 from comparison.analysis.claims.table import ClaimTable
 from comparison.analysis.differences import Difference, differences
@@ -27,12 +27,12 @@ from reference.problem import Family
 @dataclass(frozen=True)
 class Findings:
     """
-    surfaces: see `labelled_surfaces`. rows: differences of pairs of models. budget: what every rung adds. effective:
+    surfaces: see `labeled_surfaces`. rows: differences of pairs of models. budget: what every model adds. effective:
     values read back from each model. effects: what slips of the print do to mu. unanswered: models without a value
     somewhere. limits: the acceptance limits that scenes state, held against the rest. faults: what solvers complained
     about. run: command, times, provenance. pictures: files of the surfaces' by name. Fields that may be None are what
     only some commands compute. motions: see `stored_motions`. claims, scaling, convergence: see `further_findings`.
-    assumptions: how far the paper's carry, see `Reach`. families: those of more than one scene. extremes: the
+    assumptions: how far the paper's carry, see `ValidityRanges`. families: those of more than one scene. extremes: the
     matrix that `python -m comparison.extremes` left beside the report. tradeoff: what `python -m comparison.tradeoff`
     left there.
     """
@@ -52,7 +52,7 @@ class Findings:
     claims: ClaimTable | None = None
     scaling: Sequence[Trend] | None = None
     convergence: Sequence[Trend] | None = None
-    assumptions: Reach | None = None
+    assumptions: ValidityRanges | None = None
     families: Sequence[Family] | None = None
     extremes: Matrix | None = None
     tradeoff: Sequence[Trade] | None = None

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from comparison.analysis.errata import SLIPS
+from comparison.analysis.errata import ERRATA
 from comparison.analysis.further import claims_summary, trends_summary
 from comparison.analysis.surfaces import largest_cap_share, outcome_counts
 from comparison.analysis.verdicts import verdict
 from comparison.report.findings import Findings
-from comparison.study.models import rungs_of
+from comparison.study.models import models_of
 from reference.problem import Scene
 
 SCHEMA = "phase-resonance/summary"
@@ -34,8 +34,8 @@ def summary(found: Findings) -> dict[str, Any]:
         "grid": study.grid,
         "tolerance": study.tolerance,
         "models": [
-            {"key": rung.key, "title": rung.title, "adds": rung.adds, "settings": dict(rung.settings)}
-            for rung in study.ladder
+            {"key": model.key, "title": model.title, "adds": model.adds, "settings": dict(model.settings)}
+            for model in study.hierarchy
         ],
         "scenes": [_scene(found, scene) for scene in study.scenes],
         "slips": [
@@ -47,7 +47,7 @@ def summary(found: Findings) -> dict[str, Any]:
                 "none": slip.none,
                 "effects": [_finite(asdict(effect)) for effect in found.effects if effect.slip == number],
             }
-            for number, slip in enumerate(SLIPS)
+            for number, slip in enumerate(ERRATA)
         ],
         "assumptions": found.assumptions and _finite(found.assumptions.listed()),
         "claims": claims_summary(found.claims),
@@ -83,13 +83,13 @@ def _scene(found: Findings, scene: Scene) -> dict[str, Any]:
         "duration": scene.duration,
         "acceptance": scene.acceptance.model_dump(),
         "models": {
-            rung.key: {
-                "phases_per_axis": len(found.study.axis(rung, scene)),
-                "outcomes": outcome_counts(found.surfaces, scene.name, rung.key),
-                "cap_share": _finite(largest_cap_share(found.surfaces, scene.name, rung.key)),
-                "cost": float(found.surfaces["cost"].sel(scene=scene.name, model=rung.key)),
+            model.key: {
+                "phases_per_axis": len(found.study.axis(model, scene)),
+                "outcomes": outcome_counts(found.surfaces, scene.name, model.key),
+                "cap_share": _finite(largest_cap_share(found.surfaces, scene.name, model.key)),
+                "cost": float(found.surfaces["cost"].sel(scene=scene.name, model=model.key)),
             }
-            for rung in rungs_of(scene, found.study.ladder)
+            for model in models_of(scene, found.study.hierarchy)
         },
         "verdict": _finite(asdict(verdict(found.study, found.surfaces, scene))),
         "differences": own(found.rows),

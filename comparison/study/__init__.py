@@ -1,1 +1,1 @@
-"""What a study computes: scenes, the hierarchy of models, phases, batches, and their predicted cost."""
+"""What a study computes: scenes, the model hierarchy, phases, batches, and their predicted cost."""

@@ -17,7 +17,7 @@ TIGHTER = 9.9  # times, at least, is the truth tighter: 100 but where the model 
 
 
 @dataclass(frozen=True)
-class Reach:
+class AccuracyRecord:
     """
     One model. tolerances: recorded ones, the loosest first. costs: of a point beside one at the usual tolerance. met:
     whether a tolerance was met at SHARE of the points.
@@ -39,15 +39,15 @@ class Reach:
 
 
 @dataclass(frozen=True)
-class Recorded:
+class RecordedModels:
     """
     yardsticks: processor time of a fixed piece of work of each side, s, on the machine of the record. reach: by the key
     of the model. seconds: of a point at the usual tolerance, by the digest of the scene and the key of the model.
     """
 
     machine: str
-    yardsticks: Mapping[str, float]
-    reach: Mapping[str, Reach]
+    machine_benchmark: Mapping[str, float]
+    accuracy: Mapping[str, AccuracyRecord]
     seconds: Mapping[str, Mapping[str, float]]
 
 
@@ -56,15 +56,15 @@ def _met(row: Mapping[str, float]) -> bool:
 
 
 @cache
-def recorded() -> Recorded:
+def recorded() -> RecordedModels:
     """The record that is part of the package."""
     content: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
-    reach = {
-        key: Reach(
+    accuracy = {
+        key: AccuracyRecord(
             tuple(row["tolerance"] for row in model["tolerances"]),
             tuple(row["cost"] for row in model["tolerances"]),
             tuple(_met(row) for row in model["tolerances"]),
         )
         for key, model in content["models"].items()
     }
-    return Recorded(content["machine"], content["yardsticks"], reach, content["seconds"])
+    return RecordedModels(content["machine"], content["machine_benchmark"], accuracy, content["seconds"])

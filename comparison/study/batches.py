@@ -10,18 +10,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.study.models import Rung
+from comparison.study.models import Model
 from reference.problem import Outcome, Scene
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Tile:
+class Batch:
     """Phase pairs number `first` ... `first` + len(phases) - 1 of the model's grid, phases (M, 2), rad."""
 
     scene: Scene
-    rung: str
+    model: str
     amplification: str
     settings: Mapping[str, object]
     first: int
@@ -29,8 +29,8 @@ class Tile:
 
 
 @dataclass(frozen=True)
-class Answer:
-    """What a tile gave: as `reference.problem.Amplification`; `fault` says what a solver complained about, or ""."""
+class BatchResult:
+    """What a batch gave: as `reference.problem.Amplification`; `fault` says what a solver complained about, or ""."""
 
     mu: Array
     error: Array
@@ -51,37 +51,37 @@ def imported(path: str) -> Any:
     return getattr(import_module(module), name)
 
 
-def refusal_of(scene: Scene, rung: Rung, tolerance: float, full: bool = False) -> str:
+def refusal_of(scene: Scene, model: Model, tolerance: float, full: bool = False) -> str:
     """Why a model would refuse every phase pair of a scene, told without computing one; "" if it would not."""
-    if rung.refusal is None or not rung.applies(scene):
+    if model.refusal is None or not model.applies(scene):
         return ""
     asked = {"full": True} if full else {}
-    return str(imported(rung.refusal)(scene, **rung.settings, tolerance=tolerance, **asked))
+    return str(imported(model.refusal)(scene, **model.settings, tolerance=tolerance, **asked))
 
 
-def solve_tile(tile: Tile) -> Answer:
-    """Ask the tile's model. What raises or answers in a wrong shape becomes points without an answer, and is named."""
-    points, bodies = len(tile.phases), len(tile.scene.bodies)
+def execute_batch(batch: Batch) -> BatchResult:
+    """Ask the batch's model. What raises or answers in a wrong shape becomes points without an answer, and is named."""
+    points, bodies = len(batch.phases), len(batch.scene.bodies)
     try:
-        result = imported(tile.amplification)(tile.scene, tile.phases, **tile.settings)
+        result = imported(batch.amplification)(batch.scene, batch.phases, **batch.settings)
         parts = (result.mu, result.error, result.instant, result.cap_share)
         mu, error, instant, cap_share = (np.array(part, dtype=float) for part in parts)
         status = [str(outcome) for outcome in result.status]
         shapes = mu.shape, error.shape, (len(status),), instant.shape, cap_share.shape
         if shapes != ((points, bodies), (points, bodies), (points,), (points,), (points,)):
-            raise ValueError(f"{tile.amplification} answered {mu.shape} for {points} phases and {bodies} bodies")
+            raise ValueError(f"{batch.amplification} answered {mu.shape} for {points} phases and {bodies} bodies")
     except Exception as fault:
-        return unanswered(tile, Outcome.SOLVER_FAILED, f"{type(fault).__name__}: {fault}")
+        return unanswered(batch, Outcome.SOLVER_FAILED, f"{type(fault).__name__}: {fault}")
     named = ""
     for index in np.flatnonzero(~(np.isfinite(mu) & np.isfinite(error)).all(axis=1)):
         if status[index] == Outcome.OK:  # never let a number that is none pass as an answer
             status[index] = Outcome.SOLVER_FAILED.value
-            named = f"{tile.amplification} called a non-finite answer ok"
-    return Answer(mu, error, status, instant, float(result.cost), named, cap_share)
+            named = f"{batch.amplification} called a non-finite answer ok"
+    return BatchResult(mu, error, status, instant, float(result.cost), named, cap_share)
 
 
-def unanswered(tile: Tile, outcome: Outcome, fault: str) -> Answer:
-    """NaN for every point of the tile, with the outcome that explains it."""
-    points, bodies = len(tile.phases), len(tile.scene.bodies)
+def unanswered(batch: Batch, outcome: Outcome, fault: str) -> BatchResult:
+    """NaN for every point of the batch, with the outcome that explains it."""
+    points, bodies = len(batch.phases), len(batch.scene.bodies)
     nothing = np.full((points, bodies), np.nan)
-    return Answer(nothing, nothing.copy(), [outcome.value] * points, np.full(points, np.nan), 0.0, fault)
+    return BatchResult(nothing, nothing.copy(), [outcome.value] * points, np.full(points, np.nan), 0.0, fault)

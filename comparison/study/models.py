@@ -1,7 +1,7 @@
 """
-The models of the study in order, each adding one effect to the one before. Adding a rung is one entry of LADDER.
+The models of the study in order, each adding one effect to the one before. Adding a model is one entry of LADDER.
 
-A rung names the function that answers for it ("package:function", the contract of `reference.amplification` and
+A model names the function that answers for it ("package:function", the contract of `reference.amplification` and
 `multibody.amplification`), so that a worker process can import it by itself.
 """
 
@@ -27,7 +27,7 @@ def at_samples(scene: Scene) -> float:
 
 
 def dry(scene: Scene) -> bool:
-    """Whether there is dry friction, which may be regularised."""
+    """Whether there is dry friction, which may be regularized."""
     return not scene.lubricated and not no_friction(scene)
 
 
@@ -51,7 +51,7 @@ def has_spatial_data(scene: Scene) -> bool:
 
 
 @dataclass(frozen=True)
-class Rung:
+class Model:
     """
     One model. `adds`: the sentence the report prints. `settings`: keyword arguments of its functions.
     `assumptions`: its row in the report's table of equations. `seconds_per_point`: recorded cost of one phase pair of
@@ -71,7 +71,7 @@ class Rung:
     settings: Mapping[str, object]
     assumptions: Mapping[str, str]
     seconds_per_point: float
-    tile: int  # phase pairs solved in one call: about a second of work
+    batch: int  # phase pairs solved in one call: about a second of work
     most: int | None = None
     symmetric: Callable[[Scene], bool] = field(default=never)
     applies: Callable[[Scene], bool] = field(default=any_scene)
@@ -79,7 +79,7 @@ class Rung:
     refusal: str | None = None
 
     def tolerance(self, asked: float) -> float:
-        """Relative error this rung asks of its own numbers when the study asks for `asked`."""
+        """Relative error this model asks of its own numbers when the study asks for `asked`."""
         if self.asks is not None:
             return self.asks
         return min(asked, REFERENCE_TOLERANCE) if self.side == "reference" else asked
@@ -91,21 +91,21 @@ class Rung:
 
 @dataclass(frozen=True)
 class Pair:
-    """Two rungs whose difference is reported, `second` minus `first`, relative to `first`."""
+    """Two models whose difference is reported, `second` minus `first`, relative to `first`."""
 
     key: str
     title: str
     sentence: str
-    first: Rung
-    second: Rung
+    first: Model
+    second: Model
 
 
-def rungs_of(scene: Scene, ladder: Sequence[Rung]) -> list[Rung]:
-    """The rungs that apply to this scene, in order."""
-    return [rung for rung in ladder if rung.applies(scene)]
+def models_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
+    """The models that apply to this scene, in order."""
+    return [model for model in hierarchy if model.applies(scene)]
 
 
-def pairs_of(scene: Scene, ladder: Sequence[Rung], silent: Collection[str] = ()) -> list[Pair]:
+def pairs_of(scene: Scene, hierarchy: Sequence[Model], silent: Collection[str] = ()) -> list[Pair]:
     """
     The total difference, that within the paper's assumptions, and the like-for-like one: what the scene allows.
 
@@ -115,21 +115,21 @@ def pairs_of(scene: Scene, ladder: Sequence[Rung], silent: Collection[str] = ())
         Keys of models without a value. The total then leads from the first to the last model that has values. The
         other two compare fixed models: without one of these they are left out.
     """
-    asked = rungs_of(scene, ladder)
-    rungs = [rung for rung in asked if rung.key not in silent]
-    first, last = rungs[0], rungs[-1]
+    asked = models_of(scene, hierarchy)
+    models = [model for model in asked if model.key not in silent]
+    first, last = models[0], models[-1]
     printed = "the paper's printed equations" if first is asked[0] else f"the {first.title}"
-    reference = [rung for rung in asked if rung.side == "reference"][-1]
-    engine = next((rung for rung in asked if rung.side == "engine"), None)
+    reference = [model for model in asked if model.side == "reference"][-1]
+    engine = next((model for model in asked if model.side == "engine"), None)
     complete = last is asked[-1] and engine is not None
     other = "the most complete engine model" if complete else f"the {last.title}"
     pairs = [Pair("total", "total", f"{printed} against {other}", first, last)]
-    if engine is None or engine not in rungs:  # it does not meet the tolerance, fit the budget, or answer
+    if engine is None or engine not in models:  # it does not meet the tolerance, fit the budget, or answer
         return pairs
     if engine is not last and first is asked[0]:
         sentence = f"{printed} against the engine under the paper's own assumption that no body turns"
         pairs.append(Pair("translational", "translational", sentence, first, engine))
-    if reference in rungs:
+    if reference in models:
         sentence = "same geometry and same friction law on both sides: this gap must close"
         pairs.append(Pair("like-for-like", "like for like", sentence, reference, engine))
     return pairs
@@ -138,12 +138,12 @@ def pairs_of(scene: Scene, ladder: Sequence[Rung], silent: Collection[str] = ())
 _PEAK = "largest value the computed motion reaches"
 
 
-def _next(before: Rung, departs: Mapping[str, str], **changes: Any) -> Rung:
-    """The rung after `before`: the same but for `changes`, and for the assumptions in which it `departs`."""
+def _next(before: Model, departs: Mapping[str, str], **changes: Any) -> Model:
+    """The model after `before`: the same but for `changes`, and for the assumptions in which it `departs`."""
     return replace(before, assumptions={**before.assumptions, **departs}, **changes)
 
 
-SMALL = Rung(
+SMALL = Model(
     key="small",
     title="small equations",
     adds="The paper's small-vibration equations (4.3)-(4.4) as printed, with dry friction that really sticks.",
@@ -160,7 +160,7 @@ SMALL = Rung(
         "mu_i": "supremum of (5.1) with one-sided limits at stops, in closed form",
     },
     seconds_per_point=0.002,
-    tile=64,
+    batch=64,
     symmetric=any_scene,
 )
 EXACT = _next(
@@ -186,7 +186,7 @@ RESOLVED = _next(
     seconds_per_point=0.002,
     applies=dry,
 )
-REGULARISED = _next(
+REGULARIZED = _next(
     EXACT,
     {"friction": "Coulomb, linear below v_reg = 1e-3 m/s", "mu_i": _PEAK},
     key="regularised",
@@ -197,7 +197,7 @@ REGULARISED = _next(
     applies=dry,
 )
 TRANSLATIONAL = _next(
-    REGULARISED,
+    REGULARIZED,
     {
         "equations": "Newton-Euler of the bodies, assembled by Exudyn",
         "geometry": "exact spheres: support of radius r in a depression of radius R",
@@ -214,7 +214,7 @@ TRANSLATIONAL = _next(
     refusal="multibody:refusal",
     settings={"model": "translational", "regularization": V_REG},
     seconds_per_point=0.35,
-    tile=2,
+    batch=2,
     applies=any_scene,
     most=16,
 )
@@ -231,10 +231,10 @@ SPATIAL = _next(
     "friction twists the platform, supports may lift off.",
     settings={"model": "spatial", "regularization": V_REG},
     seconds_per_point=0.6,
-    tile=1,
+    batch=1,
     applies=has_spatial_data,
     most=4,
     symmetric=on_an_even_ring,
 )
 
-LADDER: tuple[Rung, ...] = (SMALL, EXACT, RESOLVED, REGULARISED, TRANSLATIONAL, SPATIAL)
+MODEL_HIERARCHY: tuple[Model, ...] = (SMALL, EXACT, RESOLVED, REGULARIZED, TRANSLATIONAL, SPATIAL)

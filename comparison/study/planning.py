@@ -13,8 +13,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from comparison.study.accuracy_record import recorded
-from comparison.study.costs import Costs, costs, known
-from comparison.study.models import LADDER, Rung
+from comparison.study.costs import Costs, costs, is_recorded
+from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.overhead import START_UP, WRITING
 from comparison.study.study import Study
 from reference.problem import Scene
@@ -24,7 +24,7 @@ DEFAULT_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True)
-class Ambition:
+class StudyPreset:
     """
     A study that a budget may buy. grid: phases per axis of the equations. translational, spatial: the most of the
     engine's models, 0 without. whole: with all that the report tells beside the surfaces. tolerance: asked.
@@ -33,55 +33,55 @@ class Ambition:
     grid: int
     translational: int
     spatial: int
-    whole: bool
+    with_analyses: bool
     tolerance: float = DEFAULT_TOLERANCE
 
 
-AMBITIONS = (  # each costs more than the one before
-    Ambition(4, 0, 0, False),
-    Ambition(8, 0, 0, False),
-    Ambition(16, 0, 0, False),
-    Ambition(16, 2, 0, False),
-    Ambition(16, 4, 0, False),
-    Ambition(16, 4, 2, False),
-    Ambition(32, 8, 2, False),
-    Ambition(32, 8, 4, False),
-    Ambition(48, 16, 4, False),
-    Ambition(48, 16, 4, True),
-    Ambition(48, 16, 4, True, 1e-4),
-    Ambition(96, 32, 8, True, 1e-4),
+STUDY_PRESETS = (  # each costs more than the one before
+    StudyPreset(4, 0, 0, False),
+    StudyPreset(8, 0, 0, False),
+    StudyPreset(16, 0, 0, False),
+    StudyPreset(16, 2, 0, False),
+    StudyPreset(16, 4, 0, False),
+    StudyPreset(16, 4, 2, False),
+    StudyPreset(32, 8, 2, False),
+    StudyPreset(32, 8, 4, False),
+    StudyPreset(48, 16, 4, False),
+    StudyPreset(48, 16, 4, True),
+    StudyPreset(48, 16, 4, True, 1e-4),
+    StudyPreset(96, 32, 8, True, 1e-4),
 )
-DEFAULT = AMBITIONS.index(Ambition(48, 16, 4, True))
+DEFAULT_PRESET = STUDY_PRESETS.index(StudyPreset(48, 16, 4, True))
 
 
-def nothing(study: Study, whole: bool) -> float:
+def nothing(study: Study, with_analyses: bool) -> float:
     return 0.0
 
 
 @dataclass(frozen=True)
-class Asked:
+class StudyRequest:
     """
     What the user asks of a study. tolerance, budget (s of the whole run), grid: None where that is left to us. beside:
     processor time of what workers do besides its surfaces, s, and whether that is all of it.
     """
 
     scenes: tuple[Scene, ...]
-    ladder: Sequence[Rung] = LADDER
+    hierarchy: Sequence[Model] = MODEL_HIERARCHY
     tolerance: float | None = None
     budget: float | None = None
     grid: int | None = None
     jobs: int = 1
     full: bool = False
-    beside: Callable[[Study, bool], float] = nothing
+    analysis_cost: Callable[[Study, bool], float] = nothing
 
     @property
-    def chosen_by_trade(self) -> bool:
+    def measures_machine(self) -> bool:
         """Whether the measured trade is to choose, and this machine to be measured for it."""
         return self.tolerance is not None or self.budget is not None
 
 
 @dataclass(frozen=True)
-class Choice:
+class StudyPlan:
     """
     study: what is computed. whole: whether with all that the report tells beside the surfaces. left_out: models that
     cannot meet the tolerance or do not fit, a line each. compute: processor time of the surfaces expected, s; wall: of
@@ -89,8 +89,8 @@ class Choice:
     """
 
     study: Study
-    whole: bool
-    left_out: tuple[str, ...]
+    with_analyses: bool
+    omitted: tuple[str, ...]
     compute: float
     wall: float
 
@@ -99,23 +99,23 @@ class BudgetError(ValueError):
     """Nothing fits. `str(error)` is one line."""
 
 
-def choice(asked: Asked) -> Choice:
+def plan_study(request: StudyRequest) -> StudyPlan:
     """
     The cheapest study that meets the tolerance asked, or the most ambitious that fits the budget. Raises BudgetError.
     """
     begin = time.monotonic()
-    measured = costs(asked.scenes, asked.ladder, asked.chosen_by_trade, asked.full)
-    if asked.budget is None:
-        return _made(AMBITIONS[DEFAULT], asked, measured)
-    allowed = [one for one in AMBITIONS if asked.tolerance is None or one.tolerance == DEFAULT_TOLERANCE]
+    measured = costs(request.scenes, request.hierarchy, request.measures_machine, request.full)
+    if request.budget is None:
+        return _plan(STUDY_PRESETS[DEFAULT_PRESET], request, measured)
+    allowed = [one for one in STUDY_PRESETS if request.tolerance is None or one.tolerance == DEFAULT_TOLERANCE]
     spent = time.monotonic() - begin
-    made = [_made(one, asked, measured) for one in allowed]
-    fitting = [one for one in made if one.wall + spent <= asked.budget]
+    made = [_plan(one, request, measured) for one in allowed]
+    fitting = [one for one in made if one.wall + spent <= request.budget]
     if not fitting:
         least = made[0].wall + spent
         raise BudgetError(
-            f"the smallest study of {_count(asked.scenes)} takes about {least:.0f} s here with {asked.jobs} "
-            f"worker{'' if asked.jobs == 1 else 's'}: give that, or fewer scenes"
+            f"the smallest study of {_count(request.scenes)} takes about {least:.0f} s here with {request.jobs} "
+            f"worker{'' if request.jobs == 1 else 's'}: give that, or fewer scenes"
         )
     return fitting[-1]
 
@@ -124,45 +124,47 @@ def _count(scenes: Sequence[Scene]) -> str:
     return f"{len(scenes)} scenes" if len(scenes) > 1 else scenes[0].name
 
 
-def _made(ambition: Ambition, asked: Asked, measured: Costs) -> Choice:
+def _plan(preset: StudyPreset, request: StudyRequest, measured: Costs) -> StudyPlan:
     """The study of one ambition, with what it costs."""
-    tolerance = ambition.tolerance if asked.tolerance is None else asked.tolerance
-    grid = asked.grid or ambition.grid
-    rungs, left_out = [], []
-    for rung in asked.ladder:
-        most = {"translational": ambition.translational, "spatial": ambition.spatial}.get(rung.key)
-        if asked.budget is not None and most is not None and known(rung):
-            rung = replace(rung, most=most)
-        if rung.most == 0:
-            left_out.append(f"{rung.title}: does not fit the budget")
-        elif known(rung) and tolerance < recorded().reach[rung.key].tightest:
-            tightest = recorded().reach[rung.key].tightest
-            left_out.append(
-                f"{rung.title}: cannot meet {tolerance:.0e}, the tightest it is known to meet is {tightest:.0e}"
+    tolerance = preset.tolerance if request.tolerance is None else request.tolerance
+    grid = request.grid or preset.grid
+    models, omitted = [], []
+    for model in request.hierarchy:
+        most = {"translational": preset.translational, "spatial": preset.spatial}.get(model.key)
+        if request.budget is not None and most is not None and is_recorded(model):
+            model = replace(model, most=most)
+        if model.most == 0:
+            omitted.append(f"{model.title}: does not fit the budget")
+        elif is_recorded(model) and tolerance < recorded().accuracy[model.key].tightest:
+            tightest = recorded().accuracy[model.key].tightest
+            omitted.append(
+                f"{model.title}: cannot meet {tolerance:.0e}, the tightest it is known to meet is {tightest:.0e}"
             )
         else:
-            rungs.append(replace(rung, asks=setting(rung, rung.tolerance(tolerance))) if known(rung) else rung)
+            models.append(
+                replace(model, asks=setting(model, model.tolerance(tolerance))) if is_recorded(model) else model
+            )
     seconds = {
-        (scene.name, rung.key): cost
-        for scene in asked.scenes
-        for rung in rungs
-        if (cost := measured.of(scene, rung, rung.tolerance(tolerance))) is not None
+        (scene.name, model.key): cost
+        for scene in request.scenes
+        for model in models
+        if (cost := measured.of(scene, model, model.tolerance(tolerance))) is not None
     }
-    study = Study(asked.scenes, grid, tolerance, rungs, asked.full, seconds)
-    compute = sum(study.seconds(rung) for rung in rungs)
-    workers = compute + asked.beside(study, ambition.whole) * measured.speed
-    wall = (START_UP + WRITING) * measured.speed + workers / asked.jobs
-    return Choice(study, ambition.whole, tuple(left_out), compute, wall)
+    study = Study(request.scenes, grid, tolerance, models, request.full, seconds)
+    compute = sum(study.seconds(model) for model in models)
+    workers = compute + request.analysis_cost(study, preset.with_analyses) * measured.speed
+    wall = (START_UP + WRITING) * measured.speed + workers / request.jobs
+    return StudyPlan(study, preset.with_analyses, tuple(omitted), compute, wall)
 
 
-def setting(rung: Rung, tolerance: float) -> float:
+def setting(model: Model, tolerance: float) -> float:
     """What to ask of a model so that `tolerance` is met: the cheapest, or a tighter one that is hardly dearer."""
-    reach = recorded().reach[rung.key]
-    able = [tolerance] + [one for one, met in zip(reach.tolerances, reach.met) if met and one < tolerance]
-    cheapest = min(reach.cost(one) for one in able)
-    return min(one for one in able if reach.cost(one) <= HARDLY_MORE * cheapest)
+    accuracy = recorded().accuracy[model.key]
+    able = [tolerance] + [one for one, met in zip(accuracy.tolerances, accuracy.met) if met and one < tolerance]
+    cheapest = min(accuracy.cost(one) for one in able)
+    return min(one for one in able if accuracy.cost(one) <= HARDLY_MORE * cheapest)
 
 
 def tightest() -> float:
     """The tightest tolerance that any model is known to meet."""
-    return min(reach.tightest for reach in recorded().reach.values())
+    return min(accuracy.tightest for accuracy in recorded().accuracy.values())

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from comparison.study.models import Rung
-from comparison.study.speedup import LEFT_OUT
+from comparison.study.models import Model
+from comparison.study.speedup import REDUCTIONS
 from comparison.study.study import Study
 from reference.problem import Scene, half_turn, no_friction, own_axes, unused_harmonics
 
@@ -21,33 +21,37 @@ class Row(NamedTuple):
     why: str
 
 
-def left_out(study: Study) -> list[Row]:
+def reductions(study: Study) -> list[Row]:
     """Everything that the scenes of the study do not require and that is therefore not computed."""
     return [] if study.full else [row for scene in study.scenes for row in _of(study, scene)]
 
 
 def _of(study: Study, scene: Scene) -> list[Row]:
-    rungs = [rung for rung in study.ladder if rung.applies(scene)]
+    models = [model for model in study.hierarchy if model.applies(scene)]
     rows = []
     for factor, some in _by_factor(
-        [(study.points(rung, scene) / len(study.solved(scene, rung)), rung) for rung in rungs]
+        [(study.points(model, scene) / len(study.solved(scene, model)), model) for model in models]
     ):
-        rows.append(Row("mirrored phases", scene.name, _titles(some, rungs), f"1/{factor:.3g}", _mirror(scene)))
+        rows.append(Row("mirrored phases", scene.name, _titles(some, models), f"1/{factor:.3g}", _mirror(scene)))
     if no_friction(scene):
-        alike = [rung for rung in study.ladder if rung not in rungs and rung.settings.get("regularization") is not None]
-        alike += [rung for rung in study.ladder if rung not in rungs and "cutoff" in rung.settings]
+        alike = [
+            model
+            for model in study.hierarchy
+            if model not in models and model.settings.get("regularization") is not None
+        ]
+        alike += [model for model in study.hierarchy if model not in models and "cutoff" in model.settings]
         if alike:
-            rows.append(Row("laws of friction", scene.name, _titles(alike, rungs), "none", no_friction(scene).reason))
-    for part in LEFT_OUT:
-        some = [rung for rung in rungs if part.concerns(rung)]
+            rows.append(Row("laws of friction", scene.name, _titles(alike, models), "none", no_friction(scene).reason))
+    for part in REDUCTIONS:
+        some = [model for model in models if part.concerns(model)]
         if some and (decided := part.decided(scene)):
-            rows.append(Row(part.name, scene.name, _titles(some, rungs), f"1/{part.factor:.3g}", decided.reason))
+            rows.append(Row(part.name, scene.name, _titles(some, models), f"1/{part.factor:.3g}", decided.reason))
     return rows
 
 
-def _by_factor(found: Sequence[tuple[float, Rung]]) -> list[tuple[float, list[Rung]]]:
+def _by_factor(found: Sequence[tuple[float, Model]]) -> list[tuple[float, list[Model]]]:
     factors = sorted({factor for factor, _ in found if factor > 1.0}, reverse=True)
-    return [(factor, [rung for own, rung in found if own == factor]) for factor in factors]
+    return [(factor, [model for own, model in found if own == factor]) for factor in factors]
 
 
 def _mirror(scene: Scene) -> str:
@@ -56,5 +60,5 @@ def _mirror(scene: Scene) -> str:
     return (own_axes(scene) or half_turn(scene)).reason
 
 
-def _titles(some: Sequence[Rung], rungs: Sequence[Rung]) -> str:
-    return "all" if len(some) == len(rungs) else ", ".join(rung.key for rung in some)
+def _titles(some: Sequence[Model], models: Sequence[Model]) -> str:
+    return "all" if len(some) == len(models) else ", ".join(model.key for model in some)

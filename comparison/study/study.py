@@ -1,4 +1,4 @@
-"""What is asked: scenes, grid of phases, models; cut into tiles for the workers."""
+"""What is asked: scenes, grid of phases, models; cut into batches for the workers."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.study.batches import Tile
-from comparison.study.models import LADDER, Pair, Rung, pairs_of, rungs_of
-from comparison.study.speedup import saving
+from comparison.study.batches import Batch
+from comparison.study.models import MODEL_HIERARCHY, Model, Pair, models_of, pairs_of
+from comparison.study.speedup import speedup
 from comparison.study.symmetry import sources
 from reference.problem import Scene, SceneError, phase_grid
 
@@ -35,15 +35,15 @@ class Study:
     are multiples of one another, so that of any two models the coarser grid is part of the finer. Phases whose motion
     is the mirror image of another's are not computed again, and models leave out what the scene does not require,
     unless the study is `full`. A scene with a recorded motion has no phases: every model computes the one point (0, 0).
-    costs: processor time of a point, s, by name of the scene and key of the model, where it is known better than by the
-    ladder (costs.py). silent: by name of the scene, the models that turned out to have no value there: comparisons pass
+    costs: processor time of a point, s, by name of the scene and key of the model, where it is known better than from
+    the model hierarchy (costs.py). silent: by name of the scene, the models that have no value there: comparisons pass
     over them (analysis/unanswered.py).
     """
 
     scenes: tuple[Scene, ...]
     grid: int
     tolerance: float
-    ladder: Sequence[Rung] = LADDER
+    hierarchy: Sequence[Model] = MODEL_HIERARCHY
     full: bool = False
     costs: Mapping[tuple[str, str], float] | None = None
     silent: Mapping[str, tuple[str, ...]] | None = None
@@ -52,10 +52,10 @@ class Study:
     def strides(self) -> dict[str, int]:
         """The stride of every model by its key: the smallest that leaves it no more phases than its `most`."""
         strides, stride = {}, 1
-        for rung in sorted(self.ladder, key=lambda rung: -(rung.most or self.grid)):
-            most = min(rung.most or self.grid, self.grid)
+        for model in sorted(self.hierarchy, key=lambda model: -(model.most or self.grid)):
+            most = min(model.most or self.grid, self.grid)
             stride *= -(-self.grid // (most * stride))
-            strides[rung.key] = stride
+            strides[model.key] = stride
         return strides
 
     @property
@@ -63,47 +63,49 @@ class Study:
         """The scenes that have phases."""
         return tuple(scene for scene in self.scenes if not scene.recorded)
 
-    def compared(self, scene: Scene) -> list[Rung]:
+    def compared(self, scene: Scene) -> list[Model]:
         """The models of a scene that have values there, in order; all of them while nothing is computed."""
         silent = (self.silent or {}).get(scene.name, ())
-        return [rung for rung in rungs_of(scene, self.ladder) if rung.key not in silent]
+        return [model for model in models_of(scene, self.hierarchy) if model.key not in silent]
 
     def pairs(self, scene: Scene) -> list[Pair]:
         """The pairs of models that are compared on a scene."""
-        return pairs_of(scene, self.ladder, (self.silent or {}).get(scene.name, ()))
+        return pairs_of(scene, self.hierarchy, (self.silent or {}).get(scene.name, ()))
 
-    def stride(self, rung: Rung, scene: Scene | None = None) -> int:
+    def stride(self, model: Model, scene: Scene | None = None) -> int:
         """The model's stride; in a scene without phases the whole grid."""
-        return self.grid if scene is not None and scene.recorded else self.strides[rung.key]
+        return self.grid if scene is not None and scene.recorded else self.strides[model.key]
 
-    def axis(self, rung: Rung, scene: Scene | None = None) -> NDArray[np.intp]:
+    def axis(self, model: Model, scene: Scene | None = None) -> NDArray[np.intp]:
         """Which of the `grid` phases of either axis a model computes, in a scene with phases if none is given."""
-        return np.arange(0, self.grid, self.stride(rung, scene))
+        return np.arange(0, self.grid, self.stride(model, scene))
 
-    def points(self, rung: Rung, scene: Scene | None = None) -> int:
+    def points(self, model: Model, scene: Scene | None = None) -> int:
         """Phase pairs of one surface of this model."""
-        return len(self.axis(rung, scene)) ** 2
+        return len(self.axis(model, scene)) ** 2
 
-    def places(self, rung: Rung, scene: Scene | None = None) -> NDArray[np.intp]:
+    def places(self, model: Model, scene: Scene | None = None) -> NDArray[np.intp]:
         """The model's phase pairs as places on the whole grid, alpha2 running fastest."""
-        axis = self.axis(rung, scene)
+        axis = self.axis(model, scene)
         return (self.grid * axis[:, None] + axis).ravel()
 
-    def sources(self, scene: Scene, rung: Rung) -> NDArray[np.intp]:
+    def sources(self, scene: Scene, model: Model) -> NDArray[np.intp]:
         """For each of `places` the one whose answer is also its own, by the symmetries of the scene (symmetry.py)."""
-        places = self.places(rung, scene)
+        places = self.places(model, scene)
         if scene.recorded:
             return places
-        even = self.grid % self.strides[rung.key] == 0  # else the last phase and the first are closer than the others
+        even = self.grid % self.strides[model.key] == 0  # else the last phase and the first are closer than the others
         return (
-            places[sources(scene, len(self.axis(rung)))] if rung.symmetric(scene) and even and not self.full else places
+            places[sources(scene, len(self.axis(model)))]
+            if model.symmetric(scene) and even and not self.full
+            else places
         )
 
-    def solved(self, scene: Scene, rung: Rung) -> NDArray[np.intp]:
+    def solved(self, scene: Scene, model: Model) -> NDArray[np.intp]:
         """The places that the model is asked for."""
-        return np.unique(self.sources(scene, rung))
+        return np.unique(self.sources(scene, model))
 
-    def tiles(self) -> list[Tile]:
+    def batches(self) -> list[Batch]:
         """
         The whole work, model by model.
 
@@ -111,36 +113,36 @@ class Study:
         """
         phases = phase_grid(self.grid)
         work = [
-            (rung, scene, self.solved(scene, rung))
-            for rung in self.ladder
+            (model, scene, self.solved(scene, model))
+            for model in self.hierarchy
             for scene in self.scenes
-            if rung.applies(scene)
+            if model.applies(scene)
         ]
         asked = {"full": True} if self.full else {}
         return [
-            Tile(
+            Batch(
                 scene=scene,
-                rung=rung.key,
-                amplification=rung.amplification,
-                settings={**rung.settings, "tolerance": rung.tolerance(self.tolerance), **asked},
+                model=model.key,
+                amplification=model.amplification,
+                settings={**model.settings, "tolerance": model.tolerance(self.tolerance), **asked},
                 first=first,
                 phases=phases[places[first : first + size]],
             )
-            for rung, scene, places in work
-            for size in [rung.tile * max(1, round(self.saving(scene, rung)))]
+            for model, scene, places in work
+            for size in [model.batch * max(1, round(self.speedup(scene, model)))]
             for first in range(0, len(places), size)
         ]
 
-    def saving(self, scene: Scene, rung: Rung) -> float:
+    def speedup(self, scene: Scene, model: Model) -> float:
         """How many times less a point costs for what the model leaves out of this scene."""
-        return 1.0 if self.full else saving(scene, rung)
+        return 1.0 if self.full else speedup(scene, model)
 
-    def seconds_of(self, scene: Scene, rung: Rung) -> float:
+    def seconds_of(self, scene: Scene, model: Model) -> float:
         """Predicted cost of one model on one scene, s on one core."""
-        if self.costs is not None and (scene.name, rung.key) in self.costs:
-            return self.costs[scene.name, rung.key] * len(self.solved(scene, rung))
-        return rung.seconds(scene, len(self.solved(scene, rung))) / self.saving(scene, rung)
+        if self.costs is not None and (scene.name, model.key) in self.costs:
+            return self.costs[scene.name, model.key] * len(self.solved(scene, model))
+        return model.seconds(scene, len(self.solved(scene, model))) / self.speedup(scene, model)
 
-    def seconds(self, rung: Rung) -> float:
+    def seconds(self, model: Model) -> float:
         """Predicted cost of one model on every scene it applies to, s on one core."""
-        return sum(self.seconds_of(scene, rung) for scene in self.scenes if rung.applies(scene))
+        return sum(self.seconds_of(scene, model) for scene in self.scenes if model.applies(scene))

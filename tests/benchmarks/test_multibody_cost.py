@@ -94,8 +94,8 @@ def test_ten_thousand_short_runs_leave_no_memory_behind(monkeypatch: pytest.Monk
 
     multibody.amplification(scene, phases[:100])
     before = resident()
-    for tile in np.array_split(phases, 100):  # a fresh system for every hundred, as a sweep does
-        multibody.amplification(scene, tile)
+    for batch in np.array_split(phases, 100):  # a fresh system for every hundred, as a sweep does
+        multibody.amplification(scene, batch)
     assert resident() - before < 50.0
 
 

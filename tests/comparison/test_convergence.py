@@ -1,4 +1,4 @@
-"""Regularisation to nothing and stiffness to infinity: planted laws are found, the real ones are of first order."""
+"""Regularization to nothing and stiffness to infinity: planted laws are found, the real ones are of first order."""
 
 from __future__ import annotations
 
@@ -46,8 +46,8 @@ def test_every_limit_has_a_predicted_cost() -> None:
     assert all(limit.seconds > 0.0 for limit in LIMITS)
 
 
-def _regularised(power: float) -> object:
-    """mu = 3, or 3 + v^power under a regularised law."""
+def _regularized(power: float) -> object:
+    """mu = 3, or 3 + v^power under a regularized law."""
 
     def amplification(scene: Scene, phases: Array, tolerance: float, **settings: float) -> Amplification:
         v = settings.get("regularization")
@@ -59,8 +59,8 @@ def _regularised(power: float) -> object:
 
 @pytest.mark.parametrize(("power", "says"), [(1.0, "like the power 1"), (0.5, "not like the power 1")])
 def test_the_order_in_v_reg_is_that_of_the_law(monkeypatch: pytest.MonkeyPatch, power: float, says: str) -> None:
-    monkeypatch.setattr(convergence, "amplification", _regularised(power))
-    monkeypatch.setattr(convergence, "engine_amplification", _regularised(power))
+    monkeypatch.setattr(convergence, "amplification", _regularized(power))
+    monkeypatch.setattr(convergence, "engine_amplification", _regularized(power))
     for number in (0, 2):  # the equations and the engine, against the resolved peak
         trends = list(limit_trends((load_scene("fig3-I"), number)))
         assert trends
@@ -89,7 +89,7 @@ def test_a_contact_ten_times_stiffer_is_ten_times_closer(monkeypatch: pytest.Mon
 
 
 @pytest.mark.long
-def test_regularisation_is_of_first_order_and_the_supremum_is_not_reached() -> None:
+def test_regularization_is_of_first_order_and_the_supremum_is_not_reached() -> None:
     scene = load_scene("fig3-II")
     resolved, supremum = (limit_trends((scene, number)) for number in (0, 1))
     assert [one.verdict for one in resolved] == ["like the power 1"] * 2

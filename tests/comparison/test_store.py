@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 from conftest import Run
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 
-from comparison.execution.output import clear_dead, publish, replaced_when_complete
+from comparison.execution.output import atomic_replace, clear_dead, publish
 from comparison.report import report
 
 SMALL = ["fig3-I", "--grid", "2"]
@@ -52,7 +52,7 @@ def test_a_report_that_cannot_be_finished_leaves_the_old_one(
 
 def test_nothing_is_made_when_the_first_report_cannot_be_finished(tmp_path: Path) -> None:
     def half() -> None:
-        with replaced_when_complete(tmp_path / "a" / "b" / "report") as report:
+        with atomic_replace(tmp_path / "a" / "b" / "report") as report:
             (report.folder / "index.html").write_text("half", encoding="utf-8")
             raise RuntimeError("the second half")
 
@@ -74,14 +74,14 @@ def test_the_swap_puts_the_old_report_back_when_the_new_one_cannot_move(
         rename(source, target)
 
     monkeypatch.setattr(os, "rename", second_fails)
-    with pytest.raises(OSError, match="no"), replaced_when_complete(place) as report:
+    with pytest.raises(OSError, match="no"), atomic_replace(place) as report:
         (report.folder / "index.html").write_text("new", encoding="utf-8")
     assert (place / "index.html").read_text(encoding="utf-8") == "old"
     assert list(tmp_path.iterdir()) == [place]
 
 
 def test_the_fake_models_would_notice_a_computation(command: Callable[..., Run]) -> None:
-    run = command(*SMALL, ladder=fake_ladder("forbidden"))
+    run = command(*SMALL, hierarchy=fake_hierarchy("forbidden"))
     assert "nothing should have been computed" in run.err
 
 

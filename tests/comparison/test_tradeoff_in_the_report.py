@@ -13,7 +13,7 @@ import xarray as xr
 from conftest import Run
 from jsonschema import Draft202012Validator
 
-from comparison.analysis.tradeoff.trade import FILE, Answered, Entry, Trade, with_fronts
+from comparison.analysis.tradeoff.trade import FILE, Answered, Entry, Trade, with_pareto_fronts
 from comparison.cli import tradeoff as tradeoff
 from reference.problem import load_scene
 
@@ -29,7 +29,7 @@ def trade(name: str) -> Trade:
     entries = [ONE, replace(ONE, value=1e-2, seconds=0.003, most=(1e-3, 1e-3), fault="<b>")]
     question = Answered("exact", "exact equations", 3, "the reference", 1e-10, ["it agrees <with itself>"])
     run = {**RUN, "provenance": {"commit": "abc", "processor": "one"}}
-    return Trade(scene.name, scene.title, scene.digest(), 2, [question], with_fronts(entries, 2), run)
+    return Trade(scene.name, scene.title, scene.digest(), 2, [question], with_pareto_fronts(entries, 2), run)
 
 
 @pytest.fixture

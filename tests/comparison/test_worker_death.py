@@ -12,12 +12,12 @@ from threading import Barrier
 
 import numpy as np
 import pytest
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 
 from comparison.execution.executors import ExecutorLostError, process_pool
-from comparison.execution.splitting import halves, joined
+from comparison.execution.splitting import merge, split_batch
 from comparison.execution.sweep import sweep
-from comparison.study.batches import Answer, Tile, solve_tile, unanswered
+from comparison.study.batches import Batch, BatchResult, execute_batch, unanswered
 from comparison.study.study import Study
 from reference.problem import Outcome, load_scene
 
@@ -67,32 +67,32 @@ def test_in_a_common_pool_of_processes_the_culprit_is_found_too(tmp_path: Path) 
     assert _calls(tmp_path)["kills always"] <= 3, "once among others, then alone"
 
 
-@pytest.mark.parametrize("tile", [2, pytest.param(16, marks=pytest.mark.long)])
-def test_splitting_finds_the_one_point_that_kills(tile: int) -> None:
-    ladder = [rung for rung in fake_ladder("killing", tile=tile) if rung.key == "translational"]
-    tiles = Study((load_scene("fig3-I"),), 4, 1e-3, ladder).tiles()
-    seen: list[Tile] = []
+@pytest.mark.parametrize("batch", [2, pytest.param(16, marks=pytest.mark.long)])
+def test_splitting_finds_the_one_point_that_kills(batch: int) -> None:
+    hierarchy = [model for model in fake_hierarchy("killing", batch=batch) if model.key == "translational"]
+    batches = Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy).batches()
+    seen: list[Batch] = []
 
-    def done(one: Tile, answer: Answer) -> None:
+    def done(one: Batch, answer: BatchResult) -> None:
         seen.append(one)
 
-    answers = sweep(tiles, solve_tile, unanswered, done, 2, process_pool, split=halves, join=joined)
+    answers = sweep(batches, execute_batch, unanswered, done, 2, process_pool, split=split_batch, join=merge)
     assert [outcome for answer in answers for outcome in answer.status] == ["ok"] * 15 + ["worker died"]
     mu = np.concatenate([answer.mu for answer in answers])
-    whole = [solve_tile(one) for one in Study((load_scene("fig3-I"),), 4, 1e-3, fake_ladder(gap=0.0)).tiles()]
+    whole = [execute_batch(one) for one in Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(gap=0.0)).batches()]
     np.testing.assert_array_equal(mu[:15], np.concatenate([answer.mu for answer in whole])[:15])
-    assert len(seen) == len(tiles), "told of whole tiles, once each"
+    assert len(seen) == len(batches), "told of whole batches, once each"
     assert [answer.fault for answer in answers][-1] == "the worker process died 2 times"
 
 
 def test_halves_of_a_tile_are_its_points_in_order() -> None:
-    tile = Study((load_scene("fig3-I"),), 3, 1e-3, fake_ladder(tile=7)).tiles()[1]
-    early, late = halves(tile)
-    np.testing.assert_array_equal(np.concatenate([early.phases, late.phases]), tile.phases)
-    assert (early.first, late.first) == (tile.first, tile.first + len(early.phases))
-    assert halves(halves(tile)[0]) == []
-    whole, parts = solve_tile(tile), [solve_tile(part) for part in (early, late)]
-    together = joined(tile, parts)
+    batch = Study((load_scene("fig3-I"),), 3, 1e-3, fake_hierarchy(batch=7)).batches()[1]
+    early, late = split_batch(batch)
+    np.testing.assert_array_equal(np.concatenate([early.phases, late.phases]), batch.phases)
+    assert (early.first, late.first) == (batch.first, batch.first + len(early.phases))
+    assert split_batch(split_batch(batch)[0]) == []
+    whole, parts = execute_batch(batch), [execute_batch(part) for part in (early, late)]
+    together = merge(batch, parts)
     np.testing.assert_array_equal(together.mu, whole.mu)
     assert (together.status, together.fault) == (whole.status, "")
     assert together.cost == pytest.approx(whole.cost, rel=1e-12)  # a sum in another order

@@ -36,7 +36,7 @@ ASSUMPTIONS = (
     ),
     Assumption(
         "(ii)",
-        "the centres of mass lie on one axis through the centre of the circle",
+        "the centers of mass lie on one axis through the center of the circle",
         "Kept: a scene states heights, no eccentricities. The heights above the contacts, which the paper's equations "
         "do not contain, are free.",
         "no",
@@ -73,7 +73,7 @@ ASSUMPTIONS = (
 
 
 @dataclass(frozen=True)
-class Reach:
+class ValidityRanges:
     """How far the assumptions carry in some scenes: the cells computed and what they say, for the report."""
 
     scenes: Sequence[Scene]
@@ -83,15 +83,15 @@ class Reach:
     duration: float = DURATION  # s
 
     @staticmethod
-    def of(study: Study, jobs: int, executor: Callable[[int], Executor]) -> Reach | None:
+    def of(study: Study, jobs: int, executor: Callable[[int], Executor]) -> ValidityRanges | None:
         """The few cells that a study computes; None if no scene of it has a spatial model."""
         cells = assumption_cells(study, jobs, executor)
         names = {cell.scene for cell in cells}
-        return Reach([scene for scene in study.scenes if scene.name in names], cells) if cells else None
+        return ValidityRanges([scene for scene in study.scenes if scene.name in names], cells) if cells else None
 
     def lines(self, scene: Scene) -> list[str]:
         """One line per body, share and direction."""
-        return [said(found) for found in ranges([scene], self.cells)]
+        return [describe(found) for found in ranges([scene], self.cells)]
 
     def listed(self) -> dict[str, Any]:
         """For summary.json: assumptions, phase pairs, duration, every cell and every range."""
@@ -104,7 +104,7 @@ class Reach:
         }
 
 
-def said(found: Range) -> str:
+def describe(found: Range) -> str:
     """One line for people: where mu_i stays within a share of the translational result."""
     what = f"mu_{found.body} stays within {100.0 * found.share:g} %"
     if found.key == "ring":

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from comparison.execution.sweep import sweep
 from comparison.study.batches import imported
-from comparison.study.models import Rung, rungs_of
+from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from reference.problem import Outcome, Scene, untilted
 
@@ -105,7 +105,7 @@ class Range:
     fails: float | None
 
 
-Task = tuple[Scene, Rung, Variation | None, float]
+Arguments = tuple[Scene, Model, Variation | None, float]
 
 
 @dataclass(frozen=True)
@@ -123,11 +123,11 @@ class Solved:
             raise ValueError(f"mu {self.mu.shape}, error {self.error.shape}, {len(self.status)} statuses")
 
 
-def variation_tasks(study: Study, variations: Sequence[Variation] = FEW) -> list[Task]:
+def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> list[Arguments]:
     """The translational model and every variation of the spatial one, for every scene to which both apply."""
-    asked: list[Task] = []
+    asked: list[Arguments] = []
     for scene in study.phased:
-        engines = [rung for rung in rungs_of(scene, study.ladder) if rung.side == "engine"]
+        engines = [model for model in models_of(scene, study.hierarchy) if model.side == "engine"]
         if len(engines) == 2:
             plain, spatial = engines
             asked.append((scene, plain, None, plain.tolerance(study.tolerance)))
@@ -148,26 +148,26 @@ def assumption_cells(
 
     `done` is called as each is finished, and once more per scene for the translational model.
     """
-    asked = variation_tasks(study, variations)
+    asked = variation_arguments(study, variations)
     solved = sweep(asked, varied, _lost, lambda task, found: done(), jobs, executor)
     held_against = {task[0].name: found for task, found in zip(asked, solved) if task[2] is None}
     return [_cell(task[0], task[2], found, held_against[task[0].name]) for task, found in zip(asked, solved) if task[2]]
 
 
-def varied(task: Task) -> Solved:
+def varied(task: Arguments) -> Solved:
     """One task at PHASES."""
-    scene, rung, variation, tolerance = task
+    scene, model, variation, tolerance = task
     short = scene.with_values({"duration": min(scene.duration, DURATION)})
-    model = short if variation is None else variation.of(short)
-    whole = {"full": True} if untilted(model) else {}  # a check of assumption (vi) must not make use of it
+    changed = short if variation is None else variation.of(short)
+    whole = {"full": True} if untilted(changed) else {}  # a check of assumption (vi) must not make use of it
     try:
-        found = imported(rung.amplification)(model, PHASES, **rung.settings, tolerance=tolerance, **whole)
+        found = imported(model.amplification)(changed, PHASES, **model.settings, tolerance=tolerance, **whole)
     except Exception as fault:
         return _lost(task, Outcome.SOLVER_FAILED, f"{type(fault).__name__}: {fault}")
     return Solved(found.mu, found.error, tuple(str(one) for one in found.status), "", float(found.cost))
 
 
-def _lost(task: Task, outcome: Outcome, fault: str) -> Solved:
+def _lost(task: Arguments, outcome: Outcome, fault: str) -> Solved:
     nothing = np.full((len(PHASES), len(task[0].bodies)), np.nan)
     return Solved(nothing, nothing, (outcome.value,) * len(PHASES), fault, 0.0)
 

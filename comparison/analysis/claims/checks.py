@@ -172,7 +172,7 @@ def smoother(case: str, other: str) -> Check:
 
 
 def _bend(mu: Array) -> float:
-    """Largest second difference between neighbours along either phase, over the range; 0 for a flat surface."""
+    """Largest second difference between neighbors along either phase, over the range; 0 for a flat surface."""
     size = max(float(np.abs(np.roll(mu, 1, axis) - 2.0 * mu + np.roll(mu, -1, axis)).max()) for axis in (0, 1))
     return size / float(np.ptp(mu)) if np.ptp(mu) > 0.0 else 0.0
 

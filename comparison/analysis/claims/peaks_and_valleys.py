@@ -72,7 +72,7 @@ def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = T
     if not span > 2.0 * error:
         return Relief([], np.full(mu.shape, -1))
     least = max(share * span, 2.0 * error)
-    around = _neighbours(*mu.shape, closed)
+    around = _neighbors(*mu.shape, closed)
     height = mu.ravel()
     order = np.argsort(-height, kind="stable")
     rank = np.empty(height.size, dtype=int)
@@ -117,7 +117,7 @@ def _root(parent: NDArray[np.int_], node: int) -> int:
 
 
 @cache
-def _neighbours(rows: int, columns: int, closed: bool) -> list[list[int]]:
+def _neighbors(rows: int, columns: int, closed: bool) -> list[list[int]]:
     """The eight nodes around each: a ridge may run along the diagonal of the grid."""
     return [
         [

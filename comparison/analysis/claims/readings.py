@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 from reference.problem import Scene, load_scene
 
-SPEED = 1e-3  # m/s, v_c of the resolved peak and v_reg of the regularised one
+SPEED = 1e-3  # m/s, v_c of the resolved peak and v_reg of the regularized one
 
 Peak = Literal["supremum", "resolved", "regularised"]
 

@@ -54,7 +54,7 @@ def bends(mu: Array, solve: Callable[[Array], Array]) -> list[Bend]:
     step = 2.0 * np.pi / n
     starts = [(body, *start) for body in range(bodies) for start in _sharpest(mu[..., body])]
     body = np.array([start[0] for start in starts])
-    centre = step * np.array([start[1] for start in starts], float)
+    center = step * np.array([start[1] for start in starts], float)
     way = step * np.array([start[2] for start in starts], float)
     values = np.array(
         [[mu[*(np.add(at, side * direction) % n), i] for side in (-1, 0, 1)] for i, at, direction in starts]
@@ -63,11 +63,11 @@ def bends(mu: Array, solve: Callable[[Array], Array]) -> list[Bend]:
     sizes = [np.abs(_second(values))]
     for _ in range(HALVINGS):
         way = way / 2.0
-        new = solve(np.concatenate([centre - way, centre + way])).reshape(2, len(starts), bodies)[:, every, body]
+        new = solve(np.concatenate([center - way, center + way])).reshape(2, len(starts), bodies)[:, every, body]
         row = np.stack([values[:, 0], new[0], values[:, 1], new[1], values[:, 2]], axis=1)
         best = np.argmax([np.abs(_second(row[:, i : i + 3])) for i in range(3)], axis=0)
         values = np.stack([row[every, best + i] for i in range(3)], axis=1)
-        centre = centre + (best - 1)[:, None] * way
+        center = center + (best - 1)[:, None] * way
         sizes.append(np.abs(_second(values)))
     tiny = np.finfo(float).tiny
     exponents = np.log2(np.maximum(sizes[-1 - JUDGED], tiny) / np.maximum(sizes[-1], tiny)) / JUDGED
@@ -76,7 +76,7 @@ def bends(mu: Array, solve: Callable[[Array], Array]) -> list[Bend]:
         own = np.flatnonzero(body == number)
         lost = own[~np.isfinite(exponents[own])]
         at = lost[0] if len(lost) else own[np.argmin(exponents[own])]
-        alpha1, alpha2 = np.mod(centre[at], 2.0 * np.pi)
+        alpha1, alpha2 = np.mod(center[at], 2.0 * np.pi)
         found.append(Bend(float(exponents[at]), (float(alpha1), float(alpha2))))
     return found
 

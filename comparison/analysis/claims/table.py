@@ -18,7 +18,7 @@ from comparison.execution.executors import Pool, process_pool
 from comparison.execution.sweep import sweep
 
 GRID = 16  # phases per axis: 24 change a count here and there, and none of the claims that no reading reproduces
-SECONDS = 0.15  # of one case under one reading on GRID, recorded beside `Rung.seconds_per_point`
+SECONDS = 0.15  # of one case under one reading on GRID, recorded beside `Model.seconds_per_point`
 COARSE = 2  # every second phase for surfaces that are only correlated with another
 
 

@@ -65,7 +65,7 @@ def _column(key: str, title: str, equations: str, regularization: float | None) 
 
 
 V_REG = 1e-3  # m/s, where it is not the extreme
-_REGULARISED = {"equations": "exact", "regularization": V_REG}
+_REGULARIZED = {"equations": "exact", "regularization": V_REG}
 _TRANSLATIONAL = {"model": "translational", "regularization": V_REG}
 _SPATIAL = {"model": "spatial", "regularization": V_REG}
 GIVEN = "comparison.analysis.extremes.engine:amplification"  # the engine at a step or a contact stiffness of the row
@@ -82,7 +82,7 @@ COLUMNS = (
         1e-3,
         # the same law and geometry by other means and far closer; the engine itself where that has no answer
         (
-            ("reference:amplification", _REGULARISED, 1e-6),
+            ("reference:amplification", _REGULARIZED, 1e-6),
             (ENGINE, _TRANSLATIONAL, 3e-5),
             (ENGINE, _TRANSLATIONAL, 1e-4),
         ),

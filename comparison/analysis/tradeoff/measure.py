@@ -16,7 +16,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from comparison.analysis.tradeoff.settings import Question, Setting, Settings, asked, settings
-from comparison.analysis.tradeoff.trade import Answered, Entry, Trade, labelled, quantile, with_fronts
+from comparison.analysis.tradeoff.trade import Answered, Entry, Trade, labeled, quantile, with_pareto_fronts
 from comparison.execution.executors import Pool, process_pool
 from comparison.execution.sweep import sweep
 from comparison.study.batches import imported
@@ -150,11 +150,11 @@ def measured(
         mu.append(found.mu)
         truths.append(truth.mu)
         claims.append(found.claimed)
-    entries = with_fronts(entries, len(scene.bodies))
+    entries = with_pareto_fronts(entries, len(scene.bodies))
     questions = [_answered(question, whole[key(question.truth)], entries) for question in asked(scene)]
     trade = Trade(scene.name, scene.title, scene.digest(), len(scene.bodies), questions, entries, run)
     most = sample(max(question.points for question in questions))
-    return trade, labelled(entries, mu, truths, claims, most, run)
+    return trade, labeled(entries, mu, truths, claims, most, run)
 
 
 def _joined(parts: Sequence[Found]) -> Found:

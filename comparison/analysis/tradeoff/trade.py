@@ -87,7 +87,7 @@ def quantile(errors: Array, share: float) -> float | None:
     return float(np.quantile(known, share, method="higher")) if len(known) else None
 
 
-def on_front(cost: Sequence[float], error: Sequence[float]) -> list[bool]:
+def on_pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[bool]:
     """Which of the pairs are not beaten: no other is at least as good in both and better in one."""
     pairs = list(zip(cost, error))
     return [
@@ -97,7 +97,7 @@ def on_front(cost: Sequence[float], error: Sequence[float]) -> list[bool]:
     ]
 
 
-def with_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
+def with_pareto_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
     """The entries with `front` filled in: within each question, among those that answer it at every point."""
     marks: dict[int, list[bool]] = {place: [False] * bodies for place in range(len(entries))}
     for question in {entry.question for entry in entries}:
@@ -109,7 +109,7 @@ def with_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
         for body in range(bodies):
             errors = [entries[place].most[body] for place in own]
             known = [math.inf if error is None else error for error in errors]
-            for place, mark in zip(own, on_front([entries[place].seconds for place in own], known)):
+            for place, mark in zip(own, on_pareto_front([entries[place].seconds for place in own], known)):
                 marks[place][body] = mark
     return [Entry(**{**vars(entry), "front": tuple(marks[place])}) for place, entry in enumerate(entries)]
 
@@ -143,7 +143,7 @@ def read(folder: Path) -> list[Trade] | None:
         raise ValueError(f"{file}: not a measured trade: {fault}: run python -m comparison.tradeoff") from None
 
 
-def labelled(
+def labeled(
     entries: Sequence[Entry], mu: Sequence[Array], truth: Sequence[Array], claimed: Sequence[Array],
     phases: Array, run: Mapping[str, Any],
 ) -> xr.Dataset:  # fmt: skip

@@ -17,7 +17,7 @@ from comparison.report.figures.file_names import figure_file
 from comparison.report.figures.pairs import save
 from reference.problem import Scene, verbatim
 
-COLOURS = ("#fde725", "#35b779", "#440154")  # within 1 %, within 5 %, beyond: told apart without colour vision too
+COLORS = ("#fde725", "#35b779", "#440154")  # within 1 %, within 5 %, beyond: told apart without color vision too
 NO_VALUE, NOT_TRIED = "0.6", "0.95"
 
 
@@ -53,8 +53,8 @@ def _map(axes: Axes, scene: Scene, cells: Sequence[Cell], body: int) -> None:
         doubtful = f"\n± {100.0 * cell.uncertain(body):.2g}" if known and cell.uncertain(body) > 0.2 * size else ""
         text = f"{100.0 * size:.2g}{doubtful}" if known else "none"
         axes.text(column, row, text, ha="center", va="center", fontsize=9, color="w" if dark else "k")
-    norm = BoundaryNorm([0.0, *WITHIN, np.inf], len(COLOURS))
-    axes.imshow(image, cmap=ListedColormap(COLOURS), norm=norm, origin="lower", aspect="auto")
+    norm = BoundaryNorm([0.0, *WITHIN, np.inf], len(COLORS))
+    axes.imshow(image, cmap=ListedColormap(COLORS), norm=norm, origin="lower", aspect="auto")
     axes.set_xticks(range(len(rings)), [f"{ring * (scene.isolator.ring or np.nan):g}" for ring in rings])
     axes.set_yticks(range(len(heights)), [f"{height:g}" for height in heights])
     axes.set_xlabel("radius of the ring of supports, m")

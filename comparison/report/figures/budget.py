@@ -1,4 +1,4 @@
-"""One map per step of the budget: how much each rung of the ladder adds to mu_i, and where that is real."""
+"""One map per step of the budget: how much each model of the hierarchy adds to mu_i, and where that is real."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from matplotlib.figure import Figure
 from comparison.analysis.budget import TOTAL, steps
 from comparison.analysis.steps import Step
 from comparison.report.figures.file_names import figure_file
-from comparison.report.figures.pairs import QUARTER_NAMES, QUARTERS, SIGN_COLOURS, closed
+from comparison.report.figures.pairs import QUARTER_NAMES, QUARTERS, SIGN_COLORS, closed
 from comparison.study.study import Study
 from comparison.wording import mathtext
 from reference.problem import Scene, verbatim
 
-LINEAR = 1e-6  # relative: below it the colours are linear, above it logarithmic in both directions
+LINEAR = 1e-6  # relative: below it the colors are linear, above it logarithmic in both directions
 
 
 def budget_figure_name(scene: Scene, body: int) -> str:
@@ -53,7 +53,7 @@ def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, bo
 def _map(axes: Axes, step: Step, norm: SymLogNorm) -> QuadMesh:
     phase, size = closed(step.alpha1, 100.0 * step.size)
     axes.set_facecolor("0.75")
-    image = axes.pcolormesh(phase, phase, size.T, cmap=SIGN_COLOURS, norm=norm, shading="nearest")
+    image = axes.pcolormesh(phase, phase, size.T, cmap=SIGN_COLORS, norm=norm, shading="nearest")
     row, column = np.nonzero(step.known & ~step.real)
     axes.plot(phase[row], phase[column], ".", color="0.35", markersize=160.0 / len(phase) / 4.0, markeredgewidth=0.0)
     axes.set_xlim(0.0, 2.0 * np.pi)

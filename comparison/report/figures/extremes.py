@@ -1,4 +1,4 @@
-"""The matrix of extremes as a picture: one coloured field per extreme and model."""
+"""The matrix of extremes as a picture: one colored field per extreme and model."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from reference.problem import Outcome
 
 Line = tuple[str, Mapping[str, Entry] | None]  # title and its entries; None for the heading of a group
 
-# distinct for those who do not see red and green apart; the letter says it without any colour
-COLOURS = {
+# distinct for those who do not see red and green apart; the letter says it without any color
+COLORS = {
     Verdict.CONVERGED: "#a8d5ba",
     Verdict.REFUSED: "#bcd4f0",
     Verdict.LIMIT: "#f7d488",
@@ -44,7 +44,7 @@ def draw_extremes(file: Path, found: Matrix) -> None:
         place = left / size[0], 0.0, WIDTH * len(found.columns) / size[0], 1.0 - TOP / size[1]
         _draw_panel(figure.add_axes(place), lines, found.columns, longest + 1)
     counts = found.counts()
-    handles = [Patch(color=COLOURS[verdict], label=f"{counts[verdict]} {MEANING[verdict]}") for verdict in Verdict]
+    handles = [Patch(color=COLORS[verdict], label=f"{counts[verdict]} {MEANING[verdict]}") for verdict in Verdict]
     figure.legend(handles=handles, loc="upper center", ncol=2, fontsize=8, frameon=False)
     figure.savefig(file, dpi=130)
 
@@ -91,7 +91,7 @@ def _lines(found: Matrix) -> list[Line]:
 def _field(axes: Axes, place: int, line: int, entry: Entry) -> None:
     verdict = Verdict(entry.verdict)
     dark = verdict == Verdict.FAILED
-    axes.add_patch(Rectangle((place + 0.02, line + 0.06), 0.96, 0.88, color=COLOURS[verdict], lw=0))
+    axes.add_patch(Rectangle((place + 0.02, line + 0.06), 0.96, 0.88, color=COLORS[verdict], lw=0))
     axes.text(
         place + 0.5, line + 0.52, said(entry), ha="center", va="center", fontsize=6.5,
         color="white" if dark else "#1b1f24",

@@ -14,10 +14,10 @@ from matplotlib.figure import Figure
 from comparison.analysis.budget import TOTAL, Entry
 from comparison.report.figures.file_names import figure_file
 from comparison.report.findings import Findings
-from comparison.study.models import Rung
+from comparison.study.models import Model
 from reference.problem import Family, verbatim
 
-COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00")  # told apart by every eye
+COLORS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00")  # told apart by every eye
 MARKERS = "osD^v<>"  # and in print
 
 
@@ -30,16 +30,16 @@ def draw_families(folder: Path, found: Findings) -> None:
     """Write the figure of every body of every family into `folder`, PNG."""
     for family in found.families or ():
         for body in range(1, family.bodies + 1):
-            draw_family(folder / family_figure_name(family, body), family, found.budget, found.study.ladder, body)
+            draw_family(folder / family_figure_name(family, body), family, found.budget, found.study.hierarchy, body)
 
 
-def draw_family(path: Path, family: Family, entries: Sequence[Entry], ladder: Sequence[Rung], body: int) -> None:
+def draw_family(path: Path, family: Family, entries: Sequence[Entry], hierarchy: Sequence[Model], body: int) -> None:
     """
     Write mean and largest size of every step of the budget, and of the total, over the values of the family.
 
     Dashed beside the largest sizes: the median uncertainty of the step. What lies below it is no difference.
     """
-    titles = {TOTAL: "total", **{rung.key: rung.title for rung in ladder}}
+    titles = {TOTAL: "total", **{model.key: model.title for model in hierarchy}}
     figure = Figure(figsize=(13.0, 4.4), dpi=110)
     FigureCanvasAgg(figure)
     title = family.scenes[0].title
@@ -53,7 +53,7 @@ def draw_family(path: Path, family: Family, entries: Sequence[Entry], ladder: Se
             _over(family, entries, body, step, part) for part in ("mean", "maximum", "uncertain")
         )
         look: dict[str, Any] = {"marker": MARKERS[number % len(MARKERS)], "markersize": 4.0, "linewidth": 1.2}
-        look["color"] = "black" if step == TOTAL else COLOURS[number % len(COLOURS)]
+        look["color"] = "black" if step == TOTAL else COLORS[number % len(COLORS)]
         left.plot(places, 100.0 * mean, **look)
         right.plot(places, 100.0 * largest, label=titles[step], **look)
         right.plot(places, 100.0 * uncertain, color=look["color"], linewidth=0.8, linestyle="--")

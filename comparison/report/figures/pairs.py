@@ -22,8 +22,8 @@ from reference.problem import Scene, verbatim
 
 Array = NDArray[np.float64]
 
-HEIGHT_COLOURS = "cividis"  # read alike with and without colour vision deficiency, and in print
-SIGN_COLOURS = "RdBu_r"
+HEIGHT_COLORS = "cividis"  # read alike with and without color vision deficiency, and in print
+SIGN_COLORS = "RdBu_r"
 QUARTERS = np.arange(5) * np.pi / 2.0
 QUARTER_NAMES = ["0", "π/2", "π", "3π/2", "2π"]
 
@@ -45,11 +45,11 @@ def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: P
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
     if low == high:
         low, high = 0.9 * low - 0.1, 1.1 * high + 0.1
-    for place, data, rung in zip(((0.0, 0.0, 0.31, 0.86), (0.315, 0.0, 0.31, 0.86)), both, (pair.first, pair.second)):
+    for place, data, model in zip(((0.0, 0.0, 0.31, 0.86), (0.315, 0.0, 0.31, 0.86)), both, (pair.first, pair.second)):
         axes = figure.add_axes(place, projection="3d")
         assert isinstance(axes, Axes3D)
         _surface(axes, *closed(data["alpha1"].values, data["mu"].values), low, high)
-        axes.set_title(f"$\\mu_{{{body}}}$, {mathtext(rung.title)}", fontsize=11, pad=0)
+        axes.set_title(f"$\\mu_{{{body}}}$, {mathtext(model.title)}", fontsize=11, pad=0)
     _map(figure, figure.add_axes((0.70, 0.14, 0.22, 0.65)), pair_step(surfaces, scene.name, pair, body))
     figure.savefig(path)
 
@@ -67,8 +67,8 @@ def closed(phase: Array, mu: Array) -> tuple[Array, Array]:
 
 def _surface(axes: Axes3D, phase: Array, height: Array, low: float, high: float) -> None:
     alpha1, alpha2 = np.meshgrid(phase, phase, indexing="ij")
-    colours = {"cmap": HEIGHT_COLOURS, "vmin": low, "vmax": high, "linewidth": 0.2, "edgecolor": (0, 0, 0, 0.35)}
-    axes.plot_surface(alpha1, alpha2, height, rcount=200, ccount=200, antialiased=True, **colours)
+    colors = {"cmap": HEIGHT_COLORS, "vmin": low, "vmax": high, "linewidth": 0.2, "edgecolor": (0, 0, 0, 0.35)}
+    axes.plot_surface(alpha1, alpha2, height, rcount=200, ccount=200, antialiased=True, **colors)
     axes.set_zlim(low, high)
     axes.set_box_aspect((1.0, 1.0, 0.62), zoom=0.88)
     axes.view_init(elev=28.0, azim=-125.0)
@@ -87,7 +87,7 @@ def _map(figure: Figure, axes: Axes, step: Step) -> None:
     limit = float(np.percentile(size, 98.0)) if largest > 0.0 else 1.0
     limit = limit if limit > 0.0 else largest
     axes.set_facecolor("0.75")
-    image = axes.pcolormesh(phase, phase, height.T, cmap=SIGN_COLOURS, vmin=-limit, vmax=limit, shading="nearest")
+    image = axes.pcolormesh(phase, phase, height.T, cmap=SIGN_COLORS, vmin=-limit, vmax=limit, shading="nearest")
     axes.set_xlim(0.0, 2.0 * np.pi)
     axes.set_ylim(0.0, 2.0 * np.pi)
     axes.set_aspect("equal")
@@ -97,7 +97,7 @@ def _map(figure: Figure, axes: Axes, step: Step) -> None:
     axes.set_ylabel(r"$\alpha_2$, rad")
     missing = int((~np.isfinite(percent)).sum())
     found = f"largest {largest:.2g} %" if size.size else "no point to compare"
-    grey = f", {missing} without a value (grey)" if missing else ""
-    axes.set_title(f"second minus first, % of first\n{found}{grey}", fontsize=10)
+    gray = f", {missing} without a value (gray)" if missing else ""
+    axes.set_title(f"second minus first, % of first\n{found}{gray}", fontsize=10)
     bar = figure.colorbar(image, cax=figure.add_axes((0.935, 0.14, 0.012, 0.65)), extend="both")
     bar.ax.tick_params(labelsize=8)

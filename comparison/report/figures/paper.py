@@ -1,4 +1,4 @@
-"""Figures for a manuscript, in the paper's own manner: grey surfaces mu_i over [0, 2 pi]^2, one row per body."""
+"""Figures for a manuscript, in the paper's own manner: gray surfaces mu_i over [0, 2 pi]^2, one row per body."""
 
 from __future__ import annotations
 
@@ -50,12 +50,12 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
             heights = [closed(one["alpha1"].values, one["mu"].values) for one in data]
             finite = np.concatenate([height[np.isfinite(height)] for _, height in heights])
             low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
-            for column, ((phase, height), rung) in enumerate(zip(heights, (first, last))):
+            for column, ((phase, height), model) in enumerate(zip(heights, (first, last))):
                 place = (0.02 + 0.5 * column, 1.0 - (row + 0.98) / bodies, 0.46, 0.88 / bodies)
                 axes = figure.add_axes(place, projection="3d")
                 letter = chr(ord("a") + 2 * row + column)
                 _surface(axes, phase, height, (low, high), rf"$\mu_{{{row + 1}}}$")
-                axes.set_title(f"({letter}) $\\mu_{{{row + 1}}}$, {mathtext(rung.title)}", y=1.0, fontsize=9.0)
+                axes.set_title(f"({letter}) $\\mu_{{{row + 1}}}$, {mathtext(model.title)}", y=1.0, fontsize=9.0)
         figure.savefig(with_ending(path, ".pdf"), metadata={"CreationDate": None})
         figure.savefig(path, dpi=RESOLUTION)
 

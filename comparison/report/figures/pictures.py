@@ -14,7 +14,7 @@ import xarray as xr
 from PIL import Image
 
 from comparison.execution.sweep import sweep
-from comparison.execution.task import Errand, fingerprint
+from comparison.execution.task import Task, fingerprint
 from comparison.report.figures.budget import budget_figure_name, draw_budget
 from comparison.report.figures.file_names import with_ending
 from comparison.report.figures.pairs import draw_pair, figure_name
@@ -23,7 +23,7 @@ from comparison.study.models import Pair
 from comparison.study.study import Study
 from reference.problem import Outcome, Scene
 
-SECONDS = {"pair": 0.45, "budget": 0.6, "paper": 1.0}  # of drawing one, recorded beside `Rung.seconds_per_point`
+SECONDS = {"pair": 0.45, "budget": 0.6, "paper": 1.0}  # of drawing one, recorded beside `Model.seconds_per_point`
 PAGE = ".webp"
 SHOWN = ["mu", "error", "stride", "recorded"]  # of the surfaces: what pictures are made of
 
@@ -64,11 +64,11 @@ def pictures(study: Study, surfaces: xr.Dataset) -> list[Picture]:
     return found
 
 
-def picture_errands(study: Study, surfaces: xr.Dataset) -> list[Errand]:
-    """The same as errands for the workers."""
+def picture_tasks(study: Study, surfaces: xr.Dataset) -> list[Task]:
+    """The same as tasks for the workers."""
     about = {scene.name: fingerprint(surfaces[SHOWN].sel(scene=[scene.name])) for scene in study.scenes}
     return [
-        Errand("pictures", drawn, picture, SECONDS[picture.kind], about[picture.scene.name], compiled=False)
+        Task("pictures", drawn, picture, SECONDS[picture.kind], about[picture.scene.name], compiled=False)
         for picture in pictures(study, surfaces)
     ]
 

@@ -17,7 +17,7 @@ from comparison.wording import mathtext
 from reference.problem import verbatim
 
 LOWEST, HIGHEST = 1e-12, 10.0
-# one hue for each family, a marker for each method in it: told apart without colours, too
+# one hue for each family, a marker for each method in it: told apart without colors, too
 FAMILIES = (
     ("reference", "#1f4e8c", "#5b9bd5"),
     ("v_reg", "#7f7f7f", "#b0b0b0"),
@@ -79,18 +79,18 @@ def _panel(axes: Axes, trade: Trade, question: Answered, body: int) -> None:
         axes.plot(*np.transpose(front), "o", ms=12, mfc="none", mec="k", mew=1.1, label="on the Pareto front")
 
 
-def _curve(axes: Axes, method: str, entries: list[Entry], body: int, colour: str, marker: str) -> None:
+def _curve(axes: Axes, method: str, entries: list[Entry], body: int, color: str, marker: str) -> None:
     known = [entry for entry in entries if entry.most[body] is not None and entry.answered == entry.points]
     if not known:
-        axes.plot([], [], color=colour, marker=marker, label=f"{method}: not every point has a value")
+        axes.plot([], [], color=color, marker=marker, label=f"{method}: not every point has a value")
         return
     seconds = [entry.seconds for entry in known]
     style = "--" if known[0].model_error else "-"
     values = f"{known[0].parameter} {known[0].value:.3g} … {known[-1].value:.3g} {known[0].unit}".strip()
     most, median = ([_height(getattr(entry, part)[body]) for entry in known] for part in ("most", "median"))
     text = method if known[0].model_error else f"{method}: {values}"
-    axes.plot(seconds, most, style, color=colour, marker=marker, ms=4.5, lw=1.3, label=mathtext(text))
-    axes.plot(seconds, median, ":", color=colour, lw=1.0)
+    axes.plot(seconds, most, style, color=color, marker=marker, ms=4.5, lw=1.3, label=mathtext(text))
+    axes.plot(seconds, median, ":", color=color, lw=1.0)
 
 
 def _height(error: float | None) -> float:

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparison.study.batches import imported, solve_tile
-from comparison.study.models import Rung
-from comparison.study.planning import Asked, Choice, choice
+from comparison.study.batches import execute_batch, imported
+from comparison.study.models import Model
+from comparison.study.planning import StudyPlan, StudyRequest, plan_study
 from reference.problem import Scene, builtin_scenes, load_scene
 
 TIGHTER = 100.0
@@ -27,23 +27,23 @@ def tower() -> Scene:
     return Scene.model_validate({**table, "name": "tower"})
 
 
-def chosen(scene: Scene, tolerance: float, grid: int, most: int) -> Choice:
+def chosen(scene: Scene, tolerance: float, grid: int, most: int) -> StudyPlan:
     """What is chosen on a small grid, the engine on a smaller one."""
-    found = choice(Asked((scene,), tolerance=tolerance, grid=grid))
-    rungs = [replace(rung, most=most) if rung.side == "engine" else rung for rung in found.study.ladder]
-    return replace(found, study=replace(found.study, ladder=rungs))
+    found = plan_study(StudyRequest((scene,), tolerance=tolerance, grid=grid))
+    models = [replace(model, most=most) if model.side == "engine" else model for model in found.study.hierarchy]
+    return replace(found, study=replace(found.study, hierarchy=models))
 
 
-def share_met(found: Choice, scene: Scene, rung: Rung) -> tuple[float, int]:
+def share_met(found: StudyPlan, scene: Scene, model: Model) -> tuple[float, int]:
     """Share of the points of one model that are as accurate as asked, against a run TIGHTER; and their number."""
     met, study = [], found.study
-    for tile in study.tiles():
-        if tile.rung == rung.key:
-            answer = solve_tile(tile)
-            asked = max(study.tolerance / TIGHTER, TIGHTEST[rung.side])
-            if rung.side == "reference":
+    for batch in study.batches():
+        if batch.model == model.key:
+            answer = execute_batch(batch)
+            asked = max(study.tolerance / TIGHTER, TIGHTEST[model.side])
+            if model.side == "reference":
                 asked = min(asked, 1e-8)
-            truth = imported(tile.amplification)(scene, tile.phases, **{**tile.settings, "tolerance": asked})
+            truth = imported(batch.amplification)(scene, batch.phases, **{**batch.settings, "tolerance": asked})
             error = np.abs(answer.mu / truth.mu - 1.0).max(axis=1)
             met += list(np.nan_to_num(error, nan=np.inf) <= study.tolerance)
     return float(np.mean(met)), len(met)
@@ -52,11 +52,11 @@ def share_met(found: Choice, scene: Scene, rung: Rung) -> tuple[float, int]:
 def test_the_accuracy_asked_is_met_on_a_scene_that_was_never_recorded() -> None:
     scene = tower().with_values({"duration": 3.0})
     found = chosen(scene, 1e-3, 6, 2)
-    assert {rung.side for rung in found.study.ladder} == {"reference", "engine"}
-    for rung in found.study.ladder:
-        if rung.key != "spatial":
-            share, points = share_met(found, scene, rung)
-            assert share >= 0.99, (rung.key, points)
+    assert {model.side for model in found.study.hierarchy} == {"reference", "engine"}
+    for model in found.study.hierarchy:
+        if model.key != "spatial":
+            share, points = share_met(found, scene, model)
+            assert share >= 0.99, (model.key, points)
 
 
 @pytest.mark.long
@@ -66,12 +66,12 @@ def test_the_accuracy_asked_is_met_at_99_percent_of_the_points(name: str, tolera
     scene = tower() if name == "tower" else load_scene(name)
     # the engine is held against runs a hundred times tighter: few phases but at the usual tolerance
     found = chosen(scene, tolerance, 16, 4 if tolerance == 1e-3 else 2)
-    assert found.study.ladder
-    for rung in found.study.ladder:
-        if rung.applies(scene):
-            share, points = share_met(found, scene, rung)
-            print(f"{name} {rung.key} {tolerance:.0e}: {100.0 * share:.1f} % of {points}")
-            assert share >= 0.99, (rung.key, points)
+    assert found.study.hierarchy
+    for model in found.study.hierarchy:
+        if model.applies(scene):
+            share, points = share_met(found, scene, model)
+            print(f"{name} {model.key} {tolerance:.0e}: {100.0 * share:.1f} % of {points}")
+            assert share >= 0.99, (model.key, points)
 
 
 @pytest.mark.long
@@ -86,19 +86,19 @@ def test_the_cost_is_within_a_factor_1_5_of_what_was_expected(names: list[str], 
     for each.
     """
 
-    def foreseen(scene: Scene) -> Choice:
+    def foreseen(scene: Scene) -> StudyPlan:
         return chosen(scene, tolerance, 24, 4)
 
-    def seconds(found: Choice) -> float:
-        return sum(found.study.seconds(rung) for rung in found.study.ladder)
+    def seconds(found: StudyPlan) -> float:
+        return sum(found.study.seconds(model) for model in found.study.hierarchy)
 
     expected, spent = [], []
     for name in names:
         scene = tower() if name == "tower" else load_scene(name)
         found = foreseen(scene)
         begin = time.process_time()
-        for tile in found.study.tiles():
-            solve_tile(tile)
+        for batch in found.study.batches():
+            execute_batch(batch)
         spent.append(time.process_time() - begin)
         expected.append(0.5 * (seconds(found) + seconds(foreseen(scene))))
         print(f"{name} {tolerance:.0e}: {spent[-1]:.2f} s where {expected[-1]:.2f} s were expected")

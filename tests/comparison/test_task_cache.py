@@ -12,18 +12,18 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 from rich.console import Console
 
 from comparison.analysis.effective import Effective
 from comparison.analysis.errata import Effect
-from comparison.analysis.tasks import errands, paper_complete
+from comparison.analysis.tasks import analysis_tasks, paper_complete
 from comparison.analysis.trajectories import Place, StoredMotion
 from comparison.execution.cache import Cache
 from comparison.execution.runner import fetched
 from comparison.execution.sweep import sweep
-from comparison.execution.task import Errand, Fetched, fingerprint
-from comparison.execution.task_cache import Answers
+from comparison.execution.task import Task, TaskResult, fingerprint
+from comparison.execution.task_cache import TaskCache
 from comparison.study.study import Study
 from reference.problem import Outcome, builtin_scenes, load_scene
 
@@ -50,33 +50,33 @@ def forbidden(jobs: int) -> Executor:
     raise AssertionError("nothing should have been computed")
 
 
-def _errand(task: tuple[Any, ...] = (load_scene("fig3-I"), 1, 0.5, np.arange(3.0))) -> Errand:
-    return Errand("motions", motion, task, 0.1, task[0])
+def _errand(task: tuple[Any, ...] = (load_scene("fig3-I"), 1, 0.5, np.arange(3.0))) -> Task:
+    return Task("motions", motion, task, 0.1, task[0])
 
 
-def _fetched(errand: Errand, folder: Path, make: Callable[[int], Executor] = ThreadPoolExecutor) -> Answers:
-    answers = Answers(Cache(folder))
-    fetched([errand], answers, QUIET, 1, make)
+def _fetched(task: Task, folder: Path, make: Callable[[int], Executor] = ThreadPoolExecutor) -> TaskCache:
+    answers = TaskCache(Cache(folder))
+    fetched([task], answers, QUIET, 1, make)
     return answers
 
 
 def test_an_answer_comes_back_to_the_last_bit_and_is_not_computed_twice(tmp_path: Path) -> None:
-    errand = _errand()
-    found = [_fetched(errand, tmp_path), _fetched(errand, tmp_path, forbidden)]
+    task = _errand()
+    found = [_fetched(task, tmp_path), _fetched(task, tmp_path, forbidden)]
     assert [answers.parts["motions"].stored for answers in found] == [0, 1]
-    first, second = (answers.on(forbidden)(1).submit(motion, errand.task).result() for answers in found)
-    assert pickle.dumps(first) == pickle.dumps(second) == pickle.dumps(motion(errand.task))
-    assert Answers(Cache(tmp_path)).holds(errand)
-    assert not Answers(Cache(tmp_path), fresh=True).holds(errand)
-    assert Answers(Cache(tmp_path), fresh=True).missing([errand]) == [errand]
+    first, second = (answers.on(forbidden)(1).submit(motion, task.argument).result() for answers in found)
+    assert pickle.dumps(first) == pickle.dumps(second) == pickle.dumps(motion(task.argument))
+    assert TaskCache(Cache(tmp_path)).holds(task)
+    assert not TaskCache(Cache(tmp_path), fresh=True).holds(task)
+    assert TaskCache(Cache(tmp_path), fresh=True).missing([task]) == [task]
 
 
 def test_it_belongs_to_function_task_versions_and_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    errand = _errand()
-    _fetched(errand, tmp_path)
-    scene, *rest = errand.task
+    task = _errand()
+    _fetched(task, tmp_path)
+    scene, *rest = task.argument
     others = {
-        "function": replace(errand, solve=another),
+        "function": replace(task, solve=another),
         "scene": _errand((scene.with_values({"duration": 3.0}), *rest)),
         "name, which the answer may hold": _errand((scene.with_values({"name": "other"}), *rest)),
         "number": _errand((scene, 2, *rest[1:])),
@@ -85,74 +85,74 @@ def test_it_belongs_to_function_task_versions_and_source(tmp_path: Path, monkeyp
         "shape": _errand((scene, 1, 0.5, np.arange(3.0)[None])),
     }
     for name, other in others.items():
-        assert Answers(Cache(tmp_path)).missing([other]), name
+        assert TaskCache(Cache(tmp_path)).missing([other]), name
     for name in ("_version", "source_digest"):
         with monkeypatch.context() as patch:
             patch.setattr(f"comparison.execution.environment.{name}", lambda package: "changed")
-            assert Answers(Cache(tmp_path)).missing([errand]), name
-    assert not Answers(Cache(tmp_path)).missing([errand])
+            assert TaskCache(Cache(tmp_path)).missing([task]), name
+    assert not TaskCache(Cache(tmp_path)).missing([task])
 
 
 def test_a_model_is_known_by_its_source_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    rung = fake_ladder()[0]
-    before = fingerprint(rung)
-    assert fingerprint(replace(rung, settings={"gap": 2.0})) != before
+    model = fake_hierarchy()[0]
+    before = fingerprint(model)
+    assert fingerprint(replace(model, settings={"gap": 2.0})) != before
     monkeypatch.setattr("comparison.execution.environment.source_digest", lambda name: "changed")
-    assert fingerprint(rung) != before
+    assert fingerprint(model) != before
 
 
 def test_what_names_a_fault_serves_the_run_and_is_tried_again_by_the_next(tmp_path: Path) -> None:
-    errand = Errand("slips", broken, 1, 0.1)
+    task = Task("slips", broken, 1, 0.1)
     calls.clear()
-    answers = _fetched(errand, tmp_path)
+    answers = _fetched(task, tmp_path)
     assert answers.on(forbidden)(1).submit(broken, 1).result()[1].fault == "it broke"
-    _fetched(errand, tmp_path)
+    _fetched(task, tmp_path)
     assert calls == [1, 1]
 
 
 @pytest.mark.parametrize("damage", ["torn", "one bit", "a foreign class"])
 def test_what_is_damaged_or_would_run_foreign_code_is_computed_again(tmp_path: Path, damage: str) -> None:
-    errand = _errand()
-    _fetched(errand, tmp_path)
+    task = _errand()
+    _fetched(task, tmp_path)
     (file,) = tmp_path.glob("*/*.answer")
     text = file.read_bytes()
     if damage == "a foreign class":
         content = pickle.dumps(Path("reports"), protocol=4)
         text = hashlib.sha256(f"{file.parent.name}/{file.name}".encode() + content).digest() + content
     file.write_bytes({"torn": text[:-9], "one bit": text[:-1] + bytes([text[-1] ^ 1])}.get(damage, text))
-    assert _fetched(errand, tmp_path).parts["motions"].stored == 0
-    assert _fetched(errand, tmp_path, forbidden).parts["motions"].stored == 1, "and mended"
+    assert _fetched(task, tmp_path).parts["motions"].stored == 0
+    assert _fetched(task, tmp_path, forbidden).parts["motions"].stored == 1, "and mended"
 
 
 def test_an_analysis_asks_itself_for_what_was_not_fetched(tmp_path: Path) -> None:
     answers = _fetched(_errand(), tmp_path)
     calls.clear()
-    tasks = [_errand().task, (1,)]
+    tasks = [_errand().argument, (1,)]
     found = sweep(tasks, motion, lambda *rest: None, lambda *rest: None, 2, answers.on(ThreadPoolExecutor))
     assert len(found) == 2
     assert calls == [(1,)]
 
 
 def test_an_errand_whose_worker_died_is_left_to_its_analysis() -> None:
-    answers = Answers(Cache(Path("unused")))
+    answers = TaskCache(Cache(Path("unused")))
     answers.put(_errand(), None)
     assert answers.missing([_errand()])
-    answers.put(Errand("slips", broken, 1, 0.1), Fetched(Effect("s", 1, fault=str(Outcome.WORKER_DIED)), 0.0))
+    answers.put(Task("slips", broken, 1, 0.1), TaskResult(Effect("s", 1, fault=str(Outcome.WORKER_DIED)), 0.0))
     assert answers.parts["slips"].tasks == 1
 
 
 def test_every_errand_of_a_study_has_a_place_of_its_own() -> None:
     study = Study(tuple(map(load_scene, builtin_scenes())), 6, 1e-3)
-    found = errands(study)
+    found = analysis_tasks(study)
     assert paper_complete(study)
-    assert len({errand.key for errand in found}) == len(found)
-    assert {errand.stage for errand in found} == {
+    assert len({task.key for task in found}) == len(found)
+    assert {task.stage for task in found} == {
         "effective values", "slips", "scaling test", "convergence", "claims", "assumptions",
     }  # fmt: skip
     assert not paper_complete(Study(study.scenes[:1], 6, 1e-3))
 
 
 def test_effective_values_without_a_motion_are_not_kept_for_good(tmp_path: Path) -> None:
-    answers = Answers(Cache(tmp_path))
-    answers.put(Errand("effective values", broken, 1, 0.1), Fetched(Effective("s", "small", fault="it ended"), 0.1))
+    answers = TaskCache(Cache(tmp_path))
+    answers.put(Task("effective values", broken, 1, 0.1), TaskResult(Effective("s", "small", fault="it ended"), 0.1))
     assert not list(tmp_path.glob("*/*"))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from comparison.analysis import errata
-from comparison.analysis.errata import PHASES, SLIPS, Slip, measured, slip_effects
+from comparison.analysis.errata import ERRATA, PHASES, Erratum, errata_effects, measured
 from comparison.analysis.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
 from comparison.study.models import V_REG
 from comparison.study.study import Study
@@ -19,14 +19,14 @@ from reference.problem import Scene, load_scene
 
 
 def test_every_slip_says_what_is_printed_what_it_should_be_why_and_what_it_does() -> None:
-    for slip in SLIPS:
+    for slip in ERRATA:
         assert slip.printed != slip.corrected
         assert slip.why
         assert (slip.measure is None) == bool(slip.none), "either a measure or the reason why there is none"
 
 
 def test_every_place_known_to_be_wrong_has_its_row() -> None:
-    places = [slip.where for slip in SLIPS]
+    places = [slip.where for slip in ERRATA]
     for place in ("after (2.3)", "after (2.5)", "(3.1)", "(3.12)", "(3.15)", "(4.6)", "after (4.7)", "section 5"):
         assert place in places
 
@@ -42,9 +42,13 @@ def test_effects_come_in_order_and_a_measure_that_fails_is_named(monkeypatch: py
     def breaks(scene: Scene) -> np.ndarray | None:
         raise RuntimeError("singular")
 
-    planted = [Slip("a", "p", "c", "w", half), Slip("b", "p", "c", "w", none="n"), Slip("c", "p", "c", "w", breaks)]
-    monkeypatch.setattr(errata, "SLIPS", planted)
-    found = slip_effects(_study("fig3-I", "fig3-II"), 2, ThreadPoolExecutor, planted)
+    planted = [
+        Erratum("a", "p", "c", "w", half),
+        Erratum("b", "p", "c", "w", none="n"),
+        Erratum("c", "p", "c", "w", breaks),
+    ]
+    monkeypatch.setattr(errata, "ERRATA", planted)
+    found = errata_effects(_study("fig3-I", "fig3-II"), 2, ThreadPoolExecutor, planted)
     assert [(one.scene, one.slip) for one in found] == [("fig3-I", 0), ("fig3-I", 2), ("fig3-II", 0), ("fig3-II", 2)]
     assert found[0].change == ((0.5, 0.5), (0.5, 0.5))
     assert found[1].fault == "RuntimeError: singular"
@@ -56,7 +60,7 @@ def test_the_report_and_the_summary_show_the_effects(finished: Path) -> None:
     assert "fig3-I: no answer at some phases; μ<sub>1</sub> by up to 50 %, μ<sub>2</sub> by up to 25 %" in page
     assert "fig3-I: it broke" in page
     rows = json.loads((finished / "summary.json").read_text(encoding="utf-8"))["slips"]
-    assert len(rows) == len(SLIPS)
+    assert len(rows) == len(ERRATA)
     assert rows[0]["effects"][0]["change"] == [[0.5, -0.25], [None, 0.125]]
 
 
@@ -84,7 +88,7 @@ def test_a_slip_changes_only_what_it_names() -> None:
 def test_the_printed_rest_condition_and_the_missing_coefficient_change_mu() -> None:
     scene = load_scene("fig3-I").with_values({"duration": 3.0})
     places = ("after (2.3)", "after (2.5)", "(4.6)")
-    effects = {slip.where: measured((scene, number)) for number, slip in enumerate(SLIPS) if slip.where in places}
+    effects = {slip.where: measured((scene, number)) for number, slip in enumerate(ERRATA) if slip.where in places}
     assert set(effects) == set(places)
     for where, effect in effects.items():
         assert effect.fault == ""
