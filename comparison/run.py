@@ -83,8 +83,8 @@ def main(
                 print_study_plan(console, plan, options)
             store = Cache(store_beside(options.out))
             return _ended(plan, options, console, words, executor, store)
-        except (SceneError, UsageError) as fault:
-            print(fault, file=sys.stderr)
+        except (SceneError, UsageError) as error:
+            print(error, file=sys.stderr)
             return 2
         except KeyboardInterrupt:
             print("interrupted before anything was computed", file=sys.stderr)
@@ -96,8 +96,8 @@ def _chosen(options: Options, hierarchy: Sequence[Model]) -> StudyPlan:
     asked = options.tolerance, options.budget, options.grid, options.jobs, options.full, analysis_cost
     try:
         return plan_study(StudyRequest(options.scenes, hierarchy, *asked))
-    except BudgetError as fault:
-        raise SceneError("command line", "--budget", options.budget, str(fault)) from None
+    except BudgetError as error:
+        raise SceneError("command line", "--budget", options.budget, str(error)) from None
 
 
 def _ended(
@@ -117,15 +117,15 @@ def _ended(
     except KeyboardInterrupt as stop:
         print(f"interrupted: {resume_hint(store, study, words)}", file=sys.stderr)
         return 128 + getattr(stop, "number", signal.SIGINT)
-    except ExecutorLostError as fault:
+    except ExecutorLostError as error:
         where = "" if options.scheduler is None else f"--scheduler {options.scheduler}: "
-        print(f"{where}{fault}: {resume_hint(store, study, without_scheduler(words))}", file=sys.stderr)
+        print(f"{where}{error}: {resume_hint(store, study, without_scheduler(words))}", file=sys.stderr)
         return 4
-    except StoreError as fault:
-        print(f"{fault}; {resume_hint(store, study, words)}", file=sys.stderr)
+    except StoreError as error:
+        print(f"{error}; {resume_hint(store, study, words)}", file=sys.stderr)
         return 3
-    except OSError as fault:
-        print(f"command line: --out = {str(options.out)!r}: the report could not be written: {fault}", file=sys.stderr)
+    except OSError as error:
+        print(f"command line: --out = {str(options.out)!r}: the report could not be written: {error}", file=sys.stderr)
         return 3
 
 
@@ -166,7 +166,11 @@ def _run(
     families = [family for family in options.families if len(family.scenes) > 1] or None
     titles = {model.key: model.title for model in study.hierarchy}
     faults = sorted(
-        {f"{batch.scene.name}, {titles[batch.model]}: {a.fault}" for batch, a in zip(batches, answers) if a.fault}
+        {
+            f"{batch.scene.name}, {titles[batch.model]}: {a.error_message}"
+            for batch, a in zip(batches, answers)
+            if a.error_message
+        }
     )
     run: dict[str, Any] = {
         "command": command,
@@ -228,8 +232,8 @@ def _taken_up(read: Callable[[Path], Any], out: Path) -> Any:
     """What another command left beside the report; a file that has appeared since and is none of theirs is left."""
     try:
         return read(out)
-    except (OSError, ValueError) as fault:
-        on_stderr(str(fault))
+    except (OSError, ValueError) as error:
+        on_stderr(str(error))
         return None
 
 

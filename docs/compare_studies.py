@@ -93,6 +93,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Compare the numbers of two reports bit by bit.")
     parser.add_argument("before", type=Path, help="folder of a report")
     parser.add_argument("after", type=Path, help="folder of another report of the same study")
+    parser.add_argument(
+        "--renamed",
+        action="append",
+        default=[],
+        metavar="OLD=NEW",
+        type=lambda text: tuple(text.split("=", 1)),
+        help="a key of summary.json that has another name in AFTER; may be repeated",
+    )
     folders = parser.parse_args(argv)
     try:
         old, new = (xr.load_dataset(folder / "surfaces.nc") for folder in (folders.before, folders.after))
@@ -101,7 +109,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"not a report: {error}", file=sys.stderr)
         return 2
     lines = [f"surfaces.nc: {line}" for line in differing_arrays(old, new)]
-    lines += [f"summary.json: {line}" for line in differing_numbers(*map(json.loads, texts))]
+    keys = dict(folders.renamed)
+    earlier = json.loads(texts[0], object_pairs_hook=lambda pairs: {keys.get(key, key): value for key, value in pairs})
+    lines += [f"summary.json: {line}" for line in differing_numbers(earlier, json.loads(texts[1]))]
     for line in lines:
         print(line)
     values = sum(old[name].size for name in old.variables)

@@ -50,7 +50,7 @@ def checked_limits(
         own = [row for row in rows if row.scene == scene.name]
         for key, allowed, faults in _faults(study, surfaces, scene, own, silent):
             start = f"acceptance.{key}: "
-            broken = tuple(f"{scene.name}: {where}{start}{fault}, {allowed:g} allowed" for where, fault in faults)
+            broken = tuple(f"{scene.name}: {where}{start}{excess}, {allowed:g} allowed" for where, excess in faults)
             found.append(Limit(scene.name, key, allowed, broken))
     return found
 
@@ -76,8 +76,8 @@ def _faults(
     if (allowed_points := stated.failures) is not None:
         count = sum(one.points for one in silent)
         models = ", ".join(f"{one.title} {one.points} of {one.asked}" for one in silent)
-        fault = f"{count} points without an answer ({models})"
-        yield "failed", allowed_points, [("", fault)] if count > allowed_points else []
+        excess = f"{count} points without an answer ({models})"
+        yield "failed", allowed_points, [("", excess)] if count > allowed_points else []
 
 
 def _beyond(values: Sequence[tuple[int, float]], allowed: float) -> Faults:

@@ -197,18 +197,18 @@ def limit_trends(task: Arguments) -> list[Trend]:
     limit = LIMITS[number]
     try:
         sizes, errors = limit.measure(scene)
-    except Exception as fault:
-        return _lost(task, Outcome.SOLVER_FAILED, f"{type(fault).__name__}: {fault}")
+    except Exception as error:
+        return _lost(task, Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}")
     return [
         trend(scene.name, body + 1, limit.what, limit.parameter, sizes[..., body], errors[..., body], limit.expected)
         for body in range(len(scene.bodies))
     ]
 
 
-def _lost(task: Arguments, outcome: Outcome, fault: str) -> list[Trend]:
+def _lost(task: Arguments, outcome: Outcome, error_message: str) -> list[Trend]:
     scene, number = task
     limit = LIMITS[number]
     return [
-        Trend(scene.name, body + 1, limit.what, limit.parameter, (), (), limit.expected, f"{outcome}: {fault}")
+        Trend(scene.name, body + 1, limit.what, limit.parameter, (), (), limit.expected, f"{outcome}: {error_message}")
         for body in range(len(scene.bodies))
     ]

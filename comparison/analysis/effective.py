@@ -37,7 +37,7 @@ class Effective:
     tangential over normal part of the contact force while sliding, over |v| in a lubricated scene (s/m). contact: N,
     contact force at t = 0. mass: kg, total, the contact force at t = 0 over the apparent gravity. acceleration: m/s^2,
     absolute, of the platform at t = 0: that of the ground where friction holds it, 0 where friction begins with
-    the speed. fault: why there are none, or "".
+    the speed. error_message: why there are none, or "".
     """
 
     scene: str
@@ -47,7 +47,7 @@ class Effective:
     contact: float = float("nan")
     mass: float = float("nan")
     acceleration: float = float("nan")
-    fault: str = ""
+    error_message: str = ""
 
 
 def stated(scene: Scene) -> Effective:
@@ -78,7 +78,7 @@ def effective_values(study: Study, jobs: int, executor: Callable[[int], Executor
 
 
 def read_back(task: tuple[Scene, Model]) -> Effective:
-    """The values of one model. What goes wrong is said in `fault`; a value is never made up."""
+    """The values of one model. What goes wrong is said in `error_message`; a value is never made up."""
     scene, model = task
     nothing = Effective(scene.name, model.key)
     lasting = scene.duration if scene.recorded else min(scene.duration, DURATION)
@@ -87,15 +87,15 @@ def read_back(task: tuple[Scene, Model]) -> Effective:
     try:
         motion: Trajectory = imported(model.trajectory)(short, PHASES, **settings)
         if motion.status != Outcome.OK:
-            return replace(nothing, fault=f"the motion ended: {motion.status}")
+            return replace(nothing, error_message=f"the motion ended: {motion.status}")
         return replace(nothing, **_measured(short, motion))
-    except Exception as fault:
-        return replace(nothing, fault=f"{type(fault).__name__}: {fault}")
+    except Exception as error:
+        return replace(nothing, error_message=f"{type(error).__name__}: {error}")
 
 
-def _lost(task: tuple[Scene, Model], outcome: Outcome, fault: str) -> Effective:
+def _lost(task: tuple[Scene, Model], outcome: Outcome, error_message: str) -> Effective:
     scene, model = task
-    return Effective(scene.name, model.key, fault=f"{outcome}: {fault}")
+    return Effective(scene.name, model.key, error_message=f"{outcome}: {error_message}")
 
 
 def _measured(scene: Scene, motion: Trajectory) -> dict[str, Any]:

@@ -1,8 +1,8 @@
 """
-Slips in the printed text: what is printed, what it should be, why, and what the printed form does to mu_i.
+Errata in the printed text: what is printed, what it should be, why, and what the printed form does to mu_i.
 
 The effect is measured on a few phase pairs of every scene to which it applies, over the first seconds of the motion,
-in which the loading is strongest: mu_i with the slip over mu_i without it, minus one.
+in which the loading is strongest: mu_i with the erratum over mu_i without it, minus one.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def _change(printed: Array, mended: Array) -> Array:
 
 @dataclass(frozen=True)
 class Erratum:
-    """One slip. `measure`: the change of mu it makes in a scene, None in a scene without it; `none`: why there is no
+    """One erratum. `measure`: the change of mu it makes in a scene, None in a scene without it; `none`: why there is no
     such measure."""
 
     where: str
@@ -151,39 +151,39 @@ ERRATA: tuple[Erratum, ...] = (
 @dataclass(frozen=True)
 class Effect:
     """
-    What slip number `slip` does in a scene: `change` of mu (M, N) at PHASES, NaN where the printed form has no answer;
-    empty where the slip does not touch the scene. fault: what went wrong, or "".
+    Effect of erratum number `erratum` in a scene: `change` of mu (M, N) at PHASES, NaN where the printed form has no
+    answer; empty where the erratum does not touch the scene. error_message: what went wrong, or "".
     """
 
     scene: str
-    slip: int
+    erratum: int
     change: tuple[tuple[float, ...], ...] = ()
-    fault: str = ""
+    error_message: str = ""
 
 
-def errata_arguments(study: Study, slips: Sequence[Erratum] = ERRATA) -> list[tuple[Scene, int]]:
-    """Every measurable slip in every scene, in the order scene, slip."""
-    return [(scene, number) for scene in study.phased for number, slip in enumerate(slips) if slip.measure]
+def errata_arguments(study: Study, errata: Sequence[Erratum] = ERRATA) -> list[tuple[Scene, int]]:
+    """Every measurable erratum in every scene, in the order scene, erratum."""
+    return [(scene, number) for scene in study.phased for number, erratum in enumerate(errata) if erratum.measure]
 
 
 def errata_effects(
-    study: Study, jobs: int, executor: Callable[[int], Executor], slips: Sequence[Erratum] = ERRATA
+    study: Study, jobs: int, executor: Callable[[int], Executor], errata: Sequence[Erratum] = ERRATA
 ) -> list[Effect]:
-    """Every measurable slip in every scene, computed on `executor(jobs)`, in the order scene, slip."""
-    return sweep(errata_arguments(study, slips), measured, _lost, lambda task, effect: None, jobs, executor)
+    """Every measurable erratum in every scene, computed on `executor(jobs)`, in the order scene, erratum."""
+    return sweep(errata_arguments(study, errata), measured, _lost, lambda task, effect: None, jobs, executor)
 
 
 def measured(task: tuple[Scene, int]) -> Effect:
-    """The effect of one slip in one scene."""
+    """The effect of one erratum in one scene."""
     scene, number = task
     measure = ERRATA[number].measure
     assert measure is not None
     try:
         change = measure(scene.with_values({"duration": min(scene.duration, DURATION)}))
-    except Exception as fault:
-        return Effect(scene.name, number, fault=f"{type(fault).__name__}: {fault}")
+    except Exception as error:
+        return Effect(scene.name, number, error_message=f"{type(error).__name__}: {error}")
     return Effect(scene.name, number, () if change is None else tuple(tuple(map(float, row)) for row in change))
 
 
-def _lost(task: tuple[Scene, int], outcome: Outcome, fault: str) -> Effect:
-    return Effect(task[0].name, task[1], fault=f"{outcome}: {fault}")
+def _lost(task: tuple[Scene, int], outcome: Outcome, error_message: str) -> Effect:
+    return Effect(task[0].name, task[1], error_message=f"{outcome}: {error_message}")

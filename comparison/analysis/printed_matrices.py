@@ -1,9 +1,9 @@
 """
-The matrix form (3.9)-(3.13), (3.15) as it stands in the paper, slip by slip, so that what a slip costs can be measured.
+The matrix form (3.9)-(3.13), (3.15) as the paper prints it, erratum by erratum, to measure what each erratum costs.
 
-Written from the print and not from the reference, whose equations it must give once every slip is mended. Friction
-grows linearly with the speed below V_REG (a lubricated contact needs no such limit), so that an ordinary integrator
-can follow it; this is for the size of an effect, not for surfaces.
+Written from the print and not from the reference, whose equations it must give once every erratum is corrected.
+Friction grows linearly with the speed below V_REG (a lubricated contact needs no such limit), so that an ordinary
+integrator can follow it; this is for the size of an effect, not for surfaces.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ RELATIVE, ABSOLUTE = 1e-7, 1e-10
 SAMPLES = 2e-3  # s between the instants at which peaks are read
 
 
-def printed_amplification(scene: Scene, phases: ArrayLike, slips: Collection[str] = ()) -> Array:
+def printed_amplification(scene: Scene, phases: ArrayLike, errata: Collection[str] = ()) -> Array:
     """
-    mu_i (5.1), (M, N), for the phases (M, 2), rad, with the `slips` named left as printed and all others mended.
+    mu_i (5.1), (M, N), for the phases (M, 2), rad, with the `errata` named left as printed and all others mended.
 
     NaN where the motion leaves the sphere's lower half or grows without bound. Good to about 1e-4.
     """
     pairs = np.asarray(phases, float)
-    return np.array([_peaks(scene, phase, slips) for phase in pairs]) / ground_peak(scene, pairs)[:, None]
+    return np.array([_peaks(scene, phase, errata) for phase in pairs]) / ground_peak(scene, pairs)[:, None]
 
 
 class _Fixed(NamedTuple):
@@ -49,26 +49,26 @@ class _Fixed(NamedTuple):
     inertia: Array  # (2 N, 2 N), M but for its first two rows
     links: Array  # (2 N, 2 N), C but for Delta, the factor of its first two rows, and their diagonal
     first: tuple[float, float]  # stiffness of the lowest link, N/m
-    slips: Collection[str]
+    errata: Collection[str]
 
 
-def _fixed(scene: Scene, slips: Collection[str]) -> _Fixed:
+def _fixed(scene: Scene, errata: Collection[str]) -> _Fixed:
     masses = np.repeat(scene.masses, 2)
     links = np.zeros((len(masses), len(masses)))
     for link, pair in enumerate(scene.stiffness):
         for axis, k in enumerate(pair):
             low, high = 2 * link + axis, 2 * link + 2 + axis
             links[low, low] += k
-            links[low, high] -= pair[0] if link == 0 and WRONG_SPRING in slips else k
+            links[low, high] -= pair[0] if link == 0 and WRONG_SPRING in errata else k
             links[high, high] += k
             links[high, low] -= k
     first = tuple(map(float, scene.stiffness[0])) if len(scene.stiffness) else (0.0, 0.0)
     law = scene.friction_coefficient, scene.lubricated, float(scene.total_mass)
-    return _Fixed(scene, scene.radius, *law, masses, np.diag(masses), links, (first[0], first[-1]), slips)
+    return _Fixed(scene, scene.radius, *law, masses, np.diag(masses), links, (first[0], first[-1]), errata)
 
 
-def _peaks(scene: Scene, phase: Array, slips: Collection[str]) -> Array:
-    fixed = _fixed(scene, slips)
+def _peaks(scene: Scene, phase: Array, errata: Collection[str]) -> Array:
+    fixed = _fixed(scene, errata)
     bodies = len(scene.bodies)
     count = 2 * bodies
 
@@ -121,7 +121,7 @@ def _accelerations(fixed: _Fixed, q: Array, v: Array, ground: Array) -> Array:
     inertia[1, 0], inertia[1, 1] = total * p * (y + s * vy), own + total * r * (y + s * vy)
 
     main, cross, last = -total * (GRAVITY + zeta - w) * s, s, eta
-    if WRONG_DAMPING in fixed.slips:
+    if WRONG_DAMPING in fixed.errata:
         cross, last = over_speed, xi
     damped = (
         (main - m * xi * p * s) * vx - m * xi * r * cross * vy,

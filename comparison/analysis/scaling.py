@@ -57,8 +57,8 @@ def scene_trends(task: Arguments) -> list[Trend]:
     scene, supremum = task
     try:
         answers = [_both(scaled(scene, s), supremum, s) for s in SCALES]
-    except Exception as fault:
-        return _lost(task, Outcome.SOLVER_FAILED, f"{type(fault).__name__}: {fault}")
+    except Exception as exception:
+        return _lost(task, Outcome.SOLVER_FAILED, f"{type(exception).__name__}: {exception}")
     mu, error = (np.array([answer[part] for answer in answers]) for part in (0, 1))  # (S, 2, P, N)
     (small, exact), (small_error, exact_error) = np.moveaxis(mu, 1, 0), np.moveaxis(error, 1, 0)
     step, step_error = exact / small - 1.0, np.hypot(exact_error, small_error) / small
@@ -82,11 +82,11 @@ def _both(scene: Scene, supremum: bool, s: float) -> tuple[Array, Array]:
     return np.array([answer.mu for answer in answers]), np.array([answer.error for answer in answers])
 
 
-def _lost(task: Arguments, outcome: Outcome, fault: str) -> list[Trend]:
+def _lost(task: Arguments, outcome: Outcome, error_message: str) -> list[Trend]:
     scene, supremum = task
     what = f"{STEP}, {_peak(scene, supremum)}"
     return [
-        Trend(scene.name, body + 1, what, SCALES, (), (), 2.0, f"{outcome}: {fault}")
+        Trend(scene.name, body + 1, what, SCALES, (), (), 2.0, f"{outcome}: {error_message}")
         for body in range(len(scene.bodies))
     ]
 

@@ -21,7 +21,7 @@ from reference.problem import Scene, builtin_scenes
 
 # s of one task, recorded on `study.models.RECORDED_ON` for the built-in scenes
 EFFECTIVE = {"reference": 0.02, "engine": 0.2}
-SLIP, SCALING = 0.35, 0.12
+ERRATUM, SCALING = 0.35, 0.12
 CONVERGENCE = dict(zip((limit.what for limit in LIMITS), (0.13, 0.14, 0.7, 4.0, 2.1)))
 VARIATION = {"translational": 0.5, "spatial": 1.1}
 MOTION = {"reference": 0.11, "engine": 0.55}
@@ -34,7 +34,7 @@ def analysis_tasks(study: Study, with_analyses: bool = True) -> list[Task]:
         Task("effective values", read_back, (scene, model), EFFECTIVE[model.side] * at_samples(scene), scene)
         for scene, model in effective_arguments(study)
     ]
-    found += [Task("slips", measured, task, SLIP, task[0]) for task in errata_arguments(study)]
+    found += [Task("errata", measured, task, ERRATUM, task[0]) for task in errata_arguments(study)]
     if not with_analyses:
         return found
     found += [Task("scaling test", scene_trends, task, SCALING, task[0]) for task in scaling_arguments(study)]

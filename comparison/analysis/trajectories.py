@@ -42,7 +42,7 @@ class Place:
 class StoredMotion:
     """
     One motion at a place. time: (T,), s. position: (T, N, 2), m. acceleration: (T, N, 2), m/s^2, absolute. stick:
-    intervals (start, end), s. status: how it ended. fault: why there is no motion, or "".
+    intervals (start, end), s. status: how it ended. error_message: why there is no motion, or "".
     """
 
     place: Place
@@ -52,7 +52,7 @@ class StoredMotion:
     acceleration: Array
     stick: tuple[tuple[float, float], ...] = ()
     status: str = Outcome.OK.value
-    fault: str = ""
+    error_message: str = ""
 
     def __post_init__(self) -> None:
         bodies = self.position.shape[1:2]
@@ -108,7 +108,7 @@ def shown_models(study: Study, scene: Scene) -> list[Model]:
 
 
 def moved(task: Arguments) -> StoredMotion:
-    """The motion of one task, thinned; what goes wrong is said in `fault`."""
+    """The motion of one task, thinned; what goes wrong is said in `error_message`."""
     scene, model, tolerance, place, phase = task
     settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
     if model.side == "reference":
@@ -123,8 +123,8 @@ def moved(task: Arguments) -> StoredMotion:
             raise ValueError("the motion holds numbers that are not finite")
         flat = np.concatenate([position, acceleration], axis=2).reshape(len(motion.time), -1)
         kept = thinned(motion.time, flat, np.unique(np.argmax(size, axis=0)) if len(size) else np.zeros(0, int))
-    except Exception as fault:
-        return _nothing(place, model.key, Outcome.SOLVER_FAILED, f"{type(fault).__name__}: {fault}")
+    except Exception as error:
+        return _nothing(place, model.key, Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}")
     stick = tuple((float(start), float(end)) for start, end in motion.stick)
     time, status = motion.time[kept], str(motion.status)
     return StoredMotion(place, model.key, time, position[kept], acceleration[kept], stick, status)
@@ -156,10 +156,12 @@ def thinned(time: Array, values: Array, peaks: NDArray[np.intp], share: float = 
     return np.array(sorted(found))
 
 
-def _nothing(place: Place, model: str, outcome: Outcome, fault: str) -> StoredMotion:
+def _nothing(place: Place, model: str, outcome: Outcome, error_message: str) -> StoredMotion:
     empty = np.zeros((0, 0, 2))
-    return StoredMotion(place, model, np.zeros(0), empty, empty.copy(), status=outcome.value, fault=fault)
+    return StoredMotion(
+        place, model, np.zeros(0), empty, empty.copy(), status=outcome.value, error_message=error_message
+    )
 
 
-def _lost(task: Arguments, outcome: Outcome, fault: str) -> StoredMotion:
-    return _nothing(task[3], task[1].key, outcome, fault)
+def _lost(task: Arguments, outcome: Outcome, error_message: str) -> StoredMotion:
+    return _nothing(task[3], task[1].key, outcome, error_message)

@@ -43,7 +43,7 @@ class Trend:
     Relative differences of mu_`body` over a parameter, for some phase pairs.
 
     what: the two things that differ. parameter: falling values (S,). sizes, errors: (P, S), signed and absolute, NaN
-    without an answer. expected: exponent that theory gives, or None. fault: what went wrong, or "".
+    without an answer. expected: exponent that theory gives, or None. error_message: what went wrong, or "".
     """
 
     scene: str
@@ -53,7 +53,7 @@ class Trend:
     sizes: tuple[tuple[float, ...], ...]
     errors: tuple[tuple[float, ...], ...]
     expected: float | None
-    fault: str = ""
+    error_message: str = ""
 
     @property
     def slope(self) -> Slope:
@@ -70,8 +70,8 @@ class Trend:
     def verdict(self) -> str:
         """What the fit allows to say, in words."""
         slope = self.slope
-        if self.fault:
-            return self.fault
+        if self.error_message:
+            return self.error_message
         if not np.isfinite(slope.exponent):
             return "within the error bars: no slope can be told"
         if slope.uncertainty > SETTLED:

@@ -50,11 +50,11 @@ def main(argv: Sequence[str] | None = None) -> int:
             given.figures = destination(given.figures, "--figures")
             pictures = [figure_file(s.name, "assumptions", ending=end) for s in scenes for end in (".png", ".pdf")]
             refuse_foreign_files(given.figures, pictures, "--figures")
-    except SceneError as fault:
-        print(fault, file=sys.stderr)
+    except SceneError as error:
+        print(error, file=sys.stderr)
         return 2
-    except OSError as fault:
-        print(f"command line: --figures = {str(given.figures)!r}: cannot be made: {fault.strerror}", file=sys.stderr)
+    except OSError as error:
+        print(f"command line: --figures = {str(given.figures)!r}: cannot be made: {error.strerror}", file=sys.stderr)
         return 2
     console = wide_console()
     console.print(

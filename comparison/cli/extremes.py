@@ -52,8 +52,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         out = destination(given.out)
         refuse_foreign_files(out, [FILE, PICTURE])
-    except SceneError as fault:
-        print(fault, file=sys.stderr)
+    except SceneError as error:
+        print(error, file=sys.stderr)
         return 2
     words = sys.argv[1:] if argv is None else argv
     command = shlex.join(["python", "-m", "comparison.extremes", *words])
@@ -63,8 +63,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     picture = made_by(lambda folder: draw_extremes(folder / PICTURE, found))
     try:
         files = publish(out, {FILE: written(found), **picture}, "comparison.extremes")
-    except OSError as fault:
-        print(f"command line: --out = {str(out)!r}: could not be written: {fault}", file=sys.stderr)
+    except OSError as error:
+        print(f"command line: --out = {str(out)!r}: could not be written: {error}", file=sys.stderr)
         return 3
     _tell(console, found)
     console.print(f"Matrix: {', '.join(map(str, files))}", soft_wrap=True)

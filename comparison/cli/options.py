@@ -86,8 +86,8 @@ def parsed(argv: Sequence[str] | None) -> Options:
         try:
             stored_extremes(options.out)
             stored_trades(options.out)
-        except (OSError, ValueError) as fault:
-            rule = f"the report cannot take up {fault}"
+        except (OSError, ValueError) as error:
+            rule = f"the report cannot take up {error}"
             raise SceneError("command line", "--out", str(options.out), rule) from None
         refuse_foreign_report(options.out)
         refuse_foreign_store(options.out)

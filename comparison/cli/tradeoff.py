@@ -65,11 +65,11 @@ def main(argv: Sequence[str] | None = None, executor: Pool = process_pool) -> in
         before = {trade.scene: trade for trade in read(out) or []}
         kept = list((before | {trade.scene: trade for trade in trades}).values())
         (file,) = publish(out, {FILE: written(kept)}, COMMAND)
-    except (SceneError, ValueError) as fault:
-        print(fault, file=sys.stderr)
+    except (SceneError, ValueError) as error:
+        print(error, file=sys.stderr)
         return 2
-    except OSError as fault:
-        print(f"command line: --out = {str(given.out)!r}: could not be written: {fault}", file=sys.stderr)
+    except OSError as error:
+        print(f"command line: --out = {str(given.out)!r}: could not be written: {error}", file=sys.stderr)
         return 3
     for trade in trades:
         print_trade(console, trade)

@@ -98,8 +98,8 @@ class Cache:
         try:
             place.parent.mkdir(parents=True, exist_ok=True)
             write_atomically(place, _packed(key, value))
-        except OSError as fault:
-            raise StoreError(f"{str(self.folder)!r}: a result could not be stored: {fault.strerror}") from None
+        except OSError as error:
+            raise StoreError(f"{str(self.folder)!r}: a result could not be stored: {error.strerror}") from None
         self.kept[key.kind] += 1
 
     def forget(self, keys: Iterable[Key]) -> None:
@@ -140,15 +140,15 @@ def refuse_foreign_store(out: Path) -> None:
             raise refusal(f"is not a store of results of this study, it holds {min(uncalibrated)!r}: move it away")
         if folder.exists() and not os.access(folder, os.W_OK | os.X_OK):
             raise refusal("cannot be written")
-    except OSError as fault:
-        raise refusal(f"cannot be used: {fault.strerror}") from None
+    except OSError as error:
+        raise refusal(f"cannot be used: {error.strerror}") from None
 
 
 def faulty(result: Any) -> bool:
     """Whether a result, or a part of it, names a fault."""
     if isinstance(result, tuple | list):
         return any(map(faulty, result))
-    return bool(getattr(result, "fault", ""))
+    return bool(getattr(result, "error_message", ""))
 
 
 @cache

@@ -59,8 +59,8 @@ def cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]:
     try:
         asyncio.run(knock())  # a client that reaches nobody leaves threads behind
         client = Client(address, timeout=CONNECT_TIMEOUT, set_as_default=False)
-    except (OSError, TypeError, ValueError) as fault:  # TypeError: TLS without a configuration
-        raise refusal(f"no scheduler answers there: {' '.join(str(fault).split())}") from None
+    except (OSError, TypeError, ValueError) as error:  # TypeError: TLS without a configuration
+        raise refusal(f"no scheduler answers there: {' '.join(str(error).split())}") from None
     try:
         _same_code(client, models, refusal)
         yield ClusterExecutor(client)
@@ -116,15 +116,15 @@ def _arrived(found: Future[Any], answer: Future[Any]) -> None:
     from distributed import KilledWorker
 
     try:
-        fault = found.exception()
+        error = found.exception()
     except CancelledError:
-        fault = ExecutorLostError(GONE)  # nobody else cancels
-    if isinstance(fault, KilledWorker):
-        fault = WorkerDiedError(str(fault), fault.allowed_failures + 1)
-    if fault is None:
+        error = ExecutorLostError(GONE)  # nobody else cancels
+    if isinstance(error, KilledWorker):
+        error = WorkerDiedError(str(error), error.allowed_failures + 1)
+    if error is None:
         answer.set_result(found.result())
     else:
-        answer.set_exception(fault)
+        answer.set_exception(error)
 
 
 def _workers(client: Client) -> int:
@@ -145,8 +145,8 @@ def _same_code(client: Client, models: set[str], refusal: Callable[[str], SceneE
         theirs = client.run(_all_fingerprints, sorted(models), on_error="return")
     except TimeoutError:
         raise refusal(f"the scheduler has had no worker for {PATIENCE:.0f} s: start some with `dask worker`") from None
-    except OSError as fault:
-        raise refusal(f"{GONE}: {' '.join(str(fault).split())}") from None
+    except OSError as error:
+        raise refusal(f"{GONE}: {' '.join(str(error).split())}") from None
     ours = _all_fingerprints(sorted(models))
     for worker, found in theirs.items():
         if isinstance(found, OSError):

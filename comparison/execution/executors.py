@@ -69,8 +69,8 @@ class Lent(Executor):
     def submit(self, solve: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         try:
             return self._executor.submit(solve, *args, **kwargs)
-        except BrokenExecutor as fault:  # nobody here can make another one
-            raise ExecutorLostError(f"the executor is broken: {fault}") from None
+        except BrokenExecutor as error:  # nobody here can make another one
+            raise ExecutorLostError(f"the executor is broken: {error}") from None
 
     def __getattr__(self, name: str) -> Any:
         """What the executor has beyond the usual, if it has it."""
@@ -113,16 +113,16 @@ class Workers(Executor):
     def _arrived(self, pool: ProcessPoolExecutor, found: Future[Any], answer: Future[Any]) -> None:
         if found.cancelled():
             return  # the sweep has been given up, and nobody waits for the answer
-        fault = found.exception()
-        if isinstance(fault, BrokenExecutor):
-            fault = WorkerDiedError(str(fault))
+        error = found.exception()
+        if isinstance(error, BrokenExecutor):
+            error = WorkerDiedError(str(error))
         else:
             with self._lock:
                 self._idle.append(pool)
-        if fault is None:
+        if error is None:
             answer.set_result(found.result())
         else:
-            answer.set_exception(fault)
+            answer.set_exception(error)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         for pool in self._all:

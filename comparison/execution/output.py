@@ -86,8 +86,8 @@ def destination(given: Path, option: str = "--out") -> Path:
         raise refusal("is not text in UTF-8: give a path that is") from None
     except RuntimeError:  # of older versions of Python
         raise refusal("is a symbolic link that leads back to itself: give another directory") from None
-    except OSError as fault:
-        raise refusal(f"cannot be used: {fault.strerror}: give another directory") from None
+    except OSError as error:
+        raise refusal(f"cannot be used: {error.strerror}: give another directory") from None
     # a path that means what it says stays as it was typed, for the messages
     return given if Path(os.path.abspath(given)) == place and ".." not in given.parts else place
 
@@ -106,8 +106,8 @@ def refuse_foreign_report(out: Path) -> None:
             raise refusal("is a mount point, which cannot be replaced: give a directory inside it")
         try:
             uncalibrated = foreign(place)
-        except OSError as fault:
-            raise refusal(f"cannot be read: {fault.strerror}: give another directory") from None
+        except OSError as error:
+            raise refusal(f"cannot be read: {error.strerror}: give another directory") from None
         if uncalibrated and not read_manifest(place):
             raise refusal("exists and is not a report of this study: give another directory, or empty this one")
         if uncalibrated:
@@ -131,8 +131,8 @@ def refuse_unwritable(out: Path, folder: Path, option: str = "--out") -> None:
         existing = next(parent for parent in (folder, *folder.absolute().parents) if parent.exists())
         tempfile.TemporaryDirectory(dir=existing, prefix=TEMPORARY).cleanup()
         store_beside(out.absolute()).exists()
-    except OSError as fault:
-        raise SceneError("command line", option, str(out), f"cannot be written: {fault.strerror}") from None
+    except OSError as error:
+        raise SceneError("command line", option, str(out), f"cannot be written: {error.strerror}") from None
 
 
 @dataclass
@@ -285,8 +285,8 @@ def _put(aside: Path, place: Path, say: Callable[[str], None]) -> Path:
     try:
         if place.is_dir():
             os.rename(place, old)
-    except OSError as fault:  # a mount point, or a directory that may not be moved
-        why = fault.strerror or str(fault)
+    except OSError as error:  # a mount point, or a directory that may not be moved
+        why = error.strerror or str(error)
     try:
         if os.path.lexists(old):
             if uncalibrated := [place.name] if old.is_symlink() else foreign(old):

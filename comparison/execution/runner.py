@@ -147,11 +147,11 @@ def _run(piece: Piece) -> BatchResult | TaskResult | None:
     return execute(piece) if isinstance(piece, Task) else execute_batch(piece)
 
 
-def _lost(piece: Piece, outcome: Outcome, fault: str) -> BatchResult | TaskResult | None:
-    return None if isinstance(piece, Task) else unanswered(piece, outcome, fault)
+def _lost(piece: Piece, outcome: Outcome, error_message: str) -> BatchResult | TaskResult | None:
+    return None if isinstance(piece, Task) else unanswered(piece, outcome, error_message)
 
 
-def _nothing(task: Task, outcome: Outcome, fault: str) -> TaskResult | None:
+def _nothing(task: Task, outcome: Outcome, error_message: str) -> TaskResult | None:
     """The analysis asks again by itself and says in its own way that there is no answer."""
     return None
 

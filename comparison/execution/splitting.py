@@ -26,5 +26,5 @@ def merge(batch: Batch, answers: Sequence[BatchResult]) -> BatchResult:
         for name in ("mu", "error", "instant", "cap_share")
     )
     status = [outcome for answer in answers for outcome in answer.status]
-    fault = "; ".join(dict.fromkeys(answer.fault for answer in answers if answer.fault))
-    return BatchResult(mu, error, status, instant, sum(answer.cost for answer in answers), fault, cap_share)
+    error_message = "; ".join(dict.fromkeys(answer.error_message for answer in answers if answer.error_message))
+    return BatchResult(mu, error, status, instant, sum(answer.cost for answer in answers), error_message, cap_share)

@@ -114,28 +114,28 @@ class _Sweep(Generic[Task, Result]):
                 (self._flying.pop(future), future)
                 for future in wait(self._flying, LOOK, return_when=FIRST_COMPLETED).done
             ]
-            broken = [work for work, future in arrived if isinstance(_fault(future), BrokenExecutor)]
+            broken = [work for work, future in arrived if isinstance(_error(future), BrokenExecutor)]
             try:
                 unbroken = not broken and self._fill(pool, jobs, more=True)  # workers go on while results are stored
             finally:
                 for work, future in arrived:
                     self._take(work, future)
             for _, future in arrived:
-                if isinstance(fault := _fault(future), ExecutorLostError):
-                    raise fault
+                if isinstance(error := _error(future), ExecutorLostError):
+                    raise error
             if broken:
                 self._broken(broken)
             if not unbroken:
                 return
 
     def _take(self, work: _Work[Task, Result], future: Future[Result]) -> None:
-        fault = _fault(future)
-        if fault is None:
+        error = _error(future)
+        if error is None:
             self._keep(work, future.result())
-        elif isinstance(fault, WorkerDiedError):
-            self._died(work, fault.times)
-        elif not isinstance(fault, BrokenExecutor | ExecutorLostError):
-            message = f"{type(fault).__name__}: {fault}"
+        elif isinstance(error, WorkerDiedError):
+            self._died(work, error.times)
+        elif not isinstance(error, BrokenExecutor | ExecutorLostError):
+            message = f"{type(error).__name__}: {error}"
             self._keep(work, self._on_failure(work.task, Outcome.SOLVER_FAILED, message))
 
     def _fill(self, pool: Executor, jobs: int, more: bool = False) -> bool:
@@ -208,7 +208,7 @@ class _Sweep(Generic[Task, Result]):
             self._keep(parent, self._join(parent.task, [parent.parts[place] for place in range(parent.count)]))
 
 
-def _fault(future: Future[Result]) -> BaseException | None:
+def _error(future: Future[Result]) -> BaseException | None:
     """What the task raised, None if nothing."""
     try:
         return future.exception()

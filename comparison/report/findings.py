@@ -28,7 +28,7 @@ from reference.problem import Family
 class Findings:
     """
     surfaces: see `labeled_surfaces`. rows: differences of pairs of models. budget: what every model adds. effective:
-    values read back from each model. effects: what slips of the print do to mu. unanswered: models without a value
+    values read back from each model. effects: what errata of the print do to mu. unanswered: models without a value
     somewhere. limits: the acceptance limits that scenes state, held against the rest. faults: what solvers complained
     about. run: command, times, provenance. pictures: files of the surfaces' by name. Fields that may be None are what
     only some commands compute. motions: see `stored_motions`. claims, scaling, convergence: see `further_findings`.

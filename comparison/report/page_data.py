@@ -101,7 +101,7 @@ def _places(found: Findings, scene: Scene, starts: Starts) -> Iterator[dict[str,
                 {
                     "model": motion.model,
                     "status": motion.status,
-                    "fault": motion.fault,
+                    "error_message": motion.error_message,
                     "stick": [[round(start, 4), round(end, 4)] for start, end in motion.stick],
                     "start": starts[place, motion.model],
                     "count": len(motion.time),

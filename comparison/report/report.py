@@ -110,7 +110,7 @@ SECTIONS = (
         "claims",
         "python -m comparison.run with every scene of the paper makes it, and python -m comparison.claims alone",
     ),
-    Section("slips", "Slips in the print"),
+    Section("errata", "Errata of the print"),
     Section(
         "assumptions",
         "How far the paper's assumptions carry",
@@ -194,7 +194,7 @@ def _page(figures: Path, found: Findings) -> str:
         budget=found.budget,
         effective=found.effective,
         phases=PHASES,
-        slips=_slips(found),
+        errata=_errata(found),
         checks=CHECKS,
         claim_signs=SIGNS,
         verdicts=[(verdict.value, COLORS[verdict], MEANING[verdict]) for verdict in Verdict],
@@ -290,20 +290,25 @@ def _properties(hierarchy: Sequence[Any]) -> list[dict[str, Any]]:
     return table
 
 
-def _slips(found: Findings) -> list[dict[str, Any]]:
-    """The slips with one sentence each about their largest effect in every scene they touch."""
+def _errata(found: Findings) -> list[dict[str, Any]]:
+    """The errata with one sentence each about their largest effect in every scene they touch."""
     rows = []
-    for number, slip in enumerate(ERRATA):
-        effects = [effect for effect in found.effects if effect.slip == number and (effect.change or effect.fault)]
+    for number, erratum in enumerate(ERRATA):
+        effects = [
+            effect for effect in found.effects if effect.erratum == number and (effect.change or effect.error_message)
+        ]
         rows.append(
-            {"slip": slip, "effects": [_effect(effect) for effect in effects] or [slip.none or "no scene here"]}
+            {
+                "erratum": erratum,
+                "effects": [_effect(effect) for effect in effects] or [erratum.none or "no scene here"],
+            }
         )
     return rows
 
 
 def _effect(effect: Effect) -> str:
-    if effect.fault:
-        return f"{effect.scene}: {effect.fault}"
+    if effect.error_message:
+        return f"{effect.scene}: {effect.error_message}"
     change = np.array(effect.change)
     lost = "" if np.isfinite(change).all() else "no answer at some phases; "
     sizes = [

@@ -17,7 +17,7 @@ from comparison.study.models import models_of
 from reference.problem import Scene
 
 SCHEMA = "phase-resonance/summary"
-VERSION = 2
+VERSION = 3
 
 
 def summary(found: Findings) -> dict[str, Any]:
@@ -38,16 +38,16 @@ def summary(found: Findings) -> dict[str, Any]:
             for model in study.hierarchy
         ],
         "scenes": [_scene(found, scene) for scene in study.scenes],
-        "slips": [
+        "errata": [
             {
-                "where": slip.where,
-                "printed": slip.printed,
-                "corrected": slip.corrected,
-                "why": slip.why,
-                "none": slip.none,
-                "effects": [_finite(asdict(effect)) for effect in found.effects if effect.slip == number],
+                "where": erratum.where,
+                "printed": erratum.printed,
+                "corrected": erratum.corrected,
+                "why": erratum.why,
+                "none": erratum.none,
+                "effects": [_finite(asdict(effect)) for effect in found.effects if effect.erratum == number],
             }
-            for number, slip in enumerate(ERRATA)
+            for number, erratum in enumerate(ERRATA)
         ],
         "assumptions": found.assumptions and _finite(found.assumptions.listed()),
         "claims": claims_summary(found.claims),

@@ -30,14 +30,14 @@ class Batch:
 
 @dataclass(frozen=True)
 class BatchResult:
-    """What a batch gave: as `reference.problem.Amplification`; `fault` says what a solver complained about, or ""."""
+    """What a batch gave, as `reference.problem.Amplification`; error_message: what the solver reported, or ""."""
 
     mu: Array
     error: Array
     status: list[str]
     instant: Array
     cost: float
-    fault: str = ""
+    error_message: str = ""
     cap_share: Array = field(default_factory=lambda: np.empty(0))
 
     def __post_init__(self) -> None:
@@ -70,8 +70,8 @@ def execute_batch(batch: Batch) -> BatchResult:
         shapes = mu.shape, error.shape, (len(status),), instant.shape, cap_share.shape
         if shapes != ((points, bodies), (points, bodies), (points,), (points,), (points,)):
             raise ValueError(f"{batch.amplification} answered {mu.shape} for {points} phases and {bodies} bodies")
-    except Exception as fault:
-        return unanswered(batch, Outcome.SOLVER_FAILED, f"{type(fault).__name__}: {fault}")
+    except Exception as exception:
+        return unanswered(batch, Outcome.SOLVER_FAILED, f"{type(exception).__name__}: {exception}")
     named = ""
     for index in np.flatnonzero(~(np.isfinite(mu) & np.isfinite(error)).all(axis=1)):
         if status[index] == Outcome.OK:  # never let a number that is none pass as an answer
@@ -80,8 +80,8 @@ def execute_batch(batch: Batch) -> BatchResult:
     return BatchResult(mu, error, status, instant, float(result.cost), named, cap_share)
 
 
-def unanswered(batch: Batch, outcome: Outcome, fault: str) -> BatchResult:
+def unanswered(batch: Batch, outcome: Outcome, error_message: str) -> BatchResult:
     """NaN for every point of the batch, with the outcome that explains it."""
     points, bodies = len(batch.phases), len(batch.scene.bodies)
     nothing = np.full((points, bodies), np.nan)
-    return BatchResult(nothing, nothing.copy(), [outcome.value] * points, np.full(points, np.nan), 0.0, fault)
+    return BatchResult(nothing, nothing.copy(), [outcome.value] * points, np.full(points, np.nan), 0.0, error_message)

@@ -166,13 +166,13 @@ SMALL = Model(
 EXACT = _next(
     SMALL,
     {
-        "equations": "(3.9)-(3.13), slips mended",
+        "equations": "(3.9)-(3.13), errata corrected",
         "geometry": "exact sphere of radius rho",
         "normal contact": "rigid, from the constraint with its centripetal part",
     },
     key="exact",
     title="exact equations",
-    adds="The whole sphere: equations (3.9)-(3.13) with the slips of the print mended, same friction law.",
+    adds="The whole sphere: equations (3.9)-(3.13) with the errata of the print corrected, same friction law.",
     settings={"equations": "exact", "regularization": None},
 )
 RESOLVED = _next(

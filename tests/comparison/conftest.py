@@ -68,7 +68,10 @@ def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pyte
 def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The report of two scenes, one dry and one lubricated, on a 4 x 4 grid; the engine 1 % above the reference."""
     place = tmp_path_factory.mktemp("finished") / "report"
-    effects = [Effect("fig3-I", 0, ((0.5, -0.25), (float("nan"), 0.125))), Effect("fig3-I", 1, fault="it broke")]
+    effects = [
+        Effect("fig3-I", 0, ((0.5, -0.25), (float("nan"), 0.125))),
+        Effect("fig3-I", 1, error_message="it broke"),
+    ]
     words = ["fig3-I", "fig4-viscous", "--grid", "4", "--jobs", "2", "--out", str(place)]
     with pytest.MonkeyPatch.context() as patch:
         without_tasks(patch)

@@ -109,7 +109,7 @@ def test_a_model_that_raises_leaves_no_value_and_says_why() -> None:
     assert [cell.variation for cell in cells] == list(FEW)
     for cell in cells:
         assert np.isnan(cell.change).all()
-        assert cell.fault == "RuntimeError: the matrix is singular"
+        assert cell.error_message == "RuntimeError: the matrix is singular"
         assert not cell.holds(1, 0.05)
 
 

@@ -26,7 +26,7 @@ def _rung(**settings: object) -> Model:
 
 def test_what_the_model_really_computed_with_is_read_from_its_motion() -> None:
     found = read_back((load_scene("fig3-I"), _rung(**TRUE)))
-    assert found.fault == ""
+    assert found.error_message == ""
     assert found.radius == pytest.approx(TRUE["radius"], rel=1e-12)
     assert found.mass == pytest.approx(TRUE["mass"], rel=1e-12)
     assert found.contact == pytest.approx(TRUE["mass"] * 9.81, rel=1e-12)
@@ -49,13 +49,13 @@ def test_the_scene_states_what_the_motion_is_held_against() -> None:
 
 def test_a_model_whose_motion_fails_says_why_and_has_no_value() -> None:
     found = read_back((load_scene("fig3-I"), fake_hierarchy()[-1]))
-    assert found.fault == "AssertionError: nothing should have been computed"
+    assert found.error_message == "AssertionError: nothing should have been computed"
     assert np.isnan([found.radius, found.friction, found.contact, found.mass]).all()
 
 
 def test_a_motion_that_ended_early_has_no_value() -> None:
     found = read_back((load_scene("fig3-I"), _rung(**TRUE, status="rim reached")))
-    assert found.fault == "the motion ended: rim reached"
+    assert found.error_message == "the motion ended: rim reached"
     assert np.isnan(found.radius)
 
 

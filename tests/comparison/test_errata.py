@@ -1,4 +1,4 @@
-"""Slips of the print: every one has its row, and the effect of the printed form is what was measured."""
+"""Errata of the print: every one has its row, and the effect of the printed form is what was measured."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from reference.problem import Scene, load_scene
 
 
 def test_every_slip_says_what_is_printed_what_it_should_be_why_and_what_it_does() -> None:
-    for slip in ERRATA:
-        assert slip.printed != slip.corrected
-        assert slip.why
-        assert (slip.measure is None) == bool(slip.none), "either a measure or the reason why there is none"
+    for erratum in ERRATA:
+        assert erratum.printed != erratum.corrected
+        assert erratum.why
+        assert (erratum.measure is None) == bool(erratum.none), "either a measure or the reason why there is none"
 
 
 def test_every_place_known_to_be_wrong_has_its_row() -> None:
-    places = [slip.where for slip in ERRATA]
+    places = [erratum.where for erratum in ERRATA]
     for place in ("after (2.3)", "after (2.5)", "(3.1)", "(3.12)", "(3.15)", "(4.6)", "after (4.7)", "section 5"):
         assert place in places
 
@@ -49,17 +49,17 @@ def test_effects_come_in_order_and_a_measure_that_fails_is_named(monkeypatch: py
     ]
     monkeypatch.setattr(errata, "ERRATA", planted)
     found = errata_effects(_study("fig3-I", "fig3-II"), 2, ThreadPoolExecutor, planted)
-    assert [(one.scene, one.slip) for one in found] == [("fig3-I", 0), ("fig3-I", 2), ("fig3-II", 0), ("fig3-II", 2)]
+    assert [(one.scene, one.erratum) for one in found] == [("fig3-I", 0), ("fig3-I", 2), ("fig3-II", 0), ("fig3-II", 2)]
     assert found[0].change == ((0.5, 0.5), (0.5, 0.5))
-    assert found[1].fault == "RuntimeError: singular"
-    assert found[2].change == (), "a scene the slip does not touch"
+    assert found[1].error_message == "RuntimeError: singular"
+    assert found[2].change == (), "a scene the erratum does not touch"
 
 
 def test_the_report_and_the_summary_show_the_effects(finished: Path) -> None:
     page = (finished / "index.html").read_text(encoding="utf-8")
     assert "fig3-I: no answer at some phases; μ<sub>1</sub> by up to 50 %, μ<sub>2</sub> by up to 25 %" in page
     assert "fig3-I: it broke" in page
-    rows = json.loads((finished / "summary.json").read_text(encoding="utf-8"))["slips"]
+    rows = json.loads((finished / "summary.json").read_text(encoding="utf-8"))["errata"]
     assert len(rows) == len(ERRATA)
     assert rows[0]["effects"][0]["change"] == [[0.5, -0.25], [None, 0.125]]
 
@@ -88,10 +88,12 @@ def test_a_slip_changes_only_what_it_names() -> None:
 def test_the_printed_rest_condition_and_the_missing_coefficient_change_mu() -> None:
     scene = load_scene("fig3-I").with_values({"duration": 3.0})
     places = ("after (2.3)", "after (2.5)", "(4.6)")
-    effects = {slip.where: measured((scene, number)) for number, slip in enumerate(ERRATA) if slip.where in places}
+    effects = {
+        erratum.where: measured((scene, number)) for number, erratum in enumerate(ERRATA) if erratum.where in places
+    }
     assert set(effects) == set(places)
     for where, effect in effects.items():
-        assert effect.fault == ""
+        assert effect.error_message == ""
         assert np.size(effect.change)
         assert not (np.abs(effect.change) < 1e-3).all(), f"{where}: a change, or no answer at all"
 

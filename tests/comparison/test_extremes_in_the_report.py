@@ -56,7 +56,7 @@ def test_the_matrix_may_be_there_before_the_first_report(command: Callable[..., 
     assert run.code == 0, run.err
     summary = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))
     schema = json.loads((resources.files("comparison.report") / "summary.schema.json").read_text(encoding="utf-8"))
-    assert [fault.message for fault in Draft202012Validator(schema).iter_errors(summary)] == []
+    assert [error_message.message for error_message in Draft202012Validator(schema).iter_errors(summary)] == []
     assert summary["extremes"]["rows"][1]["entries"]["spatial"]["reason"] == "step limit"
 
 

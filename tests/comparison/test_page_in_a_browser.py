@@ -49,7 +49,7 @@ def _opened(browser: Browser, file: Path, window: tuple[int, int]) -> Visit:
     page.set_default_timeout(PATIENCE)
     visit = Visit(page)
     page.on("console", lambda m: visit.complaints.append(m.text) if m.type == "error" else None)
-    page.on("pageerror", lambda fault: visit.complaints.append(str(fault)))
+    page.on("pageerror", lambda error_message: visit.complaints.append(str(error_message)))
     page.on("request", lambda r: visit.requests.append(r.url) if not r.url.startswith(("data:", "blob:")) else None)
     page.goto(file.as_uri())
     return visit

@@ -80,7 +80,7 @@ class Solved:
         study = Study((scene,), GRID, 1e-3, hierarchy)
         batches = study.batches()
         answers = [execute_batch(batch) for batch in batches]
-        assert [answer.fault for answer in answers if answer.fault] == []
+        assert [answer.error_message for answer in answers if answer.error_message] == []
         return Solved(study, labeled_surfaces(study, batches, answers))
 
 

@@ -156,7 +156,7 @@ def test_a_motion_that_was_never_begun_has_a_status_and_no_error() -> None:
     surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
     task = next(task for task in motion_arguments(study, surfaces) if task[1].key == "spatial")
     motion = moved(task)
-    assert (motion.status, motion.fault, len(motion.time)) == ("step limit", "", 0)
+    assert (motion.status, motion.error_message, len(motion.time)) == ("step limit", "", 0)
 
 
 def test_a_model_that_answers_somewhere_is_kept_and_named() -> None:

@@ -86,7 +86,7 @@ def test_every_key_of_the_summary_is_documented_and_as_documented(finished: Path
     schema = _schema()
     Draft202012Validator.check_schema(schema)
     summary = json.loads((finished / "summary.json").read_text(encoding="utf-8"))
-    assert [fault.message for fault in Draft202012Validator(schema).iter_errors(summary)] == []
+    assert [error_message.message for error_message in Draft202012Validator(schema).iter_errors(summary)] == []
     for part in _objects(schema):
         if "properties" in part:
             assert part["additionalProperties"] is False, "an undocumented key is a fault"

@@ -31,20 +31,20 @@ def test_a_second_run_replaces_the_first(command: Callable[..., Run]) -> None:
 
 
 @pytest.mark.parametrize(
-    "fault", [OSError("No space left on device"), KeyboardInterrupt()], ids=["disk full", "Ctrl-C"]
+    "error_message", [OSError("No space left on device"), KeyboardInterrupt()], ids=["disk full", "Ctrl-C"]
 )
 def test_a_report_that_cannot_be_finished_leaves_the_old_one(
-    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch, fault: BaseException
+    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch, error_message: BaseException
 ) -> None:
     first = command(*SMALL)
     before = {entry: entry.read_bytes() for entry in first.report.rglob("*") if entry.is_file()}
 
     def breaks(*rest: object) -> str:
-        raise fault  # the surfaces, the summary and the figures are written by then
+        raise error_message  # the surfaces, the summary and the figures are written by then
 
     monkeypatch.setattr(report, "page_data", breaks)
     run = command(*SMALL, "--tolerance", "2e-3")
-    assert run.code == (130 if isinstance(fault, KeyboardInterrupt) else 3)
+    assert run.code == (130 if isinstance(error_message, KeyboardInterrupt) else 3)
     assert run.err.count("\n") == 1
     assert {entry: entry.read_bytes() for entry in first.report.rglob("*") if entry.is_file()} == before
     assert sorted(entry.name for entry in first.report.parent.iterdir()) == ["report", "report.tiles"]

@@ -43,7 +43,7 @@ def another(task: tuple[object, ...]) -> StoredMotion:
 
 def broken(task: object) -> tuple[Effect, ...]:
     calls.append(task)
-    return Effect("s", 0), Effect("s", 1, fault="it broke")
+    return Effect("s", 0), Effect("s", 1, error_message="it broke")
 
 
 def forbidden(jobs: int) -> Executor:
@@ -102,10 +102,10 @@ def test_a_model_is_known_by_its_source_too(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_what_names_a_fault_serves_the_run_and_is_tried_again_by_the_next(tmp_path: Path) -> None:
-    task = Task("slips", broken, 1, 0.1)
+    task = Task("errata", broken, 1, 0.1)
     calls.clear()
     answers = _fetched(task, tmp_path)
-    assert answers.on(forbidden)(1).submit(broken, 1).result()[1].fault == "it broke"
+    assert answers.on(forbidden)(1).submit(broken, 1).result()[1].error_message == "it broke"
     _fetched(task, tmp_path)
     assert calls == [1, 1]
 
@@ -137,8 +137,8 @@ def test_an_errand_whose_worker_died_is_left_to_its_analysis() -> None:
     answers = TaskCache(Cache(Path("unused")))
     answers.put(_errand(), None)
     assert answers.missing([_errand()])
-    answers.put(Task("slips", broken, 1, 0.1), TaskResult(Effect("s", 1, fault=str(Outcome.WORKER_DIED)), 0.0))
-    assert answers.parts["slips"].tasks == 1
+    answers.put(Task("errata", broken, 1, 0.1), TaskResult(Effect("s", 1, error_message=str(Outcome.WORKER_DIED)), 0.0))
+    assert answers.parts["errata"].tasks == 1
 
 
 def test_every_errand_of_a_study_has_a_place_of_its_own() -> None:
@@ -147,12 +147,14 @@ def test_every_errand_of_a_study_has_a_place_of_its_own() -> None:
     assert paper_complete(study)
     assert len({task.key for task in found}) == len(found)
     assert {task.stage for task in found} == {
-        "effective values", "slips", "scaling test", "convergence", "claims", "assumptions",
+        "effective values", "errata", "scaling test", "convergence", "claims", "assumptions",
     }  # fmt: skip
     assert not paper_complete(Study(study.scenes[:1], 6, 1e-3))
 
 
 def test_effective_values_without_a_motion_are_not_kept_for_good(tmp_path: Path) -> None:
     answers = TaskCache(Cache(tmp_path))
-    answers.put(Task("effective values", broken, 1, 0.1), TaskResult(Effective("s", "small", fault="it ended"), 0.1))
+    answers.put(
+        Task("effective values", broken, 1, 0.1), TaskResult(Effective("s", "small", error_message="it ended"), 0.1)
+    )
     assert not list(tmp_path.glob("*/*"))

@@ -151,4 +151,4 @@ def test_a_model_that_raises_leaves_points_without_a_value(monkeypatch: pytest.M
     task = measure.Task(load_scene("fig3-I"), ("anything:at all", {}), 0, sample(2))
     found = measure.solve(task)
     assert np.isnan(found.mu).all()
-    assert "the matrix is singular" in found.fault
+    assert "the matrix is singular" in found.error_message

@@ -94,15 +94,17 @@ def breaks(scene: Scene, phase: object, tolerance: float, **settings: object) ->
     return replace(motion, absolute_acceleration=np.full_like(motion.absolute_acceleration, np.nan))
 
 
-@pytest.mark.parametrize(("name", "fault"), [("slides", ""), ("breaks", "ValueError"), ("missing", "AttributeError")])
-def test_a_motion_is_kept_or_says_why_there_is_none(name: str, fault: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "error_message"), [("slides", ""), ("breaks", "ValueError"), ("missing", "AttributeError")]
+)
+def test_a_motion_is_kept_or_says_why_there_is_none(name: str, error_message: str) -> None:
     study, surfaces = _studied(4)
     scene = study.scenes[0]
     model = replace(study.hierarchy[0], trajectory=f"test_trajectories:{name}", settings={"cutoff": 1e-3})
     motion = moved((scene, model, 1e-3, chosen_places(study, surfaces, scene)[0], (0.0, 0.0)))
-    assert motion.fault.split(":")[0] == fault
-    assert (motion.status == "ok") == (fault == "")
-    if not fault:
+    assert motion.error_message.split(":")[0] == error_message
+    assert (motion.status == "ok") == (error_message == "")
+    if not error_message:
         whole = slides(scene, None, 0.0)
         peak = np.linalg.norm(whole.absolute_acceleration, axis=2).argmax(axis=0)
         assert set(whole.time[peak]) <= set(motion.time), "the peak of every body is kept as it is"

@@ -13,8 +13,8 @@ from comparison.study.study import Study
 from reference.problem import Outcome, load_scene
 
 
-def _lost(task: str, outcome: Outcome, fault: str) -> str:
-    return f"{outcome}: {fault}"
+def _lost(task: str, outcome: Outcome, error_message: str) -> str:
+    return f"{outcome}: {error_message}"
 
 
 def test_what_is_not_ready_lets_others_pass_and_starts_as_soon_as_it_is() -> None:

@@ -29,8 +29,8 @@ def common_pool(jobs: int) -> Executor:
     return ProcessPoolExecutor(jobs, get_context("spawn"))
 
 
-def _lost(task: Path, outcome: Outcome, fault: str) -> str:
-    return f"{outcome}: {fault}"
+def _lost(task: Path, outcome: Outcome, error_message: str) -> str:
+    return f"{outcome}: {error_message}"
 
 
 def _done(task: object, result: object) -> None:
@@ -82,7 +82,7 @@ def test_splitting_finds_the_one_point_that_kills(batch: int) -> None:
     whole = [execute_batch(one) for one in Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(gap=0.0)).batches()]
     np.testing.assert_array_equal(mu[:15], np.concatenate([answer.mu for answer in whole])[:15])
     assert len(seen) == len(batches), "told of whole batches, once each"
-    assert [answer.fault for answer in answers][-1] == "the worker process died 2 times"
+    assert [answer.error_message for answer in answers][-1] == "the worker process died 2 times"
 
 
 def test_halves_of_a_tile_are_its_points_in_order() -> None:
@@ -94,7 +94,7 @@ def test_halves_of_a_tile_are_its_points_in_order() -> None:
     whole, parts = execute_batch(batch), [execute_batch(part) for part in (early, late)]
     together = merge(batch, parts)
     np.testing.assert_array_equal(together.mu, whole.mu)
-    assert (together.status, together.fault) == (whole.status, "")
+    assert (together.status, together.error_message) == (whole.status, "")
     assert together.cost == pytest.approx(whole.cost, rel=1e-12)  # a sum in another order
 
 
@@ -122,7 +122,7 @@ def test_a_lent_executor_that_breaks_ends_the_sweep_in_one_line(tmp_path: Path, 
     with common_pool(1) as lent:
         if broken_before:
             assert lent.submit(counted, tmp_path / "kills always").exception() is not None
-        with pytest.raises(ExecutorLostError, match=r"^the executor is broken: ") as fault:
+        with pytest.raises(ExecutorLostError, match=r"^the executor is broken: ") as error_message:
             sweep(tasks, counted, _lost, done, 1, lent)
-    assert "\n" not in str(fault.value)
+    assert "\n" not in str(error_message.value)
     assert arrived == ([] if broken_before else ["one"]), "what had arrived was told"

@@ -64,8 +64,8 @@ class Cell:
     The spatial model of one variation against the translational model, which no variation changes.
 
     change: mu over mu of the translational model minus one, per phase pair and body, NaN without a value; uncertainty:
-    of it, the two error estimates together. status: of each phase pair. fault: what went wrong, or "". cost: s of
-    compute of the spatial model.
+    of it, the two error estimates together. status: of each phase pair. error_message: what went wrong, or "". cost: s
+    of compute of the spatial model.
     """
 
     scene: str
@@ -73,7 +73,7 @@ class Cell:
     change: tuple[tuple[float, ...], ...]
     uncertainty: tuple[tuple[float, ...], ...]
     status: tuple[str, ...]
-    fault: str = ""
+    error_message: str = ""
     cost: float = 0.0
 
     def largest(self, body: int) -> float:
@@ -115,7 +115,7 @@ class Solved:
     mu: Array
     error: Array
     status: tuple[str, ...]
-    fault: str
+    error_message: str
     cost: float
 
     def __post_init__(self) -> None:
@@ -162,21 +162,21 @@ def varied(task: Arguments) -> Solved:
     whole = {"full": True} if untilted(changed) else {}  # a check of assumption (vi) must not make use of it
     try:
         found = imported(model.amplification)(changed, PHASES, **model.settings, tolerance=tolerance, **whole)
-    except Exception as fault:
-        return _lost(task, Outcome.SOLVER_FAILED, f"{type(fault).__name__}: {fault}")
+    except Exception as error:
+        return _lost(task, Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}")
     return Solved(found.mu, found.error, tuple(str(one) for one in found.status), "", float(found.cost))
 
 
-def _lost(task: Arguments, outcome: Outcome, fault: str) -> Solved:
+def _lost(task: Arguments, outcome: Outcome, error_message: str) -> Solved:
     nothing = np.full((len(PHASES), len(task[0].bodies)), np.nan)
-    return Solved(nothing, nothing, (outcome.value,) * len(PHASES), fault, 0.0)
+    return Solved(nothing, nothing, (outcome.value,) * len(PHASES), error_message, 0.0)
 
 
 def _cell(scene: Scene, variation: Variation, spatial: Solved, plain: Solved) -> Cell:
     change = spatial.mu / plain.mu - 1.0
     uncertainty = np.hypot(spatial.error, plain.error) / plain.mu
-    fault = spatial.fault or plain.fault
-    return Cell(scene.name, variation, _rows(change), _rows(uncertainty), spatial.status, fault, spatial.cost)
+    error_message = spatial.error_message or plain.error_message
+    return Cell(scene.name, variation, _rows(change), _rows(uncertainty), spatial.status, error_message, spatial.cost)
 
 
 def _rows(array: Array) -> tuple[tuple[float, ...], ...]:

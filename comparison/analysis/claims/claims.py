@@ -52,7 +52,7 @@ class Claim:
         """The check's answer; none where a case has points without a value."""
         for case in self.cases:
             if not evidence[case].complete:
-                why = evidence[case].fault or ", ".join(evidence[case].statuses)
+                why = evidence[case].error_message or ", ".join(evidence[case].statuses)
                 return Verdict(Finding.OPEN, f"{case}: {why}")
         return self.check(evidence)
 

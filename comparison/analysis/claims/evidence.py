@@ -28,8 +28,8 @@ class Evidence:
 
     mu: (n, n, N) on phases 2 pi k / n, NaN where a point has no answer. error: largest absolute error estimate.
     statuses: the outcomes met. bends: sharpest bend of each body's surface. apart: max |x_i - y_i| over the largest of
-    |x_i| and |y_i|, for each body over MOTIONS. swing: max (x_1^2 + y_1^2) / rho^2 over the same. fault: why there is
-    nothing, or "".
+    |x_i| and |y_i|, for each body over MOTIONS. swing: max (x_1^2 + y_1^2) / rho^2 over the same. error_message: why
+    there is nothing, or "".
     """
 
     mu: Array = field(default_factory=lambda: np.full((0, 0, 0), np.nan))
@@ -38,7 +38,7 @@ class Evidence:
     bends: tuple[Bend, ...] = ()
     apart: tuple[float, ...] = ()
     swing: float = float("nan")
-    fault: str = ""
+    error_message: str = ""
 
     def flat(self, body: int) -> bool:
         """Whether a surface varies by less than its errors, or so little that it shows no resonance."""
@@ -65,15 +65,15 @@ class Question:
 
 
 def gathered(question: Question) -> Evidence:
-    """Runs inside a worker process. What goes wrong is said in `fault`."""
+    """Runs inside a worker process. What goes wrong is said in `error_message`."""
     try:
         return _gathered(question.scene, question)
-    except Exception as fault:
-        return Evidence(fault=f"{type(fault).__name__}: {fault}")
+    except Exception as error:
+        return Evidence(error_message=f"{type(error).__name__}: {error}")
 
 
-def lost(question: Question, outcome: Outcome, fault: str) -> Evidence:
-    return Evidence(fault=f"{outcome}: {fault}")
+def lost(question: Question, outcome: Outcome, error_message: str) -> Evidence:
+    return Evidence(error_message=f"{outcome}: {error_message}")
 
 
 def _gathered(scene: Scene, question: Question) -> Evidence:

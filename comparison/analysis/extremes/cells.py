@@ -82,10 +82,10 @@ def _ask(row: Row, function: str, settings: Mapping[str, Any]) -> Reply:
         result = imported(function)(scene, np.array(row.phases), **settings)
         status = tuple(str(outcome) for outcome in result.status)
         return Reply(np.array(result.mu, dtype=float), np.array(result.error, dtype=float), status)
-    except Exception as fault:
-        text = f"{type(fault).__name__}: {fault}"
-        if isinstance(fault, ValueError) and not isinstance(fault, np.linalg.LinAlgError):
-            return Reply(nothing, nothing, (), invalid=str(fault))
+    except Exception as error:
+        text = f"{type(error).__name__}: {error}"
+        if isinstance(error, ValueError) and not isinstance(error, np.linalg.LinAlgError):
+            return Reply(nothing, nothing, (), invalid=str(error))
         return Reply(nothing, nothing, (), raised=text)
 
 
@@ -93,8 +93,8 @@ def _scene(written: Mapping[str, Any]) -> Scene:
     """The scene as a file would give it: keys without a value are absent. Raises SceneError."""
     try:
         return Scene.model_validate({**_given(written), "name": "extreme"})
-    except ValidationError as fault:
-        raise first_fault("extreme", fault, KEYS) from None
+    except ValidationError as error:
+        raise first_fault("extreme", error, KEYS) from None
 
 
 def _given(written: Mapping[str, Any]) -> dict[str, Any]:

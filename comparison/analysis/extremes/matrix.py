@@ -108,5 +108,5 @@ def read(folder: Path) -> Matrix | None:
             for row in data["rows"]
         ]
         return Matrix(data["columns"], rows, data["run"])
-    except (KeyError, TypeError, ValueError) as fault:
-        raise ValueError(f"{file}: not a matrix of extremes: {fault!r}: run python -m comparison.extremes") from None
+    except (KeyError, TypeError, ValueError) as error:
+        raise ValueError(f"{file}: not a matrix of extremes: {error!r}: run python -m comparison.extremes") from None

@@ -50,7 +50,7 @@ class Found:
     claimed: Array
     seconds: float
     step: float
-    fault: str = ""
+    error_message: str = ""
 
     def upto(self, count: int) -> Found:
         """The first phase pairs, with their share of the time."""
@@ -78,8 +78,8 @@ def _asked(scene: Scene, phases: Array, path: str, given: Settings) -> Found:
     clock = time.process_time()
     try:
         found = imported(path)(scene, phases, **given)
-    except Exception as fault:
-        return Found(nothing, nothing, time.process_time() - clock, np.nan, f"{type(fault).__name__}: {fault}")
+    except Exception as error:
+        return Found(nothing, nothing, time.process_time() - clock, np.nan, f"{type(error).__name__}: {error}")
     seconds = time.process_time() - clock
     if isinstance(found, tuple):
         found, step = found
@@ -88,10 +88,10 @@ def _asked(scene: Scene, phases: Array, path: str, given: Settings) -> Found:
     return Found(np.asarray(found, dtype=float), nothing, seconds, step)
 
 
-def lost(task: Task, outcome: Outcome, fault: str) -> Found:
+def lost(task: Task, outcome: Outcome, error_message: str) -> Found:
     """A worker that died leaves points without a value."""
     nothing = np.full((len(task.phases), len(task.scene.bodies)), np.nan)
-    return Found(nothing, nothing, 0.0, np.nan, f"{outcome.value}: {fault}")
+    return Found(nothing, nothing, 0.0, np.nan, f"{outcome.value}: {error_message}")
 
 
 def key(function: Function) -> str:
@@ -163,7 +163,7 @@ def _joined(parts: Sequence[Found]) -> Found:
         np.concatenate([part.claimed for part in parts]),
         sum(part.seconds for part in parts),
         float(np.mean([part.step for part in parts])),
-        next((part.fault for part in parts if part.fault), ""),
+        next((part.error_message for part in parts if part.error_message), ""),
     )
 
 
@@ -186,7 +186,7 @@ def entry(setting: Setting, found: Found, truth: Array) -> Entry:
         most=[quantile(error[:, body], 0.95) for body in range(bodies)],
         claimed=[quantile(claimed[:, body], 0.95) for body in range(bodies)],
         step=found.step if np.isfinite(found.step) else None,
-        fault=found.fault,
+        error_message=found.error_message,
     )
 
 

@@ -42,7 +42,7 @@ class Entry:
     claimed: Sequence[float | None]
     step: float | None = None  # s, mean step, where the method tells it
     front: Sequence[bool] = ()
-    fault: str = ""
+    error_message: str = ""
 
 
 @dataclass(frozen=True)
@@ -139,8 +139,8 @@ def read(folder: Path) -> list[Trade] | None:
             )
             for trade in content["trades"]
         ]
-    except (KeyError, TypeError, ValueError) as fault:
-        raise ValueError(f"{file}: not a measured trade: {fault}: run python -m comparison.tradeoff") from None
+    except (KeyError, TypeError, ValueError) as error:
+        raise ValueError(f"{file}: not a measured trade: {error}: run python -m comparison.tradeoff") from None
 
 
 def labeled(

@@ -111,5 +111,5 @@ def all_drawn(study: Study, surfaces: xr.Dataset, jobs: int, executor: Callable[
     return {name: content for picture, files in zip(asked, found) for name, content in files or drawn(picture)}
 
 
-def _lost(picture: Picture, outcome: Outcome, fault: str) -> Files:
+def _lost(picture: Picture, outcome: Outcome, error_message: str) -> Files:
     return ()

@@ -40,7 +40,7 @@ async function drawMotions(box, scene, body, place, models, titles) {
   models.forEach((model, k) => {
     const motion = motionOf(all, place, model, bodies);
     if (!motion.time.length) {
-      notes.push(`${titles[model]}: ${motion.about ? motion.about.fault || motion.about.status : "not asked at this phase pair"}`);
+      notes.push(`${titles[model]}: ${motion.about ? motion.about.error_message || motion.about.status : "not asked at this phase pair"}`);
       return;
     }
     if (motion.about.status !== "ok") notes.push(`${titles[model]} ended early: ${motion.about.status}`);
