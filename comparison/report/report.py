@@ -198,7 +198,7 @@ def _page(figures: Path, found: Findings) -> str:
         checks=CHECKS,
         claim_signs=SIGNS,
         verdicts=[(verdict.value, COLORS[verdict], MEANING[verdict]) for verdict in Verdict],
-        said=describe,
+        describe=describe,
         digests={scene.digest() for scene in study.scenes},
         peak_share=SHARE,
         peak_shares=(LEAST_SHARE, MOST_SHARE),
