@@ -8,11 +8,12 @@ whoever read the output closed it. After 3, 4 and a signal the same command goes
 
 from __future__ import annotations
 
+if __name__ == "__main__":
+    from comparison.cli.start import start
+
+    start("comparison.run")  # does not return: the module is loaded once, under its own name
+
 import signal
-
-if __name__ == "__main__" and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # while modules load Ctrl-C ends the command without a traceback
-
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -25,44 +26,44 @@ from typing import Any
 import xarray as xr
 from rich.console import Console
 
-from comparison.account.promises import kept_promises
-from comparison.account.surfaces import labelled_surfaces, wide_swings
-from comparison.account.unanswered import with_silent_models
-from comparison.analyses.effective import effective_values
-from comparison.analyses.errands import errands, motion_errands, seconds_beside
-from comparison.analyses.further import further_findings
-from comparison.analyses.slips import slip_effects
-from comparison.analyses.trajectories import stored_motions
-from comparison.assumptions.reach import Reach
-from comparison.extremes.matrix import read as stored_extremes
-from comparison.options import Options, UsageError, parsed
-from comparison.plan.choice import Asked, BudgetError, Choice, choice
-from comparison.plan.ladder import LADDER, Rung
-from comparison.plan.study import Study
-from comparison.provenance import provenance
+from comparison.analysis.assumptions.validity import ValidityRanges
+from comparison.analysis.effective import effective_values
+from comparison.analysis.errata import errata_effects
+from comparison.analysis.extremes.matrix import read as stored_extremes
+from comparison.analysis.further import further_findings
+from comparison.analysis.surfaces import labeled_surfaces, wide_swings
+from comparison.analysis.targets import targets_met
+from comparison.analysis.tasks import analysis_cost, analysis_tasks, motion_tasks
+from comparison.analysis.tradeoff.trade import read as stored_trades
+from comparison.analysis.trajectories import stored_motions
+from comparison.analysis.unanswered import with_silent_models
+from comparison.cli.options import Options, UsageError, parsed
+from comparison.cli.terminal import print_differences, print_plan, print_study_plan, print_targets_met, print_unanswered
+from comparison.execution.cache import Cache, StoreError, store_beside
+from comparison.execution.dask import cluster
+from comparison.execution.executors import ExecutorLostError, Pool, factory, process_pool
+from comparison.execution.keys import batch_key
+from comparison.execution.output import atomic_replace, clear_dead, on_stderr
+from comparison.execution.progress import wide_console
+from comparison.execution.provenance import provenance
+from comparison.execution.resume import command_line, resume_hint, without_scheduler
+from comparison.execution.runner import computed, fetched
+from comparison.execution.task_cache import TaskCache
 from comparison.report.findings import Findings, findings
-from comparison.storage.cache import Cache, StoreError, store_beside
-from comparison.storage.output import clear_dead, on_stderr, replaced_when_complete
-from comparison.sweep.answers import Answers
-from comparison.sweep.cluster import cluster
-from comparison.sweep.compute import computed, fetched
-from comparison.sweep.executors import ExecutorLostError, Pool, factory, process_pool
-from comparison.sweep.going_on import command_line, going_on, here
-from comparison.sweep.keys import tile_key
-from comparison.sweep.progress import wide_console
-from comparison.terminal import print_choice, print_differences, print_plan, print_promises, print_unanswered
-from comparison.tradeoff.trade import read as stored_trades
+from comparison.study.models import MODEL_HIERARCHY, Model
+from comparison.study.planning import BudgetError, StudyPlan, StudyRequest, plan_study
+from comparison.study.study import Study
 from reference.problem import SceneError
-from reference.problem.command import run_command, stoppable
+from reference.problem.command import stoppable
 
 
 def main(
     argv: Sequence[str] | None = None,
-    ladder: Sequence[Rung] = LADDER,
+    hierarchy: Sequence[Model] = MODEL_HIERARCHY,
     executor: Pool = process_pool,
 ) -> int:
     """
-    Run the study the command line asks for, with the models of `ladder`; the exit code.
+    Run the study the command line asks for, with the models of `hierarchy`; the exit code.
 
     executor: what makes an executor for a number of workers, or any Executor, which is left open.
     """
@@ -71,65 +72,65 @@ def main(
         try:
             options = parsed(argv)
             console = wide_console()
-            chosen = _chosen(options, ladder)
-            study = chosen.study
+            plan = _chosen(options, hierarchy)
+            study = plan.study
             if options.plan:
-                print_plan(console, study, options, chosen.whole)
+                print_plan(console, study, options, plan.with_analyses)
                 if options.by_trade:
-                    print_choice(console, chosen, options)
+                    print_study_plan(console, plan, options)
                 return 0
             if options.by_trade:
-                print_choice(console, chosen, options)
+                print_study_plan(console, plan, options)
             store = Cache(store_beside(options.out))
-            return _ended(chosen, options, console, words, executor, store)
-        except (SceneError, UsageError) as fault:
-            print(fault, file=sys.stderr)
+            return _ended(plan, options, console, words, executor, store)
+        except (SceneError, UsageError) as error:
+            print(error, file=sys.stderr)
             return 2
         except KeyboardInterrupt:
             print("interrupted before anything was computed", file=sys.stderr)
             return 130
 
 
-def _chosen(options: Options, ladder: Sequence[Rung]) -> Choice:
+def _chosen(options: Options, hierarchy: Sequence[Model]) -> StudyPlan:
     """What is computed. Raises SceneError where no study fits the budget."""
-    asked = options.tolerance, options.budget, options.grid, options.jobs, options.full, seconds_beside
+    asked = options.tolerance, options.budget, options.grid, options.jobs, options.full, analysis_cost
     try:
-        return choice(Asked(options.scenes, ladder, *asked))
-    except BudgetError as fault:
-        raise SceneError("command line", "--budget", options.budget, str(fault)) from None
+        return plan_study(StudyRequest(options.scenes, hierarchy, *asked))
+    except BudgetError as error:
+        raise SceneError("command line", "--budget", options.budget, str(error)) from None
 
 
 def _ended(
-    chosen: Choice, options: Options, console: Console, words: Sequence[str], executor: Pool, store: Cache
+    plan: StudyPlan, options: Options, console: Console, words: Sequence[str], executor: Pool, store: Cache
 ) -> int:
     """The exit code; whatever ends the run early, what is finished is kept, and the line printed says how to go on."""
-    study = chosen.study
+    study = plan.study
     try:
         if options.scheduler is None:
             if executor is not process_pool:
-                return _run(chosen, options, console, command_line(words), factory(executor), store)
+                return _run(plan, options, console, command_line(words), factory(executor), store)
             with process_pool(options.jobs) as workers:  # started once, for all that the study computes
-                return _run(chosen, options, console, command_line(words), factory(workers), store)
-        with cluster(options.scheduler, {rung.amplification for rung in study.ladder}) as there:
+                return _run(plan, options, console, command_line(words), factory(workers), store)
+        with cluster(options.scheduler, {model.amplification for model in study.hierarchy}) as there:
             options = replace(options, jobs=there.width)
-            return _run(chosen, options, console, command_line(words), factory(there), store)
+            return _run(plan, options, console, command_line(words), factory(there), store)
     except KeyboardInterrupt as stop:
-        print(f"interrupted: {going_on(store, study, words)}", file=sys.stderr)
+        print(f"interrupted: {resume_hint(store, study, words)}", file=sys.stderr)
         return 128 + getattr(stop, "number", signal.SIGINT)
-    except ExecutorLostError as fault:
+    except ExecutorLostError as error:
         where = "" if options.scheduler is None else f"--scheduler {options.scheduler}: "
-        print(f"{where}{fault}: {going_on(store, study, here(words))}", file=sys.stderr)
+        print(f"{where}{error}: {resume_hint(store, study, without_scheduler(words))}", file=sys.stderr)
         return 4
-    except StoreError as fault:
-        print(f"{fault}; {going_on(store, study, words)}", file=sys.stderr)
+    except StoreError as error:
+        print(f"{error}; {resume_hint(store, study, words)}", file=sys.stderr)
         return 3
-    except OSError as fault:
-        print(f"command line: --out = {str(options.out)!r}: the report could not be written: {fault}", file=sys.stderr)
+    except OSError as error:
+        print(f"command line: --out = {str(options.out)!r}: the report could not be written: {error}", file=sys.stderr)
         return 3
 
 
 def _run(
-    chosen: Choice,
+    plan: StudyPlan,
     options: Options,
     console: Console,
     command: str,
@@ -137,56 +138,60 @@ def _run(
     store: Cache,
 ) -> int:
     # plotting libraries: not needed to refuse a command or to plan
-    from comparison.drawing import pictures as drawing
+    from comparison.report.figures import pictures as drawing
     from comparison.report.report import write_report
 
     begin, began = time.monotonic(), datetime.now(UTC)
     clear_dead(options.out)
-    study = chosen.study
-    tiles = study.tiles()
-    keys = [tile_key(tile) for tile in tiles]
+    study = plan.study
+    batches = study.batches()
+    keys = [batch_key(batch) for batch in batches]
     store.trim(keys)
     if options.fresh:
         store.forget(keys)
-    known = Answers(store, options.fresh)
-    done = computed(study, store, console, options.jobs, executor, errands(study, chosen.whole), known)
+    known = TaskCache(store, options.fresh)
+    done = computed(study, store, console, options.jobs, executor, analysis_tasks(study, plan.with_analyses), known)
     seconds, answers = time.monotonic() - begin, done.answers
-    surfaces = labelled_surfaces(study, tiles, answers)
+    surfaces = labeled_surfaces(study, batches, answers)
     study = with_silent_models(study, surfaces)
     console.print("Keeping a few motions of every scene for the report, and drawing the surfaces.")
-    motions = motion_errands(study, surfaces) if chosen.whole else []
-    fetched([*motions, *drawing.picture_errands(study, surfaces)], known, console, options.jobs, executor)
+    motions = motion_tasks(study, surfaces) if plan.with_analyses else []
+    fetched([*motions, *drawing.picture_tasks(study, surfaces)], known, console, options.jobs, executor)
     executor = known.on(executor)  # what the analyses ask has been fetched
     pictures = drawing.all_drawn(study, surfaces, options.jobs, executor)
     effective = effective_values(study, options.jobs, executor)
-    effects = slip_effects(study, options.jobs, executor)
-    more = _more(study, surfaces, options, executor) if chosen.whole else {}
+    effects = errata_effects(study, options.jobs, executor)
+    more = _more(study, surfaces, options, executor) if plan.with_analyses else {}
     beside = {"extremes": _taken_up(stored_extremes, options.out), "tradeoff": _taken_up(stored_trades, options.out)}
     families = [family for family in options.families if len(family.scenes) > 1] or None
-    titles = {rung.key: rung.title for rung in study.ladder}
+    titles = {model.key: model.title for model in study.hierarchy}
     faults = sorted(
-        {f"{tile.scene.name}, {titles[tile.rung]}: {a.fault}" for tile, a in zip(tiles, answers) if a.fault}
+        {
+            f"{batch.scene.name}, {titles[batch.model]}: {a.error_message}"
+            for batch, a in zip(batches, answers)
+            if a.error_message
+        }
     )
     run: dict[str, Any] = {
         "command": command,
         "began": began.isoformat(timespec="seconds"),
         "seconds": round(seconds, 1),
         "compute_seconds": round(float(surfaces["cost"].sum()), 1),
-        "predicted_compute_seconds": round(sum(study.seconds(rung) for rung in study.ladder), 1),
-        "tiles": len(tiles),
+        "predicted_compute_seconds": round(sum(study.seconds(model) for model in study.hierarchy), 1),
+        "tiles": len(batches),
         "tiles_stored_before": done.stored,
         "parts": {
             stage: {"tasks": part.tasks, "stored_before": part.stored, "seconds": round(part.seconds, 2)}
             for stage, part in known.parts.items()
         },
         "jobs": options.jobs,
-        "choice": kept_promises(chosen, options.tolerance, options.budget, surfaces) if options.by_trade else None,
+        "choice": targets_met(plan, options.tolerance, options.budget, surfaces) if options.by_trade else None,
         "provenance": provenance(),
     }
     of_run = {"families": families, "pictures": pictures}
     found = findings(study, surfaces, effective, effects, faults, run, **of_run, **beside, **more)
     console.print("Writing the report.")
-    with replaced_when_complete(options.out) as report:
+    with atomic_replace(options.out) as report:
         write_report(report.folder, found)
     for line in faults:
         print(f"solver: {line}", file=sys.stderr)
@@ -195,7 +200,7 @@ def _run(
     for line in _checked(found) if options.check else []:
         print(line, file=sys.stderr)
     if options.by_trade:
-        print_promises(console, run["choice"], time.monotonic() - begin)
+        print_targets_met(console, run["choice"], time.monotonic() - begin)
     print_unanswered(console, found.unanswered)
     place = options.out if report.place == options.out.resolve() else report.place
     _print_closing(console, options, place, run, time.monotonic() - begin, bool(study.phased))
@@ -218,7 +223,7 @@ def _more(study: Study, surfaces: xr.Dataset, options: Options, executor: Callab
     """Fields of the findings that a report can do without."""
     return {
         "motions": stored_motions(study, surfaces, options.jobs, executor),
-        "assumptions": Reach.of(study, options.jobs, executor),
+        "assumptions": ValidityRanges.of(study, options.jobs, executor),
         **further_findings(study, options.jobs, executor),
     }
 
@@ -227,8 +232,8 @@ def _taken_up(read: Callable[[Path], Any], out: Path) -> Any:
     """What another command left beside the report; a file that has appeared since and is none of theirs is left."""
     try:
         return read(out)
-    except (OSError, ValueError) as fault:
-        on_stderr(str(fault))
+    except (OSError, ValueError) as error:
+        on_stderr(str(error))
         return None
 
 
@@ -243,7 +248,3 @@ def _print_closing(
     finer = "; a finer look: --grid N with a larger N; what that costs: --plan" if phased else ""
     console.print(f"Next: open it in a browser{finer}.")
     console.print(f"Relative differences{' over the phases' if phased else ''}, per body:")
-
-
-if __name__ == "__main__":
-    run_command(main)

@@ -8,31 +8,31 @@ from typing import Any
 
 import xarray as xr
 
-from comparison.account.acceptance import Limit, checked_limits
-from comparison.account.budget import Entry, budget
-from comparison.account.differences import Difference, differences
-from comparison.account.unanswered import Unanswered, unanswered
-from comparison.analyses.effective import Effective
-from comparison.analyses.slips import Effect
-from comparison.analyses.trajectories import StoredMotion
-from comparison.analyses.trends import Trend
-from comparison.assumptions.reach import Reach
-from comparison.claims.table import ClaimTable
-from comparison.extremes.matrix import Matrix
-from comparison.plan.study import Study
-from comparison.tradeoff.trade import Trade
+from comparison.analysis.acceptance import Limit, checked_limits
+from comparison.analysis.assumptions.validity import ValidityRanges
+from comparison.analysis.budget import Entry, budget
+from comparison.analysis.claims.table import ClaimTable
+from comparison.analysis.differences import Difference, differences
+from comparison.analysis.effective import Effective
+from comparison.analysis.errata import Effect
+from comparison.analysis.extremes.matrix import Matrix
+from comparison.analysis.tradeoff.trade import Trade
+from comparison.analysis.trajectories import StoredMotion
+from comparison.analysis.trends import Trend
+from comparison.analysis.unanswered import Unanswered, unanswered
+from comparison.study.study import Study
 from reference.problem import Family
 
 
 @dataclass(frozen=True)
 class Findings:
     """
-    surfaces: see `labelled_surfaces`. rows: differences of pairs of models. budget: what every rung adds. effective:
-    values read back from each model. effects: what slips of the print do to mu. unanswered: models without a value
+    surfaces: see `labeled_surfaces`. rows: differences of pairs of models. budget: what every model adds. effective:
+    values read back from each model. effects: what errata of the print do to mu. unanswered: models without a value
     somewhere. limits: the acceptance limits that scenes state, held against the rest. faults: what solvers complained
     about. run: command, times, provenance. pictures: files of the surfaces' by name. Fields that may be None are what
     only some commands compute. motions: see `stored_motions`. claims, scaling, convergence: see `further_findings`.
-    assumptions: how far the paper's carry, see `Reach`. families: those of more than one scene. extremes: the
+    assumptions: how far the paper's carry, see `ValidityRanges`. families: those of more than one scene. extremes: the
     matrix that `python -m comparison.extremes` left beside the report. tradeoff: what `python -m comparison.tradeoff`
     left there.
     """
@@ -52,7 +52,7 @@ class Findings:
     claims: ClaimTable | None = None
     scaling: Sequence[Trend] | None = None
     convergence: Sequence[Trend] | None = None
-    assumptions: Reach | None = None
+    assumptions: ValidityRanges | None = None
     families: Sequence[Family] | None = None
     extremes: Matrix | None = None
     tradeoff: Sequence[Trade] | None = None

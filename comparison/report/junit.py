@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from xml.etree import ElementTree
 
-from comparison.account.acceptance import Limit
+from comparison.analysis.acceptance import Limit
 from comparison.report.findings import Findings
 from reference.problem import Scene
 

@@ -14,12 +14,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.account.differences import pair_step
-from comparison.account.surfaces import common_phases
-from comparison.analyses.trajectories import Place, StoredMotion
-from comparison.plan.ladder import Pair, rungs_of
-from comparison.plan.study import Study
+from comparison.analysis.differences import pair_step
+from comparison.analysis.surfaces import common_phases
+from comparison.analysis.trajectories import Place, StoredMotion
 from comparison.report.findings import Findings
+from comparison.study.models import Pair, models_of
+from comparison.study.study import Study
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
@@ -40,7 +40,7 @@ def page_data(found: Findings) -> str:
     data = {
         "grid": study.grid,
         "strides": study.strides,
-        "titles": {rung.key: rung.title for rung in study.ladder},
+        "titles": {model.key: model.title for model in study.hierarchy},
         "scenes": [_scene(found, scene, surfaces, starts) for scene in study.scenes],
     }
     return json.dumps(data, allow_nan=False).replace("<", "\\u003c")
@@ -82,7 +82,7 @@ def _scene(found: Findings, scene: Scene, surfaces: xr.Dataset, starts: Starts) 
     return {
         "duration": scene.duration,
         "pairs": {pair.key: [pair.first.key, pair.second.key] for pair in pairs},
-        "mu": {rung.key: [listed(rung.key, body) for body in bodies] for rung in rungs_of(scene, study.ladder)},
+        "mu": {model.key: [listed(model.key, body) for body in bodies] for model in models_of(scene, study.hierarchy)},
         "contours": {pair.key: [contours(pair, body) for body in bodies] for pair in pairs},
         "places": list(_places(found, scene, starts)),
     }
@@ -101,7 +101,7 @@ def _places(found: Findings, scene: Scene, starts: Starts) -> Iterator[dict[str,
                 {
                     "model": motion.model,
                     "status": motion.status,
-                    "fault": motion.fault,
+                    "error_message": motion.error_message,
                     "stick": [[round(start, 4), round(end, 4)] for start, end in motion.stick],
                     "start": starts[place, motion.model],
                     "count": len(motion.time),

@@ -19,24 +19,23 @@ import numpy as np
 import xarray as xr
 from plotly.offline import get_plotlyjs
 
-from comparison.account.differences import Difference
-from comparison.account.surfaces import outcome_counts, wide_swings
-from comparison.account.unanswered import advice
-from comparison.account.verdicts import bar, verdict
-from comparison.analyses.effective import PHASES
-from comparison.analyses.slips import SLIPS, Effect
-from comparison.assumptions.figure import assumption_figure_name, draw_assumptions
-from comparison.claims.humps import LEAST_SHARE, MOST_SHARE, SHARE
-from comparison.claims.table import SIGNS
-from comparison.drawing.budget_figure import budget_figure_name
-from comparison.drawing.figures import figure_name
-from comparison.drawing.pictures import PAGE, for_page, smaller
-from comparison.extremes.figure import COLOURS, MEANING, draw_extremes, said
-from comparison.extremes.matrix import PICTURE
-from comparison.extremes.verdicts import Verdict
-from comparison.plan.ladder import Pair, rungs_of
-from comparison.plan.study import Study
-from comparison.report.family_figure import draw_families, family_figure_name
+from comparison.analysis.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE
+from comparison.analysis.claims.table import SIGNS
+from comparison.analysis.differences import Difference
+from comparison.analysis.effective import PHASES
+from comparison.analysis.errata import ERRATA, Effect
+from comparison.analysis.extremes.matrix import PICTURE
+from comparison.analysis.extremes.verdicts import Verdict
+from comparison.analysis.surfaces import outcome_counts, wide_swings
+from comparison.analysis.unanswered import advice
+from comparison.analysis.verdicts import bar, verdict
+from comparison.report.figures.assumptions import assumption_figure_name, draw_assumptions
+from comparison.report.figures.budget import budget_figure_name
+from comparison.report.figures.extremes import COLORS, MEANING, draw_extremes, said
+from comparison.report.figures.families import draw_families, family_figure_name
+from comparison.report.figures.pairs import figure_name
+from comparison.report.figures.pictures import PAGE, for_page, smaller
+from comparison.report.figures.tradeoff import draw_tradeoff, tradeoff_figure_name
 from comparison.report.findings import Findings
 from comparison.report.junit import junit
 from comparison.report.page_data import packed, packed_motions, page_data
@@ -44,7 +43,8 @@ from comparison.report.record_rows import record_rows
 from comparison.report.summary import summary
 from comparison.report.summary_text import summary_text
 from comparison.report.verification import CHECKS
-from comparison.tradeoff.figure import draw_tradeoff, tradeoff_figure_name
+from comparison.study.models import Pair, models_of
+from comparison.study.study import Study
 from comparison.wording import degrees, percent, scientific, significant, symbols
 from reference.problem import Outcome, Scene
 
@@ -110,7 +110,7 @@ SECTIONS = (
         "claims",
         "python -m comparison.run with every scene of the paper makes it, and python -m comparison.claims alone",
     ),
-    Section("slips", "Slips in the print"),
+    Section("errata", "Errata of the print"),
     Section(
         "assumptions",
         "How far the paper's assumptions carry",
@@ -168,7 +168,7 @@ def _page(figures: Path, found: Findings) -> str:
         percent=percent, scientific=scientific, degrees=degrees, significant=significant, symbols=symbols
     )
     page = environment.get_template("report.html.j2")
-    ladder = [rung for rung in study.ladder if any(rung.applies(scene) for scene in study.scenes)]
+    hierarchy = [model for model in study.hierarchy if any(model.applies(scene) for scene in study.scenes)]
     return page.render(
         sections=[section for section in SECTIONS if section.present(found)],
         absent=[section for section in SECTIONS if not section.present(found)],
@@ -186,18 +186,18 @@ def _page(figures: Path, found: Findings) -> str:
         compared=_compared(study),
         section_titles={s.name: s.title if study.phased else s.title_recorded or s.title for s in SECTIONS},
         pairs=list({pair.key: pair for scene in study.scenes for pair in study.pairs(scene)}.values()),
-        ladder=ladder,
-        step_numbers={rung.key: number for number, rung in enumerate(ladder)},
-        titles={"scene": "as stated", **{rung.key: rung.title for rung in study.ladder}},
-        properties=_properties(ladder),
+        hierarchy=hierarchy,
+        step_numbers={model.key: number for number, model in enumerate(hierarchy)},
+        titles={"scene": "as stated", **{model.key: model.title for model in study.hierarchy}},
+        properties=_properties(hierarchy),
         rows=found.rows,
         budget=found.budget,
         effective=found.effective,
         phases=PHASES,
-        slips=_slips(found),
+        errata=_errata(found),
         checks=CHECKS,
         claim_signs=SIGNS,
-        verdicts=[(verdict.value, COLOURS[verdict], MEANING[verdict]) for verdict in Verdict],
+        verdicts=[(verdict.value, COLORS[verdict], MEANING[verdict]) for verdict in Verdict],
         said=said,
         digests={scene.digest() for scene in study.scenes},
         hump_share=SHARE,
@@ -279,31 +279,36 @@ def _inlined(webp: bytes) -> str:
     return "data:image/webp;base64," + base64.b64encode(webp).decode()
 
 
-def _properties(ladder: Sequence[Any]) -> list[dict[str, Any]]:
+def _properties(hierarchy: Sequence[Any]) -> list[dict[str, Any]]:
     """Rows of the table of assumptions; in each, which models depart from the one before them."""
-    names = list(dict.fromkeys(name for rung in ladder for name in rung.assumptions))
+    names = list(dict.fromkeys(name for model in hierarchy for name in model.assumptions))
     table = []
     for name in names:
-        texts = [rung.assumptions.get(name, "") for rung in ladder]
+        texts = [model.assumptions.get(name, "") for model in hierarchy]
         cells = [{"text": text, "differs": i > 0 and text != texts[i - 1]} for i, text in enumerate(texts)]
         table.append({"name": name, "cells": cells})
     return table
 
 
-def _slips(found: Findings) -> list[dict[str, Any]]:
-    """The slips with one sentence each about their largest effect in every scene they touch."""
+def _errata(found: Findings) -> list[dict[str, Any]]:
+    """The errata with one sentence each about their largest effect in every scene they touch."""
     rows = []
-    for number, slip in enumerate(SLIPS):
-        effects = [effect for effect in found.effects if effect.slip == number and (effect.change or effect.fault)]
+    for number, erratum in enumerate(ERRATA):
+        effects = [
+            effect for effect in found.effects if effect.erratum == number and (effect.change or effect.error_message)
+        ]
         rows.append(
-            {"slip": slip, "effects": [_effect(effect) for effect in effects] or [slip.none or "no scene here"]}
+            {
+                "erratum": erratum,
+                "effects": [_effect(effect) for effect in effects] or [erratum.none or "no scene here"],
+            }
         )
     return rows
 
 
 def _effect(effect: Effect) -> str:
-    if effect.fault:
-        return f"{effect.scene}: {effect.fault}"
+    if effect.error_message:
+        return f"{effect.scene}: {effect.error_message}"
     change = np.array(effect.change)
     lost = "" if np.isfinite(change).all() else "no answer at some phases; "
     sizes = [
@@ -317,17 +322,17 @@ def _outcomes(study: Study, surfaces: xr.Dataset) -> list[dict[str, Any]]:
     return [
         {
             "scene": scene.name,
-            "model": rung.title,
-            "counts": outcome_counts(surfaces, scene.name, rung.key),
-            "points": study.points(rung, scene),
-            "cost": float(surfaces["cost"].sel(scene=scene.name, model=rung.key)),
+            "model": model.title,
+            "counts": outcome_counts(surfaces, scene.name, model.key),
+            "points": study.points(model, scene),
+            "cost": float(surfaces["cost"].sel(scene=scene.name, model=model.key)),
             "others": [
-                f"{count} × {outcome}: {advice(study, scene, rung, outcome)}"
-                for outcome, count in outcome_counts(surfaces, scene.name, rung.key).items()
+                f"{count} × {outcome}: {advice(study, scene, model, outcome)}"
+                for outcome, count in outcome_counts(surfaces, scene.name, model.key).items()
                 if outcome != Outcome.OK
             ],
-            "ok": outcome_counts(surfaces, scene.name, rung.key).get(Outcome.OK.value, 0),
+            "ok": outcome_counts(surfaces, scene.name, model.key).get(Outcome.OK.value, 0),
         }
         for scene in study.scenes
-        for rung in rungs_of(scene, study.ladder)
+        for model in models_of(scene, study.hierarchy)
     ]

@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from comparison.account.surfaces import largest_cap_share, outcome_counts
-from comparison.account.verdicts import verdict
-from comparison.analyses.further import claims_summary, trends_summary
-from comparison.analyses.slips import SLIPS
-from comparison.plan.ladder import rungs_of
+from comparison.analysis.errata import ERRATA
+from comparison.analysis.further import claims_summary, trends_summary
+from comparison.analysis.surfaces import largest_cap_share, outcome_counts
+from comparison.analysis.verdicts import verdict
 from comparison.report.findings import Findings
+from comparison.study.models import models_of
 from reference.problem import Scene
 
 SCHEMA = "phase-resonance/summary"
-VERSION = 2
+VERSION = 3
 
 
 def summary(found: Findings) -> dict[str, Any]:
@@ -34,20 +34,20 @@ def summary(found: Findings) -> dict[str, Any]:
         "grid": study.grid,
         "tolerance": study.tolerance,
         "models": [
-            {"key": rung.key, "title": rung.title, "adds": rung.adds, "settings": dict(rung.settings)}
-            for rung in study.ladder
+            {"key": model.key, "title": model.title, "adds": model.adds, "settings": dict(model.settings)}
+            for model in study.hierarchy
         ],
         "scenes": [_scene(found, scene) for scene in study.scenes],
-        "slips": [
+        "errata": [
             {
-                "where": slip.where,
-                "printed": slip.printed,
-                "corrected": slip.corrected,
-                "why": slip.why,
-                "none": slip.none,
-                "effects": [_finite(asdict(effect)) for effect in found.effects if effect.slip == number],
+                "where": erratum.where,
+                "printed": erratum.printed,
+                "corrected": erratum.corrected,
+                "why": erratum.why,
+                "none": erratum.none,
+                "effects": [_finite(asdict(effect)) for effect in found.effects if effect.erratum == number],
             }
-            for number, slip in enumerate(SLIPS)
+            for number, erratum in enumerate(ERRATA)
         ],
         "assumptions": found.assumptions and _finite(found.assumptions.listed()),
         "claims": claims_summary(found.claims),
@@ -83,13 +83,13 @@ def _scene(found: Findings, scene: Scene) -> dict[str, Any]:
         "duration": scene.duration,
         "acceptance": scene.acceptance.model_dump(),
         "models": {
-            rung.key: {
-                "phases_per_axis": len(found.study.axis(rung, scene)),
-                "outcomes": outcome_counts(found.surfaces, scene.name, rung.key),
-                "cap_share": _finite(largest_cap_share(found.surfaces, scene.name, rung.key)),
-                "cost": float(found.surfaces["cost"].sel(scene=scene.name, model=rung.key)),
+            model.key: {
+                "phases_per_axis": len(found.study.axis(model, scene)),
+                "outcomes": outcome_counts(found.surfaces, scene.name, model.key),
+                "cap_share": _finite(largest_cap_share(found.surfaces, scene.name, model.key)),
+                "cost": float(found.surfaces["cost"].sel(scene=scene.name, model=model.key)),
             }
-            for rung in rungs_of(scene, found.study.ladder)
+            for model in models_of(scene, found.study.hierarchy)
         },
         "verdict": _finite(asdict(verdict(found.study, found.surfaces, scene))),
         "differences": own(found.rows),

@@ -6,10 +6,10 @@ import re
 from collections.abc import Sequence
 from math import isnan
 
-from comparison.account.surfaces import outcome_counts
-from comparison.account.verdicts import bar, verdict
-from comparison.plan.ladder import rungs_of
+from comparison.analysis.surfaces import outcome_counts
+from comparison.analysis.verdicts import bar, verdict
 from comparison.report.findings import Findings
+from comparison.study.models import models_of
 from comparison.wording import degrees, percent
 from reference.problem import Outcome
 
@@ -80,14 +80,14 @@ def _differences(found: Findings) -> list[str]:
 
 def _budget(found: Findings) -> list[str]:
     study = found.study
-    models = [rung for rung in study.ladder[1:] if any(rung.applies(scene) for scene in study.scenes)]
+    models = [model for model in study.hierarchy[1:] if any(model.applies(scene) for scene in study.scenes)]
     rows = []
     for scene in study.scenes:
         for body in range(1, len(scene.bodies) + 1):
             one = bar(study, found.surfaces, scene, body)
             sizes = {segment.model: percent(segment.size) for segment in one.segments}
-            rows.append([scene.name, str(body), *(sizes.get(rung.key, "") for rung in models), percent(one.total)])
-    names = ["scene", "body", *(rung.title for rung in models), "total"]
+            rows.append([scene.name, str(body), *(sizes.get(model.key, "") for model in models), percent(one.total)])
+    names = ["scene", "body", *(model.title for model in models), "total"]
     return [
         "### What makes the difference",
         "Mean absolute size of every step, by the model it leads to; steps of opposite sign cancel in the total.",
@@ -97,10 +97,10 @@ def _budget(found: Findings) -> list[str]:
 
 def _lost(found: Findings) -> list[str]:
     lines = [
-        f"- {_plain(scene.name)}, {_plain(rung.title)}: {count} × {outcome}"
+        f"- {_plain(scene.name)}, {_plain(model.title)}: {count} × {outcome}"
         for scene in found.study.scenes
-        for rung in rungs_of(scene, found.study.ladder)
-        for outcome, count in outcome_counts(found.surfaces, scene.name, rung.key).items()
+        for model in models_of(scene, found.study.hierarchy)
+        for outcome, count in outcome_counts(found.surfaces, scene.name, model.key).items()
         if outcome != Outcome.OK
     ]
     lines += [f"- {_plain(line)}" for line in found.faults]

@@ -84,9 +84,9 @@ CHECKS: tuple[Check, ...] = (
     ),
     Check(
         REFERENCE,
-        "the matrices (3.9)-(3.13) written from the print, slips mended",
+        "the matrices (3.9)-(3.13) written from the print, errata corrected",
         "1e-4, peaks read every 2 ms",
-        "comparison/test_slips.py",
+        "comparison/test_errata.py",
         "test_the_matrices_with_every_slip_mended_are_the_exact_equations",
     ),
     Check(

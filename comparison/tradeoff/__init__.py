@@ -1,1 +1,1 @@
-"""Speed for accuracy: what every model and every numerical parameter gives for its time, measured."""
+"""The commands `python -m comparison.tradeoff` and `python -m comparison.tradeoff.record`."""

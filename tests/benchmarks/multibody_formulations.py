@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 import reference
-from comparison.tradeoff.constant_step import FORMULATIONS, PENETRATION, SOLVERS, V_REG, run
+from comparison.analysis.tradeoff.constant_step import FORMULATIONS, PENETRATION, SOLVERS, V_REG, run
 from reference.problem import load_scene
 
 

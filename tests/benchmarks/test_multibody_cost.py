@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import multibody
-from comparison.tradeoff.constant_step import FORMULATIONS, PENETRATION, SOLVERS, run
+from comparison.analysis.tradeoff.constant_step import FORMULATIONS, PENETRATION, SOLVERS, run
 from multibody import level
 from multibody.integrate import Engine
 from reference.problem import load_scene
@@ -94,8 +94,8 @@ def test_ten_thousand_short_runs_leave_no_memory_behind(monkeypatch: pytest.Monk
 
     multibody.amplification(scene, phases[:100])
     before = resident()
-    for tile in np.array_split(phases, 100):  # a fresh system for every hundred, as a sweep does
-        multibody.amplification(scene, tile)
+    for batch in np.array_split(phases, 100):  # a fresh system for every hundred, as a sweep does
+        multibody.amplification(scene, batch)
     assert resident() - before < 50.0
 
 

@@ -2,7 +2,7 @@
 What is saved where a scene does not require all of a model: processor time in full over that of the reduced one.
 
 Run with `python -m pytest tests/benchmarks/test_reductions.py -m long -s`; reference/README.md has the figures, and
-comparison/plan/savings.py predicts with them. Both of a ratio are measured in turn, so that the load of others falls
+comparison/study/speedup.py predicts with them. Both of a ratio are measured in turn, so that the load of others falls
 on both.
 """
 
@@ -17,15 +17,15 @@ import pytest
 
 import multibody
 import reference
-from comparison.plan.ladder import SMALL, SPATIAL, TRANSLATIONAL
-from comparison.plan.savings import saving
+from comparison.study.models import SMALL, SPATIAL, TRANSLATIONAL
+from comparison.study.speedup import speedup
 from reference.problem import Scene, load_scene, phase_grid
 
 ROUNDS = 3
 
 
 def scene_of(name: str, *more: dict[str, Any], height: float | None = None, **tables: Any) -> Scene:
-    """`name` with the tables changed, every centre of mass at `height`, and further bodies."""
+    """`name` with the tables changed, every center of mass at `height`, and further bodies."""
     table = load_scene(name).model_dump(exclude_none=True)
     for key, change in tables.items():
         table[key] |= change
@@ -67,7 +67,7 @@ SUPERPOSED = {
 def test_a_sum_of_motions_costs_a_small_part_of_the_runs(name: str) -> None:
     scene = SUPERPOSED[name]
     found = measured(reference.amplification, scene, phase_grid(48), phase_grid(12), equations="small")
-    assert found > 0.25 * saving(scene, SMALL)  # threads of a linear algebra library that wait count as processor time
+    assert found > 0.25 * speedup(scene, SMALL)  # threads of a linear algebra library that wait count as processor time
 
 
 @pytest.mark.long
@@ -77,7 +77,7 @@ def test_a_sum_of_motions_costs_a_small_part_of_the_runs(name: str) -> None:
 def test_a_plane_costs_less_than_space(scene: Scene) -> None:
     found = measured(multibody.amplification, scene, RANDOM, RANDOM, model="translational")
     assert found > 1.0
-    assert saving(scene, TRANSLATIONAL) > 1.0
+    assert speedup(scene, TRANSLATIONAL) > 1.0
 
 
 @pytest.mark.long
@@ -92,7 +92,7 @@ def test_solving_in_a_plane_costs_less_than_in_space(scene: Scene, law: dict[str
 def test_level_bodies_cost_less_than_bodies_that_turn(name: str) -> None:
     scene = scene_of(name, height=0.0)
     found = measured(multibody.amplification, scene, RANDOM, RANDOM, model="spatial")
-    assert found > 0.6 * saving(scene, SPATIAL) > 0.6
+    assert found > 0.6 * speedup(scene, SPATIAL) > 0.6
 
 
 @pytest.mark.long

@@ -17,7 +17,7 @@ import pytest
 from numba import carray, cfunc
 
 import reference
-from comparison.tradeoff.outside import constants_of, factors, motion, slope
+from comparison.analysis.tradeoff.outside import constants_of, factors, motion, slope
 
 V_REG = 1e-3  # m/s
 LSODA_POINTS = 6  # it is slow

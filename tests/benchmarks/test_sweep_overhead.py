@@ -1,8 +1,8 @@
 """
 What store, sweep and executor cost beside the work they carry.
 
-Tiles that only wait keep the processors free, so that the pause of a worker between two of them is what handing them
-out takes; its median, beside the known length of a tile, does not mind a busy machine.
+Batches that only wait keep the processors free, so that the pause of a worker between two of them is what handing them
+out takes; its median, beside the known length of a batch, does not mind a busy machine.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from rich.console import Console
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "comparison"))
 
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 from local_cluster import LocalCluster
 
-from comparison.plan.study import Study
-from comparison.storage.cache import Cache
-from comparison.sweep.cluster import cluster
-from comparison.sweep.compute import computed
-from comparison.sweep.executors import Pool, process_pool
+from comparison.execution.cache import Cache
+from comparison.execution.dask import cluster
+from comparison.execution.executors import Pool, process_pool
+from comparison.execution.runner import computed
+from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
 
-TILE = 0.5  # s a tile takes; the study's take about one
+TILE = 0.5  # s a batch takes; the study's take about one
 TILES = 16
 WORKERS = 2
 
@@ -46,7 +46,7 @@ def timed(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplif
 
 @dataclass(frozen=True)
 class Measured:
-    """s: what a worker waits between two tiles in the median, and processor time of this process per tile."""
+    """s: what a worker waits between two batches in the median, and processor time of this process per batch."""
 
     waiting: float
     handing_out: float
@@ -58,9 +58,9 @@ class Measured:
 
 
 def measured(folder: Path, executor: Pool) -> Measured:
-    """A stored sweep of TILES tiles."""
-    rung = replace(fake_ladder(tile=1)[0], amplification="test_sweep_overhead:timed")
-    study = Study((load_scene("fig3-I"),), 4, 1e-3, [rung])
+    """A stored sweep of TILES batches."""
+    model = replace(fake_hierarchy(batch=1)[0], amplification="test_sweep_overhead:timed")
+    study = Study((load_scene("fig3-I"),), 4, 1e-3, [model])
     begin = time.process_time()
     found = computed(study, Cache(folder), Console(quiet=True), WORKERS, executor)
     spent = time.process_time() - begin
@@ -85,7 +85,7 @@ def test_store_and_executor_take_at_most_3_percent_of_the_sweep(pool: Measured) 
 def test_two_workers_of_a_dask_cluster_are_within_10_percent_of_the_process_pool(
     pool: Measured, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))  # where the workers find the tiles' model
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))  # where the workers find the batches' model
     workers = LocalCluster(tmp_path, WORKERS)
     try:
         with cluster(workers.address, {"test_sweep_overhead:timed"}) as there:

@@ -8,16 +8,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from fake_models import fake_ladder, known_motions
+from fake_models import fake_hierarchy, known_motions
 from known_further import known_further
 from PIL import Image
 
 import comparison.run
-from comparison.analyses.slips import Effect
-from comparison.drawing import pictures
-from comparison.plan.ladder import Rung
+from comparison.analysis.errata import Effect
 from comparison.report import report
+from comparison.report.figures import pictures
 from comparison.run import main
+from comparison.study.models import Model
 
 
 @dataclass(frozen=True)
@@ -35,11 +35,11 @@ def quick_figure(path: Path, *rest: object) -> None:
     Image.new("RGB", (1, 1)).save(path, "PNG")
 
 
-def without_errands(patch: pytest.MonkeyPatch) -> None:
+def without_tasks(patch: pytest.MonkeyPatch) -> None:
     """Nothing beside the surfaces is computed ahead or kept: what the analyses need they ask for themselves."""
-    patch.setattr(comparison.run, "errands", lambda *rest: [])
-    patch.setattr(comparison.run, "motion_errands", lambda *rest: [])
-    patch.setattr(pictures, "picture_errands", lambda *rest: [])
+    patch.setattr(comparison.run, "analysis_tasks", lambda *rest: [])
+    patch.setattr(comparison.run, "motion_tasks", lambda *rest: [])
+    patch.setattr(pictures, "picture_tasks", lambda *rest: [])
 
 
 @pytest.fixture
@@ -48,17 +48,17 @@ def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pyte
     monkeypatch.setattr(report, "draw_assumptions", quick_figure)
     for name in ("draw_pair", "draw_budget", "draw_paper_figure"):
         monkeypatch.setattr(pictures, name, quick_figure)
-    monkeypatch.setattr(comparison.run, "slip_effects", lambda *rest: [])  # it asks no model of the ladder
+    monkeypatch.setattr(comparison.run, "errata_effects", lambda *rest: [])  # it asks no model of the hierarchy
     monkeypatch.setattr(comparison.run, "stored_motions", lambda *rest: [])
     monkeypatch.setattr(comparison.run, "further_findings", lambda *rest: {})
-    without_errands(monkeypatch)
+    without_tasks(monkeypatch)
 
     def run(
-        *words: str, ladder: Sequence[Rung] | None = None, executor: Callable[[int], Executor] = ThreadPoolExecutor
+        *words: str, hierarchy: Sequence[Model] | None = None, executor: Callable[[int], Executor] = ThreadPoolExecutor
     ) -> Run:
         place = tmp_path / "report"
         given = [*words] if "--out" in words else [*words, "--out", str(place)]
-        code = main(given, fake_ladder() if ladder is None else ladder, executor)
+        code = main(given, fake_hierarchy() if hierarchy is None else hierarchy, executor)
         return Run(code, *capfd.readouterr(), place)
 
     return run
@@ -68,12 +68,15 @@ def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pyte
 def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The report of two scenes, one dry and one lubricated, on a 4 x 4 grid; the engine 1 % above the reference."""
     place = tmp_path_factory.mktemp("finished") / "report"
-    effects = [Effect("fig3-I", 0, ((0.5, -0.25), (float("nan"), 0.125))), Effect("fig3-I", 1, fault="it broke")]
+    effects = [
+        Effect("fig3-I", 0, ((0.5, -0.25), (float("nan"), 0.125))),
+        Effect("fig3-I", 1, error_message="it broke"),
+    ]
     words = ["fig3-I", "fig4-viscous", "--grid", "4", "--jobs", "2", "--out", str(place)]
     with pytest.MonkeyPatch.context() as patch:
-        without_errands(patch)
-        patch.setattr(comparison.run, "slip_effects", lambda *rest: effects)
+        without_tasks(patch)
+        patch.setattr(comparison.run, "errata_effects", lambda *rest: effects)
         patch.setattr(comparison.run, "stored_motions", known_motions)
         patch.setattr(comparison.run, "further_findings", known_further)
-        assert main(words, fake_ladder(), ThreadPoolExecutor) == 0
+        assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
     return place

@@ -15,9 +15,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.analyses.trajectories import StoredMotion, chosen_places, shown_rungs
-from comparison.plan.ladder import LADDER, Rung, never
-from comparison.plan.study import Study
+from comparison.analysis.trajectories import StoredMotion, chosen_places, shown_models
+from comparison.study.models import MODEL_HIERARCHY, Model, never
+from comparison.study.study import Study
 from reference.problem import GRAVITY, Amplification, Outcome, Scene, Trajectory
 
 DEADLY = 2.0 * np.pi * 3 / 4  # alpha1, alpha2 of the one point of a 4 x 4 grid that a failing model fails at
@@ -147,9 +147,9 @@ def known_motions(study: Study, surfaces: xr.Dataset, *rest: object) -> list[Sto
     for scene in study.scenes:
         circle = np.stack([np.cos(time), np.sin(time)], axis=1)[:, None, :].repeat(len(scene.bodies), axis=1)
         for place in chosen_places(study, surfaces, scene):
-            for number, rung in enumerate(shown_rungs(study, scene)):
+            for number, model in enumerate(shown_models(study, scene)):
                 at = 0.01 * (1 + number) * circle
-                found.append(StoredMotion(place, rung.key, time, at, -at, ((2.0, 3.0),)))
+                found.append(StoredMotion(place, model.key, time, at, -at, ((2.0, 3.0),)))
     return found
 
 
@@ -160,39 +160,39 @@ def planted(
     return smooth(scene, phases, tolerance if claimed is None else claimed, gap)
 
 
-def errors_in(gaps: Mapping[str, float], claimed: Mapping[str, float] | None = None) -> tuple[Rung, ...]:
-    """The real ladder in which the rungs named lie `gaps` above the others and claim the relative errors `claimed`."""
+def errors_in(gaps: Mapping[str, float], claimed: Mapping[str, float] | None = None) -> tuple[Model, ...]:
+    """The real model hierarchy: the models named lie `gaps` above the others and claim relative errors `claimed`."""
     return tuple(
         replace(
-            rung,
+            model,
             amplification="fake_models:planted",
-            settings={"gap": gaps.get(rung.key, 0.0), "claimed": (claimed or {}).get(rung.key, 1e-5)},
+            settings={"gap": gaps.get(model.key, 0.0), "claimed": (claimed or {}).get(model.key, 1e-5)},
             symmetric=never,
             refusal=None,
         )
-        for rung in LADDER
+        for model in MODEL_HIERARCHY
     )
 
 
-def silenced(*keys: str, gap: float = 5e-5) -> tuple[Rung, ...]:
-    """The fake ladder in which the models named refuse every phase pair."""
+def silenced(*keys: str, gap: float = 5e-5) -> tuple[Model, ...]:
+    """The fake model hierarchy in which the models named refuse every phase pair."""
     functions = {"amplification": "fake_models:refused", "refusal": "fake_models:why_refused"}
     return tuple(
-        replace(rung, **functions, trajectory="fake_models:unmoved", settings={}) if rung.key in keys else rung
-        for rung in fake_ladder(gap=gap)
+        replace(model, **functions, trajectory="fake_models:unmoved", settings={}) if model.key in keys else model
+        for model in fake_hierarchy(gap=gap)
     )
 
 
-def fake_ladder(engine: str = "smooth", gap: float = 0.01, tile: int = 4) -> tuple[Rung, ...]:
-    """The real ladder with fake functions, no symmetries: the engine lies `gap` above, or is another model here."""
-    rungs = []
-    for rung in LADDER:
-        name = engine if rung.side == "engine" else "smooth"
-        settings = {"gap": gap} if (rung.side, name) == ("engine", "smooth") else {}
+def fake_hierarchy(engine: str = "smooth", gap: float = 0.01, batch: int = 4) -> tuple[Model, ...]:
+    """The real hierarchy with fake functions, no symmetries: the engine lies `gap` above, or is another model here."""
+    models = []
+    for model in MODEL_HIERARCHY:
+        name = engine if model.side == "engine" else "smooth"
+        settings = {"gap": gap} if (model.side, name) == ("engine", "smooth") else {}
         functions = {
             "amplification": f"fake_models:{name}",
             "trajectory": "fake_models:forbidden",
-            "refusal": None if rung.refusal is None else "fake_models:never_refused",
+            "refusal": None if model.refusal is None else "fake_models:never_refused",
         }
-        rungs.append(replace(rung, **functions, settings=settings, tile=tile, symmetric=never))
-    return tuple(rungs)
+        models.append(replace(model, **functions, settings=settings, batch=batch, symmetric=never))
+    return tuple(models)

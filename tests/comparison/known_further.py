@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from comparison.analyses.trends import trend
-from comparison.claims.checks import Finding, Verdict
-from comparison.claims.claims import CLAIMS
-from comparison.claims.readings import READINGS
-from comparison.claims.table import ClaimTable
+from comparison.analysis.claims.checks import Finding, Verdict
+from comparison.analysis.claims.claims import CLAIMS
+from comparison.analysis.claims.readings import READINGS
+from comparison.analysis.claims.table import ClaimTable
+from comparison.analysis.trends import trend
 
 SCALES = (1.0, 0.5, 0.25)
 

@@ -9,15 +9,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 from matplotlib.image import imread
 
-from comparison.assumptions.__main__ import main
-from comparison.assumptions.figure import assumption_figure_name, draw_assumptions
-from comparison.assumptions.reach import ASSUMPTIONS, Reach, said
-from comparison.assumptions.variations import FEW, MANY, PHASES, Cell, Variation, assumption_cells, ranges
-from comparison.plan.ladder import LADDER
-from comparison.plan.study import Study
+from comparison.analysis.assumptions.validity import ASSUMPTIONS, ValidityRanges, describe
+from comparison.analysis.assumptions.variations import FEW, MANY, PHASES, Cell, Variation, assumption_cells, ranges
+from comparison.cli.assumptions import main
+from comparison.report.figures.assumptions import assumption_figure_name, draw_assumptions
+from comparison.study.models import MODEL_HIERARCHY
+from comparison.study.study import Study
 from reference.problem import Scene, load_scene, parse_scene
 
 STATED = load_scene("fig3-I")
@@ -86,30 +86,30 @@ def test_the_uncertainty_counts_against_the_range_and_a_missing_value_ends_it() 
 
 def test_the_sentences_name_what_holds_and_what_was_tried_next() -> None:
     cells = [_cell(Variation(ring=2.0), 0.0, 0.0), _cell(Variation(), 0.02, 0.0)]
-    lines = [said(found) for found in ranges([STATED], cells) if found.body == 1]
+    lines = [describe(found) for found in ranges([STATED], cells) if found.body == 1]
     assert "mu_1 stays within 1 % with rings from 2 m, no longer at 1 m" in lines
     assert "mu_1 stays within 5 % with rings from 1 m, every smaller one tried too" in lines
     assert "mu_1 stays within 1 % at no heights tried" in lines
 
 
 def test_cells_compare_the_two_engine_models_of_the_ladder_in_every_scene_that_has_both() -> None:
-    study = Study((STATED, BARE), 2, 1e-3, fake_ladder(gap=0.0))
+    study = Study((STATED, BARE), 2, 1e-3, fake_hierarchy(gap=0.0))
     cells = assumption_cells(study, 2, ThreadPoolExecutor)
     assert [cell.variation for cell in cells] == list(FEW)
     for cell in cells:
         assert (np.array(cell.change) == 0.0).all(), "both fake models answer alike"
         assert np.array(cell.change).shape == (len(PHASES), 2)
         np.testing.assert_allclose(cell.uncertainty, 1e-3 * np.sqrt(2.0))  # both claim the 1e-3 asked
-    assert Reach.of(Study((BARE,), 2, 1e-3, fake_ladder()), 2, ThreadPoolExecutor) is None
+    assert ValidityRanges.of(Study((BARE,), 2, 1e-3, fake_hierarchy()), 2, ThreadPoolExecutor) is None
 
 
 def test_a_model_that_raises_leaves_no_value_and_says_why() -> None:
-    study = Study((STATED,), 2, 1e-3, fake_ladder("always_raising"))
+    study = Study((STATED,), 2, 1e-3, fake_hierarchy("always_raising"))
     cells = assumption_cells(study, 2, ThreadPoolExecutor)
     assert [cell.variation for cell in cells] == list(FEW)
     for cell in cells:
         assert np.isnan(cell.change).all()
-        assert cell.fault == "RuntimeError: the matrix is singular"
+        assert cell.error_message == "RuntimeError: the matrix is singular"
         assert not cell.holds(1, 0.05)
 
 
@@ -133,7 +133,7 @@ def test_a_scene_without_supports_is_refused_in_one_line(tmp_path: Path, capsys:
 
 
 def _turning(scene: Scene, variations: Sequence[Variation]) -> list[Cell]:
-    study = Study((scene.with_values({"duration": 2.0}),), 1, 1e-3, LADDER)
+    study = Study((scene.with_values({"duration": 2.0}),), 1, 1e-3, MODEL_HIERARCHY)
     return assumption_cells(study, 1, ThreadPoolExecutor, variations)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from conftest import Run
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 
 WRONG = {
     "grid too small": (["--grid", "1"], "command line: --grid = 1: must be a whole number from 2 to 512"),
@@ -42,7 +42,7 @@ WRONG = {
 def test_a_wrong_option_is_one_line_and_exit_code_2(
     command: Callable[..., Run], words: list[str], line: str, tmp_path: Path
 ) -> None:
-    run = command(*words, ladder=fake_ladder("forbidden"))
+    run = command(*words, hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert run.err.startswith(line)
     assert run.err.count("\n") == 1, "one line"
@@ -75,7 +75,7 @@ def test_a_wrong_scene_file_is_named_with_key_value_and_rule(
 
 
 def test_a_wrong_second_scene_stops_the_run_before_the_first_is_computed(command: Callable[..., Run]) -> None:
-    run = command("fig3-I", "missing.toml", ladder=fake_ladder("forbidden"))
+    run = command("fig3-I", "missing.toml", hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert run.err.startswith("missing.toml: ")
     assert not run.report.exists()
@@ -141,7 +141,7 @@ def test_out_that_cannot_be_written_is_refused_before_anything_is_computed(
     locked = tmp_path / "locked"
     locked.mkdir()
     locked.chmod(stat.S_IRUSR | stat.S_IXUSR)
-    run = command("--out", str(locked / "report"), ladder=fake_ladder("forbidden"))
+    run = command("--out", str(locked / "report"), hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert "cannot be written: Permission denied" in run.err
 
@@ -149,7 +149,7 @@ def test_out_that_cannot_be_written_is_refused_before_anything_is_computed(
 def test_out_below_a_file_is_refused_before_anything_is_computed(command: Callable[..., Run], tmp_path: Path) -> None:
     file = tmp_path / "notes"
     file.write_text("mine", encoding="utf-8")
-    run = command("--out", str(file / "report"), ladder=fake_ladder("forbidden"))
+    run = command("--out", str(file / "report"), hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert "cannot be written: Not a directory" in run.err
     assert file.read_text(encoding="utf-8") == "mine"

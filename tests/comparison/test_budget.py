@@ -1,4 +1,4 @@
-"""The budget adds up, claims only what exceeds its uncertainty, and blames a planted error on the rung that has it."""
+"""The budget adds up, claims only what exceeds its uncertainty, and blames a planted error on the model that has it."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import xarray as xr
-from fake_models import errors_in, fake_ladder
+from fake_models import errors_in, fake_hierarchy
 from numpy.typing import NDArray
 
-from comparison.account.budget import TOTAL, Entry, budget, closure, steps, torus_distance
-from comparison.account.surfaces import labelled_surfaces
-from comparison.plan.ladder import Rung
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
+from comparison.analysis.budget import TOTAL, Entry, budget, closure, steps, torus_distance
+from comparison.analysis.surfaces import labeled_surfaces
+from comparison.study.batches import execute_batch
+from comparison.study.models import Model
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 GRID = 8
 
 
-def _solved(ladder: tuple[Rung, ...], scene: str = "fig3-I", tolerance: float = 1e-5) -> tuple[Study, xr.Dataset]:
-    study = Study((load_scene(scene),), GRID, tolerance, ladder)
-    tiles = study.tiles()
-    return study, labelled_surfaces(study, tiles, [solve_tile(tile) for tile in tiles])
+def _solved(hierarchy: tuple[Model, ...], scene: str = "fig3-I", tolerance: float = 1e-5) -> tuple[Study, xr.Dataset]:
+    study = Study((load_scene(scene),), GRID, tolerance, hierarchy)
+    batches = study.batches()
+    return study, labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
 
 
 def _table(study: Study, surfaces: xr.Dataset, body: int = 1) -> dict[str, Entry]:
@@ -50,7 +50,7 @@ def test_a_budget_with_a_step_left_out_or_counted_twice_does_not_close() -> None
 @pytest.mark.parametrize("culprit", ["exact", "resolved", "regularised", "translational", "spatial"])
 def test_an_error_planted_from_one_rung_on_is_blamed_on_that_rung(culprit: str) -> None:
     """A wrong stiffness, sign or mass stays in every model above the one that introduced it."""
-    keys = [rung.key for rung in fake_ladder()]
+    keys = [model.key for model in fake_hierarchy()]
     wrong = keys[keys.index(culprit) :]
     study, surfaces = _solved(errors_in(dict.fromkeys(wrong, 0.02)))
     for body in (1, 2):
@@ -59,7 +59,7 @@ def test_an_error_planted_from_one_rung_on_is_blamed_on_that_rung(culprit: str) 
         assert table[culprit].mean == pytest.approx(0.02, rel=1e-9)
         for key, entry in table.items():
             if key not in (culprit, TOTAL):
-                assert entry.real == 0.0, "no other rung is blamed"
+                assert entry.real == 0.0, "no other model is blamed"
                 assert entry.maximum < 1e-12
         assert table[TOTAL].rms == pytest.approx(0.02, rel=1e-9)
 
@@ -87,9 +87,9 @@ def test_a_coarse_step_with_an_honest_error_is_not_called_a_difference() -> None
 def test_phases_that_are_not_computed_again_are_pi_away_from_those_that_are(grid: int, name: str) -> None:
     """34 and 50 leave the engine an even number of phases that do not divide the period evenly."""
     study, scene = Study((load_scene(name),), grid, 1e-3), load_scene(name)
-    for rung in study.ladder:
-        apart = np.subtract(np.divmod(study.places(rung), grid), np.divmod(study.sources(scene, rung), grid))
-        assert (2 * apart % grid == 0).all(), rung.key
+    for model in study.hierarchy:
+        apart = np.subtract(np.divmod(study.places(model), grid), np.divmod(study.sources(scene, model), grid))
+        assert (2 * apart % grid == 0).all(), model.key
 
 
 def test_a_step_known_to_less_than_a_fifth_is_counted_apart_and_not_as_real() -> None:
@@ -145,10 +145,10 @@ def test_a_model_too_expensive_for_every_phase_is_compared_where_it_was_asked() 
 @pytest.mark.parametrize("grid", range(2, 65))
 def test_of_two_models_the_coarser_grid_is_part_of_the_finer(grid: int) -> None:
     study = Study((), grid, 1e-3)
-    axes = [set(study.axis(rung)) for rung in sorted(study.ladder, key=lambda rung: rung.most or 1000)]
+    axes = [set(study.axis(model)) for model in sorted(study.hierarchy, key=lambda model: model.most or 1000)]
     assert all(coarse <= fine for coarse, fine in pairwise(axes))
-    for rung in study.ladder:
-        assert min(rung.most or grid, grid) / 3 < len(study.axis(rung)) <= (rung.most or grid)
+    for model in study.hierarchy:
+        assert min(model.most or grid, grid) / 3 < len(study.axis(model)) <= (model.most or grid)
 
 
 def test_a_scene_without_any_common_point_gives_nan_and_no_exception() -> None:
@@ -168,9 +168,9 @@ def _with_peak_at(surfaces: xr.Dataset, model: str, row: int, column: int) -> No
 
 
 def test_the_peak_moves_the_short_way_round_the_square_that_closes() -> None:
-    study, surfaces = _solved(fake_ladder())
-    for rung in study.ladder:
-        _with_peak_at(surfaces, rung.key, 0, 0)
+    study, surfaces = _solved(fake_hierarchy())
+    for model in study.hierarchy:
+        _with_peak_at(surfaces, model.key, 0, 0)
     _with_peak_at(surfaces, "translational", GRID - 1, 1)
     entry = _table(study, surfaces)["translational"]
     assert entry.peak_moves == pytest.approx(np.sqrt(2.0) * 2.0 * np.pi / GRID, rel=1e-12)
@@ -178,9 +178,9 @@ def test_the_peak_moves_the_short_way_round_the_square_that_closes() -> None:
 
 
 def test_of_several_equal_peaks_the_nearest_counts() -> None:
-    study, surfaces = _solved(fake_ladder())
-    for rung in study.ladder:
-        _with_peak_at(surfaces, rung.key, 1, 1)
+    study, surfaces = _solved(fake_hierarchy())
+    for model in study.hierarchy:
+        _with_peak_at(surfaces, model.key, 1, 1)
     other = {"model": "exact", "body": 1, "alpha1": surfaces["alpha1"][5], "alpha2": surfaces["alpha2"][5]}
     surfaces["mu"].loc[other] = 2.0 * (1.0 + 1e-7)  # higher by less than the error claimed
     assert _table(study, surfaces)["exact"].peak_moves == 0.0

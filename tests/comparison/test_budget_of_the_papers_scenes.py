@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparison.account.acceptance import checked_limits
-from comparison.account.budget import budget, closure, steps
-from comparison.account.differences import differences
-from comparison.account.surfaces import labelled_surfaces
-from comparison.account.unanswered import unanswered
-from comparison.plan.ladder import Rung
-from comparison.plan.study import Study
-from comparison.plan.tiles import imported, solve_tile
+from comparison.analysis.acceptance import checked_limits
+from comparison.analysis.budget import budget, closure, steps
+from comparison.analysis.differences import differences
+from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.unanswered import unanswered
+from comparison.study.batches import execute_batch, imported
+from comparison.study.models import Model
+from comparison.study.study import Study
 from reference.problem import builtin_scenes, load_scene
 
 pytestmark = pytest.mark.long
@@ -26,8 +26,8 @@ GRID = 4
 def test_the_budget_closes_and_no_like_for_like_step_exceeds_twice_its_uncertainty(name: str) -> None:
     scene = load_scene(name)
     study = Study((scene,), GRID, 1e-3)
-    tiles = study.tiles()
-    surfaces = labelled_surfaces(study, tiles, [solve_tile(tile) for tile in tiles])
+    batches = study.batches()
+    surfaces = labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
     limits = checked_limits(study, surfaces, differences(study, surfaces), unanswered(study, surfaces))
     assert len(limits) == 5
     assert [line for limit in limits for line in limit.broken] == []
@@ -47,16 +47,16 @@ def test_a_step_between_equations_that_is_called_real_is_known_to_a_fifth_of_its
     """Held against the same step from runs a hundred times tighter."""
     scene = load_scene(name)
     study = Study((scene,), GRID, 1e-3, full=True)
-    study = replace(study, ladder=[rung for rung in study.ladder if rung.side == "reference"])
-    tiles = study.tiles()
-    surfaces = labelled_surfaces(study, tiles, [solve_tile(tile) for tile in tiles])
+    study = replace(study, hierarchy=[model for model in study.hierarchy if model.side == "reference"])
+    batches = study.batches()
+    surfaces = labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
     phases = np.array([(a, b) for a in surfaces["alpha1"].values for b in surfaces["alpha2"].values])
 
-    def tight(rung: Rung) -> np.ndarray:
-        mu = imported(rung.amplification)(scene, phases, **rung.settings, tolerance=1e-8).mu
+    def tight(model: Model) -> np.ndarray:
+        mu = imported(model.amplification)(scene, phases, **model.settings, tolerance=1e-8).mu
         return mu.T.reshape(len(scene.bodies), GRID, GRID)
 
-    truth = {rung.key: tight(rung) for rung in study.ladder if rung.applies(scene)}
+    truth = {model.key: tight(model) for model in study.hierarchy if model.applies(scene)}
     real = 0
     for body in range(1, len(scene.bodies) + 1):
         for step in steps(study, surfaces, name, body):

@@ -1,4 +1,4 @@
-"""A stored tile comes back to the last bit, for the very question it answered and no other; the store stays bounded."""
+"""A cached batch comes back to the last bit, for its own question and no other; the cache stays bounded."""
 
 from __future__ import annotations
 
@@ -10,53 +10,53 @@ from pathlib import Path
 
 import pytest
 from conftest import Run
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 from rich.console import Console
 
-from comparison.plan.study import Study
-from comparison.plan.tiles import Answer, solve_tile, unanswered
-from comparison.storage.cache import MAGIC, Cache
-from comparison.sweep.compute import computed
-from comparison.sweep.keys import stored_tile, tile_key
-from comparison.sweep.surroundings import source_digest
+from comparison.execution.cache import MAGIC, Cache
+from comparison.execution.environment import source_digest
+from comparison.execution.keys import batch_key, cached_batch
+from comparison.execution.runner import computed
+from comparison.study.batches import BatchResult, execute_batch, unanswered
+from comparison.study.study import Study
 from reference.problem import Outcome, load_scene
 
 
 def _study(grid: int = 4) -> Study:
-    return Study((load_scene("fig3-I"),), grid, 1e-3, fake_ladder(tile=1))
+    return Study((load_scene("fig3-I"),), grid, 1e-3, fake_hierarchy(batch=1))
 
 
-def _computed(study: Study, store: Cache) -> tuple[list[Answer], int]:
-    """The answers, and how many tiles were there before."""
+def _computed(study: Study, store: Cache) -> tuple[list[BatchResult], int]:
+    """The answers, and how many batches were there before."""
     found = computed(study, store, Console(quiet=True), 2, ThreadPoolExecutor)
     return list(found.answers), found.stored
 
 
-def _bytes(answers: list[Answer]) -> list[object]:
+def _bytes(answers: list[BatchResult]) -> list[object]:
     return [(a.mu.tobytes(), a.error.tobytes(), a.instant.tobytes(), a.status) for a in answers]
 
 
 def test_a_tile_belongs_to_scene_model_settings_versions_and_source(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    tile = _study().tiles()[0]
+    batch = _study().batches()[0]
     store = Cache(tmp_path)
-    store.put(tile_key(tile), solve_tile(tile))
-    assert stored_tile(store, tile) is not None
+    store.put(batch_key(batch), execute_batch(batch))
+    assert cached_batch(store, batch) is not None
     others = {
-        "scene": replace(tile, scene=tile.scene.with_values({"duration": 3.0})),
-        "model": replace(tile, amplification="fake_models:uneven"),
-        "settings": replace(tile, settings={**tile.settings, "tolerance": 2e-6}),
-        "phases": replace(tile, phases=tile.phases + 1e-15),
+        "scene": replace(batch, scene=batch.scene.with_values({"duration": 3.0})),
+        "model": replace(batch, amplification="fake_models:uneven"),
+        "settings": replace(batch, settings={**batch.settings, "tolerance": 2e-6}),
+        "phases": replace(batch, phases=batch.phases + 1e-15),
     }
     for name, other in others.items():
-        assert stored_tile(store, other) is None, name
-    renamed = tile.scene.with_values({"name": "other", "title": "another title"})
-    assert stored_tile(store, replace(tile, scene=renamed)) is not None, "a name changes no number"
+        assert cached_batch(store, other) is None, name
+    renamed = batch.scene.with_values({"name": "other", "title": "another title"})
+    assert cached_batch(store, replace(batch, scene=renamed)) is not None, "a name changes no number"
     for name, value in (("_version", "9.9"), ("source_digest", "changed")):
         with monkeypatch.context() as patch:
-            patch.setattr(f"comparison.sweep.surroundings.{name}", lambda package, value=value: value)
-            assert stored_tile(store, tile) is None, name
+            patch.setattr(f"comparison.execution.environment.{name}", lambda package, value=value: value)
+            assert cached_batch(store, batch) is None, name
 
 
 def test_changed_source_is_another_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -83,54 +83,54 @@ def test_a_damaged_tile_is_computed_again(tmp_path: Path, damage: Callable[[byte
     whole, _ = _computed(study, store)
     files = sorted(tmp_path.glob("*/*.tile"))
     files[0].write_bytes(damage(files[0].read_bytes()))
-    assert sum(stored_tile(Cache(tmp_path), tile) is None for tile in study.tiles()) > 0
+    assert sum(cached_batch(Cache(tmp_path), batch) is None for batch in study.batches()) > 0
     again, stored = _computed(study, Cache(tmp_path))
     assert stored < len(whole)
     assert _bytes(again) == _bytes(whole)
-    assert all(stored_tile(Cache(tmp_path), tile) is not None for tile in study.tiles()), "and mended"
+    assert all(cached_batch(Cache(tmp_path), batch) is not None for batch in study.batches()), "and mended"
 
 
 def test_the_file_of_another_tile_is_not_taken_for_this_one(tmp_path: Path) -> None:
-    one, other = _study().tiles()[:2]
+    one, other = _study().batches()[:2]
     store = Cache(tmp_path)
-    store.put(tile_key(one), solve_tile(one))
-    (tmp_path / tile_key(one).name).rename(tmp_path / tile_key(other).name)
-    assert stored_tile(store, other) is None
+    store.put(batch_key(one), execute_batch(one))
+    (tmp_path / batch_key(one).name).rename(tmp_path / batch_key(other).name)
+    assert cached_batch(store, other) is None
 
 
 def test_what_raised_or_died_is_tried_again(tmp_path: Path) -> None:
-    tile = _study().tiles()[0]
+    batch = _study().batches()[0]
     store = Cache(tmp_path)
-    store.put(tile_key(tile), unanswered(tile, Outcome.WORKER_DIED, "the worker process died 2 times"))
-    assert stored_tile(store, tile) is None
+    store.put(batch_key(batch), unanswered(batch, Outcome.WORKER_DIED, "the worker process died 2 times"))
+    assert cached_batch(store, batch) is None
 
 
 def test_the_store_is_bounded_and_keeps_what_the_study_needs(tmp_path: Path) -> None:
-    needed = _study().tiles()
-    keys = [tile_key(tile) for tile in needed]
+    needed = _study().batches()
+    keys = [batch_key(batch) for batch in needed]
     old, new = (replace(needed[0], settings={"tolerance": tolerance}) for tolerance in (0.01, 0.02))
     store = Cache(tmp_path)
-    for age, tile in enumerate((needed[0], old, new)):
-        store.put(tile_key(tile), solve_tile(tile))
-        os.utime(tmp_path / tile_key(tile).group, (1000.0 + age, 1000.0 + age))
-    sizes = [sum(4096 for _ in (tmp_path / tile_key(tile).group).iterdir()) for tile in (needed[0], old, new)]
-    aside = tmp_path / tile_key(new).group / ".phase-resonance-1-x"
+    for age, batch in enumerate((needed[0], old, new)):
+        store.put(batch_key(batch), execute_batch(batch))
+        os.utime(tmp_path / batch_key(batch).group, (1000.0 + age, 1000.0 + age))
+    sizes = [sum(4096 for _ in (tmp_path / batch_key(batch).group).iterdir()) for batch in (needed[0], old, new)]
+    aside = tmp_path / batch_key(new).group / ".phase-resonance-1-x"
     aside.write_bytes(MAGIC + b"torn")
     os.utime(aside, (1000.0, 1000.0))
     store.trim(keys, limit=sum(sizes))
     assert len(list(tmp_path.iterdir())) == 3, "within the limit nothing goes"
     assert not aside.exists(), "except what a killed run left long ago"
     store.trim(keys, limit=sizes[0] + sizes[2])
-    assert {entry.name for entry in tmp_path.iterdir()} == {tile_key(needed[0]).group, tile_key(new).group}
+    assert {entry.name for entry in tmp_path.iterdir()} == {batch_key(needed[0]).group, batch_key(new).group}
     store.trim(keys, limit=0)
-    assert {entry.name for entry in tmp_path.iterdir()} == {tile_key(needed[0]).group}
+    assert {entry.name for entry in tmp_path.iterdir()} == {batch_key(needed[0]).group}
 
 
 def test_what_is_no_store_is_left_alone(command: Callable[..., Run], tmp_path: Path) -> None:
     foreign = tmp_path / "report.tiles"
     foreign.mkdir()
     (foreign / "bathroom.txt").write_text("terracotta", encoding="utf-8")
-    run = command("fig3-I", ladder=fake_ladder("forbidden"))
+    run = command("fig3-I", hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert (
         "'report.tiles' beside it is not a store of results of this study, it holds 'bathroom.txt': move it away"

@@ -9,13 +9,13 @@ import pytest
 
 import multibody
 import reference
-from comparison.account.surfaces import labelled_surfaces, largest_cap_share, wide_swings
-from comparison.plan.ladder import LADDER
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
-from comparison.storage.cache import Cache
-from comparison.sweep.halves import halves, joined
-from comparison.sweep.keys import stored_tile, tile_key
+from comparison.analysis.surfaces import labeled_surfaces, largest_cap_share, wide_swings
+from comparison.execution.cache import Cache
+from comparison.execution.keys import batch_key, cached_batch
+from comparison.execution.splitting import merge, split_batch
+from comparison.study.batches import execute_batch
+from comparison.study.models import MODEL_HIERARCHY
+from comparison.study.study import Study
 from reference.problem import Outcome, Scene, load_scene
 
 PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (4.0, 5.5)])
@@ -65,23 +65,25 @@ def test_a_motion_close_to_the_rim_is_seen_and_one_beyond_has_no_share():
     assert np.isnan(lost.cap_share).all()
 
 
-def test_the_share_is_stored_joined_labelled_and_said(tmp_path: Path) -> None:
+def test_the_share_is_stored_joined_labeled_and_said(tmp_path: Path) -> None:
     scene = load_scene("fig3-I").with_values({"isolator.friction": 0.0, "duration": 2.0}).with_amplitude(5.0)
-    study = Study((scene,), 2, 1e-3, LADDER[:1])
-    tiles = study.tiles()
-    answers = [solve_tile(tile) for tile in tiles]
+    study = Study((scene,), 2, 1e-3, MODEL_HIERARCHY[:1])
+    batches = study.batches()
+    answers = [execute_batch(batch) for batch in batches]
     store = Cache(tmp_path)
-    for tile, answer in zip(tiles, answers):
-        store.put(tile_key(tile), answer)
-        kept = stored_tile(store, tile)
+    for batch, answer in zip(batches, answers):
+        store.put(batch_key(batch), answer)
+        kept = cached_batch(store, batch)
         assert kept is not None
         np.testing.assert_array_equal(kept.cap_share, answer.cap_share)
-        parts = halves(tile)
+        parts = split_batch(batch)
         if parts:
-            np.testing.assert_allclose(joined(tile, [*map(solve_tile, parts)]).cap_share, answer.cap_share, rtol=1e-9)
-    surfaces = labelled_surfaces(study, tiles, answers)
+            np.testing.assert_allclose(
+                merge(batch, [*map(execute_batch, parts)]).cap_share, answer.cap_share, rtol=1e-9
+            )
+    surfaces = labeled_surfaces(study, batches, answers)
     largest = max(answer.cap_share.max() for answer in answers)
-    assert largest_cap_share(surfaces, scene.name, LADDER[0].key) == largest > 0.5
+    assert largest_cap_share(surfaces, scene.name, MODEL_HIERARCHY[0].key) == largest > 0.5
     [line] = wide_swings(study, surfaces)
     assert f"{100.0 * largest:.1f} % of rho" in line
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 from conftest import Run
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 
 from reference.problem import builtin_scenes
 
@@ -14,12 +14,12 @@ SMALL = ["fig3-I", "--grid", "2"]
 
 
 def test_check_passes_when_the_limits_hold(command: Callable[..., Run]) -> None:
-    run = command(*SMALL, "--check", ladder=fake_ladder(gap=5e-5))  # the scene allows a median of 1e-4
+    run = command(*SMALL, "--check", hierarchy=fake_hierarchy(gap=5e-5))  # the scene allows a median of 1e-4
     assert (run.code, run.err) == (0, "")
 
 
 def test_check_exits_1_and_names_scene_body_key_found_and_limit(command: Callable[..., Run]) -> None:
-    run = command(*SMALL, "--check", ladder=fake_ladder(gap=5e-4))
+    run = command(*SMALL, "--check", hierarchy=fake_hierarchy(gap=5e-4))
     assert run.code == 1
     assert "limit broken: fig3-I: body 1: acceptance.median: 0.0005 found, 0.0001 allowed" in run.err
     assert "limit broken: fig3-I: body 2: acceptance.median" in run.err
@@ -27,15 +27,15 @@ def test_check_exits_1_and_names_scene_body_key_found_and_limit(command: Callabl
 
 
 def test_check_names_a_like_for_like_gap_beyond_twice_its_uncertainty(command: Callable[..., Run]) -> None:
-    run = command(*SMALL, "--check", ladder=fake_ladder(gap=2.1e-3))  # the engine claims 1e-3
+    run = command(*SMALL, "--check", hierarchy=fake_hierarchy(gap=2.1e-3))  # the engine claims 1e-3
     assert run.code == 1
     assert "limit broken: fig3-I: body 1: acceptance.ratio: 2.1 found, 2 allowed" in run.err
     assert "acceptance.closure" not in run.err
-    assert "acceptance.ratio" not in command(*SMALL, "--check", ladder=fake_ladder(gap=1.9e-3)).err
+    assert "acceptance.ratio" not in command(*SMALL, "--check", hierarchy=fake_hierarchy(gap=1.9e-3)).err
 
 
 def test_without_check_a_broken_limit_is_reported_but_not_an_exit_code(command: Callable[..., Run]) -> None:
-    run = command(*SMALL, ladder=fake_ladder(gap=5e-4))
+    run = command(*SMALL, hierarchy=fake_hierarchy(gap=5e-4))
     assert run.code == 0
     assert "acceptance limits broken" in (run.report / "index.html").read_text(encoding="utf-8")
 
@@ -44,7 +44,7 @@ def test_plan_computes_and_writes_nothing(command: Callable[..., Run]) -> None:
     def no_pool(jobs: int) -> None:
         raise AssertionError("nothing should have been started")
 
-    run = command("--plan", ladder=fake_ladder("forbidden"), executor=no_pool)
+    run = command("--plan", hierarchy=fake_hierarchy("forbidden"), executor=no_pool)
     assert run.code == 0
     assert not run.report.exists()
     for scene in builtin_scenes():

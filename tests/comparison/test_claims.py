@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from comparison.claims import evidence
-from comparison.claims import table as table_module  # table: what a test made
-from comparison.claims.__main__ import main
-from comparison.claims.checks import Finding, Verdict, judged, similar
-from comparison.claims.claims import CLAIMS, Claim
-from comparison.claims.evidence import Evidence, Question
-from comparison.claims.readings import CASES, EVERY_READING, READINGS, Reading, without_effect
-from comparison.claims.smoothness import Bend
-from comparison.claims.table import claims_tested, questions, tabulated
+from comparison.analysis.claims import evidence
+from comparison.analysis.claims import table as table_module  # table: what a test made
+from comparison.analysis.claims.checks import Finding, Verdict, judged, similar
+from comparison.analysis.claims.claims import CLAIMS, Claim
+from comparison.analysis.claims.evidence import Evidence, Question
+from comparison.analysis.claims.readings import CASES, EVERY_READING, READINGS, Reading, without_effect
+from comparison.analysis.claims.smoothness import Bend
+from comparison.analysis.claims.table import claims_tested, questions, tabulated
+from comparison.cli.claims import main
 
 Array = NDArray[np.float64]
 N = 16
@@ -107,7 +107,7 @@ def test_a_case_without_an_answer_leaves_its_claims_open() -> None:
     changed = {
         **PAPER,
         "fig3-I": replace(ONE_AXIS, mu=mu, statuses=("ok", "rim reached")),
-        "fig4-dry": Evidence(fault="broke"),
+        "fig4-dry": Evidence(error_message="broke"),
     }
     assert _claim("Fig. 3a", "four").verdict(changed) == Verdict(Finding.OPEN, "fig3-I: ok, rim reached")
     assert _claim("Fig. 4a", "similar").verdict(changed) == Verdict(Finding.OPEN, "fig4-dry: broke")
@@ -165,7 +165,7 @@ def test_what_a_solver_complains_about_becomes_the_fault(monkeypatch: pytest.Mon
 
     monkeypatch.setattr(evidence, "amplification", broken)
     found = evidence.gathered(Question("fig3-I", Reading(), 4))
-    assert (found.fault, found.complete) == ("ZeroDivisionError: no ground", False)
+    assert (found.error_message, found.complete) == ("ZeroDivisionError: no ground", False)
 
 
 def test_the_command_prints_the_table(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
@@ -184,7 +184,7 @@ def test_the_command_prints_the_table(monkeypatch: pytest.MonkeyPatch, capsys: p
 def test_evidence_of_the_paper_is_what_the_equations_give() -> None:
     """Short and coarse: the plane of (4.7) to rounding, two unequal axes apart, no fold without a grid to see one."""
     dry = evidence.gathered(Question("fig4-dry", Reading(duration=1.5), 4))
-    assert dry.fault == ""
+    assert dry.error_message == ""
     assert dry.mu.shape == (4, 4, 2)
     assert max(dry.apart) < 1e-9
     assert 0.0 < dry.swing < 0.1

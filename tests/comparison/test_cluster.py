@@ -9,34 +9,34 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import Run
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 from local_cluster import LocalCluster
 
-from comparison.plan.study import Study
-from comparison.plan.tiles import Answer, Tile, solve_tile, unanswered
-from comparison.storage.cache import Cache, Key
-from comparison.sweep.cluster import cluster
-from comparison.sweep.halves import halves, joined
-from comparison.sweep.keys import tile_key
-from comparison.sweep.sweep import sweep
+from comparison.execution.cache import Cache, Key
+from comparison.execution.dask import cluster
+from comparison.execution.keys import batch_key
+from comparison.execution.splitting import merge, split_batch
+from comparison.execution.sweep import sweep
+from comparison.study.batches import Batch, BatchResult, execute_batch, unanswered
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 
 def _answers(
-    model: str, tile: int, executor: object, done: Callable[[int], object] = lambda count: None
-) -> list[Answer]:
-    """The engine's surface; `done` is told how many tiles are."""
-    study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_ladder(model, tile=tile))
-    tiles = [one for one in study.tiles() if one.rung == "translational"]
-    count = iter(range(1, len(tiles) + 1))
+    model: str, batch: int, executor: object, done: Callable[[int], object] = lambda count: None
+) -> list[BatchResult]:
+    """The engine's surface; `done` is told how many batches are."""
+    study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(model, batch=batch))
+    batches = [one for one in study.batches() if one.model == "translational"]
+    count = iter(range(1, len(batches) + 1))
 
-    def arrived(one: Tile, answer: Answer) -> None:
+    def arrived(one: Batch, answer: BatchResult) -> None:
         done(next(count))
 
-    return sweep(tiles, solve_tile, unanswered, arrived, 2, executor, split=halves, join=joined)  # type: ignore[arg-type]
+    return sweep(batches, execute_batch, unanswered, arrived, 2, executor, split=split_batch, join=merge)  # type: ignore[arg-type]
 
 
-def _same(one: list[Answer], other: list[Answer]) -> None:
+def _same(one: list[BatchResult], other: list[BatchResult]) -> None:
     assert len(one) == len(other) > 0
     for a, b in zip(one, other):
         for name in ("mu", "error", "instant", "status"):
@@ -74,9 +74,9 @@ def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on_in_process(
             workers.kill_the_scheduler()
 
     monkeypatch.setattr(Cache, "put", put_and_kill)
-    ladder = fake_ladder("uneven", tile=1)
-    study = Study((load_scene("fig3-I"),), 4, 1e-3, ladder)
-    run = command("fig3-I", "--grid", "4", "--scheduler", workers.address, ladder=ladder)
+    hierarchy = fake_hierarchy("uneven", batch=1)
+    study = Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy)
+    run = command("fig3-I", "--grid", "4", "--scheduler", workers.address, hierarchy=hierarchy)
     assert run.code == 4
     start = f"--scheduler {workers.address}: the connection to the scheduler was lost: "
     assert run.err.startswith(start)
@@ -87,17 +87,17 @@ def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on_in_process(
     )
     assert not run.report.exists()
     before = len(stored)
-    again = command("fig3-I", "--grid", "4", "--jobs", "2", ladder=ladder)
+    again = command("fig3-I", "--grid", "4", "--jobs", "2", hierarchy=hierarchy)
     assert again.code == 0
     names = [key.name for key in stored]
     assert 5 <= before < len(stored)
     assert not set(names[:before]) & set(names[before:]), "only what was missing was computed"
-    assert set(names) == {tile_key(tile).name for tile in study.tiles()}
+    assert set(names) == {batch_key(batch).name for batch in study.batches()}
 
 
 @pytest.mark.parametrize("address", ["nowhere", "tls://127.0.0.1:1", "ucx://127.0.0.1:1"])
 def test_no_scheduler_is_a_wrong_option(command: Callable[..., Run], address: str) -> None:
-    run = command("fig3-I", "--scheduler", address, ladder=fake_ladder("forbidden"))
+    run = command("fig3-I", "--scheduler", address, hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert run.err.startswith(f"command line: --scheduler = {address!r}: no scheduler answers there: ")
     assert run.err.count("\n") == 1
@@ -109,8 +109,8 @@ def test_no_scheduler_is_a_wrong_option(command: Callable[..., Run], address: st
 def test_workers_with_other_code_are_refused(
     workers: LocalCluster, command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("comparison.sweep.surroundings._version", lambda name: "9.9")
-    run = command("fig3-I", "--scheduler", workers.address, ladder=fake_ladder("forbidden"))
+    monkeypatch.setattr("comparison.execution.environment._version", lambda name: "9.9")
+    run = command("fig3-I", "--scheduler", workers.address, hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert "here it is 9.9: install the same" in run.err
     assert run.err.count("\n") == 1

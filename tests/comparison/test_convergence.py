@@ -1,4 +1,4 @@
-"""Regularisation to nothing and stiffness to infinity: planted laws are found, the real ones are of first order."""
+"""Regularization to nothing and stiffness to infinity: planted laws are found, the real ones are of first order."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from comparison.analyses import convergence
-from comparison.analyses.convergence import LIMITS, PENETRATIONS, Limit, convergence_trends, limit_trends
-from comparison.plan.study import Study
+from comparison.analysis import convergence
+from comparison.analysis.convergence import LIMITS, PENETRATIONS, convergence_trends, limit_trends
+from comparison.analysis.tasks import predicted
+from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
 
 Array = NDArray[np.float64]
@@ -28,7 +29,7 @@ def test_every_limit_comes_in_order_and_a_lubricated_scene_has_only_the_contact(
         sizes = np.array(PENETRATIONS)[None, :, None] * np.array([1.0, -2.0])[None, None, :]
         return sizes, 1e-3 * np.abs(sizes)
 
-    limits = [Limit(one.what, PENETRATIONS, 1.0, planted, one.applies) for one in LIMITS]
+    limits = [replace(limit, parameter=PENETRATIONS, expected=1.0, measure=planted) for limit in LIMITS]
     monkeypatch.setattr(convergence, "LIMITS", limits)
     found = convergence_trends(_study("fig3-I", "fig4-viscous"), 2, ThreadPoolExecutor)
     assert [(one.scene, one.body) for one in found] == [("fig3-I", 1), ("fig3-I", 2)] * 5 + [
@@ -38,8 +39,15 @@ def test_every_limit_comes_in_order_and_a_lubricated_scene_has_only_the_contact(
     assert {one.verdict for one in found} == {"like the power 1"}
 
 
-def _regularised(power: float) -> object:
-    """mu = 3, or 3 + v^power under a regularised law."""
+def test_every_limit_has_a_predicted_cost() -> None:
+    tasks, seconds = predicted(_study("fig3-I"))["convergence"]
+    assert tasks == len(LIMITS)
+    assert seconds == pytest.approx(sum(limit.seconds for limit in LIMITS))
+    assert all(limit.seconds > 0.0 for limit in LIMITS)
+
+
+def _regularized(power: float) -> object:
+    """mu = 3, or 3 + v^power under a regularized law."""
 
     def amplification(scene: Scene, phases: Array, tolerance: float, **settings: float) -> Amplification:
         v = settings.get("regularization")
@@ -51,8 +59,8 @@ def _regularised(power: float) -> object:
 
 @pytest.mark.parametrize(("power", "says"), [(1.0, "like the power 1"), (0.5, "not like the power 1")])
 def test_the_order_in_v_reg_is_that_of_the_law(monkeypatch: pytest.MonkeyPatch, power: float, says: str) -> None:
-    monkeypatch.setattr(convergence, "amplification", _regularised(power))
-    monkeypatch.setattr(convergence, "engine_amplification", _regularised(power))
+    monkeypatch.setattr(convergence, "amplification", _regularized(power))
+    monkeypatch.setattr(convergence, "engine_amplification", _regularized(power))
     for number in (0, 2):  # the equations and the engine, against the resolved peak
         trends = list(limit_trends((load_scene("fig3-I"), number)))
         assert trends
@@ -81,7 +89,7 @@ def test_a_contact_ten_times_stiffer_is_ten_times_closer(monkeypatch: pytest.Mon
 
 
 @pytest.mark.long
-def test_regularisation_is_of_first_order_and_the_supremum_is_not_reached() -> None:
+def test_regularization_is_of_first_order_and_the_supremum_is_not_reached() -> None:
     scene = load_scene("fig3-II")
     resolved, supremum = (limit_trends((scene, number)) for number in (0, 1))
     assert [one.verdict for one in resolved] == ["like the power 1"] * 2

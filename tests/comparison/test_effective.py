@@ -10,23 +10,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import Run
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 
-from comparison.analyses.effective import PHASES, effective_values, read_back, stated
-from comparison.plan.ladder import Rung
-from comparison.plan.study import Study
+from comparison.analysis.effective import PHASES, effective_values, read_back, stated
+from comparison.study.models import Model
+from comparison.study.study import Study
 from reference.problem import ground_acceleration, load_scene
 
 TRUE = {"radius": 0.31, "friction": 0.123, "mass": 2.2}  # the scene says 0.248 m, 0.1 and 2 kg
 
 
-def _rung(**settings: object) -> Rung:
-    return replace(fake_ladder()[-1], trajectory="fake_models:sliding", settings=settings)
+def _rung(**settings: object) -> Model:
+    return replace(fake_hierarchy()[-1], trajectory="fake_models:sliding", settings=settings)
 
 
 def test_what_the_model_really_computed_with_is_read_from_its_motion() -> None:
     found = read_back((load_scene("fig3-I"), _rung(**TRUE)))
-    assert found.fault == ""
+    assert found.error_message == ""
     assert found.radius == pytest.approx(TRUE["radius"], rel=1e-12)
     assert found.mass == pytest.approx(TRUE["mass"], rel=1e-12)
     assert found.contact == pytest.approx(TRUE["mass"] * 9.81, rel=1e-12)
@@ -48,14 +48,14 @@ def test_the_scene_states_what_the_motion_is_held_against() -> None:
 
 
 def test_a_model_whose_motion_fails_says_why_and_has_no_value() -> None:
-    found = read_back((load_scene("fig3-I"), fake_ladder()[-1]))
-    assert found.fault == "AssertionError: nothing should have been computed"
+    found = read_back((load_scene("fig3-I"), fake_hierarchy()[-1]))
+    assert found.error_message == "AssertionError: nothing should have been computed"
     assert np.isnan([found.radius, found.friction, found.contact, found.mass]).all()
 
 
 def test_a_motion_that_ended_early_has_no_value() -> None:
     found = read_back((load_scene("fig3-I"), _rung(**TRUE, status="rim reached")))
-    assert found.fault == "the motion ended: rim reached"
+    assert found.error_message == "the motion ended: rim reached"
     assert np.isnan(found.radius)
 
 
@@ -67,7 +67,7 @@ def test_a_platform_that_never_moves_has_no_radius_and_no_friction() -> None:
 
 
 def test_every_scene_has_its_own_statement_and_its_models_below_it() -> None:
-    study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), 2, 1e-3, fake_ladder())
+    study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), 2, 1e-3, fake_hierarchy())
     found = effective_values(study, 2, ThreadPoolExecutor)
     dry = ["scene", "small", "exact", "resolved", "regularised", "translational", "spatial"]
     assert [one.model for one in found if one.scene == "fig3-I"] == dry

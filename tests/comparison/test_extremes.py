@@ -11,13 +11,13 @@ import pytest
 from rich.console import Console
 
 import reference
-from comparison.extremes.__main__ import main, reduced, run
-from comparison.extremes.cells import Cell, _scene, cells, solve_cell
-from comparison.extremes.engine import amplification
-from comparison.extremes.figure import draw_extremes
-from comparison.extremes.matrix import FILE, Entry, Matrix, read, written
-from comparison.extremes.rows import COLUMNS, Column, Row, rows, scene
-from comparison.extremes.verdicts import Verdict
+from comparison.analysis.extremes.cells import Cell, _scene, cells, solve_cell
+from comparison.analysis.extremes.engine import amplification
+from comparison.analysis.extremes.matrix import FILE, Entry, Matrix, read, written
+from comparison.analysis.extremes.rows import COLUMNS, Column, Row, rows, scene
+from comparison.analysis.extremes.verdicts import Verdict
+from comparison.cli.extremes import main, reduced, run
+from comparison.report.figures.extremes import draw_extremes
 
 PLAIN = Row("anything", "plain", scene(), ("fake",))
 FAILING = {
@@ -70,7 +70,7 @@ def test_a_model_that_a_busy_machine_keeps_waiting_does_not_hang():
 
 
 def test_a_model_that_computes_nothing_any_more_is_killed_in_the_end(monkeypatch):
-    monkeypatch.setattr("comparison.extremes.worker.STALLED", 4.0)
+    monkeypatch.setattr("comparison.analysis.extremes.worker.STALLED", 4.0)
     assert entry(fake("waits_for_ever"), limit=1.0).reason == "hangs: no answer within 4 s"
 
 
@@ -149,8 +149,8 @@ def test_the_command_writes_the_matrix_and_its_picture(tmp_path, capsys):
 
 
 def test_a_failed_cell_is_an_exit_code_and_in_the_picture(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("comparison.extremes.__main__.COLUMNS", (fake("calls_nan_ok"),))
-    monkeypatch.setattr("comparison.extremes.__main__.rows", lambda: iter([PLAIN]))
+    monkeypatch.setattr("comparison.cli.extremes.COLUMNS", (fake("calls_nan_ok"),))
+    monkeypatch.setattr("comparison.cli.extremes.rows", lambda: iter([PLAIN]))
     assert main(["--jobs", "1", "--out", str(tmp_path)]) == 1
     assert "FAILED: anything plain" in capsys.readouterr().out
 
@@ -177,7 +177,7 @@ def test_the_file_is_read_back_as_it_was_and_another_file_is_refused(tmp_path: P
 
 
 def _extreme(verdict: str, error: float | None):
-    from comparison.extremes.matrix import Extreme
+    from comparison.analysis.extremes.matrix import Extreme
 
     return Extreme("a group", verdict, {"fake": Entry(verdict, "a reason", error, 0.25, 0.5)})
 

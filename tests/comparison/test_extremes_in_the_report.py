@@ -10,9 +10,9 @@ from pathlib import Path
 from conftest import Run
 from jsonschema import Draft202012Validator
 
-from comparison.extremes.figure import draw_extremes
-from comparison.extremes.matrix import FILE, PICTURE, Entry, Extreme, Matrix, written
-from comparison.storage.output import made_by, publish
+from comparison.analysis.extremes.matrix import FILE, PICTURE, Entry, Extreme, Matrix, written
+from comparison.execution.output import made_by, publish
+from comparison.report.figures.extremes import draw_extremes
 
 SMALL = ["fig3-I", "--grid", "2"]
 RUN = {"command": "made by a test", "began": "then", "seconds": 1.0, "cpu_seconds": 2.0, "jobs": 1}
@@ -56,7 +56,7 @@ def test_the_matrix_may_be_there_before_the_first_report(command: Callable[..., 
     assert run.code == 0, run.err
     summary = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))
     schema = json.loads((resources.files("comparison.report") / "summary.schema.json").read_text(encoding="utf-8"))
-    assert [fault.message for fault in Draft202012Validator(schema).iter_errors(summary)] == []
+    assert [error_message.message for error_message in Draft202012Validator(schema).iter_errors(summary)] == []
     assert summary["extremes"]["rows"][1]["entries"]["spatial"]["reason"] == "step limit"
 
 

@@ -9,15 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import Run
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 from matplotlib.axes import Axes
 from matplotlib.image import imread
 
-from comparison.account.budget import budget
-from comparison.account.surfaces import labelled_surfaces
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
-from comparison.report.family_figure import draw_family, family_figure_name
+from comparison.analysis.budget import budget
+from comparison.analysis.surfaces import labeled_surfaces
+from comparison.report.figures.families import draw_family, family_figure_name
+from comparison.study.batches import execute_batch
+from comparison.study.study import Study
 from reference.problem import load_family
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"
@@ -54,8 +54,8 @@ def test_the_figure_shows_mean_and_largest_step_of_every_scene_in_percent(
     file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     family = load_family(file)
-    study = Study(family.scenes, 4, 1e-3, fake_ladder(gap=0.01))  # the engine lies 1 % above the reference
-    surfaces = labelled_surfaces(study, study.tiles(), [solve_tile(tile) for tile in study.tiles()])
+    study = Study(family.scenes, 4, 1e-3, fake_hierarchy(gap=0.01))  # the engine lies 1 % above the reference
+    surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
     drawn: list[tuple[list[float], list[float], str]] = []
     plot = Axes.plot
 
@@ -65,10 +65,10 @@ def test_the_figure_shows_mean_and_largest_step_of_every_scene_in_percent(
 
     monkeypatch.setattr(Axes, "plot", told)
     path = tmp_path / family_figure_name(family, 1)
-    draw_family(path, family, budget(study, surfaces), study.ladder, 1)
+    draw_family(path, family, budget(study, surfaces), study.hierarchy, 1)
     assert {tuple(x) for x, _, _ in drawn} == {(0.1, 0.15, 0.2)}
     largest = {label: y for _, y, label in drawn if label not in ("mean", "--")}
-    assert set(largest) == {"total", *(rung.title for rung in study.ladder[1:])}
+    assert set(largest) == {"total", *(model.title for model in study.hierarchy[1:])}
     np.testing.assert_allclose(largest["total"], 1.0, rtol=1e-9)
     np.testing.assert_allclose(largest["translational engine"], 1.0, rtol=1e-9)
     np.testing.assert_array_equal(largest["exact equations"], 0.0)

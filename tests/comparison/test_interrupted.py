@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from comparison.plan.ladder import LADDER
-from comparison.storage.output import publish
+from comparison.execution.output import publish
+from comparison.study.models import MODEL_HIERARCHY
 
 HERE = Path(__file__).parent
 SCRIPT = """
@@ -23,7 +23,7 @@ sys.path[:0] = [{here!r}, {root!r}]
 from comparison.run import main
 from fake_models import fake_ladder
 if __name__ == "__main__":
-    sys.exit(main(["fig3-I", "--grid", "16", "--jobs", "2", "--out", "report"], fake_ladder("slow", tile=1)))
+    sys.exit(main(["fig3-I", "--grid", "16", "--jobs", "2", "--out", "report"], fake_ladder("slow", batch=1)))
 """
 
 
@@ -65,12 +65,12 @@ def test_a_stopped_run_keeps_what_is_finished_and_says_how_to_go_on(tmp_path: Pa
     assert process.returncode == code
     assert time.monotonic() - begin < 2.0, "does not wait for the points under way"
     stopped = re.fullmatch(
-        r"interrupted: (\d+) of (\d+) tiles are kept in 'report.tiles'; "
+        r"interrupted: (\d+) of (\d+) batches are kept in 'report.tiles'; "
         r"go on with: python -m comparison.run fig3-I --grid 16 --jobs 2 --out report\n",
         err,
     )
     assert stopped, err
-    assert int(stopped[1]) == 256 * sum(rung.side == "reference" for rung in LADDER) < int(stopped[2])
+    assert int(stopped[1]) == 256 * sum(model.side == "reference" for model in MODEL_HIERARCHY) < int(stopped[2])
     assert len(list(tmp_path.glob("report.tiles/*/*.tile"))) == 256, "one model under several names is stored once"
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["report", "report.tiles"]
     assert sorted(entry.name for entry in old.iterdir()) == ["manifest.json", "summary.json"]

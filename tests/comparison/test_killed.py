@@ -17,23 +17,23 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import Run
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 from rich.console import Console
 
-from comparison.analyses.trajectories import Place, StoredMotion
-from comparison.plan.study import Study
-from comparison.plan.tiles import Answer
-from comparison.storage.cache import Cache, store_beside
-from comparison.sweep.answers import Answers
-from comparison.sweep.compute import computed, fetched
-from comparison.sweep.errands import Errand
+from comparison.analysis.trajectories import Place, StoredMotion
+from comparison.execution.cache import Cache, store_beside
+from comparison.execution.runner import computed, fetched
+from comparison.execution.task import Task
+from comparison.execution.task_cache import TaskCache
+from comparison.study.batches import BatchResult
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 HERE = Path(__file__).parent
 INSTANTS = 24
 
 # One process imports everything, then forks a run for every instant: a start of Python would take most of the time.
-# An instant is a random number of finished tiles and a random time after, so that all stages are met on any machine.
+# An instant is a random number of finished batches and a random time after, so that all stages are met on any machine.
 SCRIPT = """
 import os, random, shutil, signal, sys, time
 sys.path[:0] = [{here!r}, {root!r}]
@@ -45,12 +45,12 @@ from test_killed import whole_run
 def run(place):
     whole_run(place, Console(file=open(os.devnull, "w")))
 
-def killed(place, tiles, seconds):
+def killed(place, batches, seconds):
     child = os.fork()
     if child == 0:
         run(place)
         os._exit(0)
-    while len(list(place.glob("*/*.tile")) + list(place.glob("*/*.answer"))) < tiles:
+    while len(list(place.glob("*/*.tile")) + list(place.glob("*/*.answer"))) < batches:
         time.sleep(0.0005)
     time.sleep(seconds)
     os.kill(child, signal.SIGKILL)
@@ -70,12 +70,12 @@ while count < {instants}:
 
 def study() -> Study:
     """Two models, a file for every point of them."""
-    ladder = [rung for rung in fake_ladder(tile=1) if rung.key in ("small", "translational")]
-    return Study((load_scene("fig3-I"),), 6, 1e-3, ladder)
+    hierarchy = [model for model in fake_hierarchy(batch=1) if model.key in ("small", "translational")]
+    return Study((load_scene("fig3-I"),), 6, 1e-3, hierarchy)
 
 
-def _errands(first: int, count: int) -> list[Errand]:
-    return [Errand("motions", motion, number, 0.01, "about") for number in range(first, first + count)]
+def _errands(first: int, count: int) -> list[Task]:
+    return [Task("motions", motion, number, 0.01, "about") for number in range(first, first + count)]
 
 
 def motion(number: int) -> StoredMotion:
@@ -86,10 +86,10 @@ def motion(number: int) -> StoredMotion:
     return StoredMotion(place, "small", draw.random(7), draw.random((7, 2, 2)), draw.random((7, 2, 2)), ((0.1, 0.2),))
 
 
-def whole_run(folder: Path, console: Console) -> tuple[list[Answer], list[object], int, int]:
-    """Tiles with 24 errands beside them and 24 after them; what was found, and how much of either was there before."""
+def whole_run(folder: Path, console: Console) -> tuple[list[BatchResult], list[object], int, int]:
+    """Batches with 24 tasks beside them and 24 after them; what was found, and how much of either was there before."""
     store = Cache(folder)
-    answers = Answers(store)
+    answers = TaskCache(store)
     found = computed(study(), store, console, 2, ThreadPoolExecutor, _errands(0, 24), answers)
     fetched(_errands(24, 24), answers, console, 2, ThreadPoolExecutor)
     executor = answers.on(ThreadPoolExecutor)(1)
@@ -102,13 +102,13 @@ def whole_run(folder: Path, console: Console) -> tuple[list[Answer], list[object
     )
 
 
-def _computed(study: Study, store: Cache) -> tuple[list[Answer], int]:
-    """The answers, and how many tiles were there before."""
+def _computed(study: Study, store: Cache) -> tuple[list[BatchResult], int]:
+    """The answers, and how many batches were there before."""
     found = computed(study, store, Console(quiet=True), 2, ThreadPoolExecutor)
     return list(found.answers), found.stored
 
 
-def _bytes(answers: list[Answer]) -> list[object]:
+def _bytes(answers: list[BatchResult]) -> list[object]:
     return [(a.mu.tobytes(), a.error.tobytes(), a.instant.tobytes(), a.status) for a in answers]
 
 
@@ -126,8 +126,8 @@ def test_a_run_killed_at_random_instants_goes_on_to_the_same_bytes(tmp_path: Pat
         resumed, same, *stored = whole_run(tmp_path / f"killed{count}", quiet)
         assert (_bytes(resumed), same) == (_bytes(whole), motions)
         before.append(tuple(stored))
-    assert len({tiles for tiles, _ in before}) > 8, "killed at different stages"
-    assert sum(tiles == 72 and 0 < others < 48 for tiles, others in before) > 3, "of these some after the surfaces"
+    assert len({batches for batches, _ in before}) > 8, "killed at different stages"
+    assert sum(batches == 72 and 0 < others < 48 for batches, others in before) > 3, "of these some after the surfaces"
 
 
 def test_the_same_command_computes_nothing_twice_and_fresh_computes_all(command: Callable[..., Run]) -> None:
@@ -139,9 +139,9 @@ def test_the_same_command_computes_nothing_twice_and_fresh_computes_all(command:
     assert "of 16 points" not in again.out, "no progress: nothing to do"
     summary = json.loads((again.report / "summary.json").read_text(encoding="utf-8"))["run"]
     assert summary["tiles_stored_before"] == summary["tiles"] > 0
-    tiles = summary["tiles"]
-    assert f"{tiles} of {tiles} tiles are in" in command(*words, "--plan").out.replace("\n", " ")
-    assert "tiles are in" not in command(*words, "--fresh", "--plan").out
+    batches = summary["tiles"]
+    assert f"{batches} of {batches} batches are in" in command(*words, "--plan").out.replace("\n", " ")
+    assert "batches are in" not in command(*words, "--fresh", "--plan").out
     fresh = command(*words, "--fresh")
     assert "16 of 16 points" in fresh.out
     summary = json.loads((fresh.report / "summary.json").read_text(encoding="utf-8"))["run"]

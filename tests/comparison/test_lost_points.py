@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 import xarray as xr
 from conftest import Run
-from fake_models import DEADLY, fake_ladder
+from fake_models import DEADLY, fake_hierarchy
 
-from comparison.sweep.executors import process_pool
+from comparison.execution.executors import process_pool
 
 GRID = ["fig3-I", "--grid", "4", "--jobs", "2"]
 
@@ -40,7 +40,7 @@ CASES = {
 def test_a_failing_point_is_nan_with_its_status_and_the_others_stay(
     command: Callable[..., Run], model: str, outcome: str
 ) -> None:
-    run = command(*GRID, ladder=fake_ladder(model, tile=1))
+    run = command(*GRID, hierarchy=fake_hierarchy(model, batch=1))
     assert run.code == 0
     status, mu = _status(run)
     _only_the_last_point(status, outcome)
@@ -49,7 +49,7 @@ def test_a_failing_point_is_nan_with_its_status_and_the_others_stay(
 
 
 def test_a_tile_that_raises_loses_its_own_points_only(command: Callable[..., Run]) -> None:
-    run = command(*GRID, ladder=fake_ladder("raising", tile=4))
+    run = command(*GRID, hierarchy=fake_hierarchy("raising", batch=4))
     status, _ = _status(run)
     assert (status[3] == "solver failed").all()
     assert (status[:3] == "ok").all()
@@ -61,8 +61,8 @@ def test_a_tile_that_raises_loses_its_own_points_only(command: Callable[..., Run
 
 
 def test_a_worker_that_dies_loses_its_own_tile_only(command: Callable[..., Run]) -> None:
-    ladder = [rung for rung in fake_ladder("killing", tile=4) if rung.key in ("small", "translational")]
-    run = command(*GRID, ladder=ladder, executor=process_pool)
+    hierarchy = [model for model in fake_hierarchy("killing", batch=4) if model.key in ("small", "translational")]
+    run = command(*GRID, hierarchy=hierarchy, executor=process_pool)
     assert run.code == 0
     status, mu = _status(run)
     _only_the_last_point(status, "worker died")
@@ -71,13 +71,13 @@ def test_a_worker_that_dies_loses_its_own_tile_only(command: Callable[..., Run])
 
 
 def test_lost_points_are_counted_in_the_closing_table(command: Callable[..., Run]) -> None:
-    run = command(*GRID, ladder=fake_ladder("failing_point"))
+    run = command(*GRID, hierarchy=fake_hierarchy("failing_point"))
     rows = [line.split() for line in run.out.splitlines() if line.split()[:1] == ["fig3-I"] and "like" in line]
     assert [row[-1] for row in rows] == ["1", "1"], "not ok, body 1 and body 2"
 
 
 def test_without_any_engine_the_most_complete_equations_take_its_place(command: Callable[..., Run]) -> None:
-    run = command(*GRID, ladder=fake_ladder("always_raising"))
+    run = command(*GRID, hierarchy=fake_hierarchy("always_raising"))
     assert run.code == 0
     summary = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))
     rows = summary["scenes"][0]["differences"]
@@ -91,8 +91,8 @@ def test_without_any_engine_the_most_complete_equations_take_its_place(command: 
 
 
 def test_a_scene_without_any_answer_still_gets_its_report(command: Callable[..., Run]) -> None:
-    ladder = [replace(rung, amplification="fake_models:always_raising", settings={}) for rung in fake_ladder()]
-    run = command(*GRID, "--check", ladder=ladder)
+    hierarchy = [replace(model, amplification="fake_models:always_raising", settings={}) for model in fake_hierarchy()]
+    run = command(*GRID, "--check", hierarchy=hierarchy)
     assert run.code == 1
     assert "nan found" not in run.err
     assert "no phase pair in common where both have a value" in (run.report / "summary.md").read_text(encoding="utf-8")
@@ -101,14 +101,14 @@ def test_a_scene_without_any_answer_still_gets_its_report(command: Callable[...,
 
 
 def test_check_counts_lost_points_as_a_broken_limit(command: Callable[..., Run]) -> None:
-    run = command(*GRID, "--check", ladder=fake_ladder("failing_point", gap=0.0))
+    run = command(*GRID, "--check", hierarchy=fake_hierarchy("failing_point", gap=0.0))
     assert run.code == 1
     assert "limit broken: fig3-I: acceptance.failed: 2 points without an answer (translational" in run.err
     assert (run.report / "index.html").exists(), "the report that shows why is there"
 
 
 def test_check_does_not_pass_a_limit_that_nothing_was_held_against(command: Callable[..., Run]) -> None:
-    run = command(*GRID, "--check", ladder=fake_ladder("always_raising"))
+    run = command(*GRID, "--check", hierarchy=fake_hierarchy("always_raising"))
     assert run.code == 1
     assert (
         "limit broken: fig3-I: acceptance.median: nothing to compare (translational engine: no value at any" in run.err

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import without_errands
-from fake_models import fake_ladder, silenced
+from conftest import without_tasks
+from fake_models import fake_hierarchy, silenced
 from matplotlib.image import imread
 from playwright.sync_api import Browser, Locator, Page, sync_playwright
 
@@ -49,7 +49,7 @@ def _opened(browser: Browser, file: Path, window: tuple[int, int]) -> Visit:
     page.set_default_timeout(PATIENCE)
     visit = Visit(page)
     page.on("console", lambda m: visit.complaints.append(m.text) if m.type == "error" else None)
-    page.on("pageerror", lambda fault: visit.complaints.append(str(fault)))
+    page.on("pageerror", lambda error_message: visit.complaints.append(str(error_message)))
     page.on("request", lambda r: visit.requests.append(r.url) if not r.url.startswith(("data:", "blob:")) else None)
     page.goto(file.as_uri())
     return visit
@@ -71,8 +71,8 @@ def _drawn(page: Page, number: int) -> Locator:
     return box
 
 
-def _has_colours(box: Locator) -> list[bool]:
-    """Whether a surface covers a part of each of the three panels; axes and words are grey."""
+def _has_colors(box: Locator) -> list[bool]:
+    """Whether a surface covers a part of each of the three panels; axes and words are gray."""
     picture = np.asarray(imread(BytesIO(box.screenshot())))[..., :3]
     return [bool((np.ptp(third, axis=2) > 0.15).mean() > 0.02) for third in np.array_split(picture, 3, axis=1)]
 
@@ -89,14 +89,14 @@ def test_the_first_screen_has_every_verdict_and_every_bar(
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), "nothing is wider than the window"
     tables = "[...document.querySelectorAll('.table')].filter(t => t.scrollWidth > t.clientWidth).length"
     assert page.evaluate(tables) == 0, "no table must be pushed sideways to be read"
-    assert all(_has_colours(_drawn(page, 0))), "surfaces are drawn at this size"
+    assert all(_has_colors(_drawn(page, 0))), "surfaces are drawn at this size"
     page.close()
 
 
 def test_every_surface_is_drawn(visit: Visit) -> None:
     assert visit.page.locator(".surfaces").count() == 4
     for number in range(4):
-        assert all(_has_colours(_drawn(visit.page, number))), f"box {number}"
+        assert all(_has_colors(_drawn(visit.page, number))), f"box {number}"
 
 
 def test_a_click_on_a_surface_shows_the_motions_of_the_nearest_stored_phases(visit: Visit) -> None:
@@ -181,13 +181,13 @@ def test_nothing_was_asked_of_a_network_and_nothing_complained(visit: Visit, fin
 def test_surfaces_without_any_value_are_said_to_have_none(
     browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    without_errands(monkeypatch)
-    monkeypatch.setattr(comparison.run, "slip_effects", lambda *rest: [])
+    without_tasks(monkeypatch)
+    monkeypatch.setattr(comparison.run, "errata_effects", lambda *rest: [])
     monkeypatch.setattr(comparison.run, "stored_motions", lambda *rest: [])
     monkeypatch.setattr(comparison.run, "further_findings", lambda *rest: {})
-    ladder = silenced(*(rung.key for rung in fake_ladder()))
+    hierarchy = silenced(*(model.key for model in fake_hierarchy()))
     words = ["fig3-I", "--grid", "2", "--jobs", "2", "--out", str(tmp_path / "report")]
-    assert comparison.run.main(words, ladder, ThreadPoolExecutor) == 0
+    assert comparison.run.main(words, hierarchy, ThreadPoolExecutor) == 0
     visit = _opened(browser, tmp_path / "report" / "index.html", LAPTOP)
     box = _drawn(visit.page, 0)
     assert box.inner_text().count("no value at any phase pair") == 3

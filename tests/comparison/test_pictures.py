@@ -10,18 +10,18 @@ from typing import Any
 import pytest
 import xarray as xr
 from conftest import quick_figure
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 from rich.console import Console
 
-from comparison.account.surfaces import labelled_surfaces
-from comparison.analyses.errands import predicted
-from comparison.drawing import pictures
-from comparison.drawing.pictures import PAGE, all_drawn, for_page, picture_errands
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
-from comparison.storage.cache import Cache
-from comparison.sweep.answers import Answers
-from comparison.sweep.compute import fetched
+from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.tasks import predicted
+from comparison.execution.cache import Cache
+from comparison.execution.runner import fetched
+from comparison.execution.task_cache import TaskCache
+from comparison.report.figures import pictures
+from comparison.report.figures.pictures import PAGE, all_drawn, for_page, picture_tasks
+from comparison.study.batches import execute_batch
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 
@@ -35,9 +35,9 @@ class Broken(Executor):
 
 
 def _solved(gap: float = 0.01, grid: int = 4) -> tuple[Study, xr.Dataset]:
-    study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), grid, 1e-3, fake_ladder(gap=gap))
-    tiles = study.tiles()
-    return study, labelled_surfaces(study, tiles, [solve_tile(tile) for tile in tiles])
+    study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), grid, 1e-3, fake_hierarchy(gap=gap))
+    batches = study.batches()
+    return study, labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
 
 
 @pytest.fixture
@@ -53,10 +53,10 @@ def test_every_picture_of_the_page_has_its_small_form() -> None:
     shown = [name for name in files if name.endswith(".png") and not name.endswith("paper.png")]
     assert len(shown) == 2 * 2 * 4, "three differences and the budget, of two bodies in two scenes"
     assert {for_page(name) for name in shown} == {name for name in files if name.endswith(PAGE)}
-    errands = picture_errands(study, surfaces)
+    tasks = picture_tasks(study, surfaces)
     assert predicted(study)["pictures"] == (
-        len(errands),
-        pytest.approx(sum(errand.seconds for errand in errands), rel=0.2),
+        len(tasks),
+        pytest.approx(sum(task.seconds for task in tasks), rel=0.2),
     )
 
 
@@ -69,10 +69,10 @@ def test_what_no_worker_draws_is_drawn_at_home() -> None:
 @pytest.mark.usefixtures("quick")
 def test_pictures_are_stored_and_belong_to_their_numbers(tmp_path: Path) -> None:
     def drawn_anew(study: Study, surfaces: xr.Dataset) -> int:
-        answers = Answers(Cache(tmp_path))
-        errands = picture_errands(study, surfaces)
-        fetched(errands, answers, Console(quiet=True), 1, ThreadPoolExecutor)
-        return len(errands) - answers.parts["pictures"].stored
+        answers = TaskCache(Cache(tmp_path))
+        tasks = picture_tasks(study, surfaces)
+        fetched(tasks, answers, Console(quiet=True), 1, ThreadPoolExecutor)
+        return len(tasks) - answers.parts["pictures"].stored
 
     whole = drawn_anew(*_solved())
     assert whole > 0
@@ -82,8 +82,8 @@ def test_pictures_are_stored_and_belong_to_their_numbers(tmp_path: Path) -> None
 
 def test_a_real_figure_is_a_file_and_its_small_form() -> None:
     study, surfaces = _solved()
-    budget = next(errand for errand in picture_errands(study, surfaces) if errand.task.kind == "budget")
-    files = budget.solve(budget.task)
+    budget = next(task for task in picture_tasks(study, surfaces) if task.argument.kind == "budget")
+    files = budget.function(budget.argument)
     assert [name for name, content in files if len(content) > 1000] == [
         "fig3-I-body1-budget.png",
         "fig3-I-body1-budget.webp",

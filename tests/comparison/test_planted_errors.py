@@ -1,9 +1,9 @@
 """
-A mistake planted in the real programs moves the steps to and from the rung that has it, by its size, and no other.
+A mistake planted in the real programs moves the steps to and from the model that has it, by its size, and no other.
 
-What a step was before the mistake is known from the sound ladder, solved once. A mistake in one rung alone enters with
-the step to it and leaves, with the opposite sign, with the step to the next; one in a program that several rungs run
-enters with the first of them and leaves with the first that does not run it.
+What a step was before the mistake is known from the sound model hierarchy, solved once. A mistake in one model alone
+enters with the step to it and leaves, with the opposite sign, with the step to the next; one in a program that several
+models run enters with the first of them and leaves with the first that does not run it.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from comparison.account.acceptance import checked_limits
-from comparison.account.budget import TOTAL, closure, steps
-from comparison.account.differences import differences
-from comparison.account.steps import RESOLVED
-from comparison.account.surfaces import labelled_surfaces
-from comparison.account.unanswered import unanswered
-from comparison.plan.ladder import LADDER, Rung
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
+from comparison.analysis.acceptance import checked_limits
+from comparison.analysis.budget import TOTAL, closure, steps
+from comparison.analysis.differences import differences
+from comparison.analysis.steps import RESOLVED
+from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.unanswered import unanswered
+from comparison.study.batches import execute_batch
+from comparison.study.models import MODEL_HIERARCHY, Model
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 GRID = 2
@@ -34,18 +34,18 @@ SCENE = "fig3-II"  # of the paper's dry scenes the one whose four phase pairs ar
 
 @dataclass(frozen=True)
 class Mistake:
-    """What is wrong, in which rungs, and the body whose mu tells best."""
+    """What is wrong, in which models, and the body whose mu tells best."""
 
     what: str
-    rungs: tuple[str, ...]
+    models: tuple[str, ...]
     function: str
     settings: Mapping[str, Any]
     body: int = 2
 
 
-def _misspelt(what: str, rungs: str, file: str, right: str, wrong: str, body: int = 2) -> Mistake:
+def _misspelt(what: str, models: str, file: str, right: str, wrong: str, body: int = 2) -> Mistake:
     settings = {"file": file, "right": right, "wrong": wrong}
-    return Mistake(what, tuple(rungs.split()), "mistakes:misspelt", settings, body)
+    return Mistake(what, tuple(models.split()), "mistakes:misspelt", settings, body)
 
 
 EQUATIONS, SYSTEM = "solver/equations.py", "solver/system.py"
@@ -64,42 +64,42 @@ COARSE = Mistake(
     "step of 0.05 s, errors claimed as asked", ("translational",), "mistakes:coarse", {"step": 0.05}, body=1
 )
 SOFT = Mistake("links 10 % too soft", ("spatial",), "mistakes:misread", {"stiffness": 0.9})
-IN_ALL = replace(M_SUM, rungs=("exact", "resolved", "regularised"))
+IN_ALL = replace(M_SUM, models=("exact", "resolved", "regularised"))
 
 
 @dataclass(frozen=True)
 class Solved:
-    """A ladder and its surfaces."""
+    """A model hierarchy and its surfaces."""
 
     study: Study
     surfaces: xr.Dataset
 
     @staticmethod
-    def by(ladder: tuple[Rung, ...]) -> Solved:
+    def by(hierarchy: tuple[Model, ...]) -> Solved:
         scene = load_scene(SCENE).with_values({"duration": DURATION})
-        study = Study((scene,), GRID, 1e-3, ladder)
-        tiles = study.tiles()
-        answers = [solve_tile(tile) for tile in tiles]
-        assert [answer.fault for answer in answers if answer.fault] == []
-        return Solved(study, labelled_surfaces(study, tiles, answers))
+        study = Study((scene,), GRID, 1e-3, hierarchy)
+        batches = study.batches()
+        answers = [execute_batch(batch) for batch in batches]
+        assert [answer.error_message for answer in answers if answer.error_message] == []
+        return Solved(study, labeled_surfaces(study, batches, answers))
 
 
 @pytest.fixture(scope="module")
 def sound() -> Solved:
-    return Solved.by(LADDER)
+    return Solved.by(MODEL_HIERARCHY)
 
 
 def _with(sound: Solved, mistake: Mistake) -> Solved:
-    """The sound surfaces with those of the rungs that have the mistake in place of their own."""
+    """The sound surfaces with those of the models that have the mistake in place of their own."""
     wrong = tuple(
-        replace(rung, amplification=mistake.function, settings={**rung.settings, **mistake.settings})
-        for rung in LADDER
-        if rung.key in mistake.rungs
+        replace(model, amplification=mistake.function, settings={**model.settings, **mistake.settings})
+        for model in MODEL_HIERARCHY
+        if model.key in mistake.models
     )
     found = Solved.by(wrong).surfaces
     surfaces = sound.surfaces.copy(deep=True)
     for name in ("mu", "error"):
-        surfaces[name].loc[{"model": list(mistake.rungs)}] = found[name].sel(model=list(mistake.rungs))
+        surfaces[name].loc[{"model": list(mistake.models)}] = found[name].sel(model=list(mistake.models))
     return Solved(sound.study, surfaces)
 
 
@@ -115,13 +115,13 @@ def _moved(sound: Solved, wrong: Solved, body: int) -> dict[str, float]:
 
 
 ALONE = {
-    "first rung": (SIGN_SMALL, ["exact", TOTAL]),  # wrong from the start: it shows where it leaves, and in the total
+    "first model": (SIGN_SMALL, ["exact", TOTAL]),  # wrong from the start: it shows where it leaves, and in the total
     "exact": (M_SUM, ["exact", "resolved"]),
     "resolved": (SIGN_EXACT, ["resolved", "regularised"]),
     "regularised": (STIFFNESS, ["regularised", "translational"]),
     "engine": (MASS, ["translational", "spatial"]),
     "coarse step": (COARSE, ["translational", "spatial"]),
-    "last rung": (SOFT, ["spatial", TOTAL]),  # it never leaves
+    "last model": (SOFT, ["spatial", TOTAL]),  # it never leaves
 }
 
 
@@ -131,7 +131,7 @@ def test_a_mistake_moves_the_steps_to_and_from_its_rung_and_no_other(
 ) -> None:
     wrong = _with(sound, mistake)
     moved = _moved(sound, wrong, mistake.body)
-    if mistake.rungs[0] == "small":  # the scale of every step moves with it, by less than a hundredth of each
+    if mistake.models[0] == "small":  # the scale of every step moves with it, by less than a hundredth of each
         moved = {key: change for key, change in moved.items() if abs(change) > 1e-3}
     assert list(moved) == blamed, f"{mistake.what}: {moved}"
     assert closure(steps(wrong.study, wrong.surfaces, SCENE, mistake.body)) < 1e-14

@@ -10,21 +10,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from conftest import Run, without_errands
-from fake_models import fake_ladder, known_motions
+from conftest import Run, without_tasks
+from fake_models import fake_hierarchy, known_motions
 from playwright.sync_api import sync_playwright
 from test_page_in_a_browser import CHROMIUM, DESKTOP, FLAGS, LAPTOP, _opened
 
 import comparison.run
-from comparison.account.budget import budget
-from comparison.account.surfaces import NOT_ASKED, labelled_surfaces
-from comparison.analyses.errands import errands, predicted
-from comparison.analyses.trajectories import chosen_places
-from comparison.assumptions.__main__ import main as assumptions
-from comparison.plan.left_out import left_out
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
+from comparison.analysis.budget import budget
+from comparison.analysis.surfaces import NOT_ASKED, labeled_surfaces
+from comparison.analysis.tasks import analysis_tasks, predicted
+from comparison.analysis.trajectories import chosen_places
+from comparison.cli.assumptions import main as assumptions
 from comparison.run import main
+from comparison.study.batches import execute_batch
+from comparison.study.reductions import reductions
+from comparison.study.study import Study
 from reference.problem import example_scenes, load_family, load_scene
 
 MIXED = ("synthetic-pair", "fig4-viscous")
@@ -33,13 +33,13 @@ EXAMPLES = Path(__file__).parents[2] / "reference/problem/examples"
 
 @pytest.fixture
 def study() -> Study:
-    return Study(tuple(map(load_scene, MIXED)), 4, 1e-3, fake_ladder(gap=0.01))
+    return Study(tuple(map(load_scene, MIXED)), 4, 1e-3, fake_hierarchy(gap=0.01))
 
 
 def test_a_record_is_one_point_of_every_model_and_the_other_scene_keeps_its_grid(study):
-    surfaces = labelled_surfaces(study, study.tiles(), [solve_tile(tile) for tile in study.tiles()])
+    surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
     record, grid = (surfaces.sel(scene=name) for name in MIXED)
-    assert [len(tile.phases) for tile in study.tiles() if tile.scene.recorded] == [1] * 6
+    assert [len(batch.phases) for batch in study.batches() if batch.scene.recorded] == [1] * 6
     assert (record["status"].isel(alpha1=0, alpha2=0) == "ok").all()
     assert (record["status"] == NOT_ASKED).sum() == 6 * 15
     assert np.isfinite(grid["mu"].sel(model="small")).all()
@@ -50,10 +50,10 @@ def test_a_record_is_one_point_of_every_model_and_the_other_scene_keeps_its_grid
 
 
 def test_what_needs_phases_or_amplitudes_is_not_asked_of_a_record(study):
-    stages = {errand.stage for errand in errands(Study(study.scenes[:1], 4, 1e-3))}
+    stages = {task.stage for task in analysis_tasks(Study(study.scenes[:1], 4, 1e-3))}
     assert stages == {"effective values"}
     assert predicted(Study(study.scenes[:1], 4, 1e-3))["pictures"][0] == 0
-    assert not left_out(Study(study.scenes[:1], 4, 1e-3))
+    assert not reductions(Study(study.scenes[:1], 4, 1e-3))
     (place,) = chosen_places(study, None, study.scenes[0])
     assert (place.row, place.column) == (0, 0)
 
@@ -61,7 +61,7 @@ def test_what_needs_phases_or_amplitudes_is_not_asked_of_a_record(study):
 def test_a_mixed_study_is_planned_computed_and_checked(command: Callable[..., Run]) -> None:
     plan = command(*MIXED, "--grid", "4", "--plan")
     assert (plan.code, "one point per model" in plan.out) == (0, True)
-    run = command(*MIXED, "--grid", "4", "--check", ladder=fake_ladder(gap=0.0))
+    run = command(*MIXED, "--grid", "4", "--check", hierarchy=fake_hierarchy(gap=0.0))
     assert (run.code, run.err) == (0, "")
     first, second = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))["scenes"]
     assert {row["asked"] for row in first["differences"]} == {1}
@@ -75,7 +75,7 @@ def test_a_mixed_study_is_planned_computed_and_checked(command: Callable[..., Ru
 
 
 def test_a_broken_limit_of_a_record_is_told(command: Callable[..., Run]) -> None:
-    run = command("synthetic-pair", "--check", ladder=fake_ladder(gap=0.01))
+    run = command("synthetic-pair", "--check", hierarchy=fake_hierarchy(gap=0.01))
     assert run.code == 1
     assert "synthetic-pair" in run.err
 
@@ -102,12 +102,12 @@ def test_varied_rings_are_refused_of_a_record_in_one_line(capsys: pytest.Capture
 def test_the_page_shows_the_table_and_the_motions_of_a_record_without_a_click(tmp_path: Path) -> None:
     place = tmp_path / "report"
     with pytest.MonkeyPatch.context() as patch:
-        without_errands(patch)
-        patch.setattr(comparison.run, "slip_effects", lambda *rest: [])
+        without_tasks(patch)
+        patch.setattr(comparison.run, "errata_effects", lambda *rest: [])
         patch.setattr(comparison.run, "stored_motions", known_motions)
         patch.setattr(comparison.run, "further_findings", lambda *rest: {})
         words = [*example_scenes(), "--grid", "4", "--jobs", "1", "--out", str(place)]
-        assert main(words, fake_ladder(), ThreadPoolExecutor) == 0
+        assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         for window in (LAPTOP, DESKTOP):

@@ -9,44 +9,44 @@ import numpy as np
 import pytest
 
 import multibody
-from comparison.account.surfaces import labelled_surfaces
-from comparison.plan.ladder import (
+from comparison.analysis.surfaces import labeled_surfaces
+from comparison.study.batches import execute_batch
+from comparison.study.models import (
     EXACT,
-    LADDER,
-    REGULARISED,
+    MODEL_HIERARCHY,
+    REGULARIZED,
     RESOLVED,
     SMALL,
     SPATIAL,
     TRANSLATIONAL,
-    Rung,
+    Model,
+    models_of,
     never,
-    rungs_of,
 )
-from comparison.plan.left_out import left_out
-from comparison.plan.savings import saving
-from comparison.plan.study import Study
-from comparison.plan.symmetry import sources
-from comparison.plan.tiles import solve_tile
+from comparison.study.reductions import reductions
+from comparison.study.speedup import speedup
+from comparison.study.study import Study
+from comparison.study.symmetry import sources
 from reference.problem import Scene, builtin_scenes, load_scene
 
 GRID = 4
 
 
-def surfaces(scene: Scene, rungs: list[Rung], full: bool):
-    study = Study((scene.with_values({"duration": 4.0}),), GRID, 1e-3, rungs, full)
-    tiles = study.tiles()
-    return sum(len(tile.phases) for tile in tiles), labelled_surfaces(
-        study, tiles, [solve_tile(tile) for tile in tiles]
+def surfaces(scene: Scene, models: list[Model], full: bool):
+    study = Study((scene.with_values({"duration": 4.0}),), GRID, 1e-3, models, full)
+    batches = study.batches()
+    return sum(len(batch.phases) for batch in batches), labeled_surfaces(
+        study, batches, [execute_batch(batch) for batch in batches]
     )
 
 
 @pytest.mark.parametrize("name", builtin_scenes())
 def test_the_reduced_study_gives_the_full_surfaces_within_the_errors(name: str) -> None:
-    rungs = [rung for rung in (SMALL, EXACT, REGULARISED) if rung.applies(load_scene(name))]
-    whole, full = surfaces(load_scene(name), rungs, full=True)
-    fewer, reduced = surfaces(load_scene(name), rungs, full=False)
+    models = [model for model in (SMALL, EXACT, REGULARIZED) if model.applies(load_scene(name))]
+    whole, full = surfaces(load_scene(name), models, full=True)
+    fewer, reduced = surfaces(load_scene(name), models, full=False)
     saved = {"fig3-I": 4, "fig3-II": 2, "fig4-dry": 2, "fig4-viscous": 2}[name]
-    assert fewer * saved == whole == len(rungs) * GRID**2
+    assert fewer * saved == whole == len(models) * GRID**2
     assert (reduced["status"] == full["status"]).all()
     assert (abs(reduced["mu"] - full["mu"]) <= reduced["error"] + full["error"]).all()
 
@@ -108,12 +108,12 @@ def test_the_phase_of_a_harmonic_without_amplitude_is_not_varied() -> None:
 
 def test_without_friction_no_law_of_friction_is_varied() -> None:
     free, held = short(isolator={"friction": 0.0}), short(isolator={"friction": 1e-9})
-    assert [rung.key for rung in rungs_of(free, LADDER)] == ["small", "exact", "translational", "spatial"]
-    assert len(rungs_of(held, LADDER)) == len(LADDER)
-    [tile] = Study((free,), 3, 1e-3, [EXACT]).tiles()
+    assert [model.key for model in models_of(free, MODEL_HIERARCHY)] == ["small", "exact", "translational", "spatial"]
+    assert len(models_of(held, MODEL_HIERARCHY)) == len(MODEL_HIERARCHY)
+    [batch] = Study((free,), 3, 1e-3, [EXACT]).batches()
     answers = [
-        solve_tile(replace(tile, settings={**rung.settings, "tolerance": 1e-6}))
-        for rung in (EXACT, RESOLVED, REGULARISED)
+        execute_batch(replace(batch, settings={**model.settings, "tolerance": 1e-6}))
+        for model in (EXACT, RESOLVED, REGULARIZED)
     ]
     for other in answers[1:]:
         assert (abs(other.mu - answers[0].mu) <= other.error + answers[0].error).all()
@@ -121,8 +121,8 @@ def test_without_friction_no_law_of_friction_is_varied() -> None:
 
 def test_a_full_study_asks_both_sides_for_all_of_it() -> None:
     for full in (False, True):
-        tiles = Study((short(),), GRID, 1e-3, full=full).tiles()
-        assert all(tile.settings.get("full", False) == full for tile in tiles)
+        batches = Study((short(),), GRID, 1e-3, full=full).batches()
+        assert all(batch.settings.get("full", False) == full for batch in batches)
     free = short(4.0, isolator={"friction": 0.0})
     _, whole = surfaces(free, [SMALL], full=True)
     _, reduced = surfaces(free, [SMALL], full=False)
@@ -132,15 +132,15 @@ def test_a_full_study_asks_both_sides_for_all_of_it() -> None:
 
 def test_what_is_left_out_is_listed_with_its_saving() -> None:
     scene = alone(short(isolator={"friction": 0.0}, bodies={"height": 0.0}))
-    rows = {row.what: row for row in left_out(Study((scene,), GRID, 1e-3))}
-    assert [row.models for row in rows.values()] == ["all", "regularised, resolved", "small", "spatial"]
+    rows = {row.what: row for row in reductions(Study((scene,), GRID, 1e-3))}
+    assert [row.models for row in rows.values()] == ["all", "regularized, resolved", "small", "spatial"]
     assert rows["mirrored phases"].cost == "1/4"
     study, full = Study((scene,), GRID, 1e-3), Study((scene,), GRID, 1e-3, full=True)
-    assert left_out(full) == []
-    for rung in (SMALL, SPATIAL):
-        points = len(study.solved(scene, rung)) / len(full.solved(scene, rung))
-        assert study.seconds(rung) == pytest.approx(full.seconds(rung) * points / saving(scene, rung))
-        assert saving(scene, rung) > 1.0 == saving(load_scene("fig3-I"), rung)
+    assert reductions(full) == []
+    for model in (SMALL, SPATIAL):
+        points = len(study.solved(scene, model)) / len(full.solved(scene, model))
+        assert study.seconds(model) == pytest.approx(full.seconds(model) * points / speedup(scene, model))
+        assert speedup(scene, model) > 1.0 == speedup(load_scene("fig3-I"), model)
 
 
 def test_just_outside_the_condition_nothing_is_saved() -> None:

@@ -10,15 +10,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import Run
-from fake_models import fake_ladder, silenced
+from fake_models import fake_hierarchy, silenced
 
-from comparison.account.budget import TOTAL, closure, steps
-from comparison.account.surfaces import labelled_surfaces
-from comparison.account.unanswered import unanswered, with_silent_models
-from comparison.account.verdicts import bar, verdict
-from comparison.analyses.trajectories import motion_tasks, moved
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
+from comparison.analysis.budget import TOTAL, closure, steps
+from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.trajectories import motion_arguments, moved
+from comparison.analysis.unanswered import unanswered, with_silent_models
+from comparison.analysis.verdicts import bar, verdict
+from comparison.study.batches import execute_batch
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"
@@ -40,10 +40,10 @@ def _solved(*silent: str) -> Study:
 @pytest.mark.parametrize("silent", ["spatial", "translational", "resolved", "small"])
 def test_the_total_leads_to_the_most_complete_model_with_values_and_the_steps_add_up(silent: str) -> None:
     study = _solved(silent)
-    surfaces = labelled_surfaces(study, study.tiles(), [solve_tile(tile) for tile in study.tiles()])
+    surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
     study = with_silent_models(study, surfaces)
     scene = study.scenes[0]
-    left = [rung.key for rung in study.ladder if rung.key != silent]
+    left = [model.key for model in study.hierarchy if model.key != silent]
     for body in (1, 2):
         found = steps(study, surfaces, scene.name, body)
         assert [step.second.key for step in found] == [*left[1:], left[-1]]
@@ -60,7 +60,7 @@ def test_the_total_leads_to_the_most_complete_model_with_values_and_the_steps_ad
 def test_like_for_like_is_never_said_of_other_models() -> None:
     for silent in ("regularised", "translational"):
         study = _solved(silent)
-        surfaces = labelled_surfaces(study, study.tiles(), [solve_tile(tile) for tile in study.tiles()])
+        surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
         assert "like-for-like" not in {
             pair.key for pair in with_silent_models(study, surfaces).pairs(study.scenes[0])
         }, silent
@@ -69,7 +69,7 @@ def test_like_for_like_is_never_said_of_other_models() -> None:
 def test_the_first_screen_the_summary_and_the_terminal_say_which_model_why_and_what_helps(
     command: Callable[..., Run],
 ) -> None:
-    run = command("fig3-I", *GRID, ladder=silenced("spatial"))
+    run = command("fig3-I", *GRID, hierarchy=silenced("spatial"))
     line = f"fig3-I: spatial engine: no value at any of 16 phase pairs: {WHY}. Comparisons leave this model out."
     assert run.code == 0
     page = (run.report / "index.html").read_text(encoding="utf-8")
@@ -83,7 +83,7 @@ def test_the_first_screen_the_summary_and_the_terminal_say_which_model_why_and_w
 
 
 def test_a_refused_model_breaks_only_the_limit_of_answers(command: Callable[..., Run]) -> None:
-    run = command("fig3-I", *GRID, "--check", ladder=silenced("spatial"))
+    run = command("fig3-I", *GRID, "--check", hierarchy=silenced("spatial"))
     assert run.code == 1
     assert run.err == (
         "limit broken: fig3-I: acceptance.failed: 16 points without an answer (spatial engine 16 of 16), 0 allowed\n"
@@ -93,7 +93,7 @@ def test_a_refused_model_breaks_only_the_limit_of_answers(command: Callable[...,
 def test_limits_may_be_stated_for_every_pair(command: Callable[..., Run], tmp_path: Path) -> None:
     limits = "[acceptance.total]\nmaximum = 0.02\n[acceptance.translational]\nmedian = 1e-3\n"
     scene = _limited(tmp_path, limits + "[acceptance.like_for_like]\nratio = 1e3\n")
-    run = command(scene, *GRID, "--check", ladder=fake_ladder(gap=0.01))
+    run = command(scene, *GRID, "--check", hierarchy=fake_hierarchy(gap=0.01))
     assert run.code == 1
     assert run.err.splitlines() == [
         f"limit broken: mine: body {body}: acceptance.translational.median: 0.01 found, 0.001 allowed"
@@ -109,17 +109,17 @@ def test_the_translational_limit_holds_the_total_where_no_body_may_turn(
     command: Callable[..., Run], tmp_path: Path
 ) -> None:
     scene = _limited(tmp_path, "[acceptance]\nfailed = 99\n[acceptance.translational]\nmedian = 1e-3\n")
-    run = command(scene, *GRID, "--check", ladder=silenced("spatial", gap=0.01))
+    run = command(scene, *GRID, "--check", hierarchy=silenced("spatial", gap=0.01))
     assert "body 1: acceptance.translational.median: 0.01 found, 0.001 allowed" in run.err
 
 
 def test_a_check_without_limits_says_that_nothing_was_checked(command: Callable[..., Run], tmp_path: Path) -> None:
     scene = _limited(tmp_path, "")
-    run = command(scene, *GRID, "--check", ladder=silenced("spatial"))
+    run = command(scene, *GRID, "--check", hierarchy=silenced("spatial"))
     assert (run.code, run.err) == (0, "--check: no scene states [acceptance] limits: nothing was checked\n")
     assert "No scene states acceptance limits" in (run.report / "index.html").read_text(encoding="utf-8")
     assert "holds" not in (run.report / "summary.md").read_text(encoding="utf-8")
-    both = command(scene, "fig3-I", *GRID, "--check", ladder=fake_ladder(gap=5e-5))
+    both = command(scene, "fig3-I", *GRID, "--check", hierarchy=fake_hierarchy(gap=5e-5))
     assert (both.code, both.err) == (0, "--check: mine: no limits are stated under [acceptance]: nothing was checked\n")
 
 
@@ -128,7 +128,10 @@ def test_a_check_without_limits_says_that_nothing_was_checked(command: Callable[
     [
         ("[acceptance]\nmaximun = 1.0\n", "acceptance.maximun = 1.0: unknown key; did you mean maximum?"),
         ("[acceptance.totals]\nmedian = 1.0\n", "unknown key; did you mean total?"),
-        ("[acceptance.total]\nclosure = 1.0\n", "acceptance.total.closure = 1.0: unknown key; the keys here are median, "),
+        (
+            "[acceptance.total]\nclosure = 1.0\n",
+            "acceptance.total.closure = 1.0: unknown key; the keys here are median, ",
+        ),
         (
             "[acceptance]\nmedian = 1.0\n[acceptance.like_for_like]\nmedian = 2.0\n",
             "give median here or in like_for_like",
@@ -138,14 +141,14 @@ def test_a_check_without_limits_says_that_nothing_was_checked(command: Callable[
 def test_a_wrong_limit_is_one_line_with_the_nearest_key(
     command: Callable[..., Run], tmp_path: Path, limits: str, said: str
 ) -> None:
-    run = command(_limited(tmp_path, limits), ladder=fake_ladder("forbidden"))
+    run = command(_limited(tmp_path, limits), hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert said in run.err
     assert run.err.count("\n") == 1
 
 
 def test_the_plan_says_that_a_model_is_refused_and_counts_nothing_for_it(command: Callable[..., Run]) -> None:
-    run = command("fig3-I", "--plan", ladder=silenced("spatial"))
+    run = command("fig3-I", "--plan", hierarchy=silenced("spatial"))
     assert f"fig3-I, spatial engine: {WHY.removeprefix('step limit: ')}." in run.out
     row = next(line.split() for line in run.out.splitlines() if "spatial engine  " in line)
     assert row[-1] == "0.0"
@@ -153,19 +156,19 @@ def test_the_plan_says_that_a_model_is_refused_and_counts_nothing_for_it(command
 
 def test_a_motion_that_was_never_begun_has_a_status_and_no_error() -> None:
     study = _solved("spatial")
-    surfaces = labelled_surfaces(study, study.tiles(), [solve_tile(tile) for tile in study.tiles()])
-    task = next(task for task in motion_tasks(study, surfaces) if task[1].key == "spatial")
+    surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
+    task = next(task for task in motion_arguments(study, surfaces) if task[1].key == "spatial")
     motion = moved(task)
-    assert (motion.status, motion.fault, len(motion.time)) == ("step limit", "", 0)
+    assert (motion.status, motion.error_message, len(motion.time)) == ("step limit", "", 0)
 
 
 def test_a_model_that_answers_somewhere_is_kept_and_named() -> None:
-    ladder = tuple(
-        replace(rung, amplification="fake_models:failing_point", settings={}) if rung.key == "spatial" else rung
-        for rung in fake_ladder()
+    hierarchy = tuple(
+        replace(model, amplification="fake_models:failing_point", settings={}) if model.key == "spatial" else model
+        for model in fake_hierarchy()
     )
-    study = Study((load_scene("fig3-I"),), 4, 1e-3, ladder)
-    surfaces = labelled_surfaces(study, study.tiles(), [solve_tile(tile) for tile in study.tiles()])
+    study = Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy)
+    surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
     study = with_silent_models(study, surfaces)
     (lacking,) = unanswered(study, surfaces)
     assert (lacking.points, lacking.asked, lacking.used) == (1, 16, True)

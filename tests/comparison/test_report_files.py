@@ -1,4 +1,4 @@
-"""What a finished run leaves: labelled surfaces, a summary for programs, figures, and a page that needs no network."""
+"""What a finished run leaves: labeled surfaces, a summary for programs, figures, and a page that needs no network."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 from matplotlib.image import imread
 
-from comparison.plan.ladder import LADDER
+from comparison.study.models import MODEL_HIERARCHY
 from reference.problem import load_scene
 
 GRID = 4
@@ -31,12 +31,12 @@ def test_a_report_is_exactly_its_parts(finished: Path) -> None:
     assert beside == {"report", "report.tiles"}, "the store, and no working directory left"
 
 
-def test_surfaces_are_labelled_by_scene_model_body_and_phases(surfaces: xr.Dataset) -> None:
+def test_surfaces_are_labeled_by_scene_model_body_and_phases(surfaces: xr.Dataset) -> None:
     assert surfaces["mu"].dims == ("scene", "model", "body", "alpha1", "alpha2")
     assert surfaces["error"].dims == surfaces["mu"].dims
     assert surfaces["status"].dims == ("scene", "model", "alpha1", "alpha2")
     assert list(surfaces["scene"].values) == ["fig3-I", "fig4-viscous"]
-    assert list(surfaces["model"].values) == [rung.key for rung in LADDER]
+    assert list(surfaces["model"].values) == [model.key for model in MODEL_HIERARCHY]
     assert list(surfaces["body"].values) == [1, 2]
     for name in ("alpha1", "alpha2"):
         np.testing.assert_allclose(surfaces[name], 2.0 * np.pi * np.arange(GRID) / GRID, rtol=1e-15)
@@ -54,9 +54,9 @@ def test_every_value_stands_at_its_own_phases(surfaces: xr.Dataset) -> None:
 
 
 def test_a_model_that_does_not_apply_is_nan_and_says_so(surfaces: xr.Dataset) -> None:
-    regularised = surfaces.sel(scene="fig4-viscous", model="regularised")
-    assert np.isnan(regularised["mu"]).all()
-    assert (regularised["status"] == "not applicable").all()
+    regularized = surfaces.sel(scene="fig4-viscous", model="regularised")
+    assert np.isnan(regularized["mu"]).all()
+    assert (regularized["status"] == "not applicable").all()
 
 
 def test_bodies_a_scene_does_not_have_are_nan_and_counted(surfaces: xr.Dataset) -> None:
@@ -81,10 +81,10 @@ def test_summary_has_its_schema_and_no_nan(finished: Path) -> None:
     summary = _strict((finished / "summary.json").read_text(encoding="utf-8"))
     assert isinstance(summary, dict)
     assert summary["schema"] == "phase-resonance/summary"
-    assert summary["version"] == 2
+    assert summary["version"] == 3
     assert (summary["grid"], summary["tolerance"]) == (GRID, 1e-3)
     assert {"command", "began", "seconds", "compute_seconds", "jobs", "provenance"} <= set(summary["run"])
-    assert [model["key"] for model in summary["models"]] == [rung.key for rung in LADDER]
+    assert [model["key"] for model in summary["models"]] == [model.key for model in MODEL_HIERARCHY]
     assert [scene["name"] for scene in summary["scenes"]] == ["fig3-I", "fig4-viscous"]
     dry, wet = summary["scenes"]
     assert dry["models"]["exact"]["outcomes"] == {"ok": GRID**2}
@@ -164,8 +164,8 @@ def test_the_page_names_every_scene_body_model_and_says_what_it_is_not(finished:
     page = (finished / "index.html").read_text(encoding="utf-8")
     for text in ("(fig3-I)", "(fig4-viscous)", "Body 1 (platform)", "Body 2", "cross-verified, not validated"):
         assert text in page
-    for rung in LADDER:
-        assert rung.title in page
+    for model in MODEL_HIERARCHY:
+        assert model.title in page
     digest = load_scene("fig3-I").digest()
     assert digest in page
 

@@ -10,7 +10,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import pytest
-from fake_models import errors_in, fake_ladder
+from fake_models import errors_in, fake_hierarchy
 from jsonschema import Draft202012Validator
 
 from reference.problem import load_scene
@@ -27,7 +27,9 @@ def test_the_summary_names_every_broken_limit_and_every_verdict(finished: Path) 
     assert "12 acceptance limits broken" in text
     assert r"- fig3-I: body 1: acceptance.median: 0.01 found, 0.0001 allowed" in text
     assert "- **fig3-I** (Fig. 3a, b" in text
-    assert "largest step there: +1 %, to the translational engine" in text, "the only model of the ladder that differs"
+    assert "largest step there: +1 %, to the translational engine" in text, (
+        "the only model of the hierarchy that differs"
+    )
     assert "cross-verified, not validated" in text
 
 
@@ -40,7 +42,7 @@ def test_tables_of_the_summary_have_one_width_and_the_planted_size(finished: Pat
 
 
 def test_a_sound_run_says_that_its_limits_hold(command: Callable[..., object]) -> None:
-    done = command("fig3-I", "--grid", "2", ladder=errors_in({"small": 0.02}))
+    done = command("fig3-I", "--grid", "2", hierarchy=errors_in({"small": 0.02}))
     text = (done.report / "summary.md").read_text(encoding="utf-8")  # type: ignore[attr-defined]
     assert "**Every acceptance limit holds.**" in text
     assert "broken" not in text
@@ -84,7 +86,7 @@ def test_every_key_of_the_summary_is_documented_and_as_documented(finished: Path
     schema = _schema()
     Draft202012Validator.check_schema(schema)
     summary = json.loads((finished / "summary.json").read_text(encoding="utf-8"))
-    assert [fault.message for fault in Draft202012Validator(schema).iter_errors(summary)] == []
+    assert [error_message.message for error_message in Draft202012Validator(schema).iter_errors(summary)] == []
     for part in _objects(schema):
         if "properties" in part:
             assert part["additionalProperties"] is False, "an undocumented key is a fault"
@@ -92,7 +94,7 @@ def test_every_key_of_the_summary_is_documented_and_as_documented(finished: Path
 
 
 def test_a_point_without_an_answer_is_in_the_summary(command: Callable[..., object]) -> None:
-    done = command("fig3-I", "--grid", "4", ladder=fake_ladder("failing_point"))
+    done = command("fig3-I", "--grid", "4", hierarchy=fake_hierarchy("failing_point"))
     text = (done.report / "summary.md").read_text(encoding="utf-8")  # type: ignore[attr-defined]
     assert "- fig3-I, translational engine: 1 × rim reached" in text
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from comparison.analyses import scaling
-from comparison.analyses.scaling import PRINTED, STEP, scaled, scaling_trends
-from comparison.analyses.trends import Trend
-from comparison.plan.study import Study
+from comparison.analysis import scaling
+from comparison.analysis.scaling import PRINTED, STEP, scaled, scaling_trends
+from comparison.analysis.trends import Trend
+from comparison.study.study import Study
 from reference import trajectory
 from reference.problem import Amplification, Scene, load_scene
 

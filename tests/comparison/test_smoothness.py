@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from comparison.claims.smoothness import bends
-from comparison.plan.symmetry import surface
+from comparison.analysis.claims.smoothness import bends
+from comparison.study.symmetry import surface
 from reference import amplification
 from reference.problem import Amplification, Scene, half_turn, load_scene, own_axes, phase_grid
 

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 from conftest import Run
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 
+from comparison.execution.output import atomic_replace, clear_dead, publish
 from comparison.report import report
-from comparison.storage.output import clear_dead, publish, replaced_when_complete
 
 SMALL = ["fig3-I", "--grid", "2"]
 
@@ -31,20 +31,20 @@ def test_a_second_run_replaces_the_first(command: Callable[..., Run]) -> None:
 
 
 @pytest.mark.parametrize(
-    "fault", [OSError("No space left on device"), KeyboardInterrupt()], ids=["disk full", "Ctrl-C"]
+    "error_message", [OSError("No space left on device"), KeyboardInterrupt()], ids=["disk full", "Ctrl-C"]
 )
 def test_a_report_that_cannot_be_finished_leaves_the_old_one(
-    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch, fault: BaseException
+    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch, error_message: BaseException
 ) -> None:
     first = command(*SMALL)
     before = {entry: entry.read_bytes() for entry in first.report.rglob("*") if entry.is_file()}
 
     def breaks(*rest: object) -> str:
-        raise fault  # the surfaces, the summary and the figures are written by then
+        raise error_message  # the surfaces, the summary and the figures are written by then
 
     monkeypatch.setattr(report, "page_data", breaks)
     run = command(*SMALL, "--tolerance", "2e-3")
-    assert run.code == (130 if isinstance(fault, KeyboardInterrupt) else 3)
+    assert run.code == (130 if isinstance(error_message, KeyboardInterrupt) else 3)
     assert run.err.count("\n") == 1
     assert {entry: entry.read_bytes() for entry in first.report.rglob("*") if entry.is_file()} == before
     assert sorted(entry.name for entry in first.report.parent.iterdir()) == ["report", "report.tiles"]
@@ -52,7 +52,7 @@ def test_a_report_that_cannot_be_finished_leaves_the_old_one(
 
 def test_nothing_is_made_when_the_first_report_cannot_be_finished(tmp_path: Path) -> None:
     def half() -> None:
-        with replaced_when_complete(tmp_path / "a" / "b" / "report") as report:
+        with atomic_replace(tmp_path / "a" / "b" / "report") as report:
             (report.folder / "index.html").write_text("half", encoding="utf-8")
             raise RuntimeError("the second half")
 
@@ -74,14 +74,14 @@ def test_the_swap_puts_the_old_report_back_when_the_new_one_cannot_move(
         rename(source, target)
 
     monkeypatch.setattr(os, "rename", second_fails)
-    with pytest.raises(OSError, match="no"), replaced_when_complete(place) as report:
+    with pytest.raises(OSError, match="no"), atomic_replace(place) as report:
         (report.folder / "index.html").write_text("new", encoding="utf-8")
     assert (place / "index.html").read_text(encoding="utf-8") == "old"
     assert list(tmp_path.iterdir()) == [place]
 
 
 def test_the_fake_models_would_notice_a_computation(command: Callable[..., Run]) -> None:
-    run = command(*SMALL, ladder=fake_ladder("forbidden"))
+    run = command(*SMALL, hierarchy=fake_hierarchy("forbidden"))
     assert "nothing should have been computed" in run.err
 
 
@@ -89,7 +89,7 @@ KILLED = """
 import os, signal, sys
 from pathlib import Path
 sys.path.insert(0, {root!r})
-from comparison.storage import output as store
+from comparison.execution import output as store
 def killed(*rest):
     os.kill(os.getpid(), signal.SIGKILL)
 if {late}:

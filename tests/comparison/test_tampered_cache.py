@@ -14,30 +14,30 @@ from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 import numpy as np
 import pytest
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 from numpy.typing import NDArray
 
-from comparison.analyses.convergence import limit_trends
-from comparison.analyses.effective import read_back
-from comparison.analyses.scaling import scene_trends
-from comparison.analyses.slips import measured
-from comparison.analyses.trajectories import Place, StoredMotion, moved
-from comparison.assumptions.variations import varied
-from comparison.claims.evidence import Evidence, gathered
-from comparison.claims.smoothness import Bend
-from comparison.drawing.pictures import drawn
-from comparison.plan.study import Study
-from comparison.plan.tiles import Answer, solve_tile
-from comparison.storage.cache import LENGTH, MAGIC, Cache, Key
-from comparison.storage.encoding import array_of
-from comparison.sweep.keys import stored_tile, tile_key
+from comparison.analysis.assumptions.variations import varied
+from comparison.analysis.claims.evidence import Evidence, gathered
+from comparison.analysis.claims.smoothness import Bend
+from comparison.analysis.convergence import limit_trends
+from comparison.analysis.effective import read_back
+from comparison.analysis.errata import measured
+from comparison.analysis.scaling import scene_trends
+from comparison.analysis.trajectories import Place, StoredMotion, moved
+from comparison.execution.cache import LENGTH, MAGIC, Cache, Key
+from comparison.execution.encoding import array_of
+from comparison.execution.keys import batch_key, cached_batch
+from comparison.report.figures.pictures import drawn
+from comparison.study.batches import BatchResult, execute_batch
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 KEY = Key('{"a": 1}', "0" * 64, "answer")
 ROOT = Path(__file__).parents[2]
 
 
-class Colour(Enum):
+class Color(Enum):
     RED = "red"
 
 
@@ -56,7 +56,7 @@ class Outer:
     picture: bytes
     inner: tuple[Inner, ...]
     pair: tuple[str, float] | None
-    colour: Colour
+    color: Color
     rows: list[int]
     table: Mapping[str, float]
 
@@ -67,7 +67,7 @@ VALUE = Outer(
     b"\x89PNG\0",
     (Inner(0.1 + 0.2), Inner(float("-inf"), "no")),
     ("μ", 1e308),
-    Colour.RED,
+    Color.RED,
     [1, -2],
     {"a": 1.5},
 )
@@ -125,7 +125,7 @@ FORGERIES: dict[str, Callable[[dict[str, Any]], Any]] = {
     "true for a whole number": _changed(rows=[True]),
     "a field too many": _changed(more=1),
     "a field too few": lambda head: {**head, "value": {"array": {"array": 0}}},
-    "an unknown member": _changed(colour="blue"),
+    "an unknown member": _changed(color="blue"),
     "an unknown word": _changed(inner=[{"number": 1.0, "word": "perhaps"}]),
     "deeply nested": lambda head: b'{"about": 1, "arrays": [], "value": ' + b"[" * 100000 + b"]" * 100000 + b"}",
     "no JSON": lambda head: b"\xff\xfe",
@@ -185,13 +185,13 @@ def test_no_file_of_another_result_is_taken(tmp_path: Path) -> None:
 
 
 def test_a_tile_of_another_shape_is_computed_again(tmp_path: Path) -> None:
-    tile = Study((load_scene("fig3-I"),), 2, 1e-3, fake_ladder()).tiles()[0]
+    batch = Study((load_scene("fig3-I"),), 2, 1e-3, fake_hierarchy()).batches()[0]
     cache = Cache(tmp_path)
-    answer = solve_tile(tile)
-    cache.put(tile_key(tile), Answer(answer.mu[:1], answer.error, answer.status, answer.instant, 0.0))
-    assert stored_tile(cache, tile) is None
-    cache.put(tile_key(tile), answer)
-    assert stored_tile(cache, tile) is not None
+    answer = execute_batch(batch)
+    cache.put(batch_key(batch), BatchResult(answer.mu[:1], answer.error, answer.status, answer.instant, 0.0))
+    assert cached_batch(cache, batch) is None
+    cache.put(batch_key(batch), answer)
+    assert cached_batch(cache, batch) is not None
 
 
 def test_a_motion_whose_arrays_disagree_is_none() -> None:
@@ -231,4 +231,4 @@ def test_no_module_of_the_study_unpickles_what_is_stored() -> None:
         if "pickle" in path.read_text(encoding="utf-8").replace("allow_pickle=False", "")
     ]
     # a pipe to a process that the study starts itself, and words about the cache
-    assert set(users) <= {"comparison/sweep/warm_up.py", "comparison/storage/cache.py"}
+    assert set(users) <= {"comparison/execution/warm_up.py", "comparison/execution/cache.py"}

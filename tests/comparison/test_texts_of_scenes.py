@@ -9,23 +9,23 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from conftest import Run
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 from rich.console import Console
 from rich.progress import Progress
 
-from comparison.account.surfaces import labelled_surfaces
-from comparison.assumptions.figure import draw_assumptions
-from comparison.assumptions.variations import FEW, Cell
-from comparison.drawing.file_names import figure_file, with_ending
-from comparison.drawing.paper_figures import draw_paper_figure, paper_figure_name
-from comparison.plan.overhead import COMPILED_ONCE
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
-from comparison.report.family_figure import draw_family
+from comparison.analysis.assumptions.variations import FEW, Cell
+from comparison.analysis.surfaces import labeled_surfaces
+from comparison.execution.progress import description, wide_console
+from comparison.report.figures.assumptions import draw_assumptions
+from comparison.report.figures.families import draw_family
+from comparison.report.figures.file_names import figure_file, with_ending
+from comparison.report.figures.paper import draw_paper_figure, paper_figure_name
 from comparison.report.findings import findings
 from comparison.report.junit import junit
 from comparison.report.summary_text import summary_text
-from comparison.sweep.progress import description, wide_console
+from comparison.study.batches import execute_batch
+from comparison.study.overhead import COMPILED_ONCE
+from comparison.study.study import Study
 from reference.problem import Family, Scene, load_family, load_scene
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"
@@ -42,8 +42,8 @@ def _written(folder: Path, name: str, title: str = "plain", friction: str = "0.1
 
 def test_members_of_a_family_have_figures_of_their_own(tmp_path: Path) -> None:
     family = load_family(_written(tmp_path, "fam.toml", friction="{values = [0.02, 0.04]}"))
-    study = Study(family.scenes, 2, 1e-3, fake_ladder())
-    surfaces = labelled_surfaces(study, study.tiles(), [solve_tile(tile) for tile in study.tiles()])
+    study = Study(family.scenes, 2, 1e-3, fake_hierarchy())
+    surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
     folder = tmp_path / "figures"
     folder.mkdir()
     for scene in study.scenes:
@@ -93,7 +93,7 @@ def test_dollars_in_a_title_are_letters_of_every_figure(tmp_path: Path) -> None:
     cells = [Cell(scene.name, variation, nothing, nothing, ("ok",) * 3) for variation in FEW]
     draw_assumptions(tmp_path / "assumptions.png", scene, cells)
     draw_family(
-        tmp_path / "family.png", Family("fam", (scene, scene), "a$b$", ("$c$", r"$\frac{$")), [], fake_ladder(), 1
+        tmp_path / "family.png", Family("fam", (scene, scene), "a$b$", ("$c$", r"$\frac{$")), [], fake_hierarchy(), 1
     )
     assert (tmp_path / "assumptions.png").stat().st_size > 0
     assert (tmp_path / "family.png").stat().st_size > 0
@@ -104,7 +104,7 @@ def test_two_scenes_of_one_name_are_refused_before_anything_is_computed(
 ) -> None:
     family = _written(tmp_path, "fam.toml", friction="{values = [0.02, 0.4]}")
     member = _written(tmp_path, "fam[friction=0.4].toml")
-    run = command(family, member, ladder=fake_ladder("forbidden"))
+    run = command(family, member, hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert run.err.startswith(f"{member}: scene = 'fam[friction=0.4]': same name as {family}")
     assert run.err.count("\n") == 1
@@ -114,8 +114,8 @@ def test_junit_and_summary_are_well_formed_whatever_a_scene_is_called() -> None:
     title = "[a](http://b) #1 $x$ &copy; ~~c~~ <b>\n| d"
     valid = load_scene("fig3-I")
     scene = Scene.model_construct(**{**dict(valid), "name": "a\x00\x01\ud800\ufffe<b>", "title": title})
-    study = Study((scene,), 2, 1e-3, fake_ladder())
-    surfaces = labelled_surfaces(study, study.tiles(), [solve_tile(tile) for tile in study.tiles()])
+    study = Study((scene,), 2, 1e-3, fake_hierarchy())
+    surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
     found = findings(study, surfaces, [], [], [], RUN)
     assert found.broken
     suites = ElementTree.fromstring(junit(found).encode())

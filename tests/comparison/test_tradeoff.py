@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from comparison.tradeoff import __main__ as command
-from comparison.tradeoff import measure
-from comparison.tradeoff.measure import Found, entry, measured, sample
-from comparison.tradeoff.settings import QUESTIONS, RUN, Setting, settings
-from comparison.tradeoff.trade import FILE, Trade, on_front, quantile, read, with_fronts
+from comparison.analysis.tradeoff import measure
+from comparison.analysis.tradeoff.measure import Found, entry, measured, sample
+from comparison.analysis.tradeoff.settings import QUESTIONS, RUN, Setting, settings
+from comparison.analysis.tradeoff.trade import FILE, Trade, on_pareto_front, quantile, read, with_pareto_fronts
+from comparison.cli import tradeoff as command
 from reference.problem import Scene, load_scene
 
 SECONDS = 2.0  # of motion: a few slides and stops
@@ -43,11 +43,11 @@ def trade(scene: Scene) -> Trade:
 
 def test_nothing_on_the_front_is_beaten_and_all_else_is() -> None:
     cost, error = [1.0, 2.0, 3.0, 2.5, 1.0, 4.0], [1e-2, 1e-3, 1e-4, 2e-3, 1e-1, float("inf")]
-    assert on_front(cost, error) == [True, True, True, False, False, False]
+    assert on_pareto_front(cost, error) == [True, True, True, False, False, False]
 
 
 def test_two_settings_that_are_alike_are_both_on_the_front() -> None:
-    assert on_front([1.0, 1.0], [1e-3, 1e-3]) == [True, True]
+    assert on_pareto_front([1.0, 1.0], [1e-3, 1e-3]) == [True, True]
 
 
 def test_the_share_of_points_is_met_by_a_value_that_occurred() -> None:
@@ -61,7 +61,7 @@ def test_a_setting_that_leaves_points_without_a_value_or_solves_another_model_is
     good = entry(setting, Found(truth * 1.1, truth * np.nan, 3.0, np.nan), truth)
     lost = entry(setting, Found(truth * [[1.0], [np.nan], [1.0]], truth * np.nan, 1.0, np.nan), truth)
     other = replace(entry(setting, Found(truth, truth, 0.1, np.nan), truth), model_error=True)
-    assert [one.front for one in with_fronts([good, lost, other], 1)] == [(True,), (False,), (False,)]
+    assert [one.front for one in with_pareto_fronts([good, lost, other], 1)] == [(True,), (False,), (False,)]
     assert lost.answered == 2
 
 
@@ -151,4 +151,4 @@ def test_a_model_that_raises_leaves_points_without_a_value(monkeypatch: pytest.M
     task = measure.Task(load_scene("fig3-I"), ("anything:at all", {}), 0, sample(2))
     found = measure.solve(task)
     assert np.isnan(found.mu).all()
-    assert "the matrix is singular" in found.fault
+    assert "the matrix is singular" in found.error_message

@@ -13,8 +13,8 @@ import xarray as xr
 from conftest import Run
 from jsonschema import Draft202012Validator
 
-from comparison.tradeoff import __main__ as tradeoff
-from comparison.tradeoff.trade import FILE, Answered, Entry, Trade, with_fronts
+from comparison.analysis.tradeoff.trade import FILE, Answered, Entry, Trade, with_pareto_fronts
+from comparison.cli import tradeoff as tradeoff
 from reference.problem import load_scene
 
 SMALL = ["fig3-I", "--grid", "2"]
@@ -26,10 +26,10 @@ ONE = Entry("exact", "reference, one run", "tolerance inside a step", "", 1e-3, 
 def trade(name: str) -> Trade:
     """Two settings of one method, the second of which is dearer and worse."""
     scene = load_scene(name)
-    entries = [ONE, replace(ONE, value=1e-2, seconds=0.003, most=(1e-3, 1e-3), fault="<b>")]
+    entries = [ONE, replace(ONE, value=1e-2, seconds=0.003, most=(1e-3, 1e-3), error_message="<b>")]
     question = Answered("exact", "exact equations", 3, "the reference", 1e-10, ["it agrees <with itself>"])
     run = {**RUN, "provenance": {"commit": "abc", "processor": "one"}}
-    return Trade(scene.name, scene.title, scene.digest(), 2, [question], with_fronts(entries, 2), run)
+    return Trade(scene.name, scene.title, scene.digest(), 2, [question], with_pareto_fronts(entries, 2), run)
 
 
 @pytest.fixture
@@ -62,7 +62,7 @@ def test_the_diagrams_beside_a_report_are_part_of_the_next_and_stay_there(
     assert "1.0e-03, 1.0e-03" not in page, "what is beaten is in the picture alone"
     summary = json.loads((report / "summary.json").read_text(encoding="utf-8"))
     schema = json.loads((resources.files("comparison.report") / "summary.schema.json").read_text(encoding="utf-8"))
-    assert [fault.message for fault in Draft202012Validator(schema).iter_errors(summary)] == []
+    assert [error_message.message for error_message in Draft202012Validator(schema).iter_errors(summary)] == []
     assert summary["tradeoff"][0]["entries"][0]["front"] == [True, True]
 
 

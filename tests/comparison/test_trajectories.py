@@ -8,21 +8,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from fake_models import fake_ladder, sliding
+from fake_models import fake_hierarchy, sliding
 from numpy.typing import NDArray
 
-import comparison.analyses.trajectories
-from comparison.account.surfaces import labelled_surfaces
-from comparison.analyses.trajectories import SHARE, chosen_places, moved, shown_rungs, stored_motions, thinned
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
+import comparison.analysis.trajectories
+from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.trajectories import SHARE, chosen_places, moved, shown_models, stored_motions, thinned
+from comparison.study.batches import execute_batch
+from comparison.study.study import Study
 from reference.problem import Scene, Trajectory, load_scene
 
 
 def _studied(grid: int) -> tuple[Study, xr.Dataset]:
-    study = Study((load_scene("fig3-I"),), grid, 1e-3, fake_ladder())
-    tiles = study.tiles()
-    return study, labelled_surfaces(study, tiles, [solve_tile(tile) for tile in tiles])
+    study = Study((load_scene("fig3-I"),), grid, 1e-3, fake_hierarchy())
+    batches = study.batches()
+    return study, labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
 
 
 def _between(time: NDArray[np.float64], values: NDArray[np.float64], kept: NDArray[np.intp]) -> NDArray[np.float64]:
@@ -68,16 +68,16 @@ def test_a_model_with_a_coarse_grid_moves_at_its_own_phases_only(monkeypatch: py
     study, surfaces = _studied(12)
     asked: list[tuple[str, int, int]] = []
 
-    def noted(task: comparison.analyses.trajectories.Task) -> comparison.analyses.trajectories.StoredMotion:
+    def noted(task: comparison.analysis.trajectories.Arguments) -> comparison.analysis.trajectories.StoredMotion:
         asked.append((task[1].key, task[3].row, task[3].column))
-        return comparison.analyses.trajectories._nothing(task[3], task[1].key, "ok", "")  # type: ignore[arg-type]
+        return comparison.analysis.trajectories._nothing(task[3], task[1].key, "ok", "")  # type: ignore[arg-type]
 
-    monkeypatch.setattr(comparison.analyses.trajectories, "moved", noted)
+    monkeypatch.setattr(comparison.analysis.trajectories, "moved", noted)
     motions = stored_motions(study, surfaces, 1, ThreadPoolExecutor)
     stride = study.strides["spatial"]
     assert stride > 1
     assert {(row % stride, column % stride) for key, row, column in asked if key == "spatial"} == {(0, 0)}
-    shown = {rung.key for rung in shown_rungs(study, study.scenes[0])}
+    shown = {model.key for model in shown_models(study, study.scenes[0])}
     assert {motion.model for motion in motions} == shown
     assert shown == {r.key for pair in study.pairs(study.scenes[0]) for r in (pair.first, pair.second)}
 
@@ -94,15 +94,17 @@ def breaks(scene: Scene, phase: object, tolerance: float, **settings: object) ->
     return replace(motion, absolute_acceleration=np.full_like(motion.absolute_acceleration, np.nan))
 
 
-@pytest.mark.parametrize(("name", "fault"), [("slides", ""), ("breaks", "ValueError"), ("missing", "AttributeError")])
-def test_a_motion_is_kept_or_says_why_there_is_none(name: str, fault: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "error_message"), [("slides", ""), ("breaks", "ValueError"), ("missing", "AttributeError")]
+)
+def test_a_motion_is_kept_or_says_why_there_is_none(name: str, error_message: str) -> None:
     study, surfaces = _studied(4)
     scene = study.scenes[0]
-    rung = replace(study.ladder[0], trajectory=f"test_trajectories:{name}", settings={"cutoff": 1e-3})
-    motion = moved((scene, rung, 1e-3, chosen_places(study, surfaces, scene)[0], (0.0, 0.0)))
-    assert motion.fault.split(":")[0] == fault
-    assert (motion.status == "ok") == (fault == "")
-    if not fault:
+    model = replace(study.hierarchy[0], trajectory=f"test_trajectories:{name}", settings={"cutoff": 1e-3})
+    motion = moved((scene, model, 1e-3, chosen_places(study, surfaces, scene)[0], (0.0, 0.0)))
+    assert motion.error_message.split(":")[0] == error_message
+    assert (motion.status == "ok") == (error_message == "")
+    if not error_message:
         whole = slides(scene, None, 0.0)
         peak = np.linalg.norm(whole.absolute_acceleration, axis=2).argmax(axis=0)
         assert set(whole.time[peak]) <= set(motion.time), "the peak of every body is kept as it is"

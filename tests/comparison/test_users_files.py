@@ -13,27 +13,27 @@ from pathlib import Path
 
 import pytest
 from conftest import Run
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 from test_extremes_in_the_report import FOUND
 
 import comparison.run
-from comparison.extremes import __main__ as extremes
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
-from comparison.storage.cache import Cache
-from comparison.storage.output import (
+from comparison.cli import extremes as extremes
+from comparison.cli import tradeoff as tradeoff
+from comparison.execution.cache import Cache
+from comparison.execution.keys import batch_key
+from comparison.execution.output import (
     MANIFEST,
     Own,
+    atomic_replace,
     clear_dead,
     foreign,
     publish,
     read_manifest,
     refuse_foreign_files,
-    replaced_when_complete,
     write_manifest,
 )
-from comparison.sweep.keys import tile_key
-from comparison.tradeoff import __main__ as tradeoff
+from comparison.study.batches import execute_batch
+from comparison.study.study import Study
 from reference.problem import load_scene
 from reference.problem.files import TEMPORARY, write_new
 
@@ -44,7 +44,7 @@ ROOT = Path(__file__).parents[2]
 def put(folder: Path, *names: str, content: str = "new") -> tuple[Path, list[str]]:
     """A report of these files; where it went, and what was said."""
     said: list[str] = []
-    with replaced_when_complete(folder, said.append) as report:
+    with atomic_replace(folder, said.append) as report:
         for name in names or ("index.html",):
             (report.folder / name).parent.mkdir(exist_ok=True)
             (report.folder / name).write_text(content, encoding="utf-8")
@@ -68,7 +68,7 @@ def test_what_appears_in_out_meanwhile_stays_and_the_report_goes_beside(
     if finished:
         put(tmp_path / "report", "index.html", "figures/ours.png")
     said: list[str] = []
-    with replaced_when_complete(tmp_path / "report", said.append) as report:
+    with atomic_replace(tmp_path / "report", said.append) as report:
         (report.folder / "index.html").write_text("new", encoding="utf-8")
         file = tmp_path / "report" / name
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -100,7 +100,7 @@ def test_a_study_whose_out_was_used_meanwhile_says_where_its_report_is(
     assert run.err.count("\n") == 1
     assert "'thesis.txt' there is not a file of this study" in run.err
     assert str(tmp_path / "report-2" / "index.html") in run.out.replace("\n", "")
-    again = command(*SMALL, ladder=fake_ladder("forbidden"))
+    again = command(*SMALL, hierarchy=fake_hierarchy("forbidden"))
     assert again.code == 2, "now it is known at the start"
 
 
@@ -113,7 +113,7 @@ def test_a_file_of_the_user_anywhere_in_a_report_is_refused_at_the_start(
     (file if name.endswith("/") else file.parent).mkdir(parents=True, exist_ok=True)
     if not name.endswith("/"):
         file.write_text("mine", encoding="utf-8")
-    run = command(*SMALL, ladder=fake_ladder("forbidden"))
+    run = command(*SMALL, hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert "which would be lost: move it away" in run.err
     assert run.err.count("\n") == 1
@@ -121,12 +121,12 @@ def test_a_file_of_the_user_anywhere_in_a_report_is_refused_at_the_start(
 
 
 def test_a_file_or_link_that_appears_in_place_of_the_report_stays(tmp_path: Path) -> None:
-    with replaced_when_complete(tmp_path / "report", lambda line: None) as report:
+    with atomic_replace(tmp_path / "report", lambda line: None) as report:
         (report.folder / "index.html").write_text("new", encoding="utf-8")
         (tmp_path / "report").write_text("mine", encoding="utf-8")
     assert (tmp_path / "report").read_text(encoding="utf-8") == "mine"
     (tmp_path / "elsewhere").mkdir()
-    with replaced_when_complete(tmp_path / "other", lambda line: None) as report:
+    with atomic_replace(tmp_path / "other", lambda line: None) as report:
         (report.folder / "index.html").write_text("new", encoding="utf-8")
         (tmp_path / "other").symlink_to(tmp_path / "elsewhere")
     assert (tmp_path / "other").is_symlink()
@@ -155,7 +155,7 @@ DYING = """
 import os, signal, sys
 from pathlib import Path
 sys.path.insert(0, {root!r})
-from comparison.storage.output import replaced_when_complete
+from comparison.execution.output import replaced_when_complete
 move = os.rename
 def die_between(source, target):
     if Path(source).name == "new":
@@ -215,27 +215,27 @@ def test_a_manifest_that_was_tampered_with_proves_nothing(tmp_path: Path) -> Non
 
 
 def test_a_folder_of_24_letters_in_the_store_is_never_trimmed(tmp_path: Path) -> None:
-    tiles = Study((load_scene("fig3-I"),), 2, 1e-3, fake_ladder()).tiles()
+    batches = Study((load_scene("fig3-I"),), 2, 1e-3, fake_hierarchy()).batches()
     cache = Cache(tmp_path / "e.tiles")
-    old = replace(tiles[0], settings={"tolerance": 0.02})
-    cache.put(tile_key(old), solve_tile(old))
+    old = replace(batches[0], settings={"tolerance": 0.02})
+    cache.put(batch_key(old), execute_batch(old))
     photos = tmp_path / "e.tiles" / "my-photos-of-summer-2024"
     photos.mkdir()
-    mine = [photos / "a.jpg", photos / "b.tile", tmp_path / "e.tiles" / tile_key(old).group / "c.tile"]
+    mine = [photos / "a.jpg", photos / "b.tile", tmp_path / "e.tiles" / batch_key(old).group / "c.tile"]
     for file in mine:
         file.write_bytes(b"mine")
     (tmp_path / "e.tiles" / "link").symlink_to(photos)
-    cache.trim([tile_key(tiles[0])], limit=0)
+    cache.trim([batch_key(batches[0])], limit=0)
     assert all(file.read_bytes() == b"mine" for file in mine)
-    assert not (tmp_path / "e.tiles" / tile_key(old).name).exists(), "what is the study's own is"
-    cache.put(tile_key(old), solve_tile(old))
-    cache.forget([tile_key(old)])
+    assert not (tmp_path / "e.tiles" / batch_key(old).name).exists(), "what is the study's own is"
+    cache.put(batch_key(old), execute_batch(old))
+    cache.forget([batch_key(old)])
     assert mine[2].read_bytes() == b"mine"
 
 
 def test_a_foreign_folder_in_the_store_is_refused_at_the_start(command: Callable[..., Run], tmp_path: Path) -> None:
     (tmp_path / "report.tiles" / "my-photos-of-summer-2024").mkdir(parents=True)
-    run = command(*SMALL, ladder=fake_ladder("forbidden"))
+    run = command(*SMALL, hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert "it holds 'my-photos-of-summer-2024': move it away" in run.err
 
@@ -328,7 +328,7 @@ def test_a_new_file_never_takes_a_name_that_something_has(tmp_path: Path, monkey
 
 def test_files_of_other_commands_written_while_the_report_is_written_are_kept(tmp_path: Path) -> None:
     put(tmp_path / "report")
-    with replaced_when_complete(tmp_path / "report") as report:
+    with atomic_replace(tmp_path / "report") as report:
         (report.folder / "index.html").write_text("newer", encoding="utf-8")
         publish(tmp_path / "report", {"extremes.json": b"{}"}, "comparison.extremes")
     assert report.place == tmp_path / "report"
@@ -362,7 +362,7 @@ def test_an_odd_place_is_refused_at_the_start_in_one_line(
     ismount = os.path.ismount
     monkeypatch.setattr(os.path, "ismount", lambda path: Path(path).name == "mount" or ismount(path))
     before = sorted(str(path) for path in tmp_path.rglob("*"))
-    run = command(*SMALL, "--out", f"{tmp_path}/{name}", ladder=fake_ladder("forbidden"))
+    run = command(*SMALL, "--out", f"{tmp_path}/{name}", hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert rule in run.err
     assert run.err.count("\n") == 1

@@ -7,11 +7,11 @@ import pytest
 import xarray as xr
 from fake_models import errors_in
 
-from comparison.account.surfaces import labelled_surfaces
-from comparison.account.verdicts import bar, verdict
-from comparison.plan.study import Study
-from comparison.plan.tiles import solve_tile
+from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.verdicts import bar, verdict
 from comparison.report.page_data import crossings
+from comparison.study.batches import execute_batch
+from comparison.study.study import Study
 from reference.problem import load_scene
 
 GRID = 8
@@ -20,8 +20,8 @@ LATER = ("exact", "resolved", "regularised", "translational", "spatial")
 
 def _studied(gaps: dict[str, float], claimed: dict[str, float] | None = None) -> tuple[Study, xr.Dataset]:
     study = Study((load_scene("fig3-I"),), GRID, 1e-3, errors_in(gaps, claimed))
-    tiles = study.tiles()
-    return study, labelled_surfaces(study, tiles, [solve_tile(tile) for tile in tiles])
+    batches = study.batches()
+    return study, labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
 
 
 def _raised(surfaces: xr.Dataset, models: tuple[str, ...], body: int, row: int, column: int, by: float) -> None:
@@ -32,7 +32,7 @@ def _raised(surfaces: xr.Dataset, models: tuple[str, ...], body: int, row: int, 
 
 def test_the_verdict_finds_the_planted_difference_and_its_cause() -> None:
     study, surfaces = _studied({})
-    _raised(surfaces, LATER[2:], 2, 4, 6, -0.2)  # the regularised law lowers one point, and all that follow keep it
+    _raised(surfaces, LATER[2:], 2, 4, 6, -0.2)  # the regularized law lowers one point, and all that follow keep it
     _raised(surfaces, LATER[4:], 2, 4, 6, 0.05)
     found = verdict(study, surfaces, study.scenes[0])
     assert (found.body, found.cause) == (2, "exact equations, v_reg")

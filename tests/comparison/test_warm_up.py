@@ -5,16 +5,16 @@ from __future__ import annotations
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 
-from comparison.plan.study import Study
-from comparison.sweep.sweep import sweep
-from comparison.sweep.warm_up import WARM_UP, warm_up
+from comparison.execution.sweep import sweep
+from comparison.execution.warm_up import WARM_UP, warm_up
+from comparison.study.study import Study
 from reference.problem import Outcome, load_scene
 
 
-def _lost(task: str, outcome: Outcome, fault: str) -> str:
-    return f"{outcome}: {fault}"
+def _lost(task: str, outcome: Outcome, error_message: str) -> str:
+    return f"{outcome}: {error_message}"
 
 
 def test_what_is_not_ready_lets_others_pass_and_starts_as_soon_as_it_is() -> None:
@@ -52,8 +52,8 @@ def test_what_is_never_ready_runs_when_nothing_else_is_left() -> None:
 
 
 def test_the_first_call_is_one_short_point_of_the_reference() -> None:
-    study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), 8, 1e-3, fake_ladder())
-    tile = warm_up(study)
-    assert (tile.rung, len(tile.phases), tile.scene.duration) == (WARM_UP, 1, 0.5)
-    assert tile.amplification == study.ladder[0].amplification
+    study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), 8, 1e-3, fake_hierarchy())
+    batch = warm_up(study)
+    assert (batch.model, len(batch.phases), batch.scene.duration) == (WARM_UP, 1, 0.5)
+    assert batch.amplification == study.hierarchy[0].amplification
     assert study.scenes[0].duration == 20.0, "the scene itself is not shortened"

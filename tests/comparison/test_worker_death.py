@@ -12,13 +12,13 @@ from threading import Barrier
 
 import numpy as np
 import pytest
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 
-from comparison.plan.study import Study
-from comparison.plan.tiles import Answer, Tile, solve_tile, unanswered
-from comparison.sweep.executors import ExecutorLostError, process_pool
-from comparison.sweep.halves import halves, joined
-from comparison.sweep.sweep import sweep
+from comparison.execution.executors import ExecutorLostError, process_pool
+from comparison.execution.splitting import merge, split_batch
+from comparison.execution.sweep import sweep
+from comparison.study.batches import Batch, BatchResult, execute_batch, unanswered
+from comparison.study.study import Study
 from reference.problem import Outcome, load_scene
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="SIGKILL")
@@ -29,8 +29,8 @@ def common_pool(jobs: int) -> Executor:
     return ProcessPoolExecutor(jobs, get_context("spawn"))
 
 
-def _lost(task: Path, outcome: Outcome, fault: str) -> str:
-    return f"{outcome}: {fault}"
+def _lost(task: Path, outcome: Outcome, error_message: str) -> str:
+    return f"{outcome}: {error_message}"
 
 
 def _done(task: object, result: object) -> None:
@@ -67,34 +67,34 @@ def test_in_a_common_pool_of_processes_the_culprit_is_found_too(tmp_path: Path) 
     assert _calls(tmp_path)["kills always"] <= 3, "once among others, then alone"
 
 
-@pytest.mark.parametrize("tile", [2, pytest.param(16, marks=pytest.mark.long)])
-def test_splitting_finds_the_one_point_that_kills(tile: int) -> None:
-    ladder = [rung for rung in fake_ladder("killing", tile=tile) if rung.key == "translational"]
-    tiles = Study((load_scene("fig3-I"),), 4, 1e-3, ladder).tiles()
-    seen: list[Tile] = []
+@pytest.mark.parametrize("batch", [2, pytest.param(16, marks=pytest.mark.long)])
+def test_splitting_finds_the_one_point_that_kills(batch: int) -> None:
+    hierarchy = [model for model in fake_hierarchy("killing", batch=batch) if model.key == "translational"]
+    batches = Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy).batches()
+    seen: list[Batch] = []
 
-    def done(one: Tile, answer: Answer) -> None:
+    def done(one: Batch, answer: BatchResult) -> None:
         seen.append(one)
 
-    answers = sweep(tiles, solve_tile, unanswered, done, 2, process_pool, split=halves, join=joined)
+    answers = sweep(batches, execute_batch, unanswered, done, 2, process_pool, split=split_batch, join=merge)
     assert [outcome for answer in answers for outcome in answer.status] == ["ok"] * 15 + ["worker died"]
     mu = np.concatenate([answer.mu for answer in answers])
-    whole = [solve_tile(one) for one in Study((load_scene("fig3-I"),), 4, 1e-3, fake_ladder(gap=0.0)).tiles()]
+    whole = [execute_batch(one) for one in Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(gap=0.0)).batches()]
     np.testing.assert_array_equal(mu[:15], np.concatenate([answer.mu for answer in whole])[:15])
-    assert len(seen) == len(tiles), "told of whole tiles, once each"
-    assert [answer.fault for answer in answers][-1] == "the worker process died 2 times"
+    assert len(seen) == len(batches), "told of whole batches, once each"
+    assert [answer.error_message for answer in answers][-1] == "the worker process died 2 times"
 
 
 def test_halves_of_a_tile_are_its_points_in_order() -> None:
-    tile = Study((load_scene("fig3-I"),), 3, 1e-3, fake_ladder(tile=7)).tiles()[1]
-    early, late = halves(tile)
-    np.testing.assert_array_equal(np.concatenate([early.phases, late.phases]), tile.phases)
-    assert (early.first, late.first) == (tile.first, tile.first + len(early.phases))
-    assert halves(halves(tile)[0]) == []
-    whole, parts = solve_tile(tile), [solve_tile(part) for part in (early, late)]
-    together = joined(tile, parts)
+    batch = Study((load_scene("fig3-I"),), 3, 1e-3, fake_hierarchy(batch=7)).batches()[1]
+    early, late = split_batch(batch)
+    np.testing.assert_array_equal(np.concatenate([early.phases, late.phases]), batch.phases)
+    assert (early.first, late.first) == (batch.first, batch.first + len(early.phases))
+    assert split_batch(split_batch(batch)[0]) == []
+    whole, parts = execute_batch(batch), [execute_batch(part) for part in (early, late)]
+    together = merge(batch, parts)
     np.testing.assert_array_equal(together.mu, whole.mu)
-    assert (together.status, together.fault) == (whole.status, "")
+    assert (together.status, together.error_message) == (whole.status, "")
     assert together.cost == pytest.approx(whole.cost, rel=1e-12)  # a sum in another order
 
 
@@ -122,7 +122,7 @@ def test_a_lent_executor_that_breaks_ends_the_sweep_in_one_line(tmp_path: Path, 
     with common_pool(1) as lent:
         if broken_before:
             assert lent.submit(counted, tmp_path / "kills always").exception() is not None
-        with pytest.raises(ExecutorLostError, match=r"^the executor is broken: ") as fault:
+        with pytest.raises(ExecutorLostError, match=r"^the executor is broken: ") as error_message:
             sweep(tasks, counted, _lost, done, 1, lent)
-    assert "\n" not in str(fault.value)
+    assert "\n" not in str(error_message.value)
     assert arrived == ([] if broken_before else ["one"]), "what had arrived was told"

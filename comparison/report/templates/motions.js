@@ -33,27 +33,27 @@ function motionOf(all, place, model, bodies) {
   };
 }
 
-const COLOURS = ["#0b5394", "#e07b00"];
+const COLORS = ["#0b5394", "#e07b00"];
 async function drawMotions(box, scene, body, place, models, titles) {
   const all = await motionNumbers(), bodies = scene.mu[models[0]].length;
   const traces = [], notes = [], path = [];
   models.forEach((model, k) => {
     const motion = motionOf(all, place, model, bodies);
     if (!motion.time.length) {
-      notes.push(`${titles[model]}: ${motion.about ? motion.about.fault || motion.about.status : "not asked at this phase pair"}`);
+      notes.push(`${titles[model]}: ${motion.about ? motion.about.error_message || motion.about.status : "not asked at this phase pair"}`);
       return;
     }
     if (motion.about.status !== "ok") notes.push(`${titles[model]} ended early: ${motion.about.status}`);
-    const line = { color: COLOURS[k], width: k ? 1.2 : 1.8, dash: k ? "4px,2px" : "solid" };
+    const line = { color: COLORS[k], width: k ? 1.2 : 1.8, dash: k ? "4px,2px" : "solid" };
     const common = { mode: "lines", line, legendgroup: model, name: indexed(titles[model]) };
     const x = motion.position(body, 0), y = motion.position(body, 1), ax = motion.acceleration(body, 0), ay = motion.acceleration(body, 1);
     [x, y, ax, ay].forEach((values, row) => traces.push({ ...common, x: motion.time, y: values, xaxis: "x", yaxis: `y${row ? row + 1 : ""}`, showlegend: row === 0 }));
     const peak = ax.reduce((best, _, i) => Math.hypot(ax[i], ay[i]) > Math.hypot(ax[best], ay[best]) ? i : best, 0);
     const most = Math.hypot(ax[peak], ay[peak]).toPrecision(4);
     [ax, ay].forEach((values, row) => traces.push({ x: [motion.time[peak]], y: [values[peak]], yaxis: `y${row + 3}`, mode: "markers", showlegend: false,
-      marker: { color: COLOURS[k], size: 9, symbol: k ? "diamond-open" : "circle-open" }, hovertemplate: `largest |a|: ${most} m/s²<extra>${indexed(titles[model])}</extra>` }));
+      marker: { color: COLORS[k], size: 9, symbol: k ? "diamond-open" : "circle-open" }, hovertemplate: `largest |a|: ${most} m/s²<extra>${indexed(titles[model])}</extra>` }));
     const rest = motion.about.stick;
-    traces.push({ ...common, x: rest.flatMap(([a, b]) => [a, b, null]), y: rest.flatMap(() => [k, k, null]), yaxis: "y5", showlegend: false, line: { color: COLOURS[k], width: 9 } });
+    traces.push({ ...common, x: rest.flatMap(([a, b]) => [a, b, null]), y: rest.flatMap(() => [k, k, null]), yaxis: "y5", showlegend: false, line: { color: COLORS[k], width: 9 } });
     path.push(motion.position(1, 0), motion.position(1, 1));
     traces.push({ ...common, x: path.at(-2), y: path.at(-1), xaxis: "x2", yaxis: "y6", showlegend: false });
   });

@@ -15,7 +15,7 @@ function extent(values) {
   return low < high ? [low, high] : [low - 0.1, high + 0.1];
 }
 
-// height of a surface (rows alpha1, columns alpha2) between its points, null where a neighbour has no value
+// height of a surface (rows alpha1, columns alpha2) between its points, null where a neighbor has no value
 function heightAt(rows, alpha1, alpha2) {
   const n = rows.length, u = alpha1 / turn * n, v = alpha2 / turn * n, i = Math.floor(u), j = Math.floor(v);
   const at = (a, b) => rows[a % n][b % n], weight = (s, k) => k ? s : 1 - s;
@@ -41,8 +41,8 @@ function drawSurfaces(box, data, pair, chosen) {
   const phases = rows => [...rows.map((_, i) => turn * i / rows.length), turn];
   const filled = rows => rows.flat().some(v => v !== null);  // a surface without any value is none: the library cannot draw it
   const missing = rows => filled(rows) ? "" : "<br>no value at any phase pair";
-  const surface = (rows, scene, colours, [cmin, cmax], x, unit) => !filled(rows) ? { type: "scatter3d", scene, x: [], y: [], z: [], showlegend: false } : ({
-    type: "surface", x: phases(rows), y: phases(rows), z: turned(wrapped(rows)), scene, colorscale: colours, cmin, cmax,
+  const surface = (rows, scene, colors, [cmin, cmax], x, unit) => !filled(rows) ? { type: "scatter3d", scene, x: [], y: [], z: [], showlegend: false } : ({
+    type: "surface", x: phases(rows), y: phases(rows), z: turned(wrapped(rows)), scene, colorscale: colors, cmin, cmax,
     colorbar: { x, len: 0.7, thickness: 10, tickfont: { size: 10 } }, showscale: x !== null,
     hovertemplate: `α₁ %{x:.3f}<br>α₂ %{y:.3f}<br>%{z:.5g}${unit}<extra></extra>`,
   });
@@ -53,12 +53,12 @@ function drawSurfaces(box, data, pair, chosen) {
     marker: { symbol: "circle", size: scene.places.map((_, i) => i === chosen ? 7 : 3.5),
       color: scene.places.map((_, i) => i === chosen ? "#ff2d95" : "#1b1f24"), line: { color: "#fff", width: 1 } },
   });
-  const lone = (rows, scene3d, colours, [cmin, cmax]) => {  // what is left of a surface with gaps
+  const lone = (rows, scene3d, colors, [cmin, cmax]) => {  // what is left of a surface with gaps
     const known = rows.flatMap((row, i) => row.flatMap((z, j) => z === null ? [] : [[turn * i / rows.length, turn * j / rows.length, z]]));
     if (known.length === rows.length ** 2) return [];
     const [x, y, z] = [0, 1, 2].map(k => known.map(point => point[k]));
     return [{ type: "scatter3d", mode: "markers", scene: scene3d, showlegend: false, hoverinfo: "skip", x, y, z,
-      marker: { symbol: "square", size: 4, color: z, colorscale: colours, cmin, cmax } }];
+      marker: { symbol: "square", size: 4, color: z, colorscale: colors, cmin, cmax } }];
   };
   const line = {  // one trace: polylines parted by gaps
     type: "scatter3d", mode: "lines", scene: "scene3", showlegend: false, hoverinfo: "skip", line: { color: "#1b1f24", width: 4 },

@@ -1,1 +1,0 @@
-"""Where the models differ and by how much: steps of the ladder, budget, acceptance, verdicts."""

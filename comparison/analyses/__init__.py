@@ -1,1 +1,0 @@
-"""What a study asks beside its surfaces: slips, scaling, convergence, effective values, motions."""

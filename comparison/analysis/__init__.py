@@ -1,0 +1,1 @@
+"""What the results say: differences between models, their causes, and further tests beside the surfaces."""

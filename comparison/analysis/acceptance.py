@@ -1,0 +1,106 @@
+"""The limits that a scene states before the run, held against what was found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import isnan
+
+import xarray as xr
+
+from comparison.analysis.budget import closure, steps
+from comparison.analysis.differences import Difference
+from comparison.analysis.unanswered import Unanswered
+from comparison.study.models import pairs_of
+from comparison.study.study import Study
+from reference.problem import Scene
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A limit of a scene. key: as written below `acceptance`. broken: lines that say where it is, none if it holds."""
+
+    scene: str
+    key: str
+    allowed: float
+    broken: tuple[str, ...]
+
+
+def checked_limits(
+    study: Study, surfaces: xr.Dataset, rows: Sequence[Difference], lacking: Sequence[Unanswered]
+) -> list[Limit]:
+    """
+    Every limit that the scenes of a study state, held against what was found.
+
+    Parameters
+    ----------
+    rows
+        Differences of the pairs of models that could be compared.
+    lacking
+        Models without a value somewhere.
+
+    Returns
+    -------
+    list of Limit
+        In the order of scenes and keys. A scene that states no limit has none.
+    """
+    found = []
+    for scene in study.scenes:
+        silent = [one for one in lacking if one.scene == scene.name]
+        own = [row for row in rows if row.scene == scene.name]
+        for key, allowed, faults in _faults(study, surfaces, scene, own, silent):
+            start = f"acceptance.{key}: "
+            broken = tuple(f"{scene.name}: {where}{start}{excess}, {allowed:g} allowed" for where, excess in faults)
+            found.append(Limit(scene.name, key, allowed, broken))
+    return found
+
+
+Faults = list[tuple[str, str]]  # of a body, and what is wrong
+
+
+def _faults(
+    study: Study, surfaces: xr.Dataset, scene: Scene, rows: Sequence[Difference], silent: Sequence[Unanswered]
+) -> Iterator[tuple[str, float, Faults]]:
+    """Key, limit and what breaks it, of every limit that the scene states."""
+    stated = scene.acceptance
+    for key, pair, measure, allowed in stated.differences():
+        compared = [row for row in rows if row.pair == _same(study, scene, pair)]
+        if any(row.asked > row.unanswered for row in compared):
+            yield key, allowed, _beyond([(row.body, getattr(row, measure)) for row in compared], allowed)
+        else:
+            yield key, allowed, [("", f"nothing to compare ({_why_not(study, scene, pair, silent)})")]
+    if stated.closure is not None:
+        bodies = range(1, len(scene.bodies) + 1)
+        gaps = [(body, closure(steps(study, surfaces, scene.name, body))) for body in bodies]
+        yield "closure", stated.closure, _beyond(gaps, stated.closure)
+    if (allowed_points := stated.failures) is not None:
+        count = sum(one.points for one in silent)
+        models = ", ".join(f"{one.title} {one.points} of {one.asked}" for one in silent)
+        excess = f"{count} points without an answer ({models})"
+        yield "failed", allowed_points, [("", excess)] if count > allowed_points else []
+
+
+def _beyond(values: Sequence[tuple[int, float]], allowed: float) -> Faults:
+    """The bodies whose value is not within the limit; no value is not within any."""
+    return [
+        (f"body {body}: ", "no phase pair to compare" if isnan(value) else f"{value:.3g} found")
+        for body, value in values
+        if not value <= allowed
+    ]
+
+
+def _same(study: Study, scene: Scene, pair: str) -> str:
+    """The pair under which a study compares these models: the translational difference may be the total one."""
+    compared = {one.key: one for one in study.pairs(scene)}
+    engines = [model.key for model in study.compared(scene) if model.side == "engine"]
+    alone = pair == "translational" and pair not in compared and engines == [compared["total"].second.key]
+    return "total" if alone else pair
+
+
+def _why_not(study: Study, scene: Scene, pair: str, silent: Sequence[Unanswered]) -> str:
+    """Why a pair of models is not compared."""
+    wanted = next((one for one in pairs_of(scene, study.hierarchy) if one.key == pair), None)
+    if wanted is None:
+        return "no engine in this study"
+    mute = [one.sentence for one in silent if one.model in (wanted.first.key, wanted.second.key)]
+    return mute[0].removeprefix(f"{scene.name}: ").removesuffix(".") if mute else "no phase pair in common"

@@ -1,0 +1,118 @@
+"""
+The paper's assumptions (i)-(vi): what the engine's models do with each, and how far they carry.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+from comparison.analysis.assumptions.variations import DURATION, PHASES, Cell, Range, assumption_cells, ranges
+from comparison.study.study import Study
+from reference.problem import Scene
+
+TOLERANCE = 1e-3
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """One of (i)-(vi): what the paper says, what the engine's models do with it, and what measures the rest."""
+
+    number: str
+    statement: str
+    engine: str
+    relaxed: Literal["yes", "partly", "no"]
+
+
+ASSUMPTIONS = (
+    Assumption(
+        "(i)",
+        "all supports touch the platform along one circle",
+        "The circle stays, its radius and the number of supports are free. In the translational model neither matters, "
+        "because every support sees the same slip and the loads only enter by their sum.",
+        "partly",
+    ),
+    Assumption(
+        "(ii)",
+        "the centers of mass lie on one axis through the center of the circle",
+        "Kept: a scene states heights, no eccentricities. The heights above the contacts, which the paper's equations "
+        "do not contain, are free.",
+        "no",
+    ),
+    Assumption(
+        "(iii)",
+        "the principal axes of inertia of all bodies are parallel",
+        "Kept: bodies are boxes along the axes. Their moments of inertia, which do not enter translation, follow from "
+        "masses and sizes.",
+        "no",
+    ),
+    Assumption(
+        "(iv)",
+        "flexible bars that neither stretch nor move vertically",
+        "Bars stretch by 1e-5 rho under the weight of all bodies and bend likewise; every body has its own vertical "
+        "motion. With all heights zero this is all that is left, together with (v).",
+        "yes",
+    ),
+    Assumption(
+        "(v)",
+        "friction acts at the contacts of supports and depressions only",
+        "Kept, but every support has a contact force and a slip velocity of its own, so that friction can twist the "
+        "platform. The balls stand still on the plate, as in the paper.",
+        "partly",
+    ),
+    Assumption(
+        "(vi)",
+        "the bodies move translationally",
+        "Dropped: six degrees of freedom for every body, contacts that open. What this changes grows with the heights "
+        "over the radius of the ring.",
+        "yes",
+    ),
+)
+
+
+@dataclass(frozen=True)
+class ValidityRanges:
+    """How far the assumptions carry in some scenes: the cells computed and what they say, for the report."""
+
+    scenes: Sequence[Scene]
+    cells: Sequence[Cell]
+    assumptions: Sequence[Assumption] = ASSUMPTIONS
+    phases: Sequence[Sequence[float]] = tuple(map(tuple, PHASES.tolist()))  # rad
+    duration: float = DURATION  # s
+
+    @staticmethod
+    def of(study: Study, jobs: int, executor: Callable[[int], Executor]) -> ValidityRanges | None:
+        """The few cells that a study computes; None if no scene of it has a spatial model."""
+        cells = assumption_cells(study, jobs, executor)
+        names = {cell.scene for cell in cells}
+        return ValidityRanges([scene for scene in study.scenes if scene.name in names], cells) if cells else None
+
+    def lines(self, scene: Scene) -> list[str]:
+        """One line per body, share and direction."""
+        return [describe(found) for found in ranges([scene], self.cells)]
+
+    def listed(self) -> dict[str, Any]:
+        """For summary.json: assumptions, phase pairs, duration, every cell and every range."""
+        return {
+            "assumptions": [asdict(one) for one in self.assumptions],
+            "phases": [list(pair) for pair in self.phases],
+            "duration": self.duration,
+            "cells": [asdict(cell) for cell in self.cells],
+            "ranges": [asdict(found) for found in ranges(self.scenes, self.cells)],
+        }
+
+
+def describe(found: Range) -> str:
+    """One line for people: where mu_i stays within a share of the translational result."""
+    what = f"mu_{found.body} stays within {100.0 * found.share:g} %"
+    if found.key == "ring":
+        if found.holds is None:
+            return f"{what} at no ring tried, up to {found.fails:g} m"
+        fails = "every smaller one tried too" if found.fails is None else f"no longer at {found.fails:g} m"
+        return f"{what} with rings from {found.holds:g} m, {fails}"
+    if found.holds is None:
+        return f"{what} at no heights tried"
+    fails = "the largest tried" if found.fails is None else f"no longer at {found.fails:g} times"
+    return f"{what} with heights up to {found.holds:g} times the stated ones, {fails}"

@@ -1,0 +1,209 @@
+"""
+How far the paper's assumptions carry: the spatial model with other rings of supports and other heights of the bodies.
+
+The translational model, which no such variation changes, is what they are held against.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparison.execution.sweep import sweep
+from comparison.study.batches import imported
+from comparison.study.models import Model, models_of
+from comparison.study.study import Study
+from reference.problem import Outcome, Scene, untilted
+
+Array = NDArray[np.float64]
+
+PHASES = np.array([(0.0, 0.0), (0.3, 1.1), (2.0, 0.7)])  # rad; the first is where turning tells most in fig3-I
+DURATION = 6.0  # s: the loading is strongest in its first seconds
+WITHIN = (0.01, 0.05)  # of mu_i
+
+
+@dataclass(frozen=True)
+class Variation:
+    """The scene with another ring and other heights, as multiples of its own; supports: how many, None: its own."""
+
+    ring: float = 1.0
+    height: float = 1.0
+    supports: int | None = None
+
+    def of(self, scene: Scene) -> Scene:
+        isolator = scene.isolator
+        assert isolator.ring is not None
+        values: dict[str, Any] = {"isolator.ring": isolator.ring * self.ring}
+        values["isolator.supports"] = self.supports or isolator.supports
+        for number, body in enumerate(scene.bodies):
+            assert body.height is not None
+            values[f"bodies.{number}.height"] = body.height * self.height
+        return scene.with_values(values)
+
+
+FEW = (
+    *(Variation(ring=ring) for ring in (0.5, 1.0, 2.0, 8.0)),
+    *(Variation(height=height) for height in (0.0, 0.25, 0.5)),
+    Variation(supports=3),
+)
+MANY = (
+    *(Variation(ring, height) for ring in (0.5, 1.0, 2.0, 4.0, 8.0) for height in (0.0, 0.25, 0.5, 1.0)),
+    *(Variation(ring, 2.0) for ring in (1.0, 2.0, 4.0, 8.0)),  # on the narrowest ring the scenes would topple
+    Variation(supports=3),
+)
+
+
+@dataclass(frozen=True)
+class Cell:
+    """
+    The spatial model of one variation against the translational model, which no variation changes.
+
+    change: mu over mu of the translational model minus one, per phase pair and body, NaN without a value; uncertainty:
+    of it, the two error estimates together. status: of each phase pair. error_message: what went wrong, or "". cost: s
+    of compute of the spatial model.
+    """
+
+    scene: str
+    variation: Variation
+    change: tuple[tuple[float, ...], ...]
+    uncertainty: tuple[tuple[float, ...], ...]
+    status: tuple[str, ...]
+    error_message: str = ""
+    cost: float = 0.0
+
+    def largest(self, body: int) -> float:
+        """Largest |change| of mu_i over the phase pairs; NaN if one has no value: nothing is claimed then."""
+        return float(np.abs([row[body - 1] for row in self.change]).max())
+
+    def uncertain(self, body: int) -> float:
+        """Largest uncertainty of mu_i over the phase pairs; NaN likewise."""
+        return float(np.max([row[body - 1] for row in self.uncertainty]))
+
+    def holds(self, body: int, share: float) -> bool:
+        """Whether mu_i stays within `share` at every phase pair, uncertainty included."""
+        return self.largest(body) + self.uncertain(body) <= share
+
+
+@dataclass(frozen=True)
+class Range:
+    """
+    Where mu_i stays within `share` on one line of variations. key: "ring", m, or "height", times the stated ones.
+    holds: the last value up to which every value tried does, coming from where bodies turn least (wide rings, low
+    heights), None if none; fails: the next one tried, None if all hold.
+    """
+
+    scene: str
+    body: int
+    share: float
+    key: str
+    holds: float | None
+    fails: float | None
+
+
+Arguments = tuple[Scene, Model, Variation | None, float]
+
+
+@dataclass(frozen=True)
+class Solved:
+    """mu (M, N) at PHASES, its errors, the statuses, what went wrong, or "", and the cost, s."""
+
+    mu: Array
+    error: Array
+    status: tuple[str, ...]
+    error_message: str
+    cost: float
+
+    def __post_init__(self) -> None:
+        if self.mu.ndim != 2 or self.error.shape != self.mu.shape or len(self.status) != len(self.mu):
+            raise ValueError(f"mu {self.mu.shape}, error {self.error.shape}, {len(self.status)} statuses")
+
+
+def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> list[Arguments]:
+    """The translational model and every variation of the spatial one, for every scene to which both apply."""
+    asked: list[Arguments] = []
+    for scene in study.phased:
+        engines = [model for model in models_of(scene, study.hierarchy) if model.side == "engine"]
+        if len(engines) == 2:
+            plain, spatial = engines
+            asked.append((scene, plain, None, plain.tolerance(study.tolerance)))
+            tolerance = spatial.tolerance(study.tolerance)
+            asked += [(scene, spatial, variation, tolerance) for variation in variations]
+    return asked
+
+
+def assumption_cells(
+    study: Study,
+    jobs: int,
+    executor: Callable[[int], Executor],
+    variations: Sequence[Variation] = FEW,
+    done: Callable[[], None] = lambda: None,
+) -> list[Cell]:
+    """
+    Every variation of every scene to which both engine models apply, computed on `executor(jobs)`.
+
+    `done` is called as each is finished, and once more per scene for the translational model.
+    """
+    asked = variation_arguments(study, variations)
+    solved = sweep(asked, varied, _lost, lambda task, found: done(), jobs, executor)
+    held_against = {task[0].name: found for task, found in zip(asked, solved) if task[2] is None}
+    return [_cell(task[0], task[2], found, held_against[task[0].name]) for task, found in zip(asked, solved) if task[2]]
+
+
+def varied(task: Arguments) -> Solved:
+    """One task at PHASES."""
+    scene, model, variation, tolerance = task
+    short = scene.with_values({"duration": min(scene.duration, DURATION)})
+    changed = short if variation is None else variation.of(short)
+    whole = {"full": True} if untilted(changed) else {}  # a check of assumption (vi) must not make use of it
+    try:
+        found = imported(model.amplification)(changed, PHASES, **model.settings, tolerance=tolerance, **whole)
+    except Exception as error:
+        return _lost(task, Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}")
+    return Solved(found.mu, found.error, tuple(str(one) for one in found.status), "", float(found.cost))
+
+
+def _lost(task: Arguments, outcome: Outcome, error_message: str) -> Solved:
+    nothing = np.full((len(PHASES), len(task[0].bodies)), np.nan)
+    return Solved(nothing, nothing, (outcome.value,) * len(PHASES), error_message, 0.0)
+
+
+def _cell(scene: Scene, variation: Variation, spatial: Solved, plain: Solved) -> Cell:
+    change = spatial.mu / plain.mu - 1.0
+    uncertainty = np.hypot(spatial.error, plain.error) / plain.mu
+    error_message = spatial.error_message or plain.error_message
+    return Cell(scene.name, variation, _rows(change), _rows(uncertainty), spatial.status, error_message, spatial.cost)
+
+
+def _rows(array: Array) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(map(float, row)) for row in array)
+
+
+def ranges(scenes: Sequence[Scene], cells: Sequence[Cell]) -> list[Range]:
+    """For every scene, body and share of WITHIN: over rings at the stated heights, over heights at the stated ring."""
+    found = []
+    for scene in scenes:
+        own = [cell for cell in cells if cell.scene == scene.name and cell.variation.supports is None]
+        for body in range(1, len(scene.bodies) + 1):
+            for share in WITHIN:
+                wide = [cell for cell in own if cell.variation.height == 1.0]
+                low = [cell for cell in own if cell.variation.ring == 1.0]
+                own_ring = scene.isolator.ring or float("nan")
+                rings = sorted(((cell.variation.ring * own_ring, cell) for cell in wide), key=lambda pair: -pair[0])
+                heights = sorted(((cell.variation.height, cell) for cell in low), key=lambda pair: pair[0])
+                for key, line in (("ring", rings), ("height", heights)):
+                    found.append(Range(scene.name, body, share, key, *_bracket(line, body, share)))
+    return found
+
+
+def _bracket(line: Sequence[tuple[float, Cell]], body: int, share: float) -> tuple[float | None, float | None]:
+    last = None
+    for value, cell in line:
+        if not cell.holds(body, share):
+            return last, value
+        last = value
+    return last, None

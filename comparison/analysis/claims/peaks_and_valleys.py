@@ -1,0 +1,130 @@
+"""
+Humps and valleys of a surface over the phases, by prominence.
+
+A hump is a maximum whose prominence is at least SHARE of the surface's range (highest minus lowest value) and larger
+than what the errors of the values can make; its prominence is how far one must go down from it to reach anything
+higher. A valley is a hump of the surface upside down. The square is periodic, so a ridge that leaves through one edge
+comes back through the opposite one and counts once. `drawn` counts on one period as it is drawn instead, bounded by
+its edges, where the same ridge is cut in two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+SHARE = 0.3  # of the range
+LEAST_SHARE, MOST_SHARE = 0.2, 0.4  # a count that changes between these depends on the definition
+STEPS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
+
+
+@dataclass(frozen=True)
+class Relief:
+    """
+    What prominence finds on a surface (n, m).
+
+    tops: (row, column) of every hump, highest first. regions: (n, m), number of the hump that steepest ascent over all
+    lesser maxima leads to; -1 on a flat surface.
+    """
+
+    tops: Sequence[tuple[int, int]]
+    regions: NDArray[np.int_]
+
+
+@dataclass(frozen=True)
+class Counts:
+    """Humps and valleys of one surface."""
+
+    humps: int
+    valleys: int
+
+
+def periodic(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
+    """Humps and valleys on the square that closes at 2 pi; mu (n, n) at phases 2 pi k / n, finite, known to `error`."""
+    return Counts(len(relief(mu, error, share).tops), len(relief(-mu, error, share).tops))
+
+
+def drawn(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
+    """
+    Humps and valleys on the closed square [0, 2 pi]^2 as it is drawn, bounded by its edges.
+
+    Only valleys between two humps count: what lies beyond the outermost hump separates it from nothing.
+    """
+    square = np.pad(mu, ((0, 1), (0, 1)), mode="wrap")
+    humps, valleys = (relief(side * square, error, share, closed=False) for side in (1.0, -1.0))
+    between = [np.unique(humps.regions[valleys.regions == number]) for number in range(len(valleys.tops))]
+    return Counts(len(humps.tops), sum(len(sides) > 1 for sides in between))
+
+
+def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = True) -> Relief:
+    """
+    The humps of mu (n, m), finite; periodic in both directions if `closed`. error: absolute, of the values.
+
+    A surface whose range is within its errors is flat: it has no hump at all.
+    """
+    span = float(np.ptp(mu))
+    if not span > 2.0 * error:
+        return Relief([], np.full(mu.shape, -1))
+    least = max(share * span, 2.0 * error)
+    around = _neighbors(*mu.shape, closed)
+    height = mu.ravel()
+    order = np.argsort(-height, kind="stable")
+    rank = np.empty(height.size, dtype=int)
+    rank[order] = np.arange(height.size)
+    parent = np.full(height.size, -1)  # of what stands above the falling water: every island's root is its highest node
+    climbs = np.empty(height.size, dtype=int)  # the maximum that steepest ascent leads to
+    into: dict[int, int] = {}  # lesser maxima, to the one across their saddle
+    tops = []
+    for node in map(int, order):
+        islands: dict[int, int] = {}  # beside this node, with their highest node beside it
+        for other in sorted(around[node], key=rank.__getitem__):
+            if parent[other] >= 0:
+                islands.setdefault(_root(parent, other), other)
+        if not islands:
+            tops.append(node)
+            parent[node] = climbs[node] = node
+            continue
+        climbs[node] = climbs[next(iter(islands.values()))]
+        highest, *others = sorted(islands, key=rank.__getitem__)
+        parent[node] = highest
+        for lesser in others:
+            parent[lesser] = highest
+            if height[lesser] - height[node] < least:
+                into[lesser] = int(climbs[islands[highest]])
+    humps = [top for top in tops if top not in into]
+    number = {top: humps.index(_settled(into, top)) for top in tops}
+    regions = np.array([number[int(top)] for top in climbs]).reshape(mu.shape)
+    return Relief([divmod(top, mu.shape[1]) for top in humps], regions)
+
+
+def _settled(into: dict[int, int], top: int) -> int:
+    while top in into:
+        top = into[top]
+    return top
+
+
+def _root(parent: NDArray[np.int_], node: int) -> int:
+    while parent[node] != node:
+        parent[node] = parent[parent[node]]
+        node = int(parent[node])
+    return node
+
+
+@cache
+def _neighbors(rows: int, columns: int, closed: bool) -> list[list[int]]:
+    """The eight nodes around each: a ridge may run along the diagonal of the grid."""
+    return [
+        [
+            (i + di) % rows * columns + (j + dj) % columns
+            for di, dj in STEPS
+            if closed or (0 <= i + di < rows and 0 <= j + dj < columns)
+        ]
+        for i in range(rows)
+        for j in range(columns)
+    ]

@@ -1,0 +1,103 @@
+"""
+The claims of section 5 against readings of the paper.
+
+The paper leaves units, duration and f_c open, so that a claim can hold under one reading and not under another; the
+table says which, names the reading that reproduces most, and lists what none reproduces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+from comparison.analysis.claims.checks import Finding, Verdict
+from comparison.analysis.claims.claims import CLAIMS, Claim
+from comparison.analysis.claims.evidence import Evidence, Question, gathered, lost
+from comparison.analysis.claims.readings import CASES, READINGS, Reading, without_effect
+from comparison.execution.executors import Pool, process_pool
+from comparison.execution.sweep import sweep
+
+GRID = 16  # phases per axis: 24 change a count here and there, and none of the claims that no reading reproduces
+SECONDS = 0.15  # of one case under one reading on GRID, recorded beside `Model.seconds_per_point`
+COARSE = 2  # every second phase for surfaces that are only correlated with another
+
+
+@dataclass(frozen=True)
+class ClaimTable:
+    """Verdicts, one row for each of `claims`, in each one column for each of `readings`, on `grid` phases per axis."""
+
+    claims: Sequence[Claim]
+    readings: Sequence[Reading]
+    grid: int
+    verdicts: Sequence[Sequence[Verdict]]
+
+    def held(self, column: int) -> int:
+        """How many of the paper's own claims a reading reproduces."""
+        return sum(row[column].finding.holds for claim, row in zip(self.claims, self.verdicts) if not claim.weaker)
+
+    @property
+    def best(self) -> list[Reading]:
+        """The readings that reproduce most."""
+        held = [self.held(column) for column in range(len(self.readings))]
+        return [reading for reading, count in zip(self.readings, held) if count == max(held)]
+
+    @property
+    def never(self) -> list[Claim]:
+        """The claims that no reading reproduces."""
+        return [claim for claim, row in zip(self.claims, self.verdicts) if not any(v.finding.holds for v in row)]
+
+    def found(self, row: int) -> list[tuple[list[int], Verdict]]:
+        """What the checks of a claim found, each different answer once, with the numbers of its readings from 1 on."""
+        groups: dict[Verdict, list[int]] = {}
+        for number, verdict in enumerate(self.verdicts[row], start=1):
+            groups.setdefault(verdict, []).append(number)
+        return [(numbers, verdict) for verdict, numbers in groups.items()]
+
+    def where(self, row: int) -> str:
+        """Under which readings a claim holds, in words."""
+        names = [reading.name for reading, verdict in zip(self.readings, self.verdicts[row]) if verdict.finding.holds]
+        return "every reading" if len(names) == len(self.readings) else "; ".join(names) or "no reading"
+
+
+def claims_tested(
+    jobs: int,
+    executor: Pool = process_pool,
+    grid: int = GRID,
+    readings: Sequence[Reading] = READINGS,
+    claims: Sequence[Claim] = CLAIMS,
+    done: Callable[[Question], None] = lambda question: None,
+) -> ClaimTable:
+    """Every claim under every reading, computed on `executor`, see `sweep`; `done` is told of each case."""
+    asked = questions(readings, claims, grid)
+    found = sweep(asked, gathered, lost, lambda question, evidence: done(question), jobs, executor)
+    known = dict(zip(asked, found))
+    columns = [{case: known[_question(case, reading, grid)] for case in _cases(claims)} for reading in readings]
+    return tabulated(claims, readings, grid, columns)
+
+
+def tabulated(
+    claims: Sequence[Claim], readings: Sequence[Reading], grid: int, columns: Sequence[Mapping[str, Evidence]]
+) -> ClaimTable:
+    """The table from the evidence of every reading."""
+    return ClaimTable(claims, readings, grid, [[claim.verdict(column) for column in columns] for claim in claims])
+
+
+def questions(readings: Sequence[Reading], claims: Sequence[Claim], grid: int) -> list[Question]:
+    """What has to be computed, each only once, the longest first."""
+    every = [_question(case, reading, grid) for case in _cases(claims) for reading in readings]
+    return sorted(dict.fromkeys(every), key=lambda question: -question.reading.amplitude)
+
+
+def _cases(claims: Sequence[Claim]) -> list[str]:
+    used = {case for claim in claims for case in claim.cases}
+    return [case for case in CASES if case in used]
+
+
+def _question(case: str, reading: Reading, grid: int) -> Question:
+    compared = len(CASES[case](reading).bodies) == 1
+    return Question(
+        case, without_effect(reading, CASES[case](reading)), grid // COARSE if compared and grid % COARSE == 0 else grid
+    )
+
+
+SIGNS = {Finding.REPRODUCED: "yes", Finding.AS_DRAWN: "drawn", Finding.NOT: "no", Finding.OPEN: "?"}

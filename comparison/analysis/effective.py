@@ -1,0 +1,133 @@
+"""
+What each model really computed with, read back from one of its motions and not from its inputs.
+
+Codes that take the same numbers may use different ones: contact laws combine stiffness and friction in their own
+ways, and an elastic contact moves on another sphere. Here the motion itself is measured.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparison.execution.sweep import sweep
+from comparison.study.batches import imported
+from comparison.study.models import Model, models_of
+from comparison.study.study import Study
+from reference.problem import GRAVITY, Outcome, Scene, Trajectory, ground_acceleration
+
+Array = NDArray[np.float64]
+
+PHASES = (0.3, 1.1)  # rad, of the motion that is measured
+DURATION = 6.0  # s: two frequencies are strongest in their first seconds; a record is followed to its end
+FASTEST = 0.9  # friction is measured where the platform slides faster than this part of its largest speed
+
+
+@dataclass(frozen=True)
+class Effective:
+    """
+    Values read back from one motion, NaN where the motion does not tell.
+
+    radius: m, of the sphere the platform moves on, (x^2 + y^2 + z^2) / 2z at its largest excursion. friction:
+    tangential over normal part of the contact force while sliding, over |v| in a lubricated scene (s/m). contact: N,
+    contact force at t = 0. mass: kg, total, the contact force at t = 0 over the apparent gravity. acceleration: m/s^2,
+    absolute, of the platform at t = 0: that of the ground where friction holds it, 0 where friction begins with
+    the speed. error_message: why there are none, or "".
+    """
+
+    scene: str
+    model: str
+    radius: float = float("nan")
+    friction: float = float("nan")
+    contact: float = float("nan")
+    mass: float = float("nan")
+    acceleration: float = float("nan")
+    error_message: str = ""
+
+
+def stated(scene: Scene) -> Effective:
+    """The same values as the scene states them; the platform begins at rest on the plate and moves with it."""
+    ground = ground_acceleration(scene, PHASES, [0.0])[0]
+    return Effective(
+        scene=scene.name,
+        model="scene",
+        radius=scene.radius,
+        friction=scene.friction_coefficient,
+        contact=float(scene.total_mass * (GRAVITY + ground[2])),
+        mass=scene.total_mass,
+        acceleration=float(np.linalg.norm(ground)),
+    )
+
+
+def effective_arguments(study: Study) -> list[tuple[Scene, Model]]:
+    """Every model of every scene."""
+    return [(scene, model) for scene in study.scenes for model in models_of(scene, study.hierarchy)]
+
+
+def effective_values(study: Study, jobs: int, executor: Callable[[int], Executor]) -> list[Effective]:
+    """For every scene what it states, then what the motion of every model shows, computed on `executor(jobs)`."""
+    found = sweep(effective_arguments(study), read_back, _lost, lambda task, value: None, jobs, executor)
+    return [
+        value for scene in study.scenes for value in (stated(scene), *(one for one in found if one.scene == scene.name))
+    ]
+
+
+def read_back(task: tuple[Scene, Model]) -> Effective:
+    """The values of one model. What goes wrong is said in `error_message`; a value is never made up."""
+    scene, model = task
+    nothing = Effective(scene.name, model.key)
+    lasting = scene.duration if scene.recorded else min(scene.duration, DURATION)
+    short = scene.with_values({"duration": lasting})
+    settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
+    try:
+        motion: Trajectory = imported(model.trajectory)(short, PHASES, **settings)
+        if motion.status != Outcome.OK:
+            return replace(nothing, error_message=f"the motion ended: {motion.status}")
+        return replace(nothing, **_measured(short, motion))
+    except Exception as error:
+        return replace(nothing, error_message=f"{type(error).__name__}: {error}")
+
+
+def _lost(task: tuple[Scene, Model], outcome: Outcome, error_message: str) -> Effective:
+    scene, model = task
+    return Effective(scene.name, model.key, error_message=f"{outcome}: {error_message}")
+
+
+def _measured(scene: Scene, motion: Trajectory) -> dict[str, Any]:
+    place = motion.position[:, 0]
+    ground = ground_acceleration(scene, PHASES, motion.time)
+    swing = (place**2).sum(axis=1)
+    far = int(np.argmax(swing))
+    radius = float(swing[far] / (2.0 * place[far, 2])) if place[far, 2] > 0.0 else float("nan")
+    return {
+        "radius": radius,
+        "friction": _friction(scene, motion, radius),
+        "contact": float(motion.contact_force[0]),
+        "mass": float(motion.contact_force[0] / (GRAVITY + ground[0, 2])),
+        "acceleration": float(np.linalg.norm(motion.absolute_acceleration[0, 0])),
+    }
+
+
+def _friction(scene: Scene, motion: Trajectory, radius: float) -> float:
+    """
+    The contact force is what accelerates all bodies together; split along and across the sphere's normal.
+
+    Median over the instants of fast sliding.
+    """
+    if not np.isfinite(radius):
+        return float("nan")
+    force = np.einsum("i,tik->tk", scene.masses, motion.absolute_acceleration)
+    force[:, 2] += scene.total_mass * GRAVITY
+    normal = np.array([0.0, 0.0, radius]) - motion.position[:, 0]
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    along = np.einsum("tk,tk->t", force, normal)
+    across = np.linalg.norm(force - along[:, None] * normal, axis=1)
+    speed = np.linalg.norm(motion.velocity[:, 0], axis=1)
+    fast = speed > FASTEST * speed.max()
+    ratio = across[fast] / along[fast]
+    return float(np.median(ratio / speed[fast] if scene.lubricated else ratio))

@@ -1,0 +1,112 @@
+"""The matrix of extremes as data: what every model made of every extreme, as a file and as the report needs it."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+from comparison.analysis.extremes.cells import Cell, Solved
+from comparison.analysis.extremes.rows import Column
+from comparison.analysis.extremes.verdicts import Judged, Verdict
+from comparison.analysis.extremes.worker import NoAnswer
+
+FILE, PICTURE = "extremes.json", "extremes.png"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """
+    One cell. error: the largest relative one claimed, None without a value. seconds, total: processor time of the
+    model's answer, and of the cell with its finer runs; None without an answer.
+    """
+
+    verdict: str
+    reason: str
+    error: float | None
+    seconds: float | None
+    total: float | None
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """One row: entries by the key of the column; a model that the extreme does not concern has none."""
+
+    group: str
+    title: str
+    entries: Mapping[str, Entry]
+
+
+@dataclass(frozen=True)
+class Matrix:
+    """columns: titles by key. run: command, times, provenance; whether it is the reduced form."""
+
+    columns: Mapping[str, str]
+    rows: Sequence[Extreme]
+    run: Mapping[str, Any]
+
+    def counts(self) -> dict[str, int]:
+        """Number of cells of each verdict, in the order from best to worst."""
+        seen = Counter(entry.verdict for row in self.rows for entry in row.entries.values())
+        return {verdict.value: seen[verdict.value] for verdict in Verdict}
+
+    def groups(self) -> list[list[Extreme]]:
+        """The rows that share a quantity."""
+        return [list(rows) for _, rows in groupby(self.rows, key=lambda row: row.group)]
+
+    def listed(self, verdict: str) -> list[tuple[Extreme, str, Entry]]:
+        """The rows, titles of columns and entries with this verdict."""
+        return [
+            (row, self.columns[key], entry)
+            for row in self.rows
+            for key, entry in row.entries.items()
+            if entry.verdict == verdict
+        ]
+
+
+def matrix(
+    cells: Sequence[Cell], results: Sequence[Solved | NoAnswer], columns: Sequence[Column], run: Mapping[str, Any]
+) -> Matrix:
+    """Results laid out by extreme and model."""
+    rows: dict[tuple[str, str], dict[str, Entry]] = {}
+    for cell, result in zip(cells, results):
+        row = rows.setdefault((cell.row.group, cell.row.title), {})
+        row[cell.column.key] = as_entry(result)
+    used = {key for entries in rows.values() for key in entries}
+    titles = {column.key: column.title for column in columns if column.key in used}
+    return Matrix(titles, [Extreme(group, title, entries) for (group, title), entries in rows.items()], run)
+
+
+def as_entry(result: Solved | NoAnswer) -> Entry:
+    """The result as it is shown; no answer at all is a failure."""
+    if isinstance(result, NoAnswer):
+        return Entry(Verdict.FAILED.value, result.why, None, None, None)
+    verdict: Judged = result.judged
+    error = verdict.error if math.isfinite(verdict.error) else None
+    return Entry(verdict.verdict.value, verdict.reason, error, round(result.seconds, 3), round(result.total, 3))
+
+
+def written(found: Matrix) -> bytes:
+    """The content of the file."""
+    return (json.dumps(asdict(found), indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+
+
+def read(folder: Path) -> Matrix | None:
+    """The matrix that `written` left in the folder, None if there is none. Raises ValueError if it is another file."""
+    file = folder / FILE
+    if not file.exists():
+        return None
+    try:
+        data = json.loads(file.read_text(encoding="utf-8"))
+        rows = [
+            Extreme(row["group"], row["title"], {key: Entry(**entry) for key, entry in row["entries"].items()})
+            for row in data["rows"]
+        ]
+        return Matrix(data["columns"], rows, data["run"])
+    except (KeyError, TypeError, ValueError) as error:
+        raise ValueError(f"{file}: not a matrix of extremes: {error!r}: run python -m comparison.extremes") from None

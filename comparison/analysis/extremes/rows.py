@@ -1,0 +1,259 @@
+"""
+The rows and columns of the matrix of extremes: one quantity of a plain scene driven to its extreme, for every model.
+
+Scenes are written as in a scene file and read where a cell is solved, so that a wrong one is refused there. They last a
+few seconds, during which the platform rests, slides and stops, unless the duration itself is the extreme.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+Phases = tuple[tuple[float, float], ...]
+
+PHASES: Phases = ((0.3, 1.1), (2.0, 0.7))  # rad
+SYMMETRIC: Phases = ((0.0, 0.0), (0.0, math.pi), (math.pi / 2, math.pi / 2), (math.pi, math.pi / 2))
+GRAVITY_LIMIT = 9.81  # m/s^2: downward acceleration of the plate at which the contact carries nothing
+
+
+EQUATIONS, ENGINE = "reference:amplification", "multibody:amplification"
+
+
+@dataclass(frozen=True)
+class Column:
+    """
+    A model: its function ("package:function"), its settings, and the relative error asked of it.
+
+    finer: how a value is confirmed, in this order until one answers: function, settings, relative error asked.
+    """
+
+    key: str
+    title: str
+    amplification: str
+    settings: Mapping[str, Any]
+    tolerance: float
+    finer: tuple[tuple[str, Mapping[str, Any], float], ...]
+
+
+@dataclass(frozen=True)
+class Row:
+    """
+    An extreme. scene: as in a scene file. columns: keys of the models it concerns. settings: of the models, in place of
+    the column's. invalid: the rules of the input refuse it. right: outcomes that may stand in place of an answer,
+    where the physics or the rules say which; any named one if empty. quick: takes the equations less than a second.
+    amplification: function in place of the column's.
+    """
+
+    group: str
+    title: str
+    scene: Mapping[str, Any]
+    columns: tuple[str, ...]
+    phases: Phases = PHASES
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    invalid: bool = False
+    right: tuple[str, ...] = ()
+    quick: bool = True
+    amplification: str = ""
+
+
+def _column(key: str, title: str, equations: str, regularization: float | None) -> Column:
+    function, settings = EQUATIONS, {"equations": equations, "regularization": regularization}
+    return Column(key, title, function, settings, 1e-6, ((function, settings, 1e-8), (function, settings, 1e-7)))
+
+
+V_REG = 1e-3  # m/s, where it is not the extreme
+_REGULARIZED = {"equations": "exact", "regularization": V_REG}
+_TRANSLATIONAL = {"model": "translational", "regularization": V_REG}
+_SPATIAL = {"model": "spatial", "regularization": V_REG}
+GIVEN = "comparison.analysis.extremes.engine:amplification"  # the engine at a step or a contact stiffness of the row
+
+COLUMNS = (
+    _column("small", "small equations", "small", None),
+    _column("exact", "exact equations", "exact", None),
+    _column("regularised", "exact equations, v_reg", "exact", V_REG),
+    Column(
+        "translational",
+        "translational engine",
+        ENGINE,
+        _TRANSLATIONAL,
+        1e-3,
+        # the same law and geometry by other means and far closer; the engine itself where that has no answer
+        (
+            ("reference:amplification", _REGULARIZED, 1e-6),
+            (ENGINE, _TRANSLATIONAL, 3e-5),
+            (ENGINE, _TRANSLATIONAL, 1e-4),
+        ),
+    ),
+    Column(
+        "spatial",
+        "spatial engine",
+        ENGINE,
+        _SPATIAL,
+        1e-2,
+        ((ENGINE, _SPATIAL, 3e-4), (ENGINE, _SPATIAL, 1e-3)),
+    ),
+)
+ALL = tuple(column.key for column in COLUMNS)
+PLANAR = ALL[:4]  # every model whose bodies do not turn
+REFERENCE = ALL[:3]
+WITH_V_REG = ALL[2:]
+WITH_ENGINE = ALL[3:]
+
+
+def scene(
+    *,
+    amplitudes: Sequence[Sequence[float]] = ((2.0, 0.0), (0.0, 2.0)),
+    periods: Sequence[float] = (0.9, 1.1),
+    decay: Sequence[float] = (1.0 / 3.0, 0.3 / 1.1),
+    duration: float = 3.0,
+    masses: Sequence[float] = (1.0, 1.0),
+    link: Sequence[float] = (1.5, 1.2),
+    storey: float = 1.0,
+    **isolator: Any,
+) -> dict[str, Any]:
+    """The plain scene, `fig3-I` at twice its amplitude, with what is given changed. link: its periods in x, y, s."""
+    if "radius" not in isolator:
+        isolator = {"period": 1.0, **isolator}
+    size = [2.0, 2.0, 0.2]
+    bodies: list[dict[str, Any]] = [
+        {"mass": mass, "height": 0.2 + storey * number, "size": size, "period": list(link)}
+        for number, mass in enumerate(masses)
+    ]
+    del bodies[0]["period"]
+    return {
+        "title": "one quantity at its extreme",
+        "duration": duration,
+        "isolator": {"friction": 0.1, "supports": 4, "ring": 1.0, "sphere_radius": 0.05, **isolator},
+        "bodies": bodies,
+        "excitation": {
+            "amplitudes": [list(row) for row in amplitudes],
+            "periods": list(periods),
+            "decay": list(decay),
+        },
+    }
+
+
+def _along(amplitude: float) -> list[list[float]]:
+    return [[amplitude, 0.0], [0.0, amplitude]]
+
+
+def _upward(amplitude: float) -> list[list[float]]:
+    return [[2.0, 0.0], [0.0, 2.0], [amplitude, 0.0]]
+
+
+def rows() -> Iterator[Row]:
+    """Every extreme, in the order of the matrix."""
+    for friction in (0.0, 1e-9, 1.0, 10.0):
+        yield Row("friction", f"{friction:g}", scene(friction=friction), ALL)
+    for lubrication in (0.0, 1e-9, 1.0, 1e3):
+        wet = scene(friction=None, lubrication=lubrication)
+        yield Row("lubrication, s/m", f"{lubrication:g}", wet, ("small", "exact", "translational"))
+    for exponent in range(1, 9):
+        speed = 10.0**-exponent
+        yield Row("v_reg, m/s", f"{speed:g}", scene(), WITH_V_REG, settings={"regularization": speed})
+    for cutoff in (1e-1, 1e-4, 1e-12):
+        yield Row("cutoff v_c, m/s", f"{cutoff:g}", scene(), ("small", "exact"), settings={"cutoff": cutoff})
+    for exponent in (2, 4, 6, 8, 10, 12):
+        given = {"contact_stiffness": 10.0**exponent, "tolerance": 1e-2}
+        yield Row(
+            "contact stiffness, N/m",
+            f"1e{exponent}",
+            scene(duration=1.0),
+            WITH_ENGINE,
+            settings=given,
+            amplification=GIVEN,
+        )
+    for exponent in (-6, -5, -4, -3, -2, -1):
+        given = {"step": 10.0**exponent, "tolerance": 1e-2}
+        brief = scene(duration=0.02 if exponent == -6 else 0.2 if exponent == -5 else 1.0)
+        yield Row("step of the engine, s", f"1e{exponent}", brief, WITH_ENGINE, settings=given, amplification=GIVEN)
+    for amplitude in (1e-9, 1e-6, 1e-3, 5.0, 20.0, 1e3, 1e9):
+        yield Row("amplitude, m/s^2", f"{amplitude:g}", scene(amplitudes=_along(amplitude)), ALL)
+    near_rim = scene(amplitudes=_along(12.0), friction=0.02, duration=20.0)
+    yield Row("amplitude, m/s^2", "12, friction 0.02, along the rim", near_rim, PLANAR, phases=PHASES[:1])
+    for radius in (1e-3, 3e-2, 30.0, 1e3):
+        yield Row("rho, m", f"{radius:g}", scene(radius=radius), ALL)
+    for count, link in (
+        (1, 1.0),
+        (2, 1.0),
+        (10, 0.3),
+        (100, 0.03),
+        (1000, 0.01),
+    ):  # a shock climbs them in 0.5 to 1.6 s
+        tower = scene(masses=[1.0] * count, link=(link, 0.8 * link), storey=0.3, duration=3.0 if count <= 10 else 2.0)
+        few = PHASES if count <= 10 else PHASES[:1]
+        yield Row("bodies N", str(count), tower, ALL if count <= 10 else PLANAR, phases=few, quick=count <= 100)
+    for total in (1e-6, 1e-3, 1e3, 1e9):
+        yield Row("total mass, kg", f"{total:g}", scene(masses=[0.5 * total, 0.5 * total]), ALL)
+    for share in (1e-6, 1e-3, 0.999, 0.999999):
+        yield Row("platform's share of the mass", f"{share:g}", scene(masses=[2.0 * share, 2.0 * (1.0 - share)]), ALL)
+    yield Row("platform's share of the mass", "1", scene(masses=[2.0]), ALL)
+    for period in (1e-3, 1e-2, 30.0, 1e3):
+        yield Row("link periods, s", f"{period:g}", scene(link=(period, 0.8 * period)), ALL)
+    yield Row("harmonics", "equal", scene(periods=(0.9, 0.9)), ALL)
+    yield Row("harmonics", "1e-3 Hz", scene(periods=(1e3, 1.1e3), decay=(3e-4, 3e-4)), ALL)
+    yield Row("harmonics", "1e3 Hz", scene(periods=(1e-3, 1.1e-3), duration=0.05), ALL)
+    yield Row("harmonics", "1e-3 Hz and 1e3 Hz", scene(periods=(1e3, 1e-3), duration=0.05), ALL)
+    yield Row("decay, 1/s", "0", scene(decay=(0.0, 0.0)), ALL)
+    for decay in (1e3, 1e6):
+        yield Row("decay, 1/s", f"{decay:g}", scene(decay=(decay, decay)), ALL)
+    for duration in (1e-3, 0.1):
+        yield Row("duration, s", f"{duration:g}", scene(duration=duration), ALL)
+    for duration in (100.0, 1e4):
+        yield Row("duration, s", f"{duration:g}", scene(duration=duration), PLANAR, phases=PHASES[:1])
+    for upward in (5.0, 9.8):
+        yield Row("vertical loading, m/s^2", f"{upward:g}", scene(amplitudes=_upward(upward)), ALL)
+    exactly = scene(amplitudes=_upward(GRAVITY_LIMIT), decay=(0.0, 0.0), duration=1.0)
+    weightless = (0.0, 1.1), (math.pi, 0.7)  # for one instant: whether the contact has opened then is a matter of words
+    right = ("contact lost",)
+    yield Row("vertical loading, m/s^2", "-g exactly", exactly, PLANAR, phases=weightless, right=right)
+    # the spatial model goes on when a contact opens: it may have an answer, or none, but no refusal
+    yield Row("vertical loading, m/s^2", "-g exactly", exactly, ("spatial",), phases=weightless)
+    for upward in (15.0, 1e3):
+        yield Row("vertical loading, m/s^2", f"{upward:g}", scene(amplitudes=_upward(upward)), ALL)
+    yield Row("phases", "at symmetric values", scene(duration=2.0), ALL, phases=SYMMETRIC)
+    yield Row("direction", "x alone", scene(amplitudes=[[2.0, 1.0], [0.0, 0.0]]), ALL)
+    yield Row("direction", "y alone", scene(amplitudes=[[0.0, 0.0], [2.0, 1.0]]), ALL)
+    oblique = scene(amplitudes=[[2.0, 1.0], [1.0, 0.5]], link=(1.5, 1.5))
+    yield Row("direction", "one oblique line (4.7)", oblique, ALL)
+    for across in (1e-3, 1e-6, 1e-9, 1e-12, 1e-15):
+        almost = scene(amplitudes=[[2.0, 1.0], [across, 0.0]])
+        yield Row("direction", f"x, and {across:g} m/s^2 across", almost, PLANAR)
+    for still in (([2.0, 0.0], [0.0, 0.0]), ([0.0, 2.0], [0.0, 0.0])):
+        yield Row("direction", f"one harmonic alone, {still[0]}", scene(amplitudes=still), PLANAR)
+    limit = 0.1 * GRAVITY_LIMIT
+    for name, phase in (("falling", 0.0), ("rising", -math.pi / 3.0), ("beyond at once", math.pi / 3.0)):
+        amplitude = limit / math.cos(phase)
+        alone = scene(amplitudes=[[amplitude, 0.0], [0.0, 0.0]], decay=(0.0, 0.0), masses=[1.0])
+        yield Row("start at the friction limit", name, alone, ALL, phases=((phase, 0.0),))
+    for ring in (1.0, 0.1, 0.01):
+        three = scene(amplitudes=_along(4.0), friction=0.05, supports=3, ring=ring)
+        yield Row("three supports, ring in m", f"{ring:g}", three, ("spatial",))
+    for tolerance in (1e-1, 1e-2, 1e-4, 1e-8):
+        yield Row("relative error asked", f"{tolerance:g}", scene(), REFERENCE, settings={"tolerance": tolerance})
+    for tolerance in (1e-1, 1e-2, 1e-4, 1e-6):
+        settings = {"tolerance": tolerance}
+        yield Row("relative error asked", f"{tolerance:g}", scene(), ("translational",), settings=settings)
+    yield from _outside_the_rules()
+
+
+def _outside_the_rules() -> Iterator[Row]:
+    group = "outside the rules"
+    wrong = {
+        "friction -0.1": scene(friction=-0.1),
+        "mass 0": scene(masses=[0.0, 1.0]),
+        "duration 0": scene(duration=0.0),
+        "radius beyond double precision": scene(period=1e200),
+        "amplitude not a number": scene(amplitudes=_along(math.nan)),
+    }
+    for title, impossible in wrong.items():
+        yield Row(group, title, impossible, ("exact", "translational"), invalid=True)
+    for speed in (0.0, -1.0, math.inf):
+        yield Row(group, f"v_reg {speed:g} m/s", scene(), WITH_V_REG, settings={"regularization": speed}, invalid=True)
+    nothing = scene(amplitudes=_along(0.0))
+    yield Row(group, "no loading", nothing, PLANAR, right=("no ground motion",))
+    overflow = scene(amplitudes=_along(1e200))
+    yield Row(group, "loading 1e200 m/s^2", overflow, PLANAR, right=("non-finite load",))

@@ -1,0 +1,141 @@
+"""
+The matrix form (3.9)-(3.13), (3.15) as the paper prints it, erratum by erratum, to measure what each erratum costs.
+
+Written from the print and not from the reference, whose equations it must give once every erratum is corrected.
+Friction grows linearly with the speed below V_REG (a lubricated contact needs no such limit), so that an ordinary
+integrator can follow it; this is for the size of an effect, not for surfaces.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.integrate import solve_ivp
+
+from comparison.study.models import V_REG
+from reference.problem import GRAVITY, Scene, ground_acceleration, ground_peak
+
+Array = NDArray[np.float64]
+
+WRONG_SPRING = "(3.12) c_24 with k^x"
+WRONG_DAMPING = "(3.15) h_12, h_21 without rho, h_22 with xi''"
+RELATIVE, ABSOLUTE = 1e-7, 1e-10
+SAMPLES = 2e-3  # s between the instants at which peaks are read
+
+
+def printed_amplification(scene: Scene, phases: ArrayLike, errata: Collection[str] = ()) -> Array:
+    """
+    mu_i (5.1), (M, N), for the phases (M, 2), rad, with the `errata` named left as printed and all others mended.
+
+    NaN where the motion leaves the sphere's lower half or grows without bound. Good to about 1e-4.
+    """
+    pairs = np.asarray(phases, float)
+    return np.array([_peaks(scene, phase, errata) for phase in pairs]) / ground_peak(scene, pairs)[:, None]
+
+
+class _Fixed(NamedTuple):
+    """What does not change along a motion."""
+
+    scene: Scene
+    rho: float
+    friction: float
+    lubricated: bool
+    total: float
+    masses: Array  # (2 N,), each twice
+    inertia: Array  # (2 N, 2 N), M but for its first two rows
+    links: Array  # (2 N, 2 N), C but for Delta, the factor of its first two rows, and their diagonal
+    first: tuple[float, float]  # stiffness of the lowest link, N/m
+    errata: Collection[str]
+
+
+def _fixed(scene: Scene, errata: Collection[str]) -> _Fixed:
+    masses = np.repeat(scene.masses, 2)
+    links = np.zeros((len(masses), len(masses)))
+    for link, pair in enumerate(scene.stiffness):
+        for axis, k in enumerate(pair):
+            low, high = 2 * link + axis, 2 * link + 2 + axis
+            links[low, low] += k
+            links[low, high] -= pair[0] if link == 0 and WRONG_SPRING in errata else k
+            links[high, high] += k
+            links[high, low] -= k
+    first = tuple(map(float, scene.stiffness[0])) if len(scene.stiffness) else (0.0, 0.0)
+    law = scene.friction_coefficient, scene.lubricated, float(scene.total_mass)
+    return _Fixed(scene, scene.radius, *law, masses, np.diag(masses), links, (first[0], first[-1]), errata)
+
+
+def _peaks(scene: Scene, phase: Array, errata: Collection[str]) -> Array:
+    fixed = _fixed(scene, errata)
+    bodies = len(scene.bodies)
+    count = 2 * bodies
+
+    def slope(t: float, state: Array) -> Array:
+        ground = ground_acceleration(scene, phase, [t])[0]
+        return np.concatenate([state[count:], _accelerations(fixed, state[:count], state[count:], ground)])
+
+    def rim(t: float, state: Array) -> float:
+        return float(0.999 - np.hypot(*state[:2]) / scene.radius)
+
+    rim.terminal = True  # type: ignore[attr-defined]  # the way solve_ivp is told
+    times = np.linspace(0.0, scene.duration, int(np.ceil(scene.duration / SAMPLES)) + 1)
+    motion = solve_ivp(slope, (0.0, scene.duration), np.zeros(2 * count), "LSODA", times, False, rim, rtol=RELATIVE,
+                       atol=ABSOLUTE, max_step=scene.duration / 200.0)  # fmt: skip
+    if motion.status != 0:
+        return np.full(bodies, np.nan)
+    total = np.empty((len(motion.t), bodies, 3))
+    grounds = ground_acceleration(scene, phase, motion.t)
+    for row, (u, state) in enumerate(zip(grounds, motion.y.T)):
+        q, v = state[:count], state[count:]
+        a = _accelerations(fixed, q, v, u)
+        delta = -math.sqrt(scene.radius**2 - q[0] ** 2 - q[1] ** 2)
+        climb = -(a[0] * q[0] + a[1] * q[1]) / delta - _w(q[0], q[1], v[0], v[1], delta)  # (3.4)
+        total[row, :, :2] = a.reshape(-1, 2) + u[:2]
+        total[row, :, 2] = climb + u[2]
+    peaks: Array = np.linalg.norm(total, axis=2).max(axis=0)
+    return peaks
+
+
+def _w(x: float, y: float, vx: float, vy: float, delta: float) -> float:
+    """W of (3.5)."""
+    return (vx**2 + vy**2) / delta + (x * vx + y * vy) ** 2 / delta**3
+
+
+def _accelerations(fixed: _Fixed, q: Array, v: Array, ground: Array) -> Array:
+    """q'' = M^-1 (E - H q' - C q), (3.9)."""
+    rho, total, m = fixed.rho, fixed.total, float(fixed.masses[0])
+    (x, y), (vx, vy) = q[:2].tolist(), v[:2].tolist()  # plain numbers: arrays of two cost more than they save
+    xi, eta, zeta = ground.tolist()
+    delta = -math.sqrt(rho**2 - x**2 - y**2)
+    p, r = x / delta, y / delta  # P and Q of (3.4)
+    speed = math.sqrt(vx**2 + vy**2 + (vx * p + vy * r) ** 2)  # (3.8)
+    w = _w(x, y, vx, vy, delta)
+    over_speed = fixed.friction if fixed.lubricated else fixed.friction / max(speed, V_REG)
+    s = over_speed * rho  # mu rho / v, (3.14) included
+
+    inertia = fixed.inertia.copy()
+    own = m * (delta - s * (vx * p + vy * r))
+    inertia[0, 0], inertia[0, 1] = own + total * p * (x + s * vx), total * r * (x + s * vx)
+    inertia[1, 0], inertia[1, 1] = total * p * (y + s * vy), own + total * r * (y + s * vy)
+
+    main, cross, last = -total * (GRAVITY + zeta - w) * s, s, eta
+    if WRONG_DAMPING in fixed.errata:
+        cross, last = over_speed, xi
+    damped = (
+        (main - m * xi * p * s) * vx - m * xi * r * cross * vy,
+        -m * eta * p * cross * vx + (main - m * last * r * s) * vy,
+    )  # H q': zero but for its first two rows
+
+    sprung = fixed.links @ q  # C q
+    load: Array = -fixed.masses
+    load[0::2] *= xi
+    load[1::2] *= eta
+    for axis, (place, ground_axis) in enumerate(((x, xi), (y, eta))):
+        sprung[axis] = delta * sprung[axis] - total * (zeta + GRAVITY - w) * place
+        load[axis] = -m * ground_axis * delta - damped[axis]
+        if len(q) > 2:
+            load[axis] -= s * (vx * p + vy * r) * fixed.first[axis] * (q[axis + 2] - place)
+    load -= sprung
+    return np.asarray(np.linalg.solve(inertia, load), np.float64)

@@ -1,0 +1,111 @@
+"""The difference of two models' surfaces with its uncertainty, point by point: of it tables and figures are made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from comparison.analysis.surfaces import common_phases
+from comparison.study.models import Model
+
+Array = NDArray[np.float64]
+
+WORTHLESS = 0.5  # of a value: an error estimate above it means that the value says nothing
+RESOLVED = 5.0  # times u_D: a difference that large is known to a fifth of itself or better
+
+
+@dataclass(frozen=True)
+class Step:
+    """
+    (mu of `second` - mu of `first`) / scale at the phases (alpha1, alpha2), rad, that both models were asked for.
+
+    size: signed, NaN where a value is missing. uncertainty: u_D = sqrt(u_A^2 + u_B^2) of the two error estimates in the
+    same unit. stride: the phases are every so many-th of the study's. recorded: the scene has none of them.
+    """
+
+    key: str
+    first: Model
+    second: Model
+    body: int
+    alpha1: Array
+    alpha2: Array
+    size: Array
+    uncertainty: Array
+    stride: int
+    recorded: bool = False
+
+    @property
+    def known(self) -> NDArray[np.bool_]:
+        """Where all values that the step needs are there."""
+        return np.isfinite(self.size) & np.isfinite(self.uncertainty)
+
+    @property
+    def real(self) -> NDArray[np.bool_]:
+        """Where it is a difference between the models: beyond its uncertainty, and known to a fifth of itself."""
+        return self.known & (np.abs(self.size) > RESOLVED * self.uncertainty)
+
+    @property
+    def unresolved(self) -> NDArray[np.bool_]:
+        """Where it exceeds its uncertainty, but less than fivefold: probably there, of unknown size, never counted."""
+        return self.known & (np.abs(self.size) > self.uncertainty) & ~self.real
+
+    @property
+    def ratio(self) -> Array:
+        """|D| / u_D, 0 where both vanish."""
+        size = np.abs(self.size)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio: Array = np.where(size == 0.0, 0.0, size / self.uncertainty)
+        return ratio
+
+    @property
+    def place(self) -> tuple[int, int] | None:
+        """Row and column of the largest absolute size on the study's grid, None without any."""
+        if not self.known.any():
+            return None
+        row, column = np.unravel_index(np.argmax(np.where(self.known, np.abs(self.size), -1.0)), self.size.shape)
+        return int(row) * self.stride, int(column) * self.stride
+
+    @property
+    def phases(self) -> tuple[float, float]:
+        """(alpha1, alpha2) of the largest absolute size, NaN without any, or where there are no phases."""
+        if self.place is None or self.recorded:
+            return float("nan"), float("nan")
+        row, column = self.place
+        return float(self.alpha1[row // self.stride]), float(self.alpha2[column // self.stride])
+
+    def every(self, stride: int) -> Array:
+        """The size at every `stride`-th phase of the study only."""
+        return self.size[:: stride // self.stride, :: stride // self.stride]
+
+
+def step(surfaces: xr.Dataset, scene: str, key: str, first: Model, second: Model, body: int, per: Model) -> Step:
+    """
+    The difference of two models in one body, as a share of mu of the model `per`, which must be above 0.
+
+    A value that is not known to half of itself counts as missing.
+    """
+    data = common_phases(surfaces, scene, [first.key, second.key, per.key]).sel(body=body)
+
+    def mu(model: Model) -> Array:
+        value = np.asarray(data["mu"].sel(model=model.key), float)
+        return np.where(error(model) <= WORTHLESS * value, value, np.nan)
+
+    def error(model: Model) -> Array:
+        return np.asarray(data["error"].sel(model=model.key), float)
+
+    scale = np.where(mu(per) > 0.0, mu(per), np.nan)
+    return Step(
+        key=key,
+        first=first,
+        second=second,
+        body=body,
+        alpha1=np.asarray(data["alpha1"]),
+        alpha2=np.asarray(data["alpha2"]),
+        size=(mu(second) - mu(first)) / scale,
+        uncertainty=np.hypot(error(first), error(second)) / scale,
+        stride=int(data["stride"].sel(model=[first.key, second.key, per.key]).max()),
+        recorded=bool(data["recorded"]),
+    )

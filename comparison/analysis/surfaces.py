@@ -1,0 +1,131 @@
+"""The surfaces mu_i(alpha1, alpha2) of every scene and model, labeled, as one xarray data set."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from comparison.study.batches import Batch, BatchResult
+from comparison.study.models import models_of
+from comparison.study.study import Study
+
+NOT_APPLICABLE = "not applicable"  # status of a model that the scene gives nothing to add
+WIDE = 0.5  # of rho: a displacement of the platform that is said
+NOT_ASKED = "not asked"  # status of the phases between those of a model that computes every k-th
+
+
+def labeled_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[BatchResult]) -> xr.Dataset:
+    """
+    The answers on dimensions scene, model, body, alpha1, alpha2 (rad).
+
+    `mu` and `error` (absolute, estimated) are NaN where a point has no answer, where a model does not apply to the
+    scene, between the phases of a model with a `stride` above 1 (a `recorded` scene has one point, the first), and in
+    bodies a scene does not have (`bodies` counts them). `status` names each point's outcome, `instant` (s) when it
+    arose; `cap_share` is the largest displacement of the platform over rho. `cost` (scene, model) is s of compute.
+    """
+    names = [scene.name for scene in study.scenes]
+    models = [model.key for model in study.hierarchy]
+    bodies = max(len(scene.bodies) for scene in study.scenes)
+    plane = (len(names), len(models), study.grid**2)
+    mu = np.full((*plane, bodies), np.nan)
+    error = np.full((*plane, bodies), np.nan)
+    instant = np.full(plane, np.nan)
+    cap_share = np.full(plane, np.nan)
+    status = np.full(plane, NOT_APPLICABLE, dtype=object)
+    for index, scene in enumerate(study.scenes):
+        status[index, [models.index(model.key) for model in models_of(scene, study.hierarchy)]] = NOT_ASKED
+    solved = {
+        (scene.name, model.key): study.solved(scene, model)
+        for scene in study.scenes
+        for model in models_of(scene, study.hierarchy)
+    }
+    cost = np.zeros(plane[:2])
+    for batch, answer in zip(batches, answers, strict=True):
+        where = names.index(batch.scene.name), models.index(batch.model)
+        span = solved[batch.scene.name, batch.model][batch.first : batch.first + len(batch.phases)]
+        count = len(batch.scene.bodies)
+        mu[where][span, :count] = answer.mu
+        error[where][span, :count] = answer.error
+        instant[where][span] = answer.instant
+        cap_share[where][span] = answer.cap_share
+        status[where][span] = answer.status
+        cost[where] += answer.cost
+    for row, scene in enumerate(study.scenes):
+        for model in models_of(scene, study.hierarchy):
+            column, place, source = models.index(model.key), study.places(model, scene), study.sources(scene, model)
+            for array in (mu, error, instant, cap_share, status):
+                array[row, column, place] = array[row, column, source]
+    square = (len(names), len(models), study.grid, study.grid)
+    axis = 2.0 * np.pi * np.arange(study.grid) / study.grid
+    surface, point = ("scene", "model", "body", "alpha1", "alpha2"), ("scene", "model", "alpha1", "alpha2")
+
+    def per_body(array: np.ndarray) -> np.ndarray:
+        return np.moveaxis(array.reshape(*square, bodies), -1, 2)
+
+    return xr.Dataset(
+        {
+            "mu": (surface, per_body(mu), {"units": "1", "long_name": "dynamic amplification factor (5.1)"}),
+            "error": (surface, per_body(error), {"units": "1", "long_name": "estimated absolute error of mu"}),
+            "status": (point, status.reshape(square), {"long_name": "named outcome of the point"}),
+            "instant": (point, instant.reshape(square), {"units": "s", "long_name": "time when the outcome arose"}),
+            "cap_share": (
+                point,
+                cap_share.reshape(square),
+                {"units": "1", "long_name": "largest horizontal displacement of the platform over rho"},
+            ),
+            "cost": (("scene", "model"), cost, {"units": "s", "long_name": "compute time of the surface"}),
+            "stride": (
+                ("scene", "model"),
+                [[study.stride(model, scene) for model in study.hierarchy] for scene in study.scenes],
+                {"long_name": "the model has every k-th phase"},
+            ),
+            "recorded": (
+                "scene",
+                [scene.recorded for scene in study.scenes],
+                {"long_name": "whether it has no phases"},
+            ),
+            "bodies": ("scene", [len(scene.bodies) for scene in study.scenes], {"long_name": "bodies of the scene"}),
+            "digest": ("scene", [scene.digest() for scene in study.scenes], {"long_name": "hash of the scene"}),
+        },
+        coords={
+            "scene": names,
+            "model": models,
+            "body": ("body", np.arange(1, bodies + 1), {"long_name": "body i of mu_i, 1 is the platform"}),
+            "alpha1": ("alpha1", axis, {"units": "rad", "long_name": "initial phase of the first harmonic"}),
+            "alpha2": ("alpha2", axis, {"units": "rad", "long_name": "initial phase of the second harmonic"}),
+        },
+        attrs={"title": "phase-resonance surfaces", "tolerance": study.tolerance},
+    )
+
+
+def largest_cap_share(surfaces: xr.Dataset, scene: str, model: str) -> float:
+    """Largest displacement of the platform over rho among the phases of a model; NaN where none has an answer."""
+    share = surfaces["cap_share"].sel(scene=scene, model=model)
+    return float(share.max())  # skips NaN
+
+
+def wide_swings(study: Study, surfaces: xr.Dataset) -> list[str]:
+    """One line for every model whose platform uses more than half of the cap."""
+    return [
+        f"{scene.name}, {model.title}: the platform moves up to {100.0 * share:.1f} % of rho from the middle; "
+        "the model assumes a cap that reaches so far"
+        for scene in study.scenes
+        for model in models_of(scene, study.hierarchy)
+        if (share := largest_cap_share(surfaces, scene.name, model.key)) > WIDE
+    ]
+
+
+def common_phases(surfaces: xr.Dataset, scene: str, models: Sequence[str]) -> xr.Dataset:
+    """The part of one scene's surfaces at the phases that each of these models was asked for."""
+    own = surfaces.sel(scene=scene)
+    every = slice(None, None, int(own["stride"].sel(model=list(models)).max()))
+    return own.isel(alpha1=every, alpha2=every)
+
+
+def outcome_counts(surfaces: xr.Dataset, scene: str, model: str) -> dict[str, int]:
+    """How many of the phase pairs asked of the model ended in each outcome, most frequent first."""
+    status = common_phases(surfaces, scene, [model])["status"].sel(model=model)
+    return dict(Counter(np.asarray(status).ravel().tolist()).most_common())

@@ -1,0 +1,110 @@
+"""Models that have no value at some or at every phase pair of a scene: which, why, and what helps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from comparison.analysis.steps import WORTHLESS
+from comparison.analysis.surfaces import common_phases, outcome_counts
+from comparison.study.batches import refusal_of
+from comparison.study.models import Model, models_of
+from comparison.study.study import Study
+from reference.problem import ADVICE, Outcome, Scene
+
+
+@dataclass(frozen=True)
+class Unanswered:
+    """
+    A model without a value at some phase pairs of a scene.
+
+    points: phase pairs without a value, of the `asked`. used: whether comparisons use the values that it has. why: the
+    outcomes with their counts, what they mean, and what helps, in one line.
+    """
+
+    scene: str
+    model: str
+    title: str
+    points: int
+    asked: int
+    used: bool
+    why: str
+
+    @property
+    def sentence(self) -> str:
+        """The whole in one line."""
+        if self.asked == 1:
+            where = "no value"
+        elif self.points == self.asked:
+            where = f"no value at any of {self.asked} phase pairs"
+        else:
+            where = f"no value at {self.points} of {self.asked} phase pairs"
+        rest = "" if self.used else ". Comparisons leave this model out"
+        return f"{self.scene}: {self.title}: {where}: {self.why}{rest}."
+
+
+def with_silent_models(study: Study, surfaces: xr.Dataset) -> Study:
+    """
+    The study whose comparisons leave out, scene by scene, every model that nowhere has a value of all bodies.
+
+    A value that is not known to half of itself is none. Where fewer than two models are left, all stay.
+    """
+    silent = {}
+    for scene in study.scenes:
+        models = models_of(scene, study.hierarchy)
+        mute = tuple(model.key for model in models if not _usable(surfaces, scene, model).any())
+        if mute and len(mute) < len(models) - 1:
+            silent[scene.name] = mute
+    return replace(study, silent=silent or None)
+
+
+def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
+    """Every model of every scene that lacks a value somewhere, in the order of scenes and models."""
+    found = []
+    for scene in study.scenes:
+        compared = {model.key for model in study.compared(scene)}
+        for model in models_of(scene, study.hierarchy):
+            lacking = int((~_answered(surfaces, scene, model)).sum())
+            if lacking or model.key not in compared:
+                asked, why = study.points(model, scene), _why(study, surfaces, scene, model)
+                used = model.key in compared and lacking < asked
+                found.append(Unanswered(scene.name, model.key, model.title, lacking, asked, used, why))
+    return found
+
+
+def advice(study: Study, scene: Scene, model: Model, outcome: str) -> str:
+    """What an outcome of a model on a scene means, and what helps."""
+    refused = ""
+    if outcome == Outcome.STEP_LIMIT:
+        refused = refusal_of(scene, model, model.tolerance(study.tolerance), study.full)
+    return refused or ADVICE[Outcome(outcome)]
+
+
+def _why(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> str:
+    counts = outcome_counts(surfaces, scene.name, model.key)
+    bad = {outcome: count for outcome, count in counts.items() if outcome != Outcome.OK}
+    return "; ".join(
+        f"{f'{count} × ' if len(counts) > 1 else ''}{outcome}: {advice(study, scene, model, outcome)}"
+        for outcome, count in bad.items()
+    )
+
+
+def _answered(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
+    """At which phase pairs asked of a model every body has a value."""
+    mu, _ = _values(surfaces, scene, model)
+    return np.asarray(np.isfinite(mu).all(axis=0))
+
+
+def _usable(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
+    """At which of them every value is known to half of itself."""
+    mu, error = _values(surfaces, scene, model)
+    return np.asarray((np.isfinite(mu) & (error <= WORTHLESS * mu)).all(axis=0))
+
+
+def _values(surfaces: xr.Dataset, scene: Scene, model: Model) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """mu and error (N, K, K) at the phase pairs asked of a model."""
+    own = common_phases(surfaces, scene.name, [model.key]).sel(model=model.key).isel(body=slice(len(scene.bodies)))
+    return np.asarray(own["mu"], float), np.asarray(own["error"], float)

@@ -1,0 +1,6 @@
+"""How far the paper's assumptions carry: `python -m comparison.assumptions`."""
+
+from comparison.cli.start import start
+
+if __name__ == "__main__":
+    start("comparison.cli.assumptions")

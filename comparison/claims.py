@@ -1,0 +1,6 @@
+"""The paper's claims against readings of it: `python -m comparison.claims`."""
+
+from comparison.cli.start import start
+
+if __name__ == "__main__":
+    start("comparison.cli.claims")

@@ -1,0 +1,121 @@
+"""
+How far the paper's assumptions carry: `python -m comparison.assumptions [SCENE ...]`.
+
+Varies the ring of supports and the heights of the bodies and prints how far mu_i then is from the translational result,
+and where it stays within 1 % and 5 %. Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TimeRemainingColumn
+from rich.table import Table
+
+from comparison.analysis.assumptions.validity import describe
+from comparison.analysis.assumptions.variations import DURATION, MANY, PHASES, Cell, assumption_cells, ranges
+from comparison.execution.executors import process_pool
+from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
+from comparison.execution.progress import description, wide_console
+from comparison.report.figures.file_names import figure_file
+from comparison.study.models import has_spatial_data
+from comparison.study.study import Study, refuse_same_names
+from reference.problem import Scene, SceneError, builtin_scenes, load_scene
+
+TOLERANCE = 1e-3
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Vary the scenes the command line names and print what that does; the exit code."""
+    parser = argparse.ArgumentParser(
+        prog="python -m comparison.assumptions",
+        description="How far mu_i of the spatial model is from the translational one, over the ring and the heights.",
+    )
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="TOML file or built-in name (default: the paper's)")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="worker processes (default %(default)s)")
+    parser.add_argument("--figures", type=Path, metavar="DIR", help="write one picture per scene into this directory")
+    given = parser.parse_args(argv)
+    if given.jobs < 1:
+        parser.error(f"--jobs {given.jobs}: must be a whole number from 1")
+    try:
+        names = given.scenes or builtin_scenes()
+        scenes = [_spatial(name) for name in names]
+        refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
+        if given.figures:
+            given.figures = destination(given.figures, "--figures")
+            pictures = [figure_file(s.name, "assumptions", ending=end) for s in scenes for end in (".png", ".pdf")]
+            refuse_foreign_files(given.figures, pictures, "--figures")
+    except SceneError as error:
+        print(error, file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"command line: --figures = {str(given.figures)!r}: cannot be made: {error.strerror}", file=sys.stderr)
+        return 2
+    console = wide_console()
+    console.print(
+        f"{len(MANY)} variations at {len(PHASES)} phase pairs over {DURATION:g} s of motion: minutes for each scene."
+    )
+    for scene in scenes:
+        cells = _watched(console, scene, given.jobs)
+        _print(console, scene, cells)
+        if given.figures:
+            _draw(given.figures, scene, cells)
+    return 0
+
+
+def _draw(folder: Path, scene: Scene, cells: Sequence[Cell]) -> None:
+    """Write the picture of a scene."""
+    from comparison.report.figures.assumptions import (  # plotting: not needed to refuse
+        assumption_figure_name,
+        draw_assumptions,
+    )
+
+    files = made_by(lambda new: draw_assumptions(new / assumption_figure_name(scene), scene, cells))
+    publish(folder, files, "comparison.assumptions")
+
+
+def _spatial(name: str) -> Scene:
+    scene = load_scene(name)
+    if scene.recorded:
+        rule = (
+            "rings and heights are varied at phases, which a recorded motion has not: give a scene of two frequencies"
+        )
+        raise SceneError(name, "excitation.record", scene.name, rule)
+    if not has_spatial_data(scene):
+        rule = "the spatial model needs supports, ring and sphere_radius of the isolator, height and size of every body"
+        raise SceneError(name, "isolator, bodies", scene.name, rule)
+    return scene
+
+
+def _watched(console: Console, scene: Scene, jobs: int) -> list[Cell]:
+    with Progress(description(), BarColumn(), TimeRemainingColumn(), console=console, transient=True) as progress:
+        bar = progress.add_task(scene.name, total=1 + len(MANY))
+        study = Study((scene,), 1, TOLERANCE)
+        return assumption_cells(study, jobs, process_pool, MANY, lambda: progress.advance(bar))
+
+
+def _print(console: Console, scene: Scene, cells: Sequence[Cell]) -> None:
+    console.print(f"{scene.title} ({scene.name}): largest change of mu_i against the translational model, per body")
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for heading in ("ring, m", "heights x", "supports", "change, %", "u_D, %", "outcomes"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    bodies = range(1, len(scene.bodies) + 1)
+    for cell in cells:
+        own = cell.variation.of(scene).isolator
+        table.add_row(
+            f"{own.ring:g}",
+            f"{cell.variation.height:g}",
+            str(own.supports),
+            "  ".join(f"{100.0 * cell.largest(body):.3f}" for body in bodies),
+            "  ".join(f"{100.0 * cell.uncertain(body):.3f}" for body in bodies),
+            ", ".join(sorted(set(cell.status))),
+        )
+    console.print(table)
+    console.print(f"{sum(cell.cost for cell in cells):.0f} s of compute")
+    for found in ranges([scene], cells):
+        console.print(describe(found))

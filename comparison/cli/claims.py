@@ -1,0 +1,67 @@
+"""
+The claims of section 5 against readings of the paper: `python -m comparison.claims [--grid N] [--jobs J] [--all]`.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Sequence
+
+from rich.console import Console
+from rich.table import Table
+
+from comparison.analysis.claims.claims import CLAIMS
+from comparison.analysis.claims.readings import EVERY_READING, READINGS
+from comparison.analysis.claims.table import GRID, SECONDS, SIGNS, ClaimTable, claims_tested, questions
+from comparison.execution.executors import Pool, cores, process_pool
+from comparison.execution.progress import Stage, progress, wide_console
+
+
+def main(argv: Sequence[str] | None = None, executor: Pool = process_pool) -> int:
+    """Print the table of claims against readings; the exit code: 0, or 2 for a wrong option."""
+    parser = argparse.ArgumentParser(
+        prog="python -m comparison.claims", description="The claims of section 5 of the paper against readings of it."
+    )
+    parser.add_argument("--grid", type=_at_least(8), default=GRID, metavar="N", help="phases per axis (%(default)s)")
+    parser.add_argument("--jobs", type=_at_least(1), default=cores(), metavar="J", help="worker processes")
+    parser.add_argument("--all", action="store_true", help="every reading: more amplitudes, durations and f_c")
+    parser.add_argument("--words", action="store_true", help="print what every check found, too")
+    given = parser.parse_args(argv)
+    readings = EVERY_READING if given.all else READINGS
+    console = wide_console()
+    count = len(questions(readings, CLAIMS, given.grid))
+    stage = Stage(count, count * SECONDS * (given.grid / GRID) ** 2)
+    with progress(console, {"claims": stage}, given.jobs) as display:
+        table = claims_tested(
+            given.jobs, executor, given.grid, readings, done=lambda question: display.advance("claims", 1)
+        )
+    print_claims(console, table, given.words)
+    return 0
+
+
+def print_claims(console: Console, table: ClaimTable, words: bool = False) -> None:
+    """The table, a line for every claim; then the reading that reproduces most and the claims that none reproduces."""
+    own = sum(not claim.weaker for claim in table.claims)
+    for number, reading in enumerate(table.readings, start=1):
+        console.print(f"{number:2d}: {reading.name}: {table.held(number - 1)} of {own}")
+    grid = Table("about", "claim", *map(str, range(1, len(table.readings) + 1)), box=None, pad_edge=False)
+    for claim, row in zip(table.claims, table.verdicts):
+        grid.add_row(claim.figure, claim.says, *(SIGNS[verdict.finding] for verdict in row))
+    console.print(grid)
+    if words:
+        for place, claim in enumerate(table.claims):
+            console.print(f"{claim.figure}: {claim.says} ({claim.rule})")
+            for numbers, verdict in table.found(place):
+                console.print(f"   {SIGNS[verdict.finding]:5s} {', '.join(map(str, numbers))}: {verdict.found}")
+    console.print(f"Most claims are reproduced under: {'; '.join(reading.name for reading in table.best)}.")
+    never = [f"{claim.figure}: {claim.says}" for claim in table.never]
+    console.print(f"Under no reading: {'; '.join(never) or 'none'}.")
+
+
+def _at_least(least: int) -> Callable[[str], int]:
+    def number(text: str) -> int:
+        if not text.isdecimal() or int(text) < least:
+            raise argparse.ArgumentTypeError(f"{text!r}: must be a whole number, {least} or more")
+        return int(text)
+
+    return number

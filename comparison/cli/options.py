@@ -1,0 +1,165 @@
+"""The command line, checked before anything is computed."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NoReturn
+
+from comparison.analysis.extremes.matrix import read as stored_extremes
+from comparison.analysis.tradeoff.trade import read as stored_trades
+from comparison.execution.cache import refuse_foreign_store
+from comparison.execution.executors import cores
+from comparison.execution.output import destination, refuse_foreign_report
+from comparison.study.planning import DEFAULT_PRESET, DEFAULT_TOLERANCE, STUDY_PRESETS, tightest
+from comparison.study.study import refuse_same_names
+from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
+
+
+@dataclass(frozen=True)
+class Options:
+    """What the command line asks for, valid."""
+
+    families: tuple[Family, ...]
+    grid: int | None
+    out: Path
+    jobs: int
+    tolerance: float | None
+    budget: float | None
+    check: bool
+    plan: bool
+    fresh: bool = False
+    scheduler: str | None = None
+    full: bool = False
+
+    @property
+    def by_trade(self) -> bool:
+        """Whether the measured trade chooses what is computed."""
+        return self.tolerance is not None or self.budget is not None
+
+    @property
+    def scenes(self) -> tuple[Scene, ...]:
+        """Every scene of every family, in order."""
+        return tuple(scene for family in self.families for scene in family.scenes)
+
+
+class UsageError(ValueError):
+    """A command line that cannot be parsed. `str(error)` is one line."""
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        raise UsageError(f"command line: {message} (--help lists the options)")
+
+
+def parsed(argv: Sequence[str] | None) -> Options:
+    """Options of `python -m comparison.run`. Raises SceneError or UsageError: one line, file, key, value, rule."""
+    given = _parser().parse_args(argv)
+    names: list[str] = given.scenes or builtin_scenes()
+    amplitude = None if given.amplitude is None else _number("--amplitude", given.amplitude, 1e-12, 1e6, "m/s^2")
+    options = Options(
+        families=tuple(load_family(name, amplitude) for name in names),
+        grid=None if given.grid is None else _whole("--grid", given.grid, 2, 512),
+        out=destination(given.out),
+        jobs=cores() if given.jobs is None else _whole("--jobs", given.jobs, 1, 1024),
+        tolerance=_given("--tolerance", given.tolerance, tightest(), 0.1, "relative error of mu"),
+        budget=_given("--budget", given.budget, 1.0, 1e7, "s of the whole run"),
+        check=given.check,
+        plan=given.plan,
+        fresh=given.fresh,
+        full=given.full,
+        scheduler=given.scheduler,
+    )
+    sources = list(zip(names, options.families))
+    refuse_same_names((source, family.name) for source, family in sources)
+    refuse_same_names((source, scene.name) for source, family in sources for scene in family.scenes)
+    if given.scheduler is not None and given.jobs is not None:
+        rule = "counts processes of this machine, --scheduler takes all workers of a cluster: give one of the two"
+        raise SceneError("command line", "--jobs", given.jobs, rule)
+    if given.scheduler is not None and options.budget is not None:
+        rule = "is kept by what this machine is measured to do, --scheduler computes on others: give one of the two"
+        raise SceneError("command line", "--budget", given.budget, rule)
+    if not options.plan:
+        try:
+            stored_extremes(options.out)
+            stored_trades(options.out)
+        except (OSError, ValueError) as error:
+            rule = f"the report cannot take up {error}"
+            raise SceneError("command line", "--out", str(options.out), rule) from None
+        refuse_foreign_report(options.out)
+        refuse_foreign_store(options.out)
+    return options
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="python -m comparison.run",
+        description="The paper's equations against a multibody engine over a grid of initial phases, as a report.",
+        allow_abbrev=False,
+    )
+    parser.add_argument(
+        "scenes",
+        nargs="*",
+        metavar="SCENE",
+        help=f"TOML files, in which one key may run over a range, or built-in names "
+        f"(default: {', '.join(builtin_scenes())}; with a recorded motion: {', '.join(example_scenes())})",
+    )
+    parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {STUDY_PRESETS[DEFAULT_PRESET].grid})")
+    parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help="report (default %(default)s)")
+    parser.add_argument("--jobs", metavar="N", help=f"worker processes of this machine (default {cores()})")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="compute on the Dask cluster with this scheduler")
+    parser.add_argument(
+        "--fresh",
+        action="store_true",
+        help="compute everything anew; without it what an earlier run left in DIR.tiles, finished or not, is reused",
+    )
+    parser.add_argument(
+        "--tolerance",
+        metavar="X",
+        help="relative error asked of every mu: takes the cheapest settings that are known to meet it, and leaves out "
+        "models that cannot; the equations are asked for 1e-6 or better "
+        f"(default {DEFAULT_TOLERANCE:g}, this machine unmeasured)",
+    )
+    parser.add_argument(
+        "--budget",
+        metavar="SECONDS",
+        help="time for the whole run on this machine: takes the most accurate study that fits",
+    )
+    parser.add_argument("--amplitude", metavar="A", help="largest ground acceleration amplitude of every scene, m/s^2")
+    parser.add_argument(
+        "--full",
+        action="store_true",
+        help="compute every phase pair and model in full, even what the scene does not require; --plan lists that",
+    )
+    parser.add_argument("--check", action="store_true", help="exit 1 if a scene's acceptance limits are broken")
+    parser.add_argument("--plan", action="store_true", help="print what would be computed and its cost; run nothing")
+    return parser
+
+
+def _whole(key: str, text: str, least: int, most: int) -> int:
+    rule = f"must be a whole number from {least} to {most}"
+    try:
+        value = int(text)
+    except ValueError:
+        raise SceneError("command line", key, text, rule) from None
+    if not least <= value <= most:
+        raise SceneError("command line", key, value, rule)
+    return value
+
+
+def _given(key: str, text: str | None, least: float, most: float, unit: str) -> float | None:
+    return None if text is None else _number(key, text, least, most, unit)
+
+
+def _number(key: str, text: str, least: float, most: float, unit: str) -> float:
+    rule = f"must be a number from {least:g} to {most:g}, {unit}"
+    try:
+        value = float(text)
+    except ValueError:
+        raise SceneError("command line", key, text, rule) from None
+    if not (math.isfinite(value) and least <= value <= most):
+        raise SceneError("command line", key, value, rule)
+    return value

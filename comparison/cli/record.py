@@ -1,0 +1,97 @@
+"""
+Records what `--tolerance` and `--budget` of `comparison.run` choose by: `python -m comparison.tradeoff.record`.
+
+For every model of the hierarchy and every tolerance: what a point costs beside one at the usual tolerance, and at which
+share of the points the accuracy was met, on the paper's scenes. Writes comparison/study/accuracy_record.json.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparison.analysis.tradeoff.measure import Found, Task, sample, solve
+from comparison.analysis.tradeoff.settings import SPATIAL_TIGHT, TIGHT
+from comparison.execution.provenance import provenance
+from comparison.study.accuracy_record import FILE
+from comparison.study.batches import imported
+from comparison.study.benchmark import ENGINE_POINTS, machine_benchmark
+from comparison.study.models import MODEL_HIERARCHY, REFERENCE_TOLERANCE, Model
+from reference.problem import Scene, builtin_scenes, load_scene
+from reference.problem.files import write_atomically
+
+Array = NDArray[np.float64]
+
+REFERENCE_TOLERANCES = tuple(10.0**-power for power in range(2, 9))
+ENGINE_TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5)
+POINTS = {"reference": 64, "translational": 8, "spatial": 4}
+
+
+def main() -> int:
+    """Record, print a line for every model, and write the file."""
+    scenes = [load_scene(name) for name in builtin_scenes()]
+    record: dict[str, Any] = {"machine": provenance()["processor"], "models": {}}
+    took = [machine_benchmark()]  # again after every model: what else the machine does falls on both alike
+    seconds: dict[str, dict[str, float]] = {scene.digest(): {} for scene in scenes}
+    for model in MODEL_HIERARCHY:
+        own = [scene for scene in scenes if model.applies(scene)]
+        rows, costs = _rows(model, own)
+        record["models"][model.key] = {"usual": _usual(model), "tolerances": rows}
+        took.append(machine_benchmark())
+        for scene, cost in zip(own, costs):
+            seconds[scene.digest()][model.key] = float(f"{cost:.4g}")
+        print(model.key, *(f"{row['tolerance']:.0e}: {row['cost']:.2f}, {row['met']:.3f}" for row in rows), sep="  ")
+    record["seconds"] = seconds
+    record["machine_benchmark"] = {side: float(np.median([one[side] for one in took])) for side in took[0]}
+    write_atomically(FILE, (json.dumps(record, indent=1) + "\n").encode())
+    print(f"{ENGINE_POINTS} point(s) of the engine as yardstick: {record['yardsticks']}; written: {FILE}")
+    return 0
+
+
+def _usual(model: Model) -> float:
+    return REFERENCE_TOLERANCE if model.side == "reference" else 1e-3
+
+
+def _rows(model: Model, scenes: list[Scene]) -> tuple[list[dict[str, Any]], list[float]]:
+    """What every tolerance gives in all scenes together; processor time of a point of each scene as usual, s."""
+    phases = sample(POINTS.get(model.key, POINTS["reference"]))
+    tolerances = REFERENCE_TOLERANCES if model.side == "reference" else ENGINE_TOLERANCES
+    truths = [_truth(model, scene, phases) for scene in scenes]
+    found = {tolerance: [_answer(model, scene, phases, tolerance) for scene in scenes] for tolerance in tolerances}
+    usual = found[_usual(model)]
+    rows = []
+    for tolerance, answers in found.items():
+        errors = np.concatenate(
+            [np.abs(one.mu / truth - 1.0).max(axis=1) for one, truth in zip(answers, truths) if truth is not None]
+        )
+        claims = np.concatenate([(one.claimed / one.mu).max(axis=1) for one in answers])
+        cost = sum(one.seconds for one in answers) / sum(one.seconds for one in usual)
+        rows.append(
+            {
+                "tolerance": tolerance,
+                "cost": float(f"{cost:.3g}"),
+                "met": float((np.nan_to_num(errors, nan=np.inf) <= tolerance).mean()),
+                "claimed": float((np.nan_to_num(claims, nan=np.inf) <= tolerance).mean()),
+                "error": float(f"{np.quantile(errors, 0.99, method='higher'):.2g}"),
+                "points": len(errors),
+                "truth": SPATIAL_TIGHT if model.key == "spatial" else TIGHT,
+            }
+        )
+    return rows, [one.seconds / len(phases) for one in usual]
+
+
+def _answer(model: Model, scene: Scene, phases: Array, tolerance: float) -> Found:
+    return solve(Task(scene, (model.amplification, {**model.settings, "tolerance": tolerance}), 0, phases))
+
+
+def _truth(model: Model, scene: Scene, phases: Array) -> Array:
+    """mu (M, N): of the same question by the reference, and of the spatial model, which it does not know, by itself."""
+    if model.key == "spatial":
+        return _answer(model, scene, phases, SPATIAL_TIGHT).mu
+    if model.side == "engine":
+        law = {"regularization": None if scene.lubricated else model.settings["regularization"]}
+        return np.array(imported("reference:amplification")(scene, phases, tolerance=TIGHT, **law).mu)
+    return _answer(model, scene, phases, TIGHT).mu

@@ -1,0 +1,1 @@
+"""How tasks run: on any executor, cached, resumed, with nothing lost; and the files that commands write."""

@@ -1,0 +1,47 @@
+"""What batches and tasks are found by in the cache: all that their numbers depend on."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+
+import numpy as np
+
+from comparison.execution.cache import Cache, Key
+from comparison.execution.environment import environment_fingerprint, task_environment_fingerprint
+from comparison.execution.task import Task, fingerprint, named
+from comparison.study.batches import Batch, BatchResult
+
+BATCH, ANALYSIS = "tile", "answer"  # kinds of results
+
+
+def batch_key(batch: Batch) -> Key:
+    """Scene (not its name or title), model, settings, versions and the models' source; and the phases."""
+    about = {
+        "scene": batch.scene.digest(),
+        "model": batch.amplification,
+        "settings": dict(batch.settings),
+        "surroundings": environment_fingerprint(batch.amplification),
+    }
+    phases = hashlib.sha256(np.ascontiguousarray(batch.phases).tobytes()).hexdigest()
+    return Key(json.dumps(about, indent=1, sort_keys=True), phases, BATCH)
+
+
+def task_key(task: Task) -> Key:
+    """Function, what the task is about, versions and the source of all that computes it; and its task."""
+    about = {
+        "answers of": named(task.function),
+        "about": fingerprint(task.about),
+        "surroundings": task_environment_fingerprint(task.function.__module__),
+    }
+    return Key(json.dumps(about, indent=1, sort_keys=True), task.key, ANALYSIS)
+
+
+def cached_batch(cache: Cache, batch: Batch) -> BatchResult | None:
+    """The stored answer to a batch, None if there is none that fits its phases and bodies."""
+    answer = cache.get(batch_key(batch), BatchResult)
+    if answer is None:
+        return None
+    points, bodies = len(batch.phases), len(batch.scene.bodies)
+    shapes = answer.mu.shape, answer.error.shape, (len(answer.status),), answer.instant.shape
+    return answer if shapes == ((points, bodies), (points, bodies), (points,), (points,)) else None

@@ -1,0 +1,216 @@
+"""
+Run independent tasks on worker processes and lose none: one that raises or kills its worker is answered for.
+
+Results come back in the order of the tasks, whatever the scheduling was.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
+
+from comparison.execution.executors import (
+    ExecutorLostError,
+    Pool,
+    WorkerDiedError,
+    abandon,
+    factory,
+    process_pool,
+    width,
+)
+from reference.problem import Outcome
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
+
+LOOK = 1.0  # s: how often an executor is asked for its width while no result arrives
+
+
+def at_once(task: object) -> bool:
+    return True
+
+
+def whole(task: object) -> Sequence[object]:
+    return ()
+
+
+@dataclass
+class _Work(Generic[Task, Result]):
+    """A task or a part of one. `place`: its index among the tasks, or among the parts of `parent`."""
+
+    task: Task
+    place: int
+    parent: _Work[Task, Result] | None = None
+    deaths: int = 0
+    alone: bool = False  # suspected of having ended a pool: nothing else may run beside it
+    parts: dict[int, Result] = field(default_factory=dict)
+    count: int = 0  # of its parts
+
+
+def sweep(
+    tasks: Sequence[Task],
+    solve: Callable[[Task], Result],
+    on_failure: Callable[[Task, Outcome, str], Result],
+    done: Callable[[Task, Result], None],
+    jobs: int,
+    executor: Pool = process_pool,
+    ready: Callable[[Task], bool] = at_once,
+    split: Callable[[Task], Sequence[Task]] = whole,  # type: ignore[assignment]
+    join: Callable[[Task, Sequence[Result]], Result] | None = None,
+) -> list[Result]:
+    """
+    `solve` every task on `executor`, an Executor or what makes one for `jobs` workers; `done` is called here as results
+    arrive, in any order.
+
+    A task that is not `ready` lets others pass; it is asked again whenever a result has arrived, and starts in any
+    case when nothing else is left to wait for.
+
+    A task that raises is answered by `lost(task, Outcome.SOLVER_FAILED, message)`. One whose worker dies is tried once
+    more, then `split` into parts, until a part that cannot be split has killed two workers: that one alone is answered
+    by `lost(part, Outcome.WORKER_DIED, message)`, and `join(task, results of its parts)` puts the task together again.
+    Raises ExecutorLostError when the executor cannot go on; results that `done` has seen are the caller's to keep.
+    """
+    return _Sweep(tasks, solve, on_failure, done, ready, split, join).run(factory(executor), jobs)
+
+
+class _Sweep(Generic[Task, Result]):
+    def __init__(
+        self,
+        tasks: Sequence[Task],
+        solve: Callable[[Task], Result],
+        on_failure: Callable[[Task, Outcome, str], Result],
+        done: Callable[[Task, Result], None],
+        ready: Callable[[Task], bool],
+        split: Callable[[Task], Sequence[Task]],
+        join: Callable[[Task, Sequence[Result]], Result] | None,
+    ) -> None:
+        self._solve, self._on_failure, self._done = solve, on_failure, done
+        self._ready, self._split, self._join = ready, split, join
+        self._queue: deque[_Work[Task, Result]] = deque(_Work(task, place) for place, task in enumerate(tasks))
+        self._flying: dict[Future[Result], _Work[Task, Result]] = {}
+        self._results: dict[int, Result] = {}
+
+    def run(self, make: Callable[[int], Executor], jobs: int) -> list[Result]:
+        while self._queue:  # once, unless a pool breaks
+            pool = make(min(jobs, len(self._queue)))
+            try:
+                self._drain(pool, jobs)
+            except BaseException:
+                abandon(pool)
+                raise
+            self._flying.clear()
+            pool.shutdown(cancel_futures=True)
+        return [self._results[place] for place in range(len(self._results))]
+
+    def _drain(self, pool: Executor, jobs: int) -> None:
+        """Work until nothing is left, or until the pool breaks, with its tasks queued again."""
+        while self._queue or self._flying:
+            if not self._fill(pool, jobs):
+                return
+            arrived = [
+                (self._flying.pop(future), future)
+                for future in wait(self._flying, LOOK, return_when=FIRST_COMPLETED).done
+            ]
+            broken = [work for work, future in arrived if isinstance(_error(future), BrokenExecutor)]
+            try:
+                unbroken = not broken and self._fill(pool, jobs, more=True)  # workers go on while results are stored
+            finally:
+                for work, future in arrived:
+                    self._take(work, future)
+            for _, future in arrived:
+                if isinstance(error := _error(future), ExecutorLostError):
+                    raise error
+            if broken:
+                self._broken(broken)
+            if not unbroken:
+                return
+
+    def _take(self, work: _Work[Task, Result], future: Future[Result]) -> None:
+        error = _error(future)
+        if error is None:
+            self._keep(work, future.result())
+        elif isinstance(error, WorkerDiedError):
+            self._died(work, error.times)
+        elif not isinstance(error, BrokenExecutor | ExecutorLostError):
+            message = f"{type(error).__name__}: {error}"
+            self._keep(work, self._on_failure(work.task, Outcome.SOLVER_FAILED, message))
+
+    def _fill(self, pool: Executor, jobs: int, more: bool = False) -> bool:
+        """
+        As many tasks in flight as the executor has workers; False if it is found broken.
+
+        more: results have arrived that may make tasks ready, so that none is passed over yet.
+        """
+        while len(self._flying) < width(pool, jobs) and (work := self._next(more)) is not None:
+            try:
+                self._flying[pool.submit(self._solve, work.task)] = work
+            except BrokenExecutor:
+                if self._flying:
+                    self._queue.appendleft(work)
+                self._broken([] if self._flying else [work])
+                return False
+        return True
+
+    def _next(self, more: bool) -> _Work[Task, Result] | None:
+        """What to submit now, taken from the queue; a suspect flies alone."""
+        flying = list(self._flying.values())
+        if any(work.alone for work in flying):
+            return None
+        for work in self._queue:
+            if not (work.alone and flying) and self._ready(work.task):
+                break
+            if more:
+                return None
+        else:
+            if flying or not self._queue:
+                return None
+            work = self._queue[0]
+        self._queue.remove(work)
+        return work
+
+    def _broken(self, suspects: Sequence[_Work[Task, Result]]) -> None:
+        """The suspects or any task in flight did it. If there was only one it did; of several each is tried alone."""
+        suspects = sorted([*suspects, *self._flying.values()], key=lambda work: work.place)
+        self._flying.clear()
+        if len(suspects) == 1:
+            self._died(suspects[0])
+        else:
+            for work in reversed(suspects):
+                work.alone = True
+                self._queue.appendleft(work)
+
+    def _died(self, work: _Work[Task, Result], times: int = 1) -> None:
+        work.deaths += times
+        parts = self._split(work.task)
+        if work.deaths < 2 and (work.parent is None or not parts):
+            self._queue.appendleft(work)
+        elif parts:
+            work.count = len(parts)
+            children = [_Work(part, place, work, alone=work.alone) for place, part in enumerate(parts)]
+            self._queue.extendleft(reversed(children))
+        else:
+            self._keep(
+                work, self._on_failure(work.task, Outcome.WORKER_DIED, f"the worker process died {work.deaths} times")
+            )
+
+    def _keep(self, work: _Work[Task, Result], result: Result) -> None:
+        parent = work.parent
+        if parent is None:
+            self._results[work.place] = result
+            self._done(work.task, result)
+            return
+        parent.parts[work.place] = result
+        if len(parent.parts) == parent.count:
+            assert self._join is not None, "what can be split can be joined"
+            self._keep(parent, self._join(parent.task, [parent.parts[place] for place in range(parent.count)]))
+
+
+def _error(future: Future[Result]) -> BaseException | None:
+    """What the task raised, None if nothing."""
+    try:
+        return future.exception()
+    except CancelledError as cancelled:
+        return cancelled

@@ -1,0 +1,91 @@
+"""What a study computes beside its surfaces: functions of a task that a worker process can run by itself."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from enum import Enum
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from comparison.execution.environment import environment_fingerprint
+from comparison.study.models import Model
+from reference.problem import Scene
+
+
+@dataclass(frozen=True)
+class Task:
+    """
+    `function(argument)`, in a worker process.
+
+    stage: its name on the terminal and in the table of costs. seconds: predicted cost, as `Model.seconds_per_point`.
+    about: what its directory in the cache belongs to. compiled: whether it calls the reference, which is compiled
+    first on a new installation.
+    """
+
+    stage: str
+    function: Callable[[Any], Any]
+    argument: Any
+    seconds: float
+    about: Any = None
+    compiled: bool = True
+
+    @cached_property
+    def key(self) -> str:
+        """Hash of the function and all that its task holds."""
+        text = json.dumps([named(self.function), fingerprint(self.argument)])
+        return hashlib.sha256(text.encode()).hexdigest()
+
+
+@dataclass(frozen=True)
+class TaskResult:
+    """What an task gave, and what it cost: s of processor time."""
+
+    result: Any
+    cost: float
+
+
+def execute(task: Task) -> TaskResult:
+    """Runs inside a worker process."""
+    clock = time.process_time()
+    result = task.function(task.argument)
+    return TaskResult(result, time.process_time() - clock)
+
+
+def named(function: Callable[..., Any]) -> str:
+    """ "module:name" of a function."""
+    return f"{function.__module__}:{function.__qualname__}"
+
+
+def fingerprint(value: Any) -> Any:
+    """All that `value` holds as plain JSON, arrays as hashes; a model also by its source. Raises TypeError."""
+    if value is None or isinstance(value, bool | int | str | float):
+        return value.value if isinstance(value, Enum) else value
+    if isinstance(value, Scene):
+        return ["scene", value.digest(), value.name, value.title]
+    if isinstance(value, np.ndarray):
+        return [
+            "array",
+            str(value.dtype),
+            value.shape,
+            hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest(),
+        ]
+    if isinstance(value, xr.Dataset):
+        return ["data", [[str(name), fingerprint(value[name].values)] for name in sorted(map(str, value.variables))]]
+    if isinstance(value, tuple | list):
+        return [fingerprint(part) for part in value]
+    if isinstance(value, Mapping):
+        return [[key, fingerprint(part)] for key, part in sorted(value.items())]
+    if is_dataclass(value) and not isinstance(value, type):
+        held = {part.name: getattr(value, part.name) for part in fields(value)}
+        source = environment_fingerprint(value.amplification) if isinstance(value, Model) else {}
+        return [type(value).__qualname__, fingerprint(source), fingerprint(held)]
+    if callable(value):
+        return named(value)
+    raise TypeError(f"a task that holds {type(value).__name__} has no name in the store")

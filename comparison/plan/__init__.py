@@ -1,1 +1,0 @@
-"""What is computed: scenes, the ladder of models, phases, tiles."""

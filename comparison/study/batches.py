@@ -1,0 +1,87 @@
+"""The unit of work: some phases of one scene under one model. Runs inside a worker process."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparison.study.models import Model
+from reference.problem import Outcome, Scene
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Phase pairs number `first` ... `first` + len(phases) - 1 of the model's grid, phases (M, 2), rad."""
+
+    scene: Scene
+    model: str
+    amplification: str
+    settings: Mapping[str, object]
+    first: int
+    phases: Array
+
+
+@dataclass(frozen=True)
+class BatchResult:
+    """What a batch gave, as `reference.problem.Amplification`; error_message: what the solver reported, or ""."""
+
+    mu: Array
+    error: Array
+    status: list[str]
+    instant: Array
+    cost: float
+    error_message: str = ""
+    cap_share: Array = field(default_factory=lambda: np.empty(0))
+
+    def __post_init__(self) -> None:
+        if not len(self.cap_share):
+            object.__setattr__(self, "cap_share", np.full(len(self.mu), np.nan))
+
+
+def imported(path: str) -> Any:
+    """The object named "package.module:name"."""
+    module, name = path.split(":")
+    return getattr(import_module(module), name)
+
+
+def refusal_of(scene: Scene, model: Model, tolerance: float, full: bool = False) -> str:
+    """Why a model would refuse every phase pair of a scene, told without computing one; "" if it would not."""
+    if model.refusal is None or not model.applies(scene):
+        return ""
+    asked = {"full": True} if full else {}
+    return str(imported(model.refusal)(scene, **model.settings, tolerance=tolerance, **asked))
+
+
+def execute_batch(batch: Batch) -> BatchResult:
+    """Ask the batch's model. What raises or answers in a wrong shape becomes points without an answer, and is named."""
+    points, bodies = len(batch.phases), len(batch.scene.bodies)
+    try:
+        result = imported(batch.amplification)(batch.scene, batch.phases, **batch.settings)
+        parts = (result.mu, result.error, result.instant, result.cap_share)
+        mu, error, instant, cap_share = (np.array(part, dtype=float) for part in parts)
+        status = [str(outcome) for outcome in result.status]
+        shapes = mu.shape, error.shape, (len(status),), instant.shape, cap_share.shape
+        if shapes != ((points, bodies), (points, bodies), (points,), (points,), (points,)):
+            raise ValueError(f"{batch.amplification} answered {mu.shape} for {points} phases and {bodies} bodies")
+    except Exception as exception:
+        return unanswered(batch, Outcome.SOLVER_FAILED, f"{type(exception).__name__}: {exception}")
+    named = ""
+    for index in np.flatnonzero(~(np.isfinite(mu) & np.isfinite(error)).all(axis=1)):
+        if status[index] == Outcome.OK:  # never let a number that is none pass as an answer
+            status[index] = Outcome.SOLVER_FAILED.value
+            named = f"{batch.amplification} called a non-finite answer ok"
+    return BatchResult(mu, error, status, instant, float(result.cost), named, cap_share)
+
+
+def unanswered(batch: Batch, outcome: Outcome, error_message: str) -> BatchResult:
+    """NaN for every point of the batch, with the outcome that explains it."""
+    points, bodies = len(batch.phases), len(batch.scene.bodies)
+    nothing = np.full((points, bodies), np.nan)
+    return BatchResult(nothing, nothing.copy(), [outcome.value] * points, np.full(points, np.nan), 0.0, error_message)

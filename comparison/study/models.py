@@ -1,0 +1,240 @@
+"""
+The models of the study in order, each adding one effect to the one before. Adding a model is one entry of LADDER.
+
+A model names the function that answers for it ("package:function", the contract of `reference.amplification` and
+`multibody.amplification`), so that a worker process can import it by itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+from reference.problem import Scene, even_ring, no_friction
+
+V_REG = 1e-3  # m/s: below it friction grows linearly with the slip velocity, on both sides alike
+REFERENCE_TOLERANCE = (
+    1e-6  # the reference is cheap: asked for at least this, so that its error never blurs a difference
+)
+RECORDED_ON = "one core of a 2-core AMD EPYC (x86-64) virtual machine"
+STEPS_AT_SAMPLES = 6.0  # times the cost of a point, for the shipped records
+
+
+def at_samples(scene: Scene) -> float:
+    """How many times more a motion costs whose steps end at the samples of a record."""
+    return STEPS_AT_SAMPLES if scene.recorded else 1.0
+
+
+def dry(scene: Scene) -> bool:
+    """Whether there is dry friction, which may be regularized."""
+    return not scene.lubricated and not no_friction(scene)
+
+
+def any_scene(scene: Scene) -> bool:
+    return True
+
+
+def never(scene: Scene) -> bool:
+    return False
+
+
+def on_an_even_ring(scene: Scene) -> bool:
+    return even_ring(scene).allowed
+
+
+def has_spatial_data(scene: Scene) -> bool:
+    """Whether the scene says where its supports are and how high and large its bodies."""
+    isolator = scene.isolator
+    stated = [isolator.supports, isolator.ring, isolator.sphere_radius]
+    return None not in stated and all(body.height is not None and body.size is not None for body in scene.bodies)
+
+
+@dataclass(frozen=True)
+class Model:
+    """
+    One model. `adds`: the sentence the report prints. `settings`: keyword arguments of its functions.
+    `assumptions`: its row in the report's table of equations. `seconds_per_point`: recorded cost of one phase pair of
+    a built-in scene with 20 s of motion, on RECORDED_ON. `applies`: whether the scene gives it anything to add. `most`:
+    phases per axis that its cost allows, or None; of a finer study it computes every k-th phase. `symmetric`: whether
+    mirrored phases (symmetry.py) are known to give mirrored motions of the scene and are not computed again. `asks`:
+    the tolerance that was chosen for it (planning.py). `refusal`: the function that tells from the scene alone why all
+    phase pairs would be refused, or "" ("package:function", the contract of `multibody.refusal`).
+    """
+
+    key: str
+    title: str
+    adds: str
+    side: Literal["reference", "engine"]
+    amplification: str
+    trajectory: str
+    settings: Mapping[str, object]
+    assumptions: Mapping[str, str]
+    seconds_per_point: float
+    batch: int  # phase pairs solved in one call: about a second of work
+    most: int | None = None
+    symmetric: Callable[[Scene], bool] = field(default=never)
+    applies: Callable[[Scene], bool] = field(default=any_scene)
+    asks: float | None = None
+    refusal: str | None = None
+
+    def tolerance(self, asked: float) -> float:
+        """Relative error this model asks of its own numbers when the study asks for `asked`."""
+        if self.asks is not None:
+            return self.asks
+        return min(asked, REFERENCE_TOLERANCE) if self.side == "reference" else asked
+
+    def seconds(self, scene: Scene, points: int) -> float:
+        """Predicted cost of `points` phase pairs, s on one core: the recorded cost, in proportion to the duration."""
+        return points * self.seconds_per_point * scene.duration / 20.0 * at_samples(scene)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two models whose difference is reported, `second` minus `first`, relative to `first`."""
+
+    key: str
+    title: str
+    sentence: str
+    first: Model
+    second: Model
+
+
+def models_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
+    """The models that apply to this scene, in order."""
+    return [model for model in hierarchy if model.applies(scene)]
+
+
+def pairs_of(scene: Scene, hierarchy: Sequence[Model], silent: Collection[str] = ()) -> list[Pair]:
+    """
+    The total difference, that within the paper's assumptions, and the like-for-like one: what the scene allows.
+
+    Parameters
+    ----------
+    silent
+        Keys of models without a value. The total then leads from the first to the last model that has values. The
+        other two compare fixed models: without one of these they are left out.
+    """
+    asked = models_of(scene, hierarchy)
+    models = [model for model in asked if model.key not in silent]
+    first, last = models[0], models[-1]
+    printed = "the paper's printed equations" if first is asked[0] else f"the {first.title}"
+    reference = [model for model in asked if model.side == "reference"][-1]
+    engine = next((model for model in asked if model.side == "engine"), None)
+    complete = last is asked[-1] and engine is not None
+    other = "the most complete engine model" if complete else f"the {last.title}"
+    pairs = [Pair("total", "total", f"{printed} against {other}", first, last)]
+    if engine is None or engine not in models:  # it does not meet the tolerance, fit the budget, or answer
+        return pairs
+    if engine is not last and first is asked[0]:
+        sentence = f"{printed} against the engine under the paper's own assumption that no body turns"
+        pairs.append(Pair("translational", "translational", sentence, first, engine))
+    if reference in models:
+        sentence = "same geometry and same friction law on both sides: this gap must close"
+        pairs.append(Pair("like-for-like", "like for like", sentence, reference, engine))
+    return pairs
+
+
+_PEAK = "largest value the computed motion reaches"
+
+
+def _next(before: Model, departs: Mapping[str, str], **changes: Any) -> Model:
+    """The model after `before`: the same but for `changes`, and for the assumptions in which it `departs`."""
+    return replace(before, assumptions={**before.assumptions, **departs}, **changes)
+
+
+SMALL = Model(
+    key="small",
+    title="small equations",
+    adds="The paper's small-vibration equations (4.3)-(4.4) as printed, with dry friction that really sticks.",
+    side="reference",
+    amplification="reference:amplification",
+    trajectory="reference:trajectory",
+    settings={"equations": "small", "regularization": None},
+    assumptions={
+        "equations": "(4.3)-(4.4), as printed",
+        "geometry": "small: the sphere enters through g x/rho and the kept friction terms only",
+        "friction": "set-valued Coulomb, or mu = f_c |v| in a lubricated scene",
+        "normal contact": "rigid, m_sum (g + zeta'') to the kept order",
+        "unknowns": "2 N horizontal displacements; the vertical one follows from the sphere (2.1)",
+        "mu_i": "supremum of (5.1) with one-sided limits at stops, in closed form",
+    },
+    seconds_per_point=0.002,
+    batch=64,
+    symmetric=any_scene,
+)
+EXACT = _next(
+    SMALL,
+    {
+        "equations": "(3.9)-(3.13), errata corrected",
+        "geometry": "exact sphere of radius rho",
+        "normal contact": "rigid, from the constraint with its centripetal part",
+    },
+    key="exact",
+    title="exact equations",
+    adds="The whole sphere: equations (3.9)-(3.13) with the errata of the print corrected, same friction law.",
+    settings={"equations": "exact", "regularization": None},
+)
+RESOLVED = _next(
+    EXACT,
+    {"mu_i": "largest value at rest or sliding faster than v_c = 1e-3 m/s"},
+    key="resolved",
+    title="exact equations, resolved peak",
+    adds="The same motion, read only at rest and while sliding faster than v_c = 1e-3 m/s: what the one-sided "
+    "limits at stops, which no sampling reaches, are worth.",
+    settings={**EXACT.settings, "cutoff": V_REG},
+    seconds_per_point=0.002,
+    applies=dry,
+)
+REGULARIZED = _next(
+    EXACT,
+    {"friction": "Coulomb, linear below v_reg = 1e-3 m/s", "mu_i": _PEAK},
+    key="regularised",
+    title="exact equations, v_reg",
+    adds="Friction linear below v_reg = 1e-3 m/s, as an engine has it: no true rest, no jump at a stop.",
+    settings={"equations": "exact", "regularization": V_REG},
+    seconds_per_point=0.003,
+    applies=dry,
+)
+TRANSLATIONAL = _next(
+    REGULARIZED,
+    {
+        "equations": "Newton-Euler of the bodies, assembled by Exudyn",
+        "geometry": "exact spheres: support of radius r in a depression of radius R",
+        "friction": "Coulomb, linear below v_reg = 1e-3 m/s, or mu = f_c |v| in a lubricated scene",
+        "normal contact": "elastic: spring and damper, so the platform sinks by N/k_c",
+        "unknowns": "translations of every body, the platform's vertical one free",
+    },
+    key="translational",
+    title="translational engine",
+    adds="Exudyn: spheres in hollow spheres with an elastic contact, every body free to translate only.",
+    side="engine",
+    amplification="multibody:amplification",
+    trajectory="multibody:trajectory",
+    refusal="multibody:refusal",
+    settings={"model": "translational", "regularization": V_REG},
+    seconds_per_point=0.35,
+    batch=2,
+    applies=any_scene,
+    most=16,
+)
+SPATIAL = _next(
+    TRANSLATIONAL,
+    {
+        "geometry": "exact spheres on a ring of supports, bodies as boxes at their heights",
+        "normal contact": "elastic and one-sided at every support: loads differ, a support may lift off",
+        "unknowns": "six of every body: translations and rotations",
+    },
+    key="spatial",
+    title="spatial engine",
+    adds="Every body free to turn, at its height, on a ring of supports: overturning shares the load unequally, "
+    "friction twists the platform, supports may lift off.",
+    settings={"model": "spatial", "regularization": V_REG},
+    seconds_per_point=0.6,
+    batch=1,
+    applies=has_spatial_data,
+    most=4,
+    symmetric=on_an_even_ring,
+)
+
+MODEL_HIERARCHY: tuple[Model, ...] = (SMALL, EXACT, RESOLVED, REGULARIZED, TRANSLATIONAL, SPATIAL)

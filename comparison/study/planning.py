@@ -1,0 +1,170 @@
+"""
+Which models, grids and tolerances a study takes: the one place where `--tolerance` and `--budget` are decided.
+
+A tolerance is met by the cheapest setting of every model that met it at 99 % of the recorded points, by its own error
+estimate and in truth; a tighter one that costs hardly more is taken instead. A model that cannot meet it is left out. A
+budget is spent along AMBITIONS: the last study that fits.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from comparison.study.accuracy_record import recorded
+from comparison.study.costs import Costs, costs, is_recorded
+from comparison.study.models import MODEL_HIERARCHY, Model
+from comparison.study.overhead import START_UP, WRITING
+from comparison.study.study import Study
+from reference.problem import Scene
+
+HARDLY_MORE = 1.05  # times the cheapest cost: a setting that tightens the tolerance for so little is taken
+DEFAULT_TOLERANCE = 1e-3
+
+
+@dataclass(frozen=True)
+class StudyPreset:
+    """
+    A study that a budget may buy. grid: phases per axis of the equations. translational, spatial: the most of the
+    engine's models, 0 without. whole: with all that the report tells beside the surfaces. tolerance: asked.
+    """
+
+    grid: int
+    translational: int
+    spatial: int
+    with_analyses: bool
+    tolerance: float = DEFAULT_TOLERANCE
+
+
+STUDY_PRESETS = (  # each costs more than the one before
+    StudyPreset(4, 0, 0, False),
+    StudyPreset(8, 0, 0, False),
+    StudyPreset(16, 0, 0, False),
+    StudyPreset(16, 2, 0, False),
+    StudyPreset(16, 4, 0, False),
+    StudyPreset(16, 4, 2, False),
+    StudyPreset(32, 8, 2, False),
+    StudyPreset(32, 8, 4, False),
+    StudyPreset(48, 16, 4, False),
+    StudyPreset(48, 16, 4, True),
+    StudyPreset(48, 16, 4, True, 1e-4),
+    StudyPreset(96, 32, 8, True, 1e-4),
+)
+DEFAULT_PRESET = STUDY_PRESETS.index(StudyPreset(48, 16, 4, True))
+
+
+def nothing(study: Study, with_analyses: bool) -> float:
+    return 0.0
+
+
+@dataclass(frozen=True)
+class StudyRequest:
+    """
+    What the user asks of a study. tolerance, budget (s of the whole run), grid: None where that is left to us. beside:
+    processor time of what workers do besides its surfaces, s, and whether that is all of it.
+    """
+
+    scenes: tuple[Scene, ...]
+    hierarchy: Sequence[Model] = MODEL_HIERARCHY
+    tolerance: float | None = None
+    budget: float | None = None
+    grid: int | None = None
+    jobs: int = 1
+    full: bool = False
+    analysis_cost: Callable[[Study, bool], float] = nothing
+
+    @property
+    def measures_machine(self) -> bool:
+        """Whether the measured trade is to choose, and this machine to be measured for it."""
+        return self.tolerance is not None or self.budget is not None
+
+
+@dataclass(frozen=True)
+class StudyPlan:
+    """
+    study: what is computed. whole: whether with all that the report tells beside the surfaces. left_out: models that
+    cannot meet the tolerance or do not fit, a line each. compute: processor time of the surfaces expected, s; wall: of
+    the whole run with all workers.
+    """
+
+    study: Study
+    with_analyses: bool
+    omitted: tuple[str, ...]
+    compute: float
+    wall: float
+
+
+class BudgetError(ValueError):
+    """Nothing fits. `str(error)` is one line."""
+
+
+def plan_study(request: StudyRequest) -> StudyPlan:
+    """
+    The cheapest study that meets the tolerance asked, or the most ambitious that fits the budget. Raises BudgetError.
+    """
+    begin = time.monotonic()
+    measured = costs(request.scenes, request.hierarchy, request.measures_machine, request.full)
+    if request.budget is None:
+        return _plan(STUDY_PRESETS[DEFAULT_PRESET], request, measured)
+    allowed = [one for one in STUDY_PRESETS if request.tolerance is None or one.tolerance == DEFAULT_TOLERANCE]
+    spent = time.monotonic() - begin
+    made = [_plan(one, request, measured) for one in allowed]
+    fitting = [one for one in made if one.wall + spent <= request.budget]
+    if not fitting:
+        least = made[0].wall + spent
+        raise BudgetError(
+            f"the smallest study of {_count(request.scenes)} takes about {least:.0f} s here with {request.jobs} "
+            f"worker{'' if request.jobs == 1 else 's'}: give that, or fewer scenes"
+        )
+    return fitting[-1]
+
+
+def _count(scenes: Sequence[Scene]) -> str:
+    return f"{len(scenes)} scenes" if len(scenes) > 1 else scenes[0].name
+
+
+def _plan(preset: StudyPreset, request: StudyRequest, measured: Costs) -> StudyPlan:
+    """The study of one ambition, with what it costs."""
+    tolerance = preset.tolerance if request.tolerance is None else request.tolerance
+    grid = request.grid or preset.grid
+    models, omitted = [], []
+    for model in request.hierarchy:
+        most = {"translational": preset.translational, "spatial": preset.spatial}.get(model.key)
+        if request.budget is not None and most is not None and is_recorded(model):
+            model = replace(model, most=most)
+        if model.most == 0:
+            omitted.append(f"{model.title}: does not fit the budget")
+        elif is_recorded(model) and tolerance < recorded().accuracy[model.key].tightest:
+            tightest = recorded().accuracy[model.key].tightest
+            omitted.append(
+                f"{model.title}: cannot meet {tolerance:.0e}, the tightest it is known to meet is {tightest:.0e}"
+            )
+        else:
+            models.append(
+                replace(model, asks=setting(model, model.tolerance(tolerance))) if is_recorded(model) else model
+            )
+    seconds = {
+        (scene.name, model.key): cost
+        for scene in request.scenes
+        for model in models
+        if (cost := measured.of(scene, model, model.tolerance(tolerance))) is not None
+    }
+    study = Study(request.scenes, grid, tolerance, models, request.full, seconds)
+    compute = sum(study.seconds(model) for model in models)
+    workers = compute + request.analysis_cost(study, preset.with_analyses) * measured.speed
+    wall = (START_UP + WRITING) * measured.speed + workers / request.jobs
+    return StudyPlan(study, preset.with_analyses, tuple(omitted), compute, wall)
+
+
+def setting(model: Model, tolerance: float) -> float:
+    """What to ask of a model so that `tolerance` is met: the cheapest, or a tighter one that is hardly dearer."""
+    accuracy = recorded().accuracy[model.key]
+    able = [tolerance] + [one for one, met in zip(accuracy.tolerances, accuracy.met) if met and one < tolerance]
+    cheapest = min(accuracy.cost(one) for one in able)
+    return min(one for one in able if accuracy.cost(one) <= HARDLY_MORE * cheapest)
+
+
+def tightest() -> float:
+    """The tightest tolerance that any model is known to meet."""
+    return min(accuracy.tightest for accuracy in recorded().accuracy.values())

@@ -1,0 +1,47 @@
+"""
+What a model leaves out of a scene, and how many times less a point then costs.
+
+What may be left out is decided in reference.problem.reductions, by the scene alone. Here stands what that was measured
+to save (tests/benchmarks/test_reductions.py): it sets the size of a batch and the cost that is predicted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from comparison.study.models import Model
+from reference.problem import Reduction, Scene, linear, planar, planar_chain, untilted
+
+
+@dataclass(frozen=True)
+class RecordedReduction:
+    """name: what is left out. models: models with this setting can do without it. factor: recorded saving per point."""
+
+    name: str
+    decided: Callable[[Scene], Reduction]
+    models: tuple[str, object]
+    factor: float
+
+    def concerns(self, model: Model) -> bool:
+        """Whether the model may leave it out of some scene."""
+        key, value = self.models
+        return model.settings.get(key) == value
+
+
+REDUCTIONS: tuple[RecordedReduction, ...] = (
+    RecordedReduction("every run but one per harmonic", linear, ("equations", "small"), 40.0),
+    RecordedReduction("motion across its plane", planar, ("equations", "small"), 1.15),
+    RecordedReduction("motion across its plane", planar, ("equations", "exact"), 1.2),
+    RecordedReduction("motion across its plane, of the bodies", planar_chain, ("model", "translational"), 1.15),
+    RecordedReduction("rotations, all supports but one", untilted, ("model", "spatial"), 1.7),
+)
+
+
+def speedup(scene: Scene, model: Model) -> float:
+    """Recorded cost of a point in full over that of one from which all is left out that the scene does not require."""
+    factor = 1.0
+    for part in REDUCTIONS:
+        if part.concerns(model) and part.decided(scene):
+            factor *= part.factor
+    return factor

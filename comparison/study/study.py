@@ -1,0 +1,148 @@
+"""What is asked: scenes, grid of phases, models; cut into batches for the workers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparison.study.batches import Batch
+from comparison.study.models import MODEL_HIERARCHY, Model, Pair, models_of, pairs_of
+from comparison.study.speedup import speedup
+from comparison.study.symmetry import sources
+from reference.problem import Scene, SceneError, phase_grid
+
+
+def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
+    """Refuse a name of a scene or family that is there twice. names: each with its source. Raises SceneError."""
+    seen: dict[str, str] = {}
+    for source, name in names:
+        if name in seen:
+            rule = f"same name as {seen[name]}, which names its surfaces: give each scene once, rename a file"
+            raise SceneError(source, "scene", name, rule)
+        seen[name] = source
+
+
+@dataclass(frozen=True)
+class Study:
+    """
+    Scenes x models x a grid of `grid` by `grid` phase pairs, each mu to the relative error `tolerance`.
+
+    A model that is too expensive for all of them computes every k-th phase of either axis, k being its stride. Strides
+    are multiples of one another, so that of any two models the coarser grid is part of the finer. Phases whose motion
+    is the mirror image of another's are not computed again, and models leave out what the scene does not require,
+    unless the study is `full`. A scene with a recorded motion has no phases: every model computes the one point (0, 0).
+    costs: processor time of a point, s, by name of the scene and key of the model, where it is known better than from
+    the model hierarchy (costs.py). silent: by name of the scene, the models that have no value there: comparisons pass
+    over them (analysis/unanswered.py).
+    """
+
+    scenes: tuple[Scene, ...]
+    grid: int
+    tolerance: float
+    hierarchy: Sequence[Model] = MODEL_HIERARCHY
+    full: bool = False
+    costs: Mapping[tuple[str, str], float] | None = None
+    silent: Mapping[str, tuple[str, ...]] | None = None
+
+    @cached_property
+    def strides(self) -> dict[str, int]:
+        """The stride of every model by its key: the smallest that leaves it no more phases than its `most`."""
+        strides, stride = {}, 1
+        for model in sorted(self.hierarchy, key=lambda model: -(model.most or self.grid)):
+            most = min(model.most or self.grid, self.grid)
+            stride *= -(-self.grid // (most * stride))
+            strides[model.key] = stride
+        return strides
+
+    @property
+    def phased(self) -> tuple[Scene, ...]:
+        """The scenes that have phases."""
+        return tuple(scene for scene in self.scenes if not scene.recorded)
+
+    def compared(self, scene: Scene) -> list[Model]:
+        """The models of a scene that have values there, in order; all of them while nothing is computed."""
+        silent = (self.silent or {}).get(scene.name, ())
+        return [model for model in models_of(scene, self.hierarchy) if model.key not in silent]
+
+    def pairs(self, scene: Scene) -> list[Pair]:
+        """The pairs of models that are compared on a scene."""
+        return pairs_of(scene, self.hierarchy, (self.silent or {}).get(scene.name, ()))
+
+    def stride(self, model: Model, scene: Scene | None = None) -> int:
+        """The model's stride; in a scene without phases the whole grid."""
+        return self.grid if scene is not None and scene.recorded else self.strides[model.key]
+
+    def axis(self, model: Model, scene: Scene | None = None) -> NDArray[np.intp]:
+        """Which of the `grid` phases of either axis a model computes, in a scene with phases if none is given."""
+        return np.arange(0, self.grid, self.stride(model, scene))
+
+    def points(self, model: Model, scene: Scene | None = None) -> int:
+        """Phase pairs of one surface of this model."""
+        return len(self.axis(model, scene)) ** 2
+
+    def places(self, model: Model, scene: Scene | None = None) -> NDArray[np.intp]:
+        """The model's phase pairs as places on the whole grid, alpha2 running fastest."""
+        axis = self.axis(model, scene)
+        return (self.grid * axis[:, None] + axis).ravel()
+
+    def sources(self, scene: Scene, model: Model) -> NDArray[np.intp]:
+        """For each of `places` the one whose answer is also its own, by the symmetries of the scene (symmetry.py)."""
+        places = self.places(model, scene)
+        if scene.recorded:
+            return places
+        even = self.grid % self.strides[model.key] == 0  # else the last phase and the first are closer than the others
+        return (
+            places[sources(scene, len(self.axis(model)))]
+            if model.symmetric(scene) and even and not self.full
+            else places
+        )
+
+    def solved(self, scene: Scene, model: Model) -> NDArray[np.intp]:
+        """The places that the model is asked for."""
+        return np.unique(self.sources(scene, model))
+
+    def batches(self) -> list[Batch]:
+        """
+        The whole work, model by model.
+
+        The cut depends on the study alone, never on the number of workers: a result must not depend on scheduling.
+        """
+        phases = phase_grid(self.grid)
+        work = [
+            (model, scene, self.solved(scene, model))
+            for model in self.hierarchy
+            for scene in self.scenes
+            if model.applies(scene)
+        ]
+        asked = {"full": True} if self.full else {}
+        return [
+            Batch(
+                scene=scene,
+                model=model.key,
+                amplification=model.amplification,
+                settings={**model.settings, "tolerance": model.tolerance(self.tolerance), **asked},
+                first=first,
+                phases=phases[places[first : first + size]],
+            )
+            for model, scene, places in work
+            for size in [model.batch * max(1, round(self.speedup(scene, model)))]
+            for first in range(0, len(places), size)
+        ]
+
+    def speedup(self, scene: Scene, model: Model) -> float:
+        """How many times less a point costs for what the model leaves out of this scene."""
+        return 1.0 if self.full else speedup(scene, model)
+
+    def seconds_of(self, scene: Scene, model: Model) -> float:
+        """Predicted cost of one model on one scene, s on one core."""
+        if self.costs is not None and (scene.name, model.key) in self.costs:
+            return self.costs[scene.name, model.key] * len(self.solved(scene, model))
+        return model.seconds(scene, len(self.solved(scene, model))) / self.speedup(scene, model)
+
+    def seconds(self, model: Model) -> float:
+        """Predicted cost of one model on every scene it applies to, s on one core."""
+        return sum(self.seconds_of(scene, model) for scene in self.scenes if model.applies(scene))

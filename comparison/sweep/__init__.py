@@ -1,1 +1,0 @@
-"""How it is computed: on any executor, stored, resumed, nothing lost."""
