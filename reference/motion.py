@@ -13,8 +13,8 @@ from reference.solver.system import Array, Demand, Record, System, record_of
 from reference.surface import OUTCOMES, checked_demand, loads_are_finite
 
 SAMPLES_PER_PERIOD = 64  # of the shorter loading period, when no times are given
-MOST_SAMPLES = 200_000
-ROOM = 1024  # steps, to begin with
+MAX_SAMPLES = 200_000
+FIRST_CAPACITY = 1024  # steps, to begin with
 
 
 def trajectory(
@@ -70,15 +70,15 @@ def trajectory(
 def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) -> tuple[Outcome, float, Record, Array]:
     """The run with all its steps, however many: (how and when it ended, s, its record, its peaks, m/s^2)."""
     bodies = len(x)
-    room = ROOM
+    capacity = FIRST_CAPACITY
     while True:
-        record = record_of(room, bodies)
-        peaks, doubts = np.empty((1, bodies)), np.empty((1, bodies))
+        record = record_of(capacity, bodies)
+        peaks, reading_errors = np.empty((1, bodies)), np.empty((1, bodies))
         codes, instants, steps, reach = (np.empty(1) for _ in range(4))
-        runs(system, phase[None], x, v, demand, record, peaks, doubts, codes, instants, steps, reach)
-        if record.made.max() <= room:
+        runs(system, phase[None], x, v, demand, record, peaks, reading_errors, codes, instants, steps, reach)
+        if record.made.max() <= capacity:
             return OUTCOMES[int(codes[0])], float(instants[0]), record, peaks[0]
-        room = int(record.made.max())
+        capacity = int(record.made.max())
 
 
 def _acceleration(system: System, x: Array, v: Array) -> float:
@@ -91,7 +91,7 @@ def _acceleration(system: System, x: Array, v: Array) -> float:
 def _checked_times(scene: Scene, times: ArrayLike | None) -> Array:
     if times is None:
         samples = int(np.ceil(scene.duration / loading_period(scene) * SAMPLES_PER_PERIOD)) + 1
-        return np.linspace(0.0, scene.duration, min(samples, MOST_SAMPLES))
+        return np.linspace(0.0, scene.duration, min(samples, MAX_SAMPLES))
     rule = f"must be rising instants (T,) from 0 to the duration, {scene.duration} s"
     instants = checked_array("times", times, rule)
     inside = instants.ndim == 1 and np.all((instants >= 0.0) & (instants <= scene.duration))

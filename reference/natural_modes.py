@@ -1,7 +1,7 @@
 """
 Natural frequencies and modes of small undamped vibration (4.8)-(4.11), each axis on its own.
 
-Per axis the linearised (4.3)-(4.4) is M0 q'' + C0 q = 0: a chain of N masses whose first link is the pendulum stiffness
+Per axis the linearized (4.3)-(4.4) is M0 q'' + C0 q = 0: a chain of N masses whose first link is the pendulum stiffness
 of the isolator. A general eigensolver gets the low frequencies of a long or stiff chain wrong by eps * condition, so
 the chain is kept as its factor: C0 = D^T diag(k) D with D the elongation of each link, hence
 M0^-1/2 C0 M0^-1/2 = L^T L with L = diag(k)^1/2 D M0^-1/2 bidiagonal, its entries free of subtraction. The frequencies
@@ -64,7 +64,7 @@ def linear_stiffness(scene: Scene) -> Array:
 
 def modes(scene: Scene) -> Modes:
     """
-    Natural frequencies, shapes and participation factors (4.8)-(4.11) of the frictionless linearised chain.
+    Natural frequencies, shapes and participation factors (4.8)-(4.11) of the frictionless linearized chain.
 
     The friction of the scene does not enter. See `Modes` for shapes and units.
     """

@@ -55,13 +55,13 @@ OUTCOMES = {
     STEP_LIMIT: Outcome.STEP_LIMIT,
     UNSOLVED: Outcome.SOLVER_FAILED,
 }
-STEPS_PER_PERIOD = 1000  # a run in trouble ends after so many steps per loading period, and FIRST_STEPS more
+STEPS_PER_PERIOD = 1000  # a run in trouble ends after so many steps per loading period, and BASE_STEPS more
 STEPS_PER_KNOT = 10  # of a record, besides
-STEPS_PER_VIBRATION, MOST_FOR_VIBRATIONS = 30, 300_000  # of the chain's fastest, besides
-VIBRATIONS = 10.0  # of the chain during which forces hardly change: stiff links follow without swinging
-FIRST_STEPS = 20_000
-MOST_STEPS = 3_000_000  # half a minute for two bodies
-PARTS = 8  # pieces of the surface per thread, so that none waits long for another
+STEPS_PER_VIBRATION, MAX_VIBRATION_STEPS = 30, 300_000  # of the chain's fastest, besides
+VIBRATIONS_PER_TIME_SCALE = 10.0  # of the chain during which forces hardly change: stiff links follow without swinging
+BASE_STEPS = 20_000
+MAX_STEPS = 3_000_000  # half a minute for two bodies
+PARTS_PER_THREAD = 8  # pieces of the surface per thread, so that none waits long for another
 
 
 def amplification(
@@ -107,8 +107,10 @@ def amplification(
         shaken = ground >= LEAST_ACCELERATION
         status[part] = Outcome.NO_GROUND_MOTION.value
         places = np.arange(count)[part][shaken]
-        some = pairs[places]
-        peaks = superposed(scene, system, some, demand) if summed else certified_peaks(system, some, demand)
+        shaken_pairs = pairs[places]
+        peaks = (
+            superposed(scene, system, shaken_pairs, demand) if summed else certified_peaks(system, shaken_pairs, demand)
+        )
         outcomes = np.array([OUTCOMES[int(code)] for code in peaks.code], dtype=object)
         outcomes[(outcomes == Outcome.OK) & ~np.isfinite(peaks.value).all(axis=1)] = Outcome.SOLVER_FAILED
         known = (outcomes == Outcome.OK) | (outcomes == Outcome.TOLERANCE_NOT_MET)
@@ -126,7 +128,7 @@ def amplification(
     else:
         solve(slice(0, 1))  # compiled once, before the threads need it
         with ThreadPoolExecutor(threads) as pool:
-            cost = sum(pool.map(solve, parts(count, PARTS * threads)))
+            cost = sum(pool.map(solve, parts(count, PARTS_PER_THREAD * threads)))
     return Amplification(mu, error, status, instant, cost, cap_share)
 
 
@@ -135,15 +137,15 @@ def superposed(scene: Scene, system: System, phases: Array, demand: Demand) -> P
     value, error, reach, at_rim = frictionless_peaks(scene, phases)
     met = (error <= demand.tolerance * value).all(axis=1)
     nothing = np.zeros(len(phases))
-    found = Peaks(value, error, np.where(met, SOLVED, NOT_MET), nothing, nothing.copy(), reach)
+    peaks = Peaks(value, error, np.where(met, SOLVED, NOT_MET), nothing, nothing.copy(), reach)
     if at_rim.any():  # whether it does, and when, is for the run to say
-        for whole, ran in zip(found, certified_peaks(system, phases[at_rim], demand)):
+        for whole, ran in zip(peaks, certified_peaks(system, phases[at_rim], demand)):
             whole[at_rim] = ran
-    return found
+    return peaks
 
 
 def parts(count: int, pieces: int) -> Iterator[slice]:
-    """`count` points cut into at most `pieces` runs of neighbours."""
+    """`count` points cut into at most `pieces` runs of neighbors."""
     size = max(1, -(-count // pieces))
     return (slice(first, min(first + size, count)) for first in range(0, count, size))
 
@@ -169,7 +171,7 @@ def checked_demand(
         raise ValueError(f"cutoff = {cutoff!r}: belongs to the set-valued law; give no regularization with it")
     system = pack(scene, equations == "small", regularization, rest_condition == "printed", axes)
     period, knots = loading_period(scene), STEPS_PER_KNOT * len(scene.record)
-    vibrations = min(STEPS_PER_VIBRATION * scene.duration * system.fastest / (2.0 * np.pi), MOST_FOR_VIBRATIONS)
+    vibrations = min(STEPS_PER_VIBRATION * scene.duration * system.fastest / (2.0 * np.pi), MAX_VIBRATION_STEPS)
     with np.errstate(over="ignore"):  # refused by loads_are_finite
         unit = float(np.sqrt((np.abs(system.amplitudes).sum(axis=1) ** 2).sum()))
         unit += float(np.sqrt((system.record[:, 1:] ** 2).sum(axis=1)).max(initial=0.0))
@@ -178,7 +180,7 @@ def checked_demand(
         unit=unit,
         period=time_scale(scene, unit, system.fastest),
         cutoff=0.0 if cutoff is None else cutoff,
-        step_limit=FIRST_STEPS + int(min(MOST_STEPS, STEPS_PER_PERIOD * scene.duration / period + vibrations + knots)),
+        step_limit=BASE_STEPS + int(min(MAX_STEPS, STEPS_PER_PERIOD * scene.duration / period + vibrations + knots)),
     )
 
 
@@ -186,14 +188,17 @@ def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
     """
     Time in which forces change, s, given the size of the loading, m/s^2, and the chain's fastest vibration, rad/s.
 
-    The shortest of the loading's and the pendulum's periods, the softest link's, VIBRATIONS of the fastest, the decay
-    of the loading, and the time in which it drives the platform across the cap.
+    The shortest of the loading's and the pendulum's periods, the softest link's, VIBRATIONS_PER_TIME_SCALE of the
+    fastest, the decay of the loading, and the time in which it drives the platform across the cap.
     """
     frequencies = [2.0 * np.pi / loading_period(scene), float(np.sqrt((GRAVITY + acceleration) / scene.radius))]
     if not scene.recorded:
         frequencies += (-exponents(scene).real).tolist()
     if len(scene.bodies) > 1:
-        frequencies += [float(np.sqrt((scene.stiffness / scene.masses[1:, None]).min())), fastest / VIBRATIONS]
+        frequencies += [
+            float(np.sqrt((scene.stiffness / scene.masses[1:, None]).min())),
+            fastest / VIBRATIONS_PER_TIME_SCALE,
+        ]
     return float(2.0 * np.pi / max(frequencies))
 
 

@@ -5,8 +5,8 @@ Ground acceleration a exp(i omega t) in the complex plane x + i y, z = Z exp(i o
 vertically and the slip is horizontal, so N = m_sum g / n_z with n_z = sqrt(1 - |Z1|^2/rho^2) is constant:
     (K - omega^2 M) Z = -M 1 a - i mu N e_1 Z1/|Z1|,
 K the chain with the pendulum stiffness N/rho at its foot. With G = (K - omega^2 M)^-1, b = -(G M 1)_1 a and
-c = mu N G_11, the first row is |Z1|^2 = b^2 - c^2; n_z = 1 in the linearised equations, and one unknown |Z1| in the
-exact ones. (4.3) as printed has the same solution as the linearised ones: its extra friction terms hold p . v = 0.
+c = mu N G_11, the first row is |Z1|^2 = b^2 - c^2; n_z = 1 in the linearized equations, and one unknown |Z1| in the
+exact ones. (4.3) as printed has the same solution as the linearized ones: its extra friction terms hold p . v = 0.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def circular_shaking(scene: Scene, acceleration: float, frequency: float, equati
 
 
 def _response(scene: Scene, acceleration: float, frequency: float, radius: float) -> tuple[float, float, float]:
-    """b, c and N for a platform on a circle of this radius; 0 gives the linearised equations."""
+    """b, c and N for a platform on a circle of this radius; 0 gives the linearized equations."""
     normal = scene.total_mass * GRAVITY / np.sqrt(1.0 - (radius / scene.radius) ** 2)
     dynamic = _chain(scene, normal / scene.radius) - frequency**2 * np.diag(scene.masses)
     first = np.linalg.solve(dynamic, np.eye(len(scene.masses))[0])  # row 1 of G, which is symmetric

@@ -33,18 +33,18 @@ class SteadyOscillation:
         """x/a at loading angle omega t (T,), rad, counted from a positive turning point."""
         turn, sign = _folded(angle)
         tangent = np.tan(0.5 * np.pi / self.ratio)
-        own = 1.0 - np.cos(turn / self.ratio) - tangent * np.sin(turn / self.ratio)
+        natural = 1.0 - np.cos(turn / self.ratio) - tangent * np.sin(turn / self.ratio)
         forced = np.cos(turn + self.phase) / (1.0 - self.ratio**2)
-        result: Array = sign * (self.dead_zone * own + forced)
+        result: Array = sign * (self.dead_zone * natural + forced)
         return result
 
     def acceleration(self, angle: ArrayLike) -> Array:
         """x''/(a omega_n^2) at loading angle omega t (T,), rad; one-sided (after) at turning points."""
         turn, sign = _folded(angle)
         tangent = np.tan(0.5 * np.pi / self.ratio)
-        own = np.cos(turn / self.ratio) + tangent * np.sin(turn / self.ratio)
+        natural = np.cos(turn / self.ratio) + tangent * np.sin(turn / self.ratio)
         forced = -(self.ratio**2) * np.cos(turn + self.phase) / (1.0 - self.ratio**2)
-        result: Array = sign * (self.dead_zone * own + forced)
+        result: Array = sign * (self.dead_zone * natural + forced)
         return result
 
 
@@ -72,8 +72,8 @@ def no_stop_bound(ratio: float) -> float:
 
     def demand(turn: ArrayLike) -> Array:
         turn = np.asarray(turn, dtype=float)
-        own = turn / ratio
-        top = np.sin(own) + ratio * u * (np.cos(turn) - np.cos(own))
+        natural = turn / ratio
+        top = np.sin(natural) + ratio * u * (np.cos(turn) - np.cos(natural))
         result: Array = top / (ratio * np.sin(turn))
         return result
 
@@ -82,8 +82,10 @@ def no_stop_bound(ratio: float) -> float:
     values = demand(turns)
     k = int(values.argmax())
     low, high = turns[max(k - 1, 0)], turns[min(k + 1, len(turns) - 1)]
-    found = minimize_scalar(lambda t: -float(demand(t)), bounds=(low, high), method="bounded", options={"xatol": 1e-12})
-    largest = max(float(values[k]), -float(found.fun))
+    minimum = minimize_scalar(
+        lambda t: -float(demand(t)), bounds=(low, high), method="bounded", options={"xatol": 1e-12}
+    )
+    largest = max(float(values[k]), -float(minimum.fun))
     return float(abs(v) / np.sqrt(u * u + largest * largest))
 
 

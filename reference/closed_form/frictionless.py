@@ -20,9 +20,10 @@ from reference.problem import Scene, checked_phases, exponents, ground_peak, lin
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-INTERVALS = 12  # per shortest period: the terms left out of a series of ORDERS are below 1e-14 of the motion
-ORDERS = 12
-ROUNDING = 1e-13  # relative error of a frequency and of an operation
+# per shortest period: the terms left out of a series of SERIES_TERMS are below 1e-14 of the motion
+INTERVALS_PER_PERIOD = 12
+SERIES_TERMS = 12
+ROUNDING_ERROR = 1e-13  # relative error of a frequency and of an operation
 
 
 def frictionless_motion(scene: Scene, phase: ArrayLike, time: ArrayLike) -> tuple[Array, Array, Array]:
@@ -59,15 +60,15 @@ def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array
     shortest = min(
         loading_period(scene), 2.0 * np.pi / max(float(natural.frequency.max()), float(-exponents(scene).real.min()))
     )
-    count = int(np.ceil(scene.duration / shortest * INTERVALS))
+    count = int(np.ceil(scene.duration / shortest * INTERVALS_PER_PERIOD))
     half = 0.5 * scene.duration / count
-    centres: Array = half * (2.0 * np.arange(count, dtype=float) + 1.0)
-    series = Series.of(_responses(scene, natural, centres, ORDERS, absolute=True), half)
-    path = Series.of(_responses(scene, natural, centres, ORDERS, absolute=False, bodies=1), half)
-    peaks, doubt = largest(series, phases)
-    uncertain = ROUNDING * (10.0 + float(natural.frequency.max()) * scene.duration)
+    centers: Array = half * (2.0 * np.arange(count, dtype=float) + 1.0)
+    series = Series.of(_responses(scene, natural, centers, SERIES_TERMS, absolute=True), half)
+    path = Series.of(_responses(scene, natural, centers, SERIES_TERMS, absolute=False, bodies=1), half)
+    peaks, search_error = largest(series, phases)
+    rounding = ROUNDING_ERROR * (10.0 + float(natural.frequency.max()) * scene.duration)
     reach = largest(path, phases)[0][:, 0]
-    return peaks, doubt + uncertain * series.envelope, reach, reached(path, phases, scene.radius)
+    return peaks, search_error + rounding * series.envelope, reach, reached(path, phases, scene.radius)
 
 
 def _check(scene: Scene) -> None:

@@ -3,7 +3,7 @@ Largest length over time of vectors that are linear in exp(i alpha_1), exp(i alp
 
 A body's vector is v(t) = Re(A_1(t) exp(i alpha_1) + A_2(t) exp(i alpha_2)), one entry per axis. Time is cut into
 intervals on which A is a short series; the terms behind the slope bound |v| on the whole interval, so that those which
-cannot hold the largest are passed over without a doubt, and the others are searched on the series itself.
+cannot hold the largest are skipped, and the others are searched on the series itself.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-GUESSES = np.linspace(-1.0, 1.0, 5)
-NEWTON = 5
-TAIL = 1e-14  # relative: what the series leaves out
+STARTING_POINTS = np.linspace(-1.0, 1.0, 5)
+NEWTON_STEPS = 5
+SERIES_REMAINDER = 1e-14  # relative: what the series leaves out
 
 
 @dataclass(frozen=True)
@@ -49,9 +49,9 @@ class Series:
 
 def largest(series: Series, phases: Array) -> tuple[Array, Array]:
     """max_t |v| of every body for phase pairs (M, 2), rad, and the error of finding it: (M, N) each."""
-    peaks, doubts = np.empty((2, len(phases), len(series.envelope)))
-    _largest(series.terms, series.rest, _turns(phases), peaks, doubts)
-    return peaks, doubts + TAIL * series.envelope
+    peaks, errors = np.empty((2, len(phases), len(series.envelope)))
+    _largest(series.terms, series.rest, _turns(phases), peaks, errors)
+    return peaks, errors + SERIES_REMAINDER * series.envelope
 
 
 def reached(series: Series, phases: Array, bound: float) -> NDArray[np.bool_]:
@@ -59,11 +59,11 @@ def reached(series: Series, phases: Array, bound: float) -> NDArray[np.bool_]:
     if series.envelope[0] < bound:
         return np.zeros(len(phases), dtype=bool)
     least, most = np.empty((2, series.terms.shape[-1]))
-    found = np.empty(len(phases), dtype=bool)
+    may_reach = np.empty(len(phases), dtype=bool)
     for m, turn in enumerate(_turns(phases)):
         _bounds(series.terms, series.rest, turn, 0, least, most)
-        found[m] = most.max() >= bound * bound
-    return found
+        may_reach[m] = most.max() >= bound * bound
+    return may_reach
 
 
 def _turns(phases: Array) -> Array:
@@ -78,17 +78,17 @@ def _bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array, mos
     least[:] = 0.0
     most[:] = 0.0
     for axis in range(terms.shape[2]):
-        value, slope, more = terms[0, body, axis], terms[1, body, axis], rest[body, axis]
+        value, slope, remainder = terms[0, body, axis], terms[1, body, axis], rest[body, axis]
         for n in range(len(least)):
             v = a * value[0, n] + b * value[1, n] + c * value[2, n] + d * value[3, n]
             s = a * slope[0, n] + b * slope[1, n] + c * slope[2, n] + d * slope[3, n]
-            size = abs(v) + abs(s) + more[n]
+            size = abs(v) + abs(s) + remainder[n]
             least[n] += v * v
             most[n] += size * size
 
 
 @njit(cache=True, nogil=True)
-def _largest(terms: Array, rest: Array, turns: Array, peaks: Array, doubts: Array) -> None:
+def _largest(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Array) -> None:
     orders, bodies, axes, _, intervals = terms.shape
     least, most = np.empty(intervals), np.empty(intervals)
     series = np.empty((axes, orders))
@@ -103,23 +103,23 @@ def _largest(terms: Array, rest: Array, turns: Array, peaks: Array, doubts: Arra
                 for axis in range(axes):
                     for order in range(orders):
                         series[axis, order] = (turns[m] * terms[order, body, axis, :, n]).sum()
-                value, doubt = _searched(series)
+                value, error = _searched(series)
                 best = max(best, value)
-                possible = max(possible, value + doubt)
+                possible = max(possible, value + error)
             peaks[m, body] = sqrt(best)
-            doubts[m, body] = sqrt(max(best, possible)) - sqrt(best)
+            errors[m, body] = sqrt(max(best, possible)) - sqrt(best)
 
 
 @njit(cache=True)
 def _searched(series: Array) -> tuple[float, float]:
     """Largest |v|^2 on an interval with these coefficients (axes, P), and what Newton's method leaves."""
     best, place = -1.0, 0.0
-    for x in GUESSES:
+    for x in STARTING_POINTS:
         value, _, _ = _squares(series, x)
         if value > best:
             best, place = value, x
     left = 0.0
-    for _ in range(NEWTON):
+    for _ in range(NEWTON_STEPS):
         _, slope, curvature = _squares(series, place)
         step = -slope / curvature if curvature < 0.0 else np.sign(slope)
         target = min(max(place + step, -1.0), 1.0)

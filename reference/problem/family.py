@@ -20,7 +20,7 @@ from reference.problem.scene import Scene, scene_tables, scene_text, validated_s
 from reference.problem.scene_error import SceneError
 
 RANGE, VALUES = {"range", "steps"}, {"values"}
-MOST = 1000  # scenes of one family
+MAX_SCENES = 1000  # scenes of one family
 
 Value = float | int | str
 Files = dict[str, str]  # of a record, by direction
@@ -52,11 +52,11 @@ def load_family(source: str | Path, amplitude: float | None = None) -> Family:
     """
     label, name = str(source), Path(source).stem
     data = scene_tables(scene_text(source), label)
-    found = list(_running((), data))
-    if not found:
+    running = list(_running((), data))
+    if not running:
         scene = validated_scene(data, label, name)
         return Family(name, (scene if amplitude is None else scene.with_amplitude(amplitude),))
-    (path, table), *others = found
+    (path, table), *others = running
     key = ".".join(map(str, path))
     for other, second in others:
         rule = f"only one key of a scene may run, and {key} does: give it a value, or write a file for each"
@@ -90,8 +90,10 @@ def _values(label: str, key: str, table: dict[str, Any]) -> Sequence[Value | Fil
     numbers = isinstance(ends, list) and len(ends) == 2 and all(_is_number(end) for end in ends)
     if not (numbers and ends[0] < ends[1]):
         raise SceneError(label, f"{key}.range", ends, "must be two finite numbers, the smaller first")
-    if not (isinstance(steps, int) and not isinstance(steps, bool) and 2 <= steps <= MOST):
-        raise SceneError(label, f"{key}.steps", steps, f"must be a whole number from 2 to {MOST}, the ends included")
+    if not (isinstance(steps, int) and not isinstance(steps, bool) and 2 <= steps <= MAX_SCENES):
+        raise SceneError(
+            label, f"{key}.steps", steps, f"must be a whole number from 2 to {MAX_SCENES}, the ends included"
+        )
     spaced = [
         float(f"{value:.12g}") for value in np.linspace(ends[0], ends[1], steps)
     ]  # 0.06, not 0.060000000000000005
@@ -102,8 +104,8 @@ def _values(label: str, key: str, table: dict[str, Any]) -> Sequence[Value | Fil
 def _listed(label: str, key: str, values: Any) -> Sequence[Value | Files]:
     kinds = (_is_number, lambda value: isinstance(value, str), _is_files)
     alike = isinstance(values, list) and any(all(map(is_kind, values)) for is_kind in kinds)
-    if not (alike and 1 <= len(values) <= MOST):
-        rule = f"must be a list of 1 to {MOST} finite numbers, or of texts, or of tables of files"
+    if not (alike and 1 <= len(values) <= MAX_SCENES):
+        rule = f"must be a list of 1 to {MAX_SCENES} finite numbers, or of texts, or of tables of files"
         raise SceneError(label, key, values, rule)
     return list(values)
 

@@ -15,7 +15,7 @@ from reference.problem.record_files import AXES, Array, RecordError, at2_samples
 from reference.problem.scene_error import SceneError
 
 EXAMPLES = resources.files("reference.problem") / "examples"
-RULE = 'must be a CSV file, "motion.csv", or .AT2 files by direction, {x = "a.AT2", y = "b.AT2"}'
+RECORD_RULE = 'must be a CSV file, "motion.csv", or .AT2 files by direction, {x = "a.AT2", y = "b.AT2"}'
 OF_TWO_FREQUENCIES = ("amplitudes", "periods", "decay")
 
 
@@ -44,15 +44,15 @@ def _samples(record: Any, label: str) -> Array:
     files = record if isinstance(record, dict) else {"": record}
     named = all(isinstance(name, str) and name for name in files.values())
     if not named or not files or (isinstance(record, dict) and not set(files) <= set(AXES)):
-        raise SceneError(label, "excitation.record", record, RULE)
+        raise SceneError(label, "excitation.record", record, RECORD_RULE)
     kinds = {Path(name).suffix.lower() for name in files.values()}
     if kinds != ({".at2"} if isinstance(record, dict) else {".csv"}):
-        raise SceneError(label, "excitation.record", record, RULE)
+        raise SceneError(label, "excitation.record", record, RECORD_RULE)
     texts = {axis: _text(label, f"excitation.record{'.' if axis else ''}{axis}", name) for axis, name in files.items()}
     try:
         return at2_samples(texts) if isinstance(record, dict) else csv_samples(texts[""])
-    except RecordError as fault:
-        raise SceneError(label, "excitation.record", record, str(fault)) from None
+    except RecordError as error:
+        raise SceneError(label, "excitation.record", record, str(error)) from None
 
 
 def _text(label: str, key: str, name: str) -> str:
@@ -63,6 +63,6 @@ def _text(label: str, key: str, name: str) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise SceneError(label, key, name, "must be text in UTF-8") from None
-    except (OSError, ValueError) as fault:
-        reason = getattr(fault, "strerror", None) or fault
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
         raise SceneError(label, key, name, f"{reason}; paths are relative to the scene file") from None

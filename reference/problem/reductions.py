@@ -15,11 +15,12 @@ import numpy as np
 from reference.problem.excitation import exponents
 from reference.problem.scene import GRAVITY, Scene
 
-FASTEST = 2e5  # rad in the whole motion: links that vibrate more often are stepped over at less cost than summed up
+# rad in the whole motion: links that vibrate more often are integrated at less cost than summed
+MAX_VIBRATION_ANGLE = 2e5
 RECORDED = "a recorded motion: no harmonics, no phases"
 
-LARGEST = 1e300  # m/s^2
-INSIDE = 2.0  # of the shift of the supports' load on a level sphere: covers a sphere that is not level
+MAX_TURNABLE_ACCELERATION = 1e300  # m/s^2: larger amplitudes may overflow when turned
+LOAD_SHIFT_FACTOR = 2.0  # times the shift of the supports' load on a level sphere: covers a sphere that is not level
 
 
 @dataclass(frozen=True)
@@ -75,7 +76,7 @@ def untilted(scene: Scene) -> Reduction:
         if scene.lubricated:
             return Reduction(False, "lubricated: the friction that shifts the supports' load has no limit")
         shift = scene.friction_coefficient * (scene.radius + isolator.sphere_radius)
-        if not INSIDE * shift <= isolator.ring * math.cos(math.pi / isolator.supports):
+        if not LOAD_SHIFT_FACTOR * shift <= isolator.ring * math.cos(math.pi / isolator.supports):
             return Reduction(False, "a narrow ring: friction may lift the platform off a support")
     return Reduction(True, "one body, its center level with the depressions: it does not turn")
 
@@ -85,7 +86,7 @@ def planar(scene: Scene) -> Reduction:
     if scene.recorded:
         return Reduction(False, RECORDED)
     x, y = scene.amplitudes[:2]
-    if not np.abs(scene.amplitudes).max() < LARGEST:
+    if not np.abs(scene.amplitudes).max() < MAX_TURNABLE_ACCELERATION:
         return Reduction(False, "loads that may overflow when turned")
     if not (x.any() and y.any()):
         return Reduction(True, "loading along one axis: the motion stays in its plane")
@@ -126,7 +127,7 @@ def even_ring(scene: Scene) -> Reduction:
     if supports % 2 or supports == 0:
         return Reduction(False, "an odd number of supports: a turned or mirrored ring is another one")
     return Reduction(
-        True, "an even number of supports on a ring, boxes centred above it: both are mirror images of themselves"
+        True, "an even number of supports on a ring, boxes centered above it: both are mirror images of themselves"
     )
 
 
@@ -138,7 +139,7 @@ def unused_harmonics(scene: Scene) -> list[int]:
 
 
 def no_friction(scene: Scene) -> Reduction:
-    """No law of friction is left to regularise or to resolve: such models are the exact equations over again."""
+    """No law of friction is left to regularize or to resolve: such models are the exact equations over again."""
     if scene.friction_coefficient > 0.0:
         return Reduction(False, "friction")
     return Reduction(True, "no friction: without it v_reg and v_c change nothing")
@@ -158,8 +159,8 @@ def linear(scene: Scene) -> Reduction:
         return Reduction(False, RECORDED)
     if scene.amplitudes[2].any():
         return Reduction(False, "vertical loading makes the pendulum's stiffness depend on time and phases")
-    if not fastest(scene) * scene.duration <= FASTEST:
-        return Reduction(False, f"more than {FASTEST:g} rad of the fastest vibration: cheaper to step over")
+    if not fastest(scene) * scene.duration <= MAX_VIBRATION_ANGLE:
+        return Reduction(False, f"more than {MAX_VIBRATION_ANGLE:g} rad of the fastest vibration: cheaper to step over")
     return Reduction(True, "no friction, no vertical loading: the small equations are linear, the surface is a sum")
 
 

@@ -16,15 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, ValidationError, model_validator
 
-from reference.problem.ranges import MOST_CYCLES, SCENE
+from reference.problem.ranges import MAX_CYCLES, SCENE
 from reference.problem.record_files import GRAVITY as GRAVITY
 from reference.problem.recorded import EXAMPLES, with_samples
-from reference.problem.scene_error import EXCITATIONS, MisfitError, SceneError, first_fault, unknown_key
+from reference.problem.scene_error import EXCITATIONS, MisfitError, SceneError, first_error, unknown_key
 
-MOST_BODIES = 10_000
-SOFTEST = 0.1  # of the radius: what supports may give way by under the weight
-ROUNDING = 1e-12  # relative, of a value that follows from others
-DEEPEST = 10  # tables and lists within one another in a scene file
+MAX_BODIES = 10_000
+MAX_SUPPORT_DEFLECTION = 0.1  # of the radius: what supports may give way by under the weight
+DERIVED_ROUNDING = 1e-12  # relative, of a value that follows from others
+MAX_NESTING = 10  # tables and lists within one another in a scene file
 USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
 
 
@@ -70,9 +70,9 @@ class Table(BaseModel):
 
 
 def exactly_one(table: BaseModel, first: str, second: str) -> None:
-    given = [key for key in (first, second) if getattr(table, key) is not None]
-    if len(given) != 1:
-        raise ValueError(f"give exactly one of {first} and {second}, not {len(given)} of them")
+    present = [key for key in (first, second) if getattr(table, key) is not None]
+    if len(present) != 1:
+        raise ValueError(f"give exactly one of {first} and {second}, not {len(present)} of them")
 
 
 class Isolator(Table):
@@ -140,7 +140,7 @@ class Limits(Table):
     ratio: Positive | None = None  # largest difference in units of the two error estimates together
 
     def stated(self) -> dict[str, float]:
-        """The limits that are given, by key."""
+        """The limits that are present, by key."""
         limits = {"median": self.median, "maximum": self.maximum, "ratio": self.ratio}
         return {key: limit for key, limit in limits.items() if limit is not None}
 
@@ -187,7 +187,7 @@ class Scene(Table):
     title: Text
     duration: Annotated[Positive, within("duration")]  # s
     isolator: Isolator
-    bodies: Annotated[list[Body], Field(min_length=1, max_length=MOST_BODIES)]
+    bodies: Annotated[list[Body], Field(min_length=1, max_length=MAX_BODIES)]
     excitation: Annotated[
         Annotated[Excitation, Tag(EXCITATIONS[0])] | Annotated[Record, Tag(EXCITATIONS[1])], Discriminator(_kind)
     ]
@@ -203,8 +203,8 @@ class Scene(Table):
         for number, body in enumerate(others, start=1):
             try:
                 exactly_one(body, "period", "stiffness")
-            except ValueError as fault:
-                raise MisfitError(f"bodies.{number}", body.model_dump(exclude_none=True), str(fault)) from None
+            except ValueError as error:
+                raise MisfitError(f"bodies.{number}", body.model_dump(exclude_none=True), str(error)) from None
         self._check_derived()
         if isinstance(self.excitation, Record) and not np.isfinite(self.record).all():
             raise MisfitError("excitation.scale", self.excitation.scale, "must leave every sample finite")
@@ -225,20 +225,21 @@ class Scene(Table):
             derived[f"bodies.{i + 1}: k^{'xy'[axis]} in N/m"] = float(k), SCENE["bodies.stiffness"]
             derived[f"bodies.{i + 1}: period along {'xy'[axis]} in s"] = float(periods[i, axis]), SCENE["bodies.period"]
         for key, (value, allowed) in derived.items():
-            if not allowed.lowest * (1.0 - ROUNDING) <= value <= allowed.highest * (1.0 + ROUNDING):
+            if not allowed.lowest * (1.0 - DERIVED_ROUNDING) <= value <= allowed.highest * (1.0 + DERIVED_ROUNDING):
                 raise MisfitError(key, value, allowed.rule)
         shortest = 2.0 * math.pi * math.sqrt(self.radius / GRAVITY)
         if isinstance(self.excitation, Excitation):
             shortest = min(shortest, *self.excitation.periods)
-        if self.duration > MOST_CYCLES * shortest:
-            rule = f"must be at most {MOST_CYCLES:g} periods of {shortest:.4g} s, the shortest of loading and pendulum"
+        if self.duration > MAX_CYCLES * shortest:
+            rule = f"must be at most {MAX_CYCLES:g} periods of {shortest:.4g} s, the shortest of loading and pendulum"
             raise MisfitError("duration", self.duration, rule)
 
         bearings = self.isolator.support_stiffness
         if bearings is not None:
             share = self.total_mass * GRAVITY / ((self.isolator.supports or 1) * bearings * self.radius)
-            if not share <= SOFTEST:
-                rule = f"gives way by {share:.3g} of the radius under the weight: must be at most {SOFTEST:g}"
+            if not share <= MAX_SUPPORT_DEFLECTION:
+                limit = f"must be at most {MAX_SUPPORT_DEFLECTION:g}"
+                rule = f"gives way by {share:.3g} of the radius under the weight: {limit}"
                 raise MisfitError("isolator.support_stiffness", bearings, rule)
 
     def with_values(self, values: Mapping[str, Any]) -> Scene:
@@ -272,8 +273,8 @@ class Scene(Table):
             _put(self.name, data, str(key), value)
         try:
             return Scene.model_validate(data)
-        except ValidationError as fault:
-            raise first_fault(self.name, fault, KEYS) from None
+        except ValidationError as error:
+            raise first_error(self.name, error, KEYS) from None
 
     @property
     def radius(self) -> float:
@@ -448,8 +449,8 @@ def scene_text(source: str | Path) -> bytes:
         return (resources.files("reference.problem") / "scenes" / f"{label}.toml").read_bytes()
     try:
         return Path(source).read_bytes()
-    except (OSError, ValueError) as fault:  # ValueError: no path at all, such as one with a null byte
-        reason = getattr(fault, "strerror", None) or fault
+    except (OSError, ValueError) as error:  # ValueError: no path at all, such as one with a null byte
+        reason = getattr(error, "strerror", None) or error
         rule = f"{reason}; give a TOML file or one of {', '.join(builtin_scenes() + example_scenes())}"
         raise SceneError(label, "scene", label, rule) from None
 
@@ -463,10 +464,10 @@ def scene_tables(text: bytes, label: str) -> dict[str, Any]:
     """The tables of a scene file, not validated. Raises SceneError if they cannot be read."""
     try:
         data: dict[str, Any] = tomllib.loads(text.decode("utf-8-sig"))
-    except (ValueError, RecursionError) as fault:
-        raise SceneError(label, "file", str(fault), "must be valid TOML in UTF-8") from None
-    if _deeper(data, DEEPEST):
-        raise SceneError(label, "file", label, f"must have at most {DEEPEST} tables and lists within one another")
+    except (ValueError, RecursionError) as error:
+        raise SceneError(label, "file", str(error), "must be valid TOML in UTF-8") from None
+    if _deeper(data, MAX_NESTING):
+        raise SceneError(label, "file", label, f"must have at most {MAX_NESTING} tables and lists within one another")
     if "name" in data:
         raise SceneError(label, "name", data["name"], "unknown key; the scene is named after its file")
     return data
@@ -476,8 +477,8 @@ def validated_scene(data: dict[str, Any], label: str, name: str) -> Scene:
     """The scene of these tables under this name, its record read; `label` names it in errors. Raises SceneError."""
     try:
         return Scene.model_validate({**with_samples(data, label), "name": name})
-    except ValidationError as fault:
-        raise first_fault(label, fault, KEYS) from None
+    except ValidationError as error:
+        raise first_error(label, error, KEYS) from None
 
 
 def _deeper(data: Any, levels: int) -> bool:

@@ -28,13 +28,13 @@ from reference.solver.system import (
     Work,
 )
 
-SHRINK, GROW, SAFETY = 0.1, 5.0, 0.85
-ORDER = 7.0  # of the error estimate in the step length
-FLOOR = 0.02  # a body that hardly accelerates is measured against this share of the loading
-FATAL = 1e-9  # of the period: a step this short that still fails has found the instant
-SHORTEST = 1e-16  # of the period
-LAST = 1e-11  # of it, or of the duration: a time within which no acceleration changes
-NEWTON = 0.01  # of the tolerance: where the iteration for a step may end
+MIN_LENGTH_FACTOR, MAX_LENGTH_FACTOR, SAFETY_FACTOR = 0.1, 5.0, 0.85
+ERROR_ORDER = 7.0  # of the error estimate in the step length
+MIN_SCALE_FRACTION = 0.02  # a body that hardly accelerates is measured against this share of the loading
+FATAL_STEP = 1e-9  # of the period: a step this short that still fails has found the instant
+MIN_STEP = 1e-16  # of the period
+NEGLIGIBLE_TIME = 1e-11  # of it, or of the duration: a time within which no acceleration changes
+NEWTON_FRACTION = 0.01  # of the tolerance: where the iteration for a step may end
 
 
 @compiled
@@ -82,7 +82,7 @@ def begin_with(
 def next_step(work: Work, demand: Demand) -> bool:
     """Count one more step and set what its error is measured against; False past the limit of steps."""
     for i in range(work.x.shape[0]):
-        work.scale[i] = max(sqrt(work.best[i]), FLOOR * demand.unit)
+        work.scale[i] = max(sqrt(work.best[i]), MIN_SCALE_FRACTION * demand.unit)
     work.run[STEPS] += 1.0
     return work.run[STEPS] <= demand.step_limit
 
@@ -91,14 +91,14 @@ def next_step(work: Work, demand: Demand) -> bool:
 def remaining(system: System, work: Work, demand: Demand) -> float:
     """Time left, s; 0 when it is so little that nothing changes."""
     left = system.duration - work.run[TIME]
-    return left if left > LAST * min(demand.period, system.duration) else 0.0
+    return left if left > NEGLIGIBLE_TIME * min(demand.period, system.duration) else 0.0
 
 
 @compiled
 def next_break(system: System, work: Work, demand: Demand) -> float:
     """Where the loading has its next kink, s, or the motion ends: a step beyond it would lose its order."""
     if system.record.shape[0] > 0:
-        k = knot_after(system.record, work.run[TIME] + LAST * min(demand.period, system.duration))
+        k = knot_after(system.record, work.run[TIME] + NEGLIGIBLE_TIME * min(demand.period, system.duration))
         if k < system.record.shape[0]:
             return min(system.record[k, 0], system.duration)
     return system.duration
@@ -129,20 +129,20 @@ def first_guess(work: Work, h: float) -> None:
 def length_factor(error: float, tolerance: float) -> float:
     """By what to multiply the step length so that the next error meets the tolerance."""
     if error <= 0.0:
-        return GROW
-    return min(GROW, max(SHRINK, SAFETY * (tolerance / error) ** (1.0 / ORDER)))
+        return MAX_LENGTH_FACTOR
+    return min(MAX_LENGTH_FACTOR, max(MIN_LENGTH_FACTOR, SAFETY_FACTOR * (tolerance / error) ** (1.0 / ERROR_ORDER)))
 
 
 @compiled
 def too_short(demand: Demand, h: float, code: int) -> bool:
     """Whether a step that failed with `code` need not be tried with a shorter one."""
-    return h < (SHORTEST if code == UNSOLVED else FATAL) * demand.period
+    return h < (MIN_STEP if code == UNSOLVED else FATAL_STEP) * demand.period
 
 
 @compiled
 def shortened(work: Work, demand: Demand, h: float, factor: float) -> bool:
     """Set a shorter length for a step that misses the tolerance; False if it is as short as steps get."""
-    if h < SHORTEST * demand.period:
+    if h < MIN_STEP * demand.period:
         return False
     work.run[LENGTH] = h * min(0.7, factor)
     return True

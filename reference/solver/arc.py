@@ -13,9 +13,9 @@ from reference.solver.compiled import compiled
 from reference.solver.near_stop import directed
 from reference.solver.system import System
 
-SAMPLES = 48
-GOLDEN = 20  # steps of the search: its error is of the order of the square of 1e-5 of a sample
-NO_TURN = 1e-9  # of the drive: a sideways acceleration that rounding could have made turns nothing
+SAMPLES_PER_TURN = 48
+GOLDEN_SECTIONS = 20  # steps of the search: its error is of the order of the square of 1e-5 of a sample
+MAX_ROUNDING_TURN = 1e-9  # of the drive: a sideways acceleration that rounding could have made turns nothing
 
 
 @compiled
@@ -53,8 +53,8 @@ def settled_direction(
     sense = 1.0 if here > 0.0 else -1.0
     inside = angle
     outside = angle
-    for _ in range(SAMPLES):
-        outside = inside + sense * 2.0 * pi / SAMPLES
+    for _ in range(SAMPLES_PER_TURN):
+        outside = inside + sense * 2.0 * pi / SAMPLES_PER_TURN
         if sense * sideways(system, px, py, fx, fy, ux, uy, uz, outside) <= 0.0:
             break
         inside = outside
@@ -93,8 +93,8 @@ def arc_peak(
     system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float
 ) -> float:
     """Largest squared absolute acceleration of the platform over the arc that begins at `angle`, m^2/s^4."""
-    end = settled_direction(system, px, py, fx, fy, ux, uy, uz, angle, NO_TURN)
-    samples = 4 + int(abs(end - angle) * SAMPLES / (2.0 * pi))
+    end = settled_direction(system, px, py, fx, fy, ux, uy, uz, angle, MAX_ROUNDING_TURN)
+    samples = 4 + int(abs(end - angle) * SAMPLES_PER_TURN / (2.0 * pi))
     stride = (end - angle) / samples
     best, top = -1.0, 0
     for n in range(samples + 1):
@@ -104,7 +104,7 @@ def arc_peak(
     low = angle + max(top - 1, 0) * stride
     high = angle + min(top + 1, samples) * stride
     golden = 0.5 * (sqrt(5.0) - 1.0)
-    for _ in range(GOLDEN):
+    for _ in range(GOLDEN_SECTIONS):
         left = high - golden * (high - low)
         right = low + golden * (high - low)
         at_left = squared_total(system, px, py, fx, fy, ux, uy, uz, left)

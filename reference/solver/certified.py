@@ -6,22 +6,26 @@ from typing import NamedTuple
 
 import numpy as np
 
-from reference.solver.advance import FLOOR
+from reference.solver.advance import MIN_SCALE_FRACTION
 from reference.solver.runs import runs
 from reference.solver.system import SOLVED, Array, Demand, System, record_of
 
-RATIO = 30.0  # between the tolerances of the two runs
-SHARE = 0.4  # of their difference that may be left in the finer run; its error is expected to be 1 / RATIO of it
-LUCK = 5e-4  # of the tolerance inside a step: two runs that agree better do so by luck
-READING = 2.0  # of the interpolation error where the peak was read: the step before may have left as much
-RESERVE = 0.007  # of the tolerance asked: two runs that agree better than that may do so by luck
-ROUNDING = 1e-12  # relative error that no tolerance removes: some hundred steps, some ten operations each
-LOOSEST = 1e-5  # tolerance of accelerations inside a step, of the first finer run: looser ones save few steps
-TIGHTEST = 1e-11
-# accelerations inside a step are resolved to so much less than the peaks made of all steps: their errors are local
-EASE = 10.0
+TOLERANCE_RATIO = 30.0  # tolerance inside a step of the coarser run over that of the finer run
+# Share of the runs' difference that counts as error of the finer run. 1 / TOLERANCE_RATIO is expected.
+DIFFERENCE_FRACTION = 0.4
+# Lower bound on the error, in units of the tolerance inside a step: closer agreement is treated as accidental.
+MIN_ERROR_PER_STEP_TOLERANCE = 5e-4
+# Lower bound on the error, in units of the tolerance asked for: closer agreement is treated as accidental.
+MIN_ERROR_FRACTION = 0.007
+READING_ERROR_FACTOR = 2.0  # times the interpolation error at the peak: the step before may add as much
+ROUNDING_ERROR = 1e-12  # relative error that no tolerance removes: some hundred steps of some ten operations
+# Bounds on the tolerance inside a step, relative to the accelerations; a looser one saves few steps.
+MAX_STEP_TOLERANCE = 1e-5
+MIN_STEP_TOLERANCE = 1e-11
+# Tolerance inside a step over the tolerance of the peak: errors inside a step are local, a peak comes from all steps.
+STEP_TOLERANCE_FACTOR = 10.0
 
-NOT_MET = 100  # code of a run whose error stays above what was asked; the others are those of system.py
+NOT_MET = 100  # code of a run whose error stays above the tolerance; system.py has the other codes
 
 
 class Peaks(NamedTuple):
@@ -51,27 +55,27 @@ def certified_peaks(system: System, phases: Array, demand: Demand) -> Peaks:
 
     The tolerance inside the steps is tightened until two runs agree; one that cannot be finished is tried again, too.
     """
-    tolerance = min(LOOSEST, max(EASE * demand.tolerance, TIGHTEST))
-    before = peaks_at(system, phases, demand, RATIO * tolerance)
-    found = Peaks(*(part.copy() for part in before))
-    open_ = np.arange(len(phases))
-    while len(open_):
-        after = peaks_at(system, phases[open_], demand, tolerance)
+    tolerance = min(MAX_STEP_TOLERANCE, max(STEP_TOLERANCE_FACTOR * demand.tolerance, MIN_STEP_TOLERANCE))
+    before = peaks_at(system, phases, demand, TOLERANCE_RATIO * tolerance)
+    peaks = Peaks(*(part.copy() for part in before))
+    unfinished = np.arange(len(phases))
+    while len(unfinished):
+        after = peaks_at(system, phases[unfinished], demand, tolerance)
         error = _error(before, after, tolerance, demand.unit)
-        stated = np.maximum(error, RESERVE * demand.tolerance * after.value)
-        for total, part in zip(found, after._replace(error=stated)):
-            total[open_] = part
+        error_or_minimum = np.maximum(error, MIN_ERROR_FRACTION * demand.tolerance * after.value)
+        for total, part in zip(peaks, after._replace(error=error_or_minimum)):
+            total[unfinished] = part
         solved = (before.code == SOLVED) & (after.code == SOLVED)
         met = solved & (error <= demand.tolerance * after.value).all(axis=1)
         refused = (before.code == after.code) & (after.code != SOLVED)
         again = ~(met | refused)
-        if tolerance <= TIGHTEST:
-            found.code[open_[again & (after.code == SOLVED)]] = NOT_MET
+        if tolerance <= MIN_STEP_TOLERANCE:
+            peaks.code[unfinished[again & (after.code == SOLVED)]] = NOT_MET
             break
         before = Peaks(*(part[again] for part in after))
-        open_ = open_[again]
-        tolerance = max(tolerance / RATIO, TIGHTEST)
-    return found
+        unfinished = unfinished[again]
+        tolerance = max(tolerance / TOLERANCE_RATIO, MIN_STEP_TOLERANCE)
+    return peaks
 
 
 def _error(before: Peaks, after: Peaks, tolerance: float, unit: float) -> Array:
@@ -80,7 +84,12 @@ def _error(before: Peaks, after: Peaks, tolerance: float, unit: float) -> Array:
 
     Below what rounding may do the two runs differ by chance: there the error is that of rounding, however they differ.
     """
-    share = np.where(after.value < FLOOR * unit, 1.0, SHARE)  # steps do not resolve less than that
+    share = np.where(
+        after.value < MIN_SCALE_FRACTION * unit, 1.0, DIFFERENCE_FRACTION
+    )  # steps do not resolve less than that
     between = share * np.abs(after.value - before.value)
-    rounding = ROUNDING * np.maximum(after.value, unit)  # small accelerations are differences of large ones
-    return np.maximum(READING * after.error + between, rounding) + LUCK * tolerance * after.value
+    rounding = ROUNDING_ERROR * np.maximum(after.value, unit)  # small accelerations are differences of large ones
+    return (
+        np.maximum(READING_ERROR_FACTOR * after.error + between, rounding)
+        + MIN_ERROR_PER_STEP_TOLERANCE * tolerance * after.value
+    )

@@ -4,8 +4,8 @@ One run from 0 to the end of the motion: the three-structure model around (4.6),
     rest      -> sliding                     when friction can no longer hold the platform
     sliding   -> stopping                    when the slide would stop within a step
     stopping  -> rest, creep or sliding      into the stop, below v_reg, or past the stop
-    creep     -> sliding                     at v_reg (regularised law)
-A lubricated contact is wetted throughout. Each phase carries the state in `Work` on until the contact changes.
+    creep     -> sliding                     at v_reg (regularized law)
+A lubricated contact stays lubricated. Each phase carries the state in `Work` on until the contact changes.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from __future__ import annotations
 from math import pi
 
 from reference.solver.advance import drive, remaining
-from reference.solver.compiled import compiled, merged
+from reference.solver.compiled import compiled, inlined
 from reference.solver.ground import ground_at
 from reference.solver.platform import rest_excess
 from reference.solver.rest_phase import rest_phase
@@ -25,6 +25,7 @@ from reference.solver.system import (
     HELD,
     LENGTH,
     LUBRICATED,
+    LUBRICATED_SLIDING,
     REGULARIZED,
     REST,
     RIM,
@@ -34,7 +35,6 @@ from reference.solver.system import (
     STEP_LIMIT,
     TIME,
     UNSOLVED,
-    WETTED,
     Array,
     Demand,
     Record,
@@ -42,19 +42,19 @@ from reference.solver.system import (
     Work,
 )
 
-START = 0.02  # of the period (system.py): first step
+FIRST_STEP = 0.02  # of the period (system.py): first step
 
-NEARLY = 1e-8  # of it: what little may be left when a step fails
-AT_RIM = 0.998  # of the squared radius
-BORDER = 1e-6  # of it: for so long such a state is left to rest or creep
-CRAWL = 1e-8  # of the loading's velocity: a slide that cannot go on at this speed has not moved
+NEGLIGIBLE_REMAINDER = 1e-8  # of it: what little may be left when a step fails
+RIM_SQUARED_FRACTION = 0.998  # of the squared radius
+HOLDING_TIME = 1e-6  # of it: for so long such a state is left to rest or creep
+MAX_CRAWL_SPEED = 1e-8  # of the loading's velocity: a slide that cannot go on at this speed has not moved
 
 
 @compiled
 def first_contact(system: System, phase: Array, work: Work) -> int:
     """What the contact does in the initial state."""
     if system.law == LUBRICATED:
-        return WETTED
+        return LUBRICATED_SLIDING
     speed = speed2(system, work)
     if system.law == REGULARIZED:
         return CREEPING if speed < system.v_reg**2 else SLIDING
@@ -69,9 +69,9 @@ def first_contact(system: System, phase: Array, work: Work) -> int:
 @compiled
 def named(system: System, work: Work, demand: Demand, code: int) -> int:
     """What a run that cannot go on has come to: nearly its end, the rim (4.1), or the trouble that it reports."""
-    if code != STEP_LIMIT and system.duration - work.run[TIME] < NEARLY * demand.period:
+    if code != STEP_LIMIT and system.duration - work.run[TIME] < NEGLIGIBLE_REMAINDER * demand.period:
         return SOLVED
-    at_rim = work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > AT_RIM * system.radius**2
+    at_rim = work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > RIM_SQUARED_FRACTION * system.radius**2
     return RIM if at_rim and code in (UNSOLVED, STEP_LIMIT) else code
 
 
@@ -80,22 +80,22 @@ def crawls(system: System, phase: Array, work: Work, contact: int, demand: Deman
     """Whether a slide that cannot go on hardly moves, under a drive that hardly exceeds the friction limit."""
     if system.law != SET_VALUED or contact == REST:
         return False
-    slow2 = (CRAWL * demand.unit * demand.period / (2.0 * pi)) ** 2
+    slow2 = (MAX_CRAWL_SPEED * demand.unit * demand.period / (2.0 * pi)) ** 2
     return speed2(system, work) <= slow2 and barely_slips(system, phase, work)
 
 
-@merged
-def march(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> int:
+@inlined
+def integrate(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> int:
     """
     Follow the motion from the state in work.x, work.v to the end; how it ended (system.py), at time work.run[TIME].
 
     work.best (N,) holds the squared peaks of absolute acceleration, m^2/s^4.
     """
     for i in range(work.x.shape[0]):
-        work.best[i] = work.doubt[i] = 0.0
-    for entry in range(work.run.shape[0]):
-        work.run[entry] = 0.0
-    work.run[LENGTH] = min(START * demand.period, system.duration)
+        work.best[i] = work.reading_error[i] = 0.0
+    for index in range(work.run.shape[0]):
+        work.run[index] = 0.0
+    work.run[LENGTH] = min(FIRST_STEP * demand.period, system.duration)
     contact = first_contact(system, phase, work)
     before, idle = -1.0, 0
     while remaining(system, work, demand) > 0.0:
@@ -103,18 +103,18 @@ def march(system: System, phase: Array, work: Work, demand: Demand, record: Reco
             code, contact = rest_phase(system, phase, work, demand, record)
         elif contact == SLIDING:
             code, contact = sliding_phase(system, phase, work, demand, record)
-        elif contact in (CREEPING, WETTED):
+        elif contact in (CREEPING, LUBRICATED_SLIDING):
             code, contact = smooth_phase(system, phase, work, contact, demand, record)
         else:
             code, contact = stopping_phase(system, phase, work, demand, record)
         if code == UNSOLVED and crawls(system, phase, work, contact, demand):
             work.v[0, 0] = work.v[0, 1] = 0.0
-            work.run[HELD] = max(work.run[HELD], BORDER * demand.period)
+            work.run[HELD] = max(work.run[HELD], HOLDING_TIME * demand.period)
             code, contact = SOLVED, REST
         if code != SOLVED:
             return named(system, work, demand, code)
         idle = idle + 1 if work.run[TIME] == before else 0
         before = work.run[TIME]
         if idle > 4:  # a state on the border of two phases that each gives to the other
-            work.run[HELD] = max(work.run[HELD], BORDER * demand.period)
+            work.run[HELD] = max(work.run[HELD], HOLDING_TIME * demand.period)
     return SOLVED

@@ -10,7 +10,7 @@ from reference.solver.equations import exact_acceleration, small_acceleration
 from reference.solver.friction import rest_excess_exact, rest_excess_printed, rest_excess_small, sliding_speed2
 from reference.solver.system import CREEPING, PRINTED, SLIDING, System, Work
 
-EXACTLY = 1e-12  # of the squared friction limit: a drive that exceeds it by no more than rounding is held
+ROUNDING_EXCESS = 1e-12  # of the squared friction limit: a drive that exceeds it by no more than rounding is held
 
 
 @compiled
@@ -79,7 +79,7 @@ def rest_excess(
     if system.rest_condition == PRINTED:
         # where (4.6) lets go of a platform that friction can hold, no motion begins all the same
         excess = min(excess, rest_excess_printed(px, py, fx, fy, ux, uy, pressure, mu, ratio, radius))
-    return excess - EXACTLY * (mu * reaction) ** 2, reaction
+    return excess - ROUNDING_EXCESS * (mu * reaction) ** 2, reaction
 
 
 @compiled

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from reference.solver.advance import (
-    FATAL,
+    FATAL_STEP,
     adapt,
     begin,
     commit,
@@ -14,7 +14,7 @@ from reference.solver.advance import (
     unbroken,
 )
 from reference.solver.collocation import STAGES
-from reference.solver.compiled import compiled, merged
+from reference.solver.compiled import compiled, inlined
 from reference.solver.events import excess_at, expand, first_onset, lowest
 from reference.solver.record import note_stick
 from reference.solver.steps import rest_step, step_error
@@ -36,7 +36,7 @@ from reference.solver.system import (
     Work,
 )
 
-JUST = 1e-12  # of the squared friction limit: how far past it the onset is located
+ONSET_EXCESS = 1e-12  # of the squared friction limit: how far past it the onset is located
 
 
 @compiled
@@ -51,14 +51,14 @@ def located_onset(system: System, phase: Array, work: Work, h: float, onset: flo
         rest_step(system, phase, work, work.run[TIME], end)
         expand(work)
         excess = excess_at(system, work, 1.0)
-        if not slope > 0.0 or 0.0 < excess <= JUST * limit:
+        if not slope > 0.0 or 0.0 < excess <= ONSET_EXCESS * limit:
             break
-        end = min(max(end + (0.5 * JUST * limit - excess) / slope, 0.5 * end), h)
+        end = min(max(end + (0.5 * ONSET_EXCESS * limit - excess) / slope, 0.5 * end), h)
     first_onset(system, work)  # fills the reaction
     return end
 
 
-@merged
+@inlined
 def rest_phase(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> tuple[int, int]:
     """Until the located onset of slip; (how it went, what the contact does next). See march.py."""
     work.v[0, 0] = work.v[0, 1] = 0.0
@@ -81,7 +81,7 @@ def rest_phase(system: System, phase: Array, work: Work, demand: Demand, record:
             continue
         onset = first_onset(system, work)
         if lowest(work.stage[6]) <= 0.0:
-            if h < FATAL * demand.period:
+            if h < FATAL_STEP * demand.period:
                 return OPEN, REST
             run[LENGTH] = 0.3 * h
             continue

@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import atan2, log, sqrt
 
 from reference.solver.advance import (
-    GROW,
-    NEWTON,
-    SHORTEST,
+    MAX_LENGTH_FACTOR,
+    MIN_STEP,
+    NEWTON_FRACTION,
     begin,
     begin_with,
     commit,
@@ -23,7 +23,7 @@ from reference.solver.advance import (
 from reference.solver.arc import settled_direction, squared_total
 from reference.solver.chain import eliminate_chain, load_chain
 from reference.solver.collocation import STAGES
-from reference.solver.compiled import compiled, merged
+from reference.solver.compiled import compiled, inlined
 from reference.solver.events import first_crossing, lowest
 from reference.solver.friction import heading, sliding_speed2
 from reference.solver.ground import ground_at, ground_at_stages
@@ -52,18 +52,19 @@ from reference.solver.system import (
     Work,
 )
 
-FIRST = 0.2  # of the period: longest first step of a slide
-CAUTIOUS = 2.0  # growth of a step that had to be shortened
-REACH = 1.5  # a slide that would stop within so many steps is followed in stretched time
-CLOSE = 0.05  # of the period: or would stop within this time
-CALM = 0.5  # rad: what the chain's fastest vibration may turn in the time that is left then
-TURN = 0.3  # cosine of the largest turn of the velocity between two stages
-LOCATED = 1e-9  # of the squared speed: a slide this close to v_reg has come down to it
-NEAR = 1.25  # of the squared v_reg: a slide that comes so near may pass it between two stages
-STIFF = 0.03  # share of the friction limit times the step: at a lower speed the direction follows the force
-LEAST = 1e-12  # of the drive: a slide that begins has a direction
-BARELY = 1e-4  # of the squared friction limit
-GRAZE = 1e-6  # of the period: sliding that cannot be begun with a step this long moves nothing
+MAX_FIRST_STEP = 0.2  # of the period: longest first step of a slide
+CAUTIOUS_GROWTH = 2.0  # growth of a step that had to be shortened
+STOP_WITHIN_STEPS = 1.5  # a slide that would stop within so many steps is followed in stretched time
+STOP_WITHIN_TIME = 0.05  # of the period: or would stop within this time
+MAX_CHAIN_ANGLE = 0.5  # rad: what the chain's fastest vibration may turn in the time that is left then
+MIN_TURN_COSINE = 0.3  # cosine of the largest turn of the velocity between two stages
+LEVEL_TOLERANCE = 1e-9  # of the squared speed: a slide this close to v_reg has come down to it
+NEAR_LEVEL_FACTOR = 1.25  # of the squared v_reg: a slide that comes so near may pass it between two stages
+# share of the friction limit times the step: at a lower speed the direction follows the force
+STIFF_SPEED_FRACTION = 0.03
+MIN_ACCELERATION_FRACTION = 1e-12  # of the drive: a slide that begins has a direction
+BARELY_SLIPPING_EXCESS = 1e-4  # of the squared friction limit
+NEGLIGIBLE_STEP = 1e-6  # of the period: sliding that cannot be begun with a step this long moves nothing
 
 
 @compiled
@@ -85,7 +86,7 @@ def guess_onset(system: System, phase: Array, work: Work, h: float) -> None:
             system, work.x[0, 0], work.x[0, 1], work.free[0, k], work.free[1, k],
             work.ground[0, k], work.ground[1, k], system.gravity + work.ground[2, k], 0.0, ex, ey,
         )  # fmt: skip
-        along = max(ax * ex + ay * ey, LEAST * (abs(work.free[0, k]) + abs(work.free[1, k])))
+        along = max(ax * ex + ay * ey, MIN_ACCELERATION_FRACTION * (abs(work.free[0, k]) + abs(work.free[1, k])))
         work.a[0, 0, k] = along * ex
         work.a[0, 1, k] = along * ey
 
@@ -103,7 +104,7 @@ def begin_slide(system: System, phase: Array, work: Work, demand: Demand) -> Non
         onset = squared_total(system, px, py, fx, fy, ux, uy, uz, angle)
         if onset > work.best[0]:
             work.best[0] = onset
-            work.doubt[0] = 0.0
+            work.reading_error[0] = 0.0
     work.run[ANGLE] = angle
     ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, *heading(angle, system.axes))
     begin_with(system, work, ax, ay, ux, uy, uz, False)
@@ -116,7 +117,7 @@ def barely_slips(system: System, phase: Array, work: Work) -> bool:
     fx, fy = drive(system, work, ux, uy)
     px, py = work.x[0, 0], work.x[0, 1]
     excess, reaction = rest_excess(system, px, py, fx, fy, ux, uy, system.gravity + uz)
-    return excess <= BARELY * (system.friction * reaction) ** 2
+    return excess <= BARELY_SLIPPING_EXCESS * (system.friction * reaction) ** 2
 
 
 @compiled
@@ -125,13 +126,13 @@ def turns_too_far(work: Work) -> bool:
     bx, by = work.v[0, 0], work.v[0, 1]
     for k in range(STAGES):
         vx, vy = work.stage[2, k], work.stage[3, k]
-        if bx * vx + by * vy < TURN * sqrt((bx * bx + by * by) * (vx * vx + vy * vy)):
+        if bx * vx + by * vy < MIN_TURN_COSINE * sqrt((bx * bx + by * by) * (vx * vx + vy * vy)):
             return True
         bx, by = vx, vy
     return False
 
 
-@merged
+@inlined
 def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> tuple[int, int]:
     """(how it went, what the contact does next); see march.py."""
     run = work.run
@@ -139,9 +140,9 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
     start2 = speed2(system, work)
     if start2 == 0.0:
         begin_slide(system, phase, work, demand)
-        run[LENGTH] = min(run[LENGTH], FIRST * demand.period)
-    growth = GROW
-    floor2 = (system.v_reg * (1.0 - LOCATED)) ** 2 if system.law == REGULARIZED else 0.0
+        run[LENGTH] = min(run[LENGTH], MAX_FIRST_STEP * demand.period)
+    growth = MAX_LENGTH_FACTOR
+    floor2 = (system.v_reg * (1.0 - LEVEL_TOLERANCE)) ** 2 if system.law == REGULARIZED else 0.0
     counted2 = demand.cutoff * demand.cutoff
     while remaining(system, work, demand) > 0.0:
         if not next_step(work, demand):
@@ -150,31 +151,33 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
         vx, vy = work.v[0, 0], work.v[0, 1]
         speed = sqrt(vx * vx + vy * vy)
         braking = -(vx * work.a0[0, 0] + vy * work.a0[0, 1]) / speed if speed > 0.0 else 0.0
-        if braking > 0.0 and speed < max(REACH * h, CLOSE * demand.period) * braking:
-            if system.fastest * speed <= CALM * braking:
+        if braking > 0.0 and speed < max(STOP_WITHIN_STEPS * h, STOP_WITHIN_TIME * demand.period) * braking:
+            if system.fastest * speed <= MAX_CHAIN_ANGLE * braking:
                 run[ANGLE] = atan2(vy, vx)
                 run[LOG_SPEED] = log(speed)
                 return SOLVED, STOPPING
-            h = min(h, max(0.5 * speed / braking, SHORTEST * demand.period))
-        if speed < STIFF * h * system.friction * system.mass_ratio * system.gravity:
+            h = min(h, max(0.5 * speed / braking, MIN_STEP * demand.period))
+        if speed < STIFF_SPEED_FRACTION * h * system.friction * system.mass_ratio * system.gravity:
             if speed > 0.0:
                 run[ANGLE] = atan2(vy, vx)
             guess_onset(system, phase, work, h)
         else:
             first_guess(work, h)
-        code = moving_step(system, phase, work, SLIDING, run[TIME], h, NEWTON * demand.tolerance * work.scale[0])
+        code = moving_step(
+            system, phase, work, SLIDING, run[TIME], h, NEWTON_FRACTION * demand.tolerance * work.scale[0]
+        )
         if code == SOLVED and turns_too_far(work):
             code = UNSOLVED
         if code != SOLVED:
-            if speed == 0.0 and h < GRAZE * demand.period:
+            if speed == 0.0 and h < NEGLIGIBLE_STEP * demand.period:
                 if not barely_slips(system, phase, work):
                     return UNSOLVED, SLIDING
-                run[HELD] = 10.0 * GRAZE * demand.period
+                run[HELD] = 10.0 * NEGLIGIBLE_STEP * demand.period
                 return SOLVED, REST
             if too_short(demand, h, code):
                 return code, SLIDING
             run[LENGTH] = 0.3 * h
-            growth = CAUTIOUS
+            growth = CAUTIOUS_GROWTH
             run[OLD_LENGTH] = 0.0 if run[OLD_LENGTH] > 3.0 * h else run[OLD_LENGTH]
             continue
         error = step_error(work, demand.tolerance)
@@ -183,11 +186,11 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
             if not shortened(work, demand, h, factor):
                 return UNSOLVED, SLIDING
             continue
-        if lowest(work.stage[7]) < NEAR * floor2:
+        if lowest(work.stage[7]) < NEAR_LEVEL_FACTOR * floor2:
             slowed = first_crossing(work.stage[7], max(start2, floor2 * (1.0 + 1e-9)), floor2)
-            if slowed < GRAZE:
+            if slowed < NEGLIGIBLE_STEP:
                 return SOLVED, CREEPING
-            if slowed < 1.0 - GRAZE:
+            if slowed < 1.0 - NEGLIGIBLE_STEP:
                 run[LENGTH] = h * slowed
                 continue
         low, high = 0.0, 1.0
@@ -200,9 +203,9 @@ def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, reco
             high = min(1.0, first_crossing(work.stage[7], start2, counted2))
         commit(work, record, h, SLIDING, low, high)
         start2 = end2
-        if end2 < floor2 * (1.0 + LOCATED):
+        if end2 < floor2 * (1.0 + LEVEL_TOLERANCE):
             return SOLVED, CREEPING
         if h * factor > run[LENGTH] or h == run[LENGTH]:
             run[LENGTH] = h * min(factor, growth)
-        growth = GROW
+        growth = MAX_LENGTH_FACTOR
     return SOLVED, SLIDING

@@ -1,9 +1,9 @@
-"""Motion under a friction law without a corner: lubricated, or creep below v_reg under the regularised law."""
+"""Motion under a friction law without a corner: lubricated, or creep below v_reg under the regularized law."""
 
 from __future__ import annotations
 
 from reference.solver.advance import (
-    NEWTON,
+    NEWTON_FRACTION,
     adapt,
     begin,
     commit,
@@ -16,7 +16,7 @@ from reference.solver.advance import (
     unbroken,
 )
 from reference.solver.collocation import STAGES
-from reference.solver.compiled import merged
+from reference.solver.compiled import inlined
 from reference.solver.events import first_crossing, highest
 from reference.solver.friction import sliding_speed2
 from reference.solver.platform import slip_factor
@@ -38,11 +38,11 @@ from reference.solver.system import (
     Work,
 )
 
-LOCATED = 1e-9  # of the squared speed: creep this close to v_reg has reached it
-GRAZE = 1e-6  # of a step: a crossing this early means that the phase begins on the level
+LEVEL_TOLERANCE = 1e-9  # of the squared speed: creep this close to v_reg has reached it
+EARLY_CROSSING = 1e-6  # of a step: a crossing this early means that the phase begins on the level
 
 
-@merged
+@inlined
 def smooth_phase(
     system: System, phase: Array, work: Work, contact: int, demand: Demand, record: Record
 ) -> tuple[int, int]:
@@ -62,7 +62,7 @@ def smooth_phase(
             h = min(h, run[HELD])
         first_guess(work, h)
         # where friction is stiff a small error of the acceleration is a large one of the velocity, and so of the force
-        enough = NEWTON * demand.tolerance * work.scale[0] / (1.0 + h * rate)
+        enough = NEWTON_FRACTION * demand.tolerance * work.scale[0] / (1.0 + h * rate)
         code = moving_step(system, phase, work, contact, run[TIME], h, enough)
         if code != SOLVED:
             if too_short(demand, h, code):
@@ -77,16 +77,16 @@ def smooth_phase(
             continue
         if contact == CREEPING and highest(work.stage[7]) > 0.8 * level:
             start = sliding_speed2(work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1], system.radius, system.small)
-            crossing = first_crossing(work.stage[7], min(start, level * (1.0 - LOCATED)), level)
-            if crossing < GRAZE and run[HELD] == 0.0:
+            crossing = first_crossing(work.stage[7], min(start, level * (1.0 - LEVEL_TOLERANCE)), level)
+            if crossing < EARLY_CROSSING and run[HELD] == 0.0:
                 note_stick(record, began, run[TIME])
                 return SOLVED, SLIDING
-            if GRAZE <= crossing < 1.0 - GRAZE:
+            if EARLY_CROSSING <= crossing < 1.0 - EARLY_CROSSING:
                 run[LENGTH] = h * crossing
                 continue
         commit(work, record, h, contact, 0.0, 1.0)
         run[HELD] = 0.0
-        if contact == CREEPING and work.stage[7, STAGES - 1] > level * (1.0 - LOCATED):
+        if contact == CREEPING and work.stage[7, STAGES - 1] > level * (1.0 - LEVEL_TOLERANCE):
             note_stick(record, began, run[TIME])
             return SOLVED, SLIDING
         adapt(work, h, factor)

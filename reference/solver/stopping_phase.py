@@ -6,11 +6,20 @@ from math import exp, log, pi
 
 import numpy as np
 
-from reference.solver.advance import FATAL, SHORTEST, begin_with, commit, drive, length_factor, next_break, next_step
+from reference.solver.advance import (
+    FATAL_STEP,
+    MIN_STEP,
+    begin_with,
+    commit,
+    drive,
+    length_factor,
+    next_break,
+    next_step,
+)
 from reference.solver.arc import arc_peak
 from reference.solver.chain import chain_acceleration
 from reference.solver.collocation import STAGES
-from reference.solver.compiled import compiled, merged
+from reference.solver.compiled import compiled, inlined
 from reference.solver.events import first_crossing, lowest
 from reference.solver.friction import heading
 from reference.solver.ground import ground_at
@@ -39,21 +48,23 @@ from reference.solver.system import (
     Work,
 )
 
-CALM = 0.7  # rad: what the chain's fastest vibration may turn during one step
-AWAY = 0.3  # of the length of a plain step: time scale at which a slide that gathers speed leaves stretched time
-CLOSE = 0.05  # of the period: and at least this time scale
-SLOW = 1e-5  # of the loading's velocity: a platform that friction can hold has stopped
-SLOWEST = 1e-10  # of it: so far a stop is followed whose arc decides the peak
-DECISIVE = 0.97  # an arc that stays below this share of the peak so far decides nothing
-LOCATED = 1e-9  # of ln v: a slide this close to v_reg has come down to it
-BRIEF = 1e-4  # of the period: time left at a stop within which forces are frozen
-STRAIGHT = 1e-6  # of the friction: a slide that turns by less turns back on its own line
-REVERSED = 1e-12  # of the loading's velocity: a straight slide that friction cannot hold has come to its turning point
-NEWTON = 1e-3  # of the tolerance
+MAX_CHAIN_ANGLE = 0.7  # rad: what the chain's fastest vibration may turn during one step
+# of the length of a plain step: time scale at which a slide that gathers speed leaves stretched time
+LEAVING_TIME_FRACTION = 0.3
+MIN_LEAVING_TIME = 0.05  # of the period: and at least this time scale
+MAX_STOPPED_SPEED = 1e-5  # of the loading's velocity: a platform that friction can hold has stopped
+MIN_FOLLOWED_SPEED = 1e-10  # of it: so far a stop is followed whose arc decides the peak
+DECISIVE_ARC_FRACTION = 0.97  # an arc that stays below this share of the peak so far decides nothing
+LEVEL_TOLERANCE = 1e-9  # of ln v: a slide this close to v_reg has come down to it
+MAX_FROZEN_TIME = 1e-4  # of the period: time left at a stop within which forces are frozen
+MAX_STRAIGHT_TURN = 1e-6  # of the friction: a slide that turns by less turns back on its own line
+# of the loading's velocity: a straight slide that friction cannot hold has come to its turning point
+MAX_TURNING_POINT_SPEED = 1e-12
+NEWTON_FRACTION = 1e-3  # of the tolerance
 # Time and place are integrals of v and v^2 over tau. Where forces stay as they are no acceleration shows their error,
 # which ln v may change by so much in one step without making 1e-8 of what is left of the slide where it is entered
-CHANGE = 2.0  # in the first step
-RELAXED = 0.7  # and more, per unit by which ln v has fallen since
+MAX_FIRST_LOG_SPEED_CHANGE = 2.0  # in the first step
+LOG_SPEED_CHANGE_GROWTH = 0.7  # and more, per unit by which ln v has fallen since
 
 
 @compiled
@@ -82,7 +93,7 @@ def has_stopped(system: System, phase: Array, work: Work, demand: Demand) -> int
     run[LEFT] = 0.0
     unit = demand.unit * demand.period / (2.0 * pi)
     speed = exp(run[LOG_SPEED])
-    if speed > SLOW * unit:
+    if speed > MAX_STOPPED_SPEED * unit:
         return STOPPING
     along, across = work.turning[ALONG, STAGES - 1], work.turning[ACROSS, STAGES - 1]
     ux, uy, uz = ground_at(system, phase, run[TIME])
@@ -90,19 +101,19 @@ def has_stopped(system: System, phase: Array, work: Work, demand: Demand) -> int
     px, py = work.x[0, 0], work.x[0, 1]
     excess, reaction = rest_excess(system, px, py, fx, fy, ux, uy, system.gravity + uz)
     if excess > 0.0:
-        straight = abs(across) <= STRAIGHT * system.friction * reaction
-        return SLIDING if straight and along < 0.0 and speed < REVERSED * unit else STOPPING
+        straight = abs(across) <= MAX_STRAIGHT_TURN * system.friction * reaction
+        return SLIDING if straight and along < 0.0 and speed < MAX_TURNING_POINT_SPEED * unit else STOPPING
     if along < 0.0:
         run[LEFT] = -speed / along
-    if along >= 0.0 or speed > BRIEF * demand.period * -along:
+    if along >= 0.0 or speed > MAX_FROZEN_TIME * demand.period * -along:
         return STOPPING if speed > 1e-200 else REST
     if demand.cutoff == 0.0:
         arc = arc_peak(system, px, py, fx, fy, ux, uy, uz, run[ANGLE])
-        if speed > SLOWEST * unit and arc > DECISIVE * DECISIVE * work.best[0]:
+        if speed > MIN_FOLLOWED_SPEED * unit and arc > DECISIVE_ARC_FRACTION * DECISIVE_ARC_FRACTION * work.best[0]:
             return STOPPING
         if arc > work.best[0]:
             work.best[0] = arc
-            work.doubt[0] = 0.0
+            work.reading_error[0] = 0.0
     elif speed > demand.cutoff:
         return STOPPING
     return REST
@@ -113,13 +124,13 @@ def longest(work: Work, entered: float, axes: int) -> float:
     """The longest step in tau that keeps time and place, `entered` being ln v where the phase began."""
     ex, ey = heading(work.run[ANGLE], axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
-    change = CHANGE + RELAXED * max(0.0, entered - work.run[LOG_SPEED])
+    change = MAX_FIRST_LOG_SPEED_CHANGE + LOG_SPEED_CHANGE_GROWTH * max(0.0, entered - work.run[LOG_SPEED])
     if along > 0.0:  # the end of the step counts, not its start
-        change /= 1.0 + RELAXED
+        change /= 1.0 + LOG_SPEED_CHANGE_GROWTH
     return change / max(abs(along), 1e-300)
 
 
-@merged
+@inlined
 def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> tuple[int, int]:
     """(how it went, what the contact does next); see march.py."""
     run = work.run
@@ -135,14 +146,16 @@ def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, rec
             return STEP_LIMIT, STOPPING
         h = min(h, longest(work, entered, system.axes))
         if system.fastest > 0.0:
-            h = min(h, CALM / (system.fastest * exp(run[LOG_SPEED])))
-        if h * exp(run[LOG_SPEED]) < SHORTEST * demand.period * 1e-3 * exp(min(0.0, run[LOG_SPEED])):
+            h = min(h, MAX_CHAIN_ANGLE / (system.fastest * exp(run[LOG_SPEED])))
+        if h * exp(run[LOG_SPEED]) < MIN_STEP * demand.period * 1e-3 * exp(min(0.0, run[LOG_SPEED])):
             return UNSOLVED, STOPPING
-        code = near_stop_step(system, phase, work, run[TIME], h, run[ANGLE], run[LOG_SPEED], NEWTON * demand.tolerance)
+        code = near_stop_step(
+            system, phase, work, run[TIME], h, run[ANGLE], run[LOG_SPEED], NEWTON_FRACTION * demand.tolerance
+        )
         if code == SOLVED and lowest(work.stage[6]) <= 0.0:
             code = OPEN
         if code != SOLVED:
-            if code != UNSOLVED and h * exp(run[LOG_SPEED]) < FATAL * demand.period:
+            if code != UNSOLVED and h * exp(run[LOG_SPEED]) < FATAL_STEP * demand.period:
                 return code, STOPPING
             h *= 0.3
             continue
@@ -153,7 +166,7 @@ def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, rec
             continue
         end = work.turning[CLOCK, STAGES - 1]
         limit = next_break(system, work, demand)
-        if end > limit + SHORTEST * demand.period:
+        if end > limit + MIN_STEP * demand.period:
             portion = first_crossing(work.turning[CLOCK], run[TIME], limit)
             if portion < 1.0 - 1e-9:
                 h *= portion
@@ -161,8 +174,8 @@ def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, rec
         for k in range(STAGES):
             values[k] = work.turning[SIGMA, k] + work.turning[LOG_RATIO, k]
         start_value = run[LOG_SPEED] + log_ratio
-        if regularized and lowest(values) < level - LOCATED:
-            portion = first_crossing(values, max(start_value, level), level - 0.5 * LOCATED)
+        if regularized and lowest(values) < level - LEVEL_TOLERANCE:
+            portion = first_crossing(values, max(start_value, level), level - 0.5 * LEVEL_TOLERANCE)
             if portion < 1e-9:
                 return SOLVED, CREEPING
             if portion < 1.0 - 1e-9:
@@ -181,10 +194,10 @@ def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, rec
         run[LOG_SPEED] = work.turning[SIGMA, STAGES - 1]
         log_ratio = work.turning[LOG_RATIO, STAGES - 1]
         h *= factor
-        if run[TIME] >= system.duration - 10.0 * SHORTEST * demand.period:
+        if run[TIME] >= system.duration - 10.0 * MIN_STEP * demand.period:
             return SOLVED, STOPPING
         if regularized:
-            if values[STAGES - 1] <= level + LOCATED:
+            if values[STAGES - 1] <= level + LEVEL_TOLERANCE:
                 return SOLVED, CREEPING
         else:
             next_contact = has_stopped(system, phase, work, demand)
@@ -192,6 +205,9 @@ def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, rec
                 work.v[0, 0] = work.v[0, 1] = 0.0
                 return SOLVED, next_contact
         along = work.turning[ALONG, STAGES - 1]
-        if along > 0.0 and exp(run[LOG_SPEED]) > max(AWAY * run[LENGTH], CLOSE * demand.period) * along:
+        if (
+            along > 0.0
+            and exp(run[LOG_SPEED]) > max(LEAVING_TIME_FRACTION * run[LENGTH], MIN_LEAVING_TIME * demand.period) * along
+        ):
             run[LENGTH] = min(run[LENGTH], exp(run[LOG_SPEED]) / along)
             return SOLVED, SLIDING
