@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from reference.problem import Outcome, Scene, State, Trajectory, checked_phase, loading_period
 from reference.problem.ranges import checked_array, checked_state
-from reference.solver.runs import runs
+from reference.solver.run import runs
 from reference.solver.samples import sampled
 from reference.solver.system import Array, Demand, Record, System, record_of
 from reference.surface import OUTCOMES, checked_demand, loads_are_finite

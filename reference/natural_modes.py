@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh_tridiagonal
 
-from reference.problem.scene import GRAVITY, Scene
+from reference.problem import GRAVITY, Scene
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.closed_form.frictionless import frictionless_peaks
+from reference.analytical.frictionless import frictionless_peaks
 from reference.problem import (
     GRAVITY,
     Amplification,
@@ -32,7 +32,7 @@ from reference.problem.ranges import (
     checked_choice,
     checked_number,
 )
-from reference.solver.certified import NOT_MET, Peaks, certified_peaks
+from reference.solver.error_estimate import NOT_MET, Peaks, peaks_with_error
 from reference.solver.system import (
     OPEN,
     PAINLEVE,
@@ -107,9 +107,11 @@ def amplification(
         shaken = ground >= LEAST_ACCELERATION
         status[part] = Outcome.NO_GROUND_MOTION.value
         places = np.arange(count)[part][shaken]
-        shaken_pairs = pairs[places]
+        moving_pairs = pairs[places]
         peaks = (
-            superposed(scene, system, shaken_pairs, demand) if summed else certified_peaks(system, shaken_pairs, demand)
+            superposed(scene, system, moving_pairs, demand)
+            if summed
+            else peaks_with_error(system, moving_pairs, demand)
         )
         outcomes = np.array([OUTCOMES[int(code)] for code in peaks.code], dtype=object)
         outcomes[(outcomes == Outcome.OK) & ~np.isfinite(peaks.value).all(axis=1)] = Outcome.SOLVER_FAILED
@@ -139,7 +141,7 @@ def superposed(scene: Scene, system: System, phases: Array, demand: Demand) -> P
     nothing = np.zeros(len(phases))
     peaks = Peaks(value, error, np.where(met, SOLVED, NOT_MET), nothing, nothing.copy(), reach)
     if at_rim.any():  # whether it does, and when, is for the run to say
-        for whole, ran in zip(peaks, certified_peaks(system, phases[at_rim], demand)):
+        for whole, ran in zip(peaks, peaks_with_error(system, phases[at_rim], demand)):
             whole[at_rim] = ran
     return peaks
 

@@ -1,6 +1,7 @@
 """The question both sides answer: scene, loading, measured quantity. The only thing they share."""
 
-from reference.problem.amplification import checked_phase, checked_phases, ground_peak, phase_grid
+from reference.problem.constants import GRAVITY
+from reference.problem.definition import ground_peak
 from reference.problem.excitation import (
     exponents,
     ground_acceleration,
@@ -8,9 +9,10 @@ from reference.problem.excitation import (
     ground_velocity,
     loading_period,
 )
-from reference.problem.family import Family, load_family
+from reference.problem.families import Family, load_family
 from reference.problem.figure_text import verbatim
 from reference.problem.outcome import ADVICE, Outcome
+from reference.problem.phases import checked_phase, checked_phases, phase_grid
 from reference.problem.reductions import (
     Reduction,
     even_ring,
@@ -25,8 +27,9 @@ from reference.problem.reductions import (
     unused_harmonics,
 )
 from reference.problem.result import Amplification, State, Trajectory
-from reference.problem.scene import GRAVITY, Scene, builtin_scenes, example_scenes, load_scene, parse_scene
+from reference.problem.scene import Scene
 from reference.problem.scene_error import SceneError
+from reference.problem.scene_file import builtin_scenes, example_scenes, load_scene, parse_scene
 
 __all__ = [
     "ADVICE",

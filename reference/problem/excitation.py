@@ -14,7 +14,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.problem.scene import Excitation, Scene
+from reference.problem.scene import Scene
+from reference.problem.tables import Excitation
 
 Array = NDArray[np.float64]
 

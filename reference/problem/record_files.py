@@ -16,11 +16,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.problem.constants import GRAVITY
 from reference.problem.ranges import brief
 
 Array = NDArray[np.float64]
 
-GRAVITY = 9.81  # m/s^2, the paper's value (section 5): a record in g keeps its ratio to the weight
 AXES = ("x", "y", "z")
 COLUMNS = ("time", "ax", "ay", "az")
 UNITS = {"m/s^2": 1.0, "m/s2": 1.0, "m/s²": 1.0, "m/s/s": 1.0, "g": GRAVITY, "cm/s^2": 0.01, "cm/s2": 0.01}

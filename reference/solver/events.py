@@ -6,7 +6,7 @@ import numpy as np
 
 from reference.solver.collocation import DENSE, DENSE_VALUES, MONOMIALS, STAGES
 from reference.solver.compiled import compiled
-from reference.solver.platform import rest_excess
+from reference.solver.contact.platform import rest_excess
 from reference.solver.system import Array, System, Work
 
 NEVER = 2.0

@@ -13,10 +13,10 @@ from math import exp, log
 
 from reference.solver.collocation import NODES, STAGES, A
 from reference.solver.compiled import compiled
-from reference.solver.friction import heading, slip_vector
+from reference.solver.contact.friction import heading
+from reference.solver.contact.platform import directed
 from reference.solver.ground import ground_at
 from reference.solver.linear_solve import factorize, solve
-from reference.solver.platform import acceleration
 from reference.solver.steps import absolute_accelerations, beyond_rim
 from reference.solver.system import SLIDING, SOLVED, UNSOLVED, Array, System, Work
 
@@ -26,17 +26,6 @@ DIRECTION_DIFFERENCE = 1e-6  # rad, for the slope by the direction: Newton's met
 
 # rows of Work.turning
 DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, LOG_RATIO, SPEED, COSINE, SINE = range(11)
-
-
-@compiled
-def directed(
-    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, pressure: float,
-    speed: float, ex: float, ey: float,
-) -> tuple[float, float, float, float]:  # fmt: skip
-    """(ax, ay, reaction / m1, full over horizontal speed) when sliding in the direction (ex, ey) at any speed >= 0."""
-    sx, sy, ratio = slip_vector(px, py, ex, ey, system.friction, system.radius, system.small)
-    ax, ay, reaction, _ = acceleration(system, px, py, fx, fy, ux, uy, pressure, (speed * ratio) ** 2, sx, sy)
-    return ax, ay, reaction, ratio
 
 
 @compiled

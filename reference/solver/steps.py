@@ -14,11 +14,11 @@ import numpy as np
 from reference.solver.chain import CHANNEL_ROUNDING, eliminate_chain, feed_back, load_chain, move_chain
 from reference.solver.collocation import A2, AT_START, NODES, STAGES, A
 from reference.solver.compiled import compiled
+from reference.solver.contact.platform import moving, slopes
 from reference.solver.equations import vertical_acceleration
 from reference.solver.events import lowest
 from reference.solver.ground import ground_at_stages
 from reference.solver.linear_solve import factorize, solve
-from reference.solver.platform import moving, slopes
 from reference.solver.system import OPEN, PAINLEVE, REST, RIM, SOLVED, UNSOLVED, Array, System, Work
 
 MAX_ITERATIONS = 14

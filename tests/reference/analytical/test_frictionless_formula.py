@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from reference.closed_form import frictionless_amplification, frictionless_motion
+from reference.analytical import frictionless_amplification, frictionless_motion
 from reference.problem import GRAVITY, Scene, ground_acceleration, ground_peak
 
 SCENE = Scene.model_validate(

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reference.closed_form.phase_peaks import Series, _bounds, _turns, largest, reached
+from reference.analytical.phase_peaks import Series, _bounds, _turns, largest, reached
 
 INTERVALS, ORDERS, HALF, DENSE = 40, 14, 0.05, 41
 

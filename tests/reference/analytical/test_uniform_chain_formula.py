@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from reference.closed_form import uniform_chain_frequencies, uniform_chain_shapes
+from reference.analytical import uniform_chain_frequencies, uniform_chain_shapes
 
 
 @pytest.mark.parametrize("count", [1, 2, 7, 40])

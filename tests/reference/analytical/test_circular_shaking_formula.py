@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reference.closed_form import circular_shaking
+from reference.analytical import circular_shaking
 from reference.problem import GRAVITY, Scene
 
 FREQUENCY = 2.0 * np.pi / 0.7

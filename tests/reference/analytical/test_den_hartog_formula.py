@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reference.closed_form import den_hartog, no_stop_bound
+from reference.analytical import den_hartog, no_stop_bound
 
 
 @pytest.mark.parametrize(

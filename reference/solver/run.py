@@ -10,22 +10,23 @@ A lubricated contact stays lubricated. Each phase carries the state in `Work` on
 
 from __future__ import annotations
 
-from math import pi
+from math import pi, sqrt
 
-from reference.solver.advance import drive, remaining
-from reference.solver.compiled import compiled, inlined
+from reference.solver.compiled import cached_entry_point, compiled, inlined
+from reference.solver.contact.platform import rest_excess
 from reference.solver.ground import ground_at
-from reference.solver.platform import rest_excess
-from reference.solver.rest_phase import rest_phase
-from reference.solver.sliding_phase import barely_slips, sliding_phase, speed2
-from reference.solver.smooth_phase import smooth_phase
-from reference.solver.stopping_phase import stopping_phase
+from reference.solver.phases.rest import rest_phase
+from reference.solver.phases.sliding import barely_slips, sliding_phase, speed2
+from reference.solver.phases.smooth import smooth_phase
+from reference.solver.phases.stopping import stopping_phase
+from reference.solver.step_control import drive, remaining
 from reference.solver.system import (
     CREEPING,
     HELD,
     LENGTH,
     LUBRICATED,
     LUBRICATED_SLIDING,
+    REACH,
     REGULARIZED,
     REST,
     RIM,
@@ -33,6 +34,7 @@ from reference.solver.system import (
     SLIDING,
     SOLVED,
     STEP_LIMIT,
+    STEPS,
     TIME,
     UNSOLVED,
     Array,
@@ -40,6 +42,7 @@ from reference.solver.system import (
     Record,
     System,
     Work,
+    workspace,
 )
 
 FIRST_STEP = 0.02  # of the period (system.py): first step
@@ -118,3 +121,30 @@ def integrate(system: System, phase: Array, work: Work, demand: Demand, record: 
         if idle > 4:  # a state on the border of two phases that each gives to the other
             work.run[HELD] = max(work.run[HELD], HOLDING_TIME * demand.period)
     return SOLVED
+
+
+@cached_entry_point
+def runs(
+    system: System, phases: Array, x: Array, v: Array, demand: Demand, record: Record,
+    peaks: Array, reading_errors: Array, codes: Array, instants: Array, steps: Array, reach: Array,
+) -> None:  # fmt: skip
+    """
+    Follow the motion from x, v (N, 2) for every phase pair (M, 2), rad.
+
+    Fills peaks (M, N), the largest absolute accelerations, m/s^2, and reading_errors (M, N), their
+    errors inside their steps; how (system.py), when (s) and after how many steps each run ended (M,); reach (M,), m,
+    the platform's largest displacement.
+    """
+    work = workspace(peaks.shape[1])
+    for m in range(phases.shape[0]):
+        for i in range(x.shape[0]):
+            for axis in range(2):
+                work.x[i, axis] = x[i, axis]
+                work.v[i, axis] = v[i, axis]
+        codes[m] = integrate(system, phases[m], work, demand, record)
+        instants[m] = work.run[TIME]
+        steps[m] = work.run[STEPS]
+        reach[m] = sqrt(work.run[REACH])
+        for i in range(peaks.shape[1]):
+            peaks[m, i] = sqrt(work.best[i])
+            reading_errors[m, i] = work.reading_error[i]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from reference.closed_form import coulomb_decay, coulomb_rest
+from reference.analytical import coulomb_decay, coulomb_rest
 
 FREQUENCY, DEAD_ZONE = 5.0, 0.02
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.closed_form.phase_peaks import Series, largest, reached
+from reference.analytical.phase_peaks import Series, largest, reached
 from reference.natural_modes import Modes, modes
 from reference.problem import Scene, checked_phases, exponents, ground_peak, linear, loading_period
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import cos, pi, sin, sqrt
 
 from reference.solver.compiled import compiled
-from reference.solver.near_stop import directed
+from reference.solver.contact.platform import directed
 from reference.solver.system import System
 
 SAMPLES_PER_TURN = 48

@@ -6,7 +6,16 @@ from math import exp, log, pi
 
 import numpy as np
 
-from reference.solver.advance import (
+from reference.solver.chain import chain_acceleration
+from reference.solver.collocation import STAGES
+from reference.solver.compiled import compiled, inlined
+from reference.solver.contact.friction import heading
+from reference.solver.contact.platform import directed, rest_excess
+from reference.solver.contact.stop_arc import arc_peak
+from reference.solver.events import first_crossing, lowest
+from reference.solver.ground import ground_at
+from reference.solver.near_stop import ACROSS, ALONG, CLOCK, DIRECTION, LOG_RATIO, SIGMA, near_stop_step
+from reference.solver.step_control import (
     FATAL_STEP,
     MIN_STEP,
     begin_with,
@@ -16,15 +25,6 @@ from reference.solver.advance import (
     next_break,
     next_step,
 )
-from reference.solver.arc import arc_peak
-from reference.solver.chain import chain_acceleration
-from reference.solver.collocation import STAGES
-from reference.solver.compiled import compiled, inlined
-from reference.solver.events import first_crossing, lowest
-from reference.solver.friction import heading
-from reference.solver.ground import ground_at
-from reference.solver.near_stop import ACROSS, ALONG, CLOCK, DIRECTION, LOG_RATIO, SIGMA, directed, near_stop_step
-from reference.solver.platform import rest_excess
 from reference.solver.steps import step_error
 from reference.solver.system import (
     ANGLE,
@@ -132,7 +132,7 @@ def longest(work: Work, entered: float, axes: int) -> float:
 
 @inlined
 def stopping_phase(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> tuple[int, int]:
-    """(how it went, what the contact does next); see march.py."""
+    """(how it went, what the contact does next); see run.py."""
     run = work.run
     log_ratio, size = ratio_in(system, work, phase)
     h = 0.5 / max(size, 1e-3 * demand.unit)

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from reference.solver.advance import (
+from reference.solver.collocation import STAGES
+from reference.solver.compiled import compiled, inlined
+from reference.solver.events import excess_at, expand, first_onset, lowest
+from reference.solver.record import note_stick
+from reference.solver.step_control import (
     FATAL_STEP,
     adapt,
     begin,
@@ -13,10 +17,6 @@ from reference.solver.advance import (
     shortened,
     unbroken,
 )
-from reference.solver.collocation import STAGES
-from reference.solver.compiled import compiled, inlined
-from reference.solver.events import excess_at, expand, first_onset, lowest
-from reference.solver.record import note_stick
 from reference.solver.steps import rest_step, step_error
 from reference.solver.system import (
     HELD,
@@ -60,7 +60,7 @@ def located_onset(system: System, phase: Array, work: Work, h: float, onset: flo
 
 @inlined
 def rest_phase(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> tuple[int, int]:
-    """Until the located onset of slip; (how it went, what the contact does next). See march.py."""
+    """Until the located onset of slip; (how it went, what the contact does next). See run.py."""
     work.v[0, 0] = work.v[0, 1] = 0.0
     begin(system, phase, work, REST)
     run = work.run

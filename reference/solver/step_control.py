@@ -7,9 +7,9 @@ from math import sqrt
 from reference.solver.chain import chain_acceleration
 from reference.solver.collocation import MONOMIALS, NODES, STAGES
 from reference.solver.compiled import compiled
+from reference.solver.contact.platform import moving
 from reference.solver.ground import ground_at, knot_after
 from reference.solver.peaks import take_peaks, take_reach
-from reference.solver.platform import moving
 from reference.solver.record import record_step
 from reference.solver.steps import lifted
 from reference.solver.system import (

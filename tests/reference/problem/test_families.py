@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from reference.problem import SceneError, builtin_scenes, load_family, load_scene
-from reference.problem.scene import scene_text
+from reference.problem.scene_file import scene_text
 
 
 def _file(tmp_path: Path, old: str, new: str) -> Path:

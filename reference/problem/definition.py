@@ -14,42 +14,12 @@ from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from reference.problem.excitation import exponents, ground_acceleration, loading_period
-from reference.problem.ranges import PHASE, checked_array
+from reference.problem.phases import checked_phases
 from reference.problem.scene import Scene
 
 Array = NDArray[np.float64]
 
 SAMPLES_PER_PERIOD = 32  # of the faster harmonic; |u|^2 has twice its frequency, so 16 samples per wave
-
-
-def checked_phases(phases: ArrayLike) -> Array:
-    """
-    Phases as a contiguous (M, 2) array, rad, those beyond a full turn reduced to (-pi, pi].
-
-    Sine and cosine reduce a double-precision number exactly, so the reduced phase is that of the number given. Raises
-    ValueError, one line, for another shape, entries that are no numbers or masked, and phases outside `ranges.PHASE`.
-    """
-    array = checked_array("phases", phases, f"must be (M, 2), {PHASE.rule}")
-    if array.ndim != 2 or array.shape[1] != 2:
-        raise ValueError(f"phases: shape {array.shape}: must be (M, 2), rad")
-    if array.size and (np.abs(array) > PHASE.highest).any():
-        largest = array.flat[np.abs(array).argmax()]
-        raise ValueError(f"phases: {largest:g}: {PHASE.rule}: reduce it modulo 2 pi")
-    return np.where(np.abs(array) <= 2.0 * np.pi, array, np.arctan2(np.sin(array), np.cos(array)))
-
-
-def checked_phase(phase: ArrayLike) -> Array:
-    """One phase pair as an array (2,), rad; as `checked_phases`."""
-    pair = checked_array("phases", phase, f"must be (2,), {PHASE.rule}")
-    if pair.size != 2:
-        raise ValueError(f"phases: shape {pair.shape}: must be (2,), rad")
-    return checked_phases(pair.reshape(1, 2))[0]
-
-
-def phase_grid(points: int) -> Array:
-    """All pairs of `points` equally spaced phases on [0, 2 pi), (points^2, 2), rad, alpha2 running fastest."""
-    axis = 2.0 * np.pi * np.arange(points) / points
-    return np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
 
 
 def ground_peak(scene: Scene, phases: ArrayLike) -> Array:

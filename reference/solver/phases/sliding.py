@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from math import atan2, log, sqrt
 
-from reference.solver.advance import (
+from reference.solver.chain import eliminate_chain, load_chain
+from reference.solver.collocation import STAGES
+from reference.solver.compiled import compiled, inlined
+from reference.solver.contact.friction import heading, sliding_speed2
+from reference.solver.contact.platform import directed, rest_excess
+from reference.solver.contact.stop_arc import settled_direction, squared_total
+from reference.solver.events import first_crossing, lowest
+from reference.solver.ground import ground_at, ground_at_stages
+from reference.solver.step_control import (
     MAX_LENGTH_FACTOR,
     MIN_STEP,
     NEWTON_FRACTION,
@@ -20,15 +28,6 @@ from reference.solver.advance import (
     too_short,
     unbroken,
 )
-from reference.solver.arc import settled_direction, squared_total
-from reference.solver.chain import eliminate_chain, load_chain
-from reference.solver.collocation import STAGES
-from reference.solver.compiled import compiled, inlined
-from reference.solver.events import first_crossing, lowest
-from reference.solver.friction import heading, sliding_speed2
-from reference.solver.ground import ground_at, ground_at_stages
-from reference.solver.near_stop import directed
-from reference.solver.platform import rest_excess
 from reference.solver.steps import moving_step, step_error
 from reference.solver.system import (
     ANGLE,
@@ -134,7 +133,7 @@ def turns_too_far(work: Work) -> bool:
 
 @inlined
 def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> tuple[int, int]:
-    """(how it went, what the contact does next); see march.py."""
+    """(how it went, what the contact does next); see run.py."""
     run = work.run
     begin(system, phase, work, SLIDING)
     start2 = speed2(system, work)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from reference.closed_form import (
+from reference.analytical import (
     conical_frequency,
     planar_period,
     squared_rate,

@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-from reference.solver.advance import (
+from reference.solver.collocation import STAGES
+from reference.solver.compiled import inlined
+from reference.solver.contact.friction import sliding_speed2
+from reference.solver.contact.platform import slip_factor
+from reference.solver.events import first_crossing, highest
+from reference.solver.record import note_stick
+from reference.solver.step_control import (
     NEWTON_FRACTION,
     adapt,
     begin,
@@ -15,12 +21,6 @@ from reference.solver.advance import (
     too_short,
     unbroken,
 )
-from reference.solver.collocation import STAGES
-from reference.solver.compiled import inlined
-from reference.solver.events import first_crossing, highest
-from reference.solver.friction import sliding_speed2
-from reference.solver.platform import slip_factor
-from reference.solver.record import note_stick
 from reference.solver.steps import moving_step, step_error
 from reference.solver.system import (
     CREEPING,
@@ -46,7 +46,7 @@ EARLY_CROSSING = 1e-6  # of a step: a crossing this early means that the phase b
 def smooth_phase(
     system: System, phase: Array, work: Work, contact: int, demand: Demand, record: Record
 ) -> tuple[int, int]:
-    """To the end of the motion, or until creep becomes sliding at v_reg; see march.py."""
+    """To the end of the motion, or until creep becomes sliding at v_reg; see run.py."""
     begin(system, phase, work, contact)
     run = work.run
     began = run[TIME]

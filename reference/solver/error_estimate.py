@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from reference.solver.advance import MIN_SCALE_FRACTION
-from reference.solver.runs import runs
+from reference.solver.run import runs
+from reference.solver.step_control import MIN_SCALE_FRACTION
 from reference.solver.system import SOLVED, Array, Demand, System, record_of
 
 TOLERANCE_RATIO = 30.0  # tolerance inside a step of the coarser run over that of the finer run
@@ -49,7 +49,7 @@ def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float) ->
     return peaks
 
 
-def certified_peaks(system: System, phases: Array, demand: Demand) -> Peaks:
+def peaks_with_error(system: System, phases: Array, demand: Demand) -> Peaks:
     """
     Peaks to the relative tolerance of `demand`, with errors.
 

@@ -16,8 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from reference.problem.scene import Scene, scene_tables, scene_text, validated_scene
+from reference.problem.scene import Scene
 from reference.problem.scene_error import SceneError
+from reference.problem.scene_file import scene_tables, scene_text, validated_scene
 
 RANGE, VALUES = {"range", "steps"}, {"values"}
 MAX_SCENES = 1000  # scenes of one family

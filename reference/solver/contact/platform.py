@@ -6,8 +6,14 @@ from math import sqrt
 
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
+from reference.solver.contact.friction import (
+    rest_excess_exact,
+    rest_excess_printed,
+    rest_excess_small,
+    sliding_speed2,
+    slip_vector,
+)
 from reference.solver.equations import exact_acceleration, small_acceleration
-from reference.solver.friction import rest_excess_exact, rest_excess_printed, rest_excess_small, sliding_speed2
 from reference.solver.system import CREEPING, PRINTED, SLIDING, System, Work
 
 ROUNDING_EXCESS = 1e-12  # of the squared friction limit: a drive that exceeds it by no more than rounding is held
@@ -64,6 +70,17 @@ def moving(
         system, px, py, fx, fy, ux, uy, pressure, speed2, factor * vx, factor * vy
     )
     return ax, ay, reaction, determinant, speed2
+
+
+@compiled
+def directed(
+    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, pressure: float,
+    speed: float, ex: float, ey: float,
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """(ax, ay, reaction / m1, full over horizontal speed) when sliding in the direction (ex, ey) at any speed >= 0."""
+    sx, sy, ratio = slip_vector(px, py, ex, ey, system.friction, system.radius, system.small)
+    ax, ay, reaction, _ = acceleration(system, px, py, fx, fy, ux, uy, pressure, (speed * ratio) ** 2, sx, sy)
+    return ax, ay, reaction, ratio
 
 
 @compiled
