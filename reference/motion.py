@@ -28,13 +28,38 @@ def trajectory(
     initial: State | None = None,
 ) -> Trajectory:
     """
-    One motion for one phase pair (2,), rad, in the plate's frame, from rest or from `initial`.
+    One motion for one phase pair by the paper's equations, sampled in time.
 
-    equations, regularization, rest_condition: as in `amplification`. tolerance: relative error of the accelerations
-    inside each step. times: rising instants (T,), s, within the duration; by default 64 per shorter loading period.
-    The samples miss the largest accelerations, which `peak` has. A motion that ends early (status, instant) has samples
-    up to that instant. `stick` holds the intervals of rest, or of creep below v_reg. Raises ValueError for arguments
-    outside these rules.
+    Parameters
+    ----------
+    scene : Scene
+    phase : array_like, (2,), rad
+    equations, regularization, rest_condition
+        As in `reference.amplification`.
+    tolerance : float
+        Relative error of the accelerations inside each step.
+    times : array_like, (T,), s, optional
+        Rising instants within the duration. By default 64 per shorter loading period.
+    initial : State, optional
+        Displacement and velocity at t = 0 in the plate's frame. By default at rest in the equilibrium position.
+
+    Returns
+    -------
+    Trajectory
+        A motion that ends early has samples up to `instant`, and a status that says why. `stick` holds the intervals of
+        rest, or of creep below v_reg. `peak` has the largest accelerations, which the samples miss.
+
+    Raises
+    ------
+    ValueError
+        For an argument outside its range (`reference.problem.ranges`), in one line.
+
+    Examples
+    --------
+    >>> import reference
+    >>> motion = reference.trajectory(reference.load_scene("fig4-dry"), (2.0, 0.7), equations="small", times=[0.0, 1.5])
+    >>> motion.position.shape, motion.status
+    ((2, 2, 3), 'ok')
     """
     pair = checked_phase(phase)
     system, demand = checked_demand(scene, equations, regularization, tolerance, None, rest_condition)

@@ -1,4 +1,4 @@
-"""The amplification surface: every phase pair solved and certified, on all threads."""
+"""The amplification surface: mu with its error estimate for every phase pair, on all threads."""
 
 from __future__ import annotations
 
@@ -75,18 +75,51 @@ def amplification(
     full: bool = False,
 ) -> Amplification:
     """
-    Amplification factors mu_i (5.1) by the paper's equations, from rest, with certified errors.
+    Amplification factors mu_i of (5.1) by the paper's equations, from rest, with error estimates.
 
-    phases: (M, 2), rad. equations: "exact" (3.9)-(3.13) or "small" (4.3)-(4.4). regularization: v_reg, m/s, below
-    which dry friction is linear, or None for the set-valued law; a lubricated scene needs none. tolerance: relative
-    error asked of every mu. cutoff: v_c, m/s, of the resolved peak (set-valued law only), or None for the supremum with
-    its one-sided limits. rest_condition: "consistent", or "printed" for (4.6) as it stands. full: integrate every
-    motion, even where the scene does not require it (reference.problem.reductions). The range of every argument stands
-    in `reference.problem.ranges`.
+    Parameters
+    ----------
+    scene : Scene
+    phases : array_like, (M, 2), rad
+        Initial phases (alpha_1, alpha_2) of the loading.
+    equations : {"exact", "small"}
+        (3.9)-(3.13), or the equations of small vibration (4.3)-(4.4).
+    regularization : float, optional, m/s
+        v_reg: dry friction is linear below this speed. None takes the set-valued law. A lubricated scene needs none.
+    tolerance : float
+        Relative error asked of every mu.
+    cutoff : float, optional, m/s
+        v_c of the resolved peak: only rest and sliding faster than v_c count. None takes the supremum with its
+        one-sided limits. With the set-valued law only.
+    rest_condition : {"consistent", "printed"}
+        "printed" takes (4.6) as it stands in the paper.
+    full : bool
+        Integrate every motion, even where the scene does not require it (`reference.problem.reductions`).
 
-    Returns mu and error (M, N), status, instant and cap_share (M,), cost. Statuses: ok; tolerance not met (mu and its
-    larger error are given); and with mu NaN: rim reached (4.1), contact lost, painleve paradox, non-finite load, no
-    ground motion, step limit, solver failed. Raises ValueError for arguments outside these rules.
+    Returns
+    -------
+    Amplification
+        A point without an answer is NaN; its status says why. The other points do not depend on it.
+
+    Raises
+    ------
+    ValueError
+        For an argument outside its range (`reference.problem.ranges`), in one line.
+
+    Notes
+    -----
+    Every run is made twice with different tolerances; docs/reference.md says how the error follows from both. Statuses
+    are the values of `Outcome`: "ok"; "tolerance not met", with mu and its larger error; the others come with mu NaN.
+
+    Examples
+    --------
+    >>> import reference
+    >>> scene = reference.load_scene("fig4-dry")
+    >>> result = reference.amplification(scene, [(0.3, 1.1)], equations="small", tolerance=1e-4)
+    >>> result.mu.shape, str(result.status[0])
+    ((1, 2), 'ok')
+    >>> bool((result.error <= 1e-4 * result.mu).all())
+    True
     """
     pairs = checked_phases(phases)
     flat = not full and rest_condition == "consistent" and planar(scene).allowed  # (4.6) as printed knows directions
@@ -161,7 +194,26 @@ def checked_demand(
     rest_condition: str,
     axes: int = 2,
 ) -> tuple[System, Demand]:
-    """The scene in compiled form and what is asked of a run. Raises ValueError, one line, for a wrong argument."""
+    """
+    The scene in compiled form and what is asked of its runs.
+
+    Parameters
+    ----------
+    scene : Scene
+    equations, regularization, tolerance, cutoff, rest_condition
+        As in `amplification`.
+    axes : {2, 1}
+        1 for a motion in the plane of x and z.
+
+    Returns
+    -------
+    tuple of System and Demand
+
+    Raises
+    ------
+    ValueError
+        For an argument outside its range, in one line.
+    """
     checked_choice("equations", equations, ("exact", "small"))
     checked_choice("rest_condition", rest_condition, ("consistent", "printed"))
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)

@@ -1,4 +1,29 @@
-"""The question both sides answer: scene, loading, measured quantity. The only thing they share."""
+"""
+The question that both sides answer: scene, loading, measured quantity. The only package that they share.
+
+Functions
+---------
+load_scene, parse_scene, load_family                            scenes from a name, a file or a text
+builtin_scenes, example_scenes                                  names of the scenes that are shipped
+ground_acceleration, ground_velocity, ground_displacement       motion of the ground (5.2)-(5.4)
+exponents, loading_period                                       of the loading
+ground_peak                                                     denominator of (5.1)
+checked_phase, checked_phases, phase_grid                       phase pairs
+half_turn, own_axes, planar, planar_chain, linear, no_friction,
+untilted, even_ring, unused_harmonics, in_plane                 what a scene does not require
+verbatim                                                        a text of a scene for matplotlib
+
+Classes
+-------
+Scene, Family                       the system with its loading; the scenes of one file
+State, Amplification, Trajectory    arguments and results of both sides
+Outcome, Reduction, SceneError      why a point has no answer; why work is left out; what is wrong with a scene
+
+Constants
+---------
+GRAVITY    9.81 m/s^2, the paper's value (section 5)
+ADVICE     what to try, for every `Outcome`
+"""
 
 from reference.problem.constants import GRAVITY
 from reference.problem.definition import ground_peak

@@ -23,7 +23,30 @@ SAMPLES_PER_PERIOD = 32  # of the faster harmonic; |u|^2 has twice its frequency
 
 
 def ground_peak(scene: Scene, phases: ArrayLike) -> Array:
-    """max_t |ground acceleration| over [0, duration] for each phase pair (M, 2): (M,), m/s^2, to rounding."""
+    """
+    Largest ground acceleration over the duration, the denominator of (5.1).
+
+    Parameters
+    ----------
+    scene : Scene
+    phases : array_like, (M, 2), rad
+
+    Returns
+    -------
+    ndarray, (M,), m/s^2
+        max_t |ground acceleration| over [0, duration], to rounding.
+
+    Raises
+    ------
+    ValueError
+        As `checked_phases`.
+
+    Examples
+    --------
+    >>> from reference.problem import load_scene
+    >>> ground_peak(load_scene("fig3-I"), [(0.0, 0.0)]).round(3).tolist()  # both harmonics at their largest
+    [1.414]
+    """
     pairs = checked_phases(phases)
     if scene.recorded:
         return np.full(len(pairs), _record_peak(scene))

@@ -30,8 +30,18 @@ Files = dict[str, str]  # of a record, by direction
 @dataclass(frozen=True)
 class Family:
     """
-    The scenes of one file. `key`: the one that runs, as "isolator.friction", or "" where none does and there is one
-    scene; `values` of it, in the order of the scenes, which are named "file[friction=0.02]".
+    The scenes of one file.
+
+    Attributes
+    ----------
+    name : str
+        File stem or built-in name.
+    scenes : tuple of Scene
+        Named "file[friction=0.02]" where a key runs.
+    key : str
+        The key that runs, as "isolator.friction"; "" where none does and there is one scene.
+    values : tuple
+        Values of the key, in the order of the scenes.
     """
 
     name: str
@@ -47,9 +57,28 @@ class Family:
 
 def load_family(source: str | Path, amplitude: float | None = None) -> Family:
     """
-    Every scene of a built-in name or a TOML file; arguments and errors as for `load_scene`.
+    Every scene of a built-in name or a TOML file in which one value may run.
 
-    Raises SceneError too for a range that is none, for a second one, and for a value that makes its scene impossible.
+    Parameters
+    ----------
+    source : str or Path
+        As in `load_scene`.
+    amplitude : float, optional, m/s^2
+        As in `load_scene`.
+
+    Returns
+    -------
+    Family
+
+    Raises
+    ------
+    SceneError
+        As `load_scene`; for a range that is none, for a second one, and for a value that makes its scene impossible.
+
+    Examples
+    --------
+    >>> load_family("fig3-I").bodies
+    2
     """
     label, name = str(source), Path(source).stem
     data = scene_tables(scene_text(source), label)

@@ -12,10 +12,29 @@ Array = NDArray[np.float64]
 
 def checked_phases(phases: ArrayLike) -> Array:
     """
-    Phases as a contiguous (M, 2) array, rad, those beyond a full turn reduced to (-pi, pi].
+    Phase pairs as a contiguous array; phases beyond a full turn are reduced to (-pi, pi].
 
-    Sine and cosine reduce a double-precision number exactly, so the reduced phase is that of the number given. Raises
-    ValueError, one line, for another shape, entries that are no numbers or masked, and phases outside `ranges.PHASE`.
+    Parameters
+    ----------
+    phases : array_like, (M, 2), rad
+
+    Returns
+    -------
+    ndarray, (M, 2), rad
+
+    Raises
+    ------
+    ValueError
+        In one line, for another shape, entries that are no numbers or masked, and phases outside `ranges.PHASE`.
+
+    Notes
+    -----
+    Sine and cosine reduce a double-precision number exactly, so the reduced phase is that of the number given.
+
+    Examples
+    --------
+    >>> checked_phases([(0.5, 1.0)]).tolist()
+    [[0.5, 1.0]]
     """
     array = checked_array("phases", phases, f"must be (M, 2), {PHASE.rule}")
     if array.ndim != 2 or array.shape[1] != 2:
@@ -27,7 +46,27 @@ def checked_phases(phases: ArrayLike) -> Array:
 
 
 def checked_phase(phase: ArrayLike) -> Array:
-    """One phase pair as an array (2,), rad; as `checked_phases`."""
+    """
+    One phase pair as an array.
+
+    Parameters
+    ----------
+    phase : array_like, (2,), rad
+
+    Returns
+    -------
+    ndarray, (2,), rad
+
+    Raises
+    ------
+    ValueError
+        As `checked_phases`.
+
+    Examples
+    --------
+    >>> checked_phase((0.5, 1.0)).tolist()
+    [0.5, 1.0]
+    """
     pair = checked_array("phases", phase, f"must be (2,), {PHASE.rule}")
     if pair.size != 2:
         raise ValueError(f"phases: shape {pair.shape}: must be (2,), rad")
@@ -35,6 +74,23 @@ def checked_phase(phase: ArrayLike) -> Array:
 
 
 def phase_grid(points: int) -> Array:
-    """All pairs of `points` equally spaced phases on [0, 2 pi), (points^2, 2), rad, alpha2 running fastest."""
+    """
+    All pairs of equally spaced phases on [0, 2 pi).
+
+    Parameters
+    ----------
+    points : int
+        Phases per axis.
+
+    Returns
+    -------
+    ndarray, (points^2, 2), rad
+        alpha_2 runs fastest.
+
+    Examples
+    --------
+    >>> phase_grid(2).round(3).tolist()
+    [[0.0, 0.0], [0.0, 3.142], [3.142, 0.0], [3.142, 3.142]]
+    """
     axis = 2.0 * np.pi * np.arange(points) / points
     return np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)

@@ -39,7 +39,31 @@ DERIVED_ROUNDING = 1e-12  # relative, of a value that follows from others
 
 
 class Scene(Table):
-    """A validated scene. Arrays are SI; body index 0 is the platform, axis index 0 is x."""
+    """
+    A validated scene. Arrays are SI; body index 0 is the platform, axis index 0 is x.
+
+    Parameters
+    ----------
+    **tables
+        The keys of a scene file (docs/scene.md) and `name`. `Scene.model_validate(dict)` takes the same as one dict.
+
+    Raises
+    ------
+    pydantic.ValidationError
+        For anything that a scene may not hold. `load_scene` and `with_values` raise `SceneError` in its place.
+
+    Examples
+    --------
+    >>> scene = Scene.model_validate({
+    ...     "title": "one body",
+    ...     "duration": 10.0,
+    ...     "isolator": {"radius": 0.25, "friction": 0.1},
+    ...     "bodies": [{"mass": 1.0}],
+    ...     "excitation": {"amplitudes": [[1.0, 0.0], [0.0, 1.0]], "periods": [0.9, 1.1], "decay": [0.3, 0.3]},
+    ... })
+    >>> scene.total_mass
+    1.0
+    """
 
     title: Annotated[Text, about("title of the scene in the report and in figures", "", STUDY)]
     duration: Annotated[
@@ -216,8 +240,21 @@ class Scene(Table):
 
     def with_amplitude(self, amplitude: float) -> Scene:
         """
-        The same scene, its loading scaled so that the largest entry of the amplitude matrix, or the largest sample of a
-        record along any axis, is `amplitude`, m/s^2.
+        The same scene with its loading scaled.
+
+        Parameters
+        ----------
+        amplitude : float, m/s^2
+            The largest entry of the amplitude matrix, or the largest sample of a record along any axis, becomes this.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        SceneError
+            For an amplitude outside its range, or a loading that is zero throughout.
         """
         samples = self.record[:, 1:] if self.recorded else self.amplitudes
         largest = float(np.abs(samples).max())

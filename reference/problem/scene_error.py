@@ -15,7 +15,20 @@ EXCITATIONS = ("two frequencies", "recorded motion")  # pydantic puts which was 
 
 
 class SceneError(ValueError):
-    """A scene that cannot be used. `str(error)` is one line: file, key, value, rule."""
+    """
+    A scene that cannot be used. `str(error)` is one line: file, key, value, rule.
+
+    Parameters
+    ----------
+    file : str
+        Scene file or name.
+    key : str
+        Dotted key, as "isolator.friction".
+    value : object
+        What the scene has there.
+    rule : str
+        What it must be, or what to try.
+    """
 
     def __init__(self, file: str, key: str, value: Any, rule: str) -> None:
         self.file, self.key, self.value, self.rule = file, key, value, rule

@@ -17,22 +17,62 @@ MAX_NESTING = 10  # tables and lists within one another in a scene file
 
 
 def builtin_scenes() -> list[str]:
-    """Names of the paper's own cases, in the order of its figures."""
+    """
+    Names of the paper's own cases, in the order of its figures.
+
+    Returns
+    -------
+    list of str
+
+    Examples
+    --------
+    >>> builtin_scenes()
+    ['fig3-I', 'fig3-II', 'fig4-dry', 'fig4-viscous']
+    """
     folder = resources.files("reference.problem") / "scenes"
     return sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
 
 
 def example_scenes() -> list[str]:
-    """Names of the scenes with a recorded motion that are shipped as examples."""
+    """
+    Names of the scenes with a recorded motion that are shipped as examples.
+
+    Returns
+    -------
+    list of str
+
+    Examples
+    --------
+    >>> example_scenes()
+    ['synthetic-pair', 'synthetic-triple']
+    """
     return sorted(entry.name.removesuffix(".toml") for entry in EXAMPLES.iterdir() if entry.name.endswith(".toml"))
 
 
 def load_scene(source: str | Path, amplitude: float | None = None) -> Scene:
     """
-    Read a scene: a built-in name (`builtin_scenes()`, `example_scenes()`) or a path to a TOML file.
+    Read a scene.
 
-    `amplitude`, m/s^2, scales the amplitude matrix, or the record, so that its largest entry has this value.
-    Raises SceneError (file, key, value, rule) when anything in it is wrong.
+    Parameters
+    ----------
+    source : str or Path
+        A built-in name (`builtin_scenes`, `example_scenes`) or a path to a TOML file; docs/scene.md lists the keys.
+    amplitude : float, optional, m/s^2
+        Scale the amplitude matrix, or the record, so that its largest entry has this value.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    SceneError
+        File, key, value and rule in one line, if anything in the scene is wrong.
+
+    Examples
+    --------
+    >>> load_scene("fig3-I").friction_coefficient
+    0.1
     """
     scene = parse_scene(scene_text(source), str(source))
     return scene if amplitude is None else scene.with_amplitude(amplitude)
@@ -54,7 +94,37 @@ def scene_text(source: str | Path) -> bytes:
 
 
 def parse_scene(text: bytes, label: str) -> Scene:
-    """The scene written in `text` (TOML, UTF-8); `label` names it in errors. Raises SceneError."""
+    '''
+    The scene in a text.
+
+    Parameters
+    ----------
+    text : bytes
+        TOML in UTF-8.
+    label : str
+        Name or path of the scene in errors; records are looked for beside it.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    SceneError
+        As `load_scene`.
+
+    Examples
+    --------
+    >>> text = b"""
+    ... title = "one body"
+    ... duration = 10.0
+    ... isolator = {period = 1.0, friction = 0.1}
+    ... bodies = [{mass = 1.0}]
+    ... excitation = {amplitudes = [[1.0, 0.0], [0.0, 1.0]], periods = [0.9, 1.1], decay = [0.3, 0.3]}
+    ... """
+    >>> parse_scene(text, "one-body.toml").name
+    'one-body'
+    '''
     return validated_scene(scene_tables(text, label), label, Path(label).stem)
 
 
