@@ -46,7 +46,7 @@ class Acceptance(Limits):
     ] = None
     closure: Annotated[
         Positive | None,
-        about("limit of |sum of the steps of the models - total| relative to mu_i, for every body", "", STUDY),
+        about("limit of the size of (sum of the models' steps - total) relative to mu_i, for every body", "", STUDY),
     ] = None
     failed: Annotated[
         Annotated[int, Field(ge=0)] | None,

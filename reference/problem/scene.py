@@ -19,7 +19,7 @@ from reference.problem.ranges import MAX_CYCLES, SCENE
 from reference.problem.scene_error import EXCITATIONS, MisfitError, SceneError, first_error
 from reference.problem.tables import (
     ALL,
-    STUDY,
+    NONE,
     Body,
     Excitation,
     Isolator,
@@ -65,7 +65,7 @@ class Scene(Table):
     1.0
     """
 
-    title: Annotated[Text, about("title of the scene in the report and in figures", "", STUDY)]
+    title: Annotated[Text, about("title of the scene in the report and in figures", "", NONE)]
     duration: Annotated[
         Positive,
         within("duration"),

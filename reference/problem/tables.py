@@ -17,7 +17,8 @@ USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values
 
 ALL = "all"  # models that read a key
 SPATIAL = "spatial"
-STUDY = "none; the study's report"
+STUDY = "`--check`"
+NONE = "none"
 
 
 def about(meaning: str, unit: str, models: str) -> Any:
@@ -106,7 +107,7 @@ class Isolator(Table):
     support_stiffness: Annotated[
         Annotated[Positive, within("isolator.support_stiffness")] | None,
         about(
-            "vertical stiffness of each support; without it the supports give way only to share the load",
+            "vertical stiffness of each support; without it only four and more supports give way, to share the load",
             "N/m",
             SPATIAL,
         ),
