@@ -7,7 +7,7 @@ import pytest
 from chains import chain
 
 import reference
-from reference.closed_form import (
+from reference.analytical import (
     circular_shaking,
     conical_frequency,
     coulomb_decay,

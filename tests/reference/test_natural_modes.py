@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import reference
-from reference.closed_form import uniform_chain_frequencies, uniform_chain_shapes
+from reference.analytical import uniform_chain_frequencies, uniform_chain_shapes
 from reference.natural_modes import linear_stiffness
 from reference.problem import GRAVITY, Scene
 

@@ -8,7 +8,7 @@ from oracle import set_valued_run, smooth_run
 
 import reference
 from reference.problem import Scene, ground_acceleration, ground_peak
-from reference.solver.certified import peaks_at
+from reference.solver.error_estimate import peaks_at
 from reference.surface import checked_demand
 
 ANY = (0.0, 0.0)  # a record has no phases
