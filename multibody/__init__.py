@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from multibody.motion import trajectory
-    from multibody.work_limit import refusal
     from multibody.surface import amplification
+    from multibody.work_limit import refusal
 
 ENGINE = {
     "amplification": "multibody.surface",

@@ -29,8 +29,8 @@ from scipy.spatial.transform import Rotation
 from multibody.engine import exudyn
 from multibody.integrate import place
 from multibody.motion import trajectory
-from multibody.work_limit import refusal
 from multibody.surface import assembled
+from multibody.work_limit import refusal
 from reference.problem import (
     ADVICE,
     Outcome,

@@ -1,8 +1,37 @@
 """
-The paper's equations, solved to certified accuracy.
+The paper's equations, solved with an error estimate on every value.
 
-The solver is loaded on first use, so that `import reference.problem`, all that the other side may share, stays
-independent of it.
+Functions
+---------
+amplification   factors mu_i of (5.1) for many phase pairs, with errors and outcomes
+trajectory      one motion, sampled in time
+modes           natural frequencies and modes of the frictionless chain (4.8)-(4.11)
+load_scene      a scene from a built-in name or a TOML file
+builtin_scenes  names of the paper's own cases
+example_scenes  names of the examples with a recorded motion
+phase_grid      equally spaced phase pairs
+
+Classes
+-------
+Scene           the system, its loading and the duration
+State           displacement and velocity at the start of a trajectory
+Amplification   what `amplification` returns
+Trajectory      what `trajectory` returns
+Outcome         how the run of one phase pair ended
+SceneError      a scene that cannot be used, in one line
+
+Examples
+--------
+>>> import reference
+>>> scene = reference.load_scene("fig3-I")
+>>> result = reference.amplification(scene, [(0.3, 1.1)], tolerance=1e-4)
+>>> result.mu.round(2).tolist()
+[[1.71, 2.33]]
+
+Notes
+-----
+The solver is loaded when one of its functions is first used: `import reference.problem`, all that `multibody` shares,
+does not load it.
 """
 
 from __future__ import annotations
@@ -28,7 +57,11 @@ if TYPE_CHECKING:
     from reference.natural_modes import modes
     from reference.surface import amplification
 
-SOLVER = {"amplification": "reference.surface", "modes": "reference.natural_modes", "trajectory": "reference.motion"}
+LOADED_ON_FIRST_USE = {
+    "amplification": "reference.surface",
+    "modes": "reference.natural_modes",
+    "trajectory": "reference.motion",
+}
 
 __all__ = [
     "Amplification",
@@ -48,6 +81,10 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    if name in SOLVER:
-        return getattr(import_module(SOLVER[name]), name)
+    if name in LOADED_ON_FIRST_USE:
+        return getattr(import_module(LOADED_ON_FIRST_USE[name]), name)
     raise AttributeError(f"module 'reference' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -7,14 +7,14 @@ from numpy.typing import ArrayLike
 
 from reference.problem import Outcome, Scene, State, Trajectory, checked_phase, loading_period
 from reference.problem.ranges import checked_array, checked_state
-from reference.solver.runs import runs
+from reference.solver.run import runs
 from reference.solver.samples import sampled
 from reference.solver.system import Array, Demand, Record, System, record_of
 from reference.surface import OUTCOMES, checked_demand, loads_are_finite
 
 SAMPLES_PER_PERIOD = 64  # of the shorter loading period, when no times are given
-MOST_SAMPLES = 200_000
-ROOM = 1024  # steps, to begin with
+MAX_SAMPLES = 200_000
+FIRST_CAPACITY = 1024  # steps, to begin with
 
 
 def trajectory(
@@ -28,13 +28,38 @@ def trajectory(
     initial: State | None = None,
 ) -> Trajectory:
     """
-    One motion for one phase pair (2,), rad, in the plate's frame, from rest or from `initial`.
+    One motion for one phase pair by the paper's equations, sampled in time.
 
-    equations, regularization, rest_condition: as in `amplification`. tolerance: relative error of the accelerations
-    inside each step. times: rising instants (T,), s, within the duration; by default 64 per shorter loading period.
-    The samples miss the largest accelerations, which `peak` has. A motion that ends early (status, instant) has samples
-    up to that instant. `stick` holds the intervals of rest, or of creep below v_reg. Raises ValueError for arguments
-    outside these rules.
+    Parameters
+    ----------
+    scene : Scene
+    phase : array_like, (2,), rad
+    equations, regularization, rest_condition
+        As in `reference.amplification`.
+    tolerance : float
+        Relative error of the accelerations inside each step.
+    times : array_like, (T,), s, optional
+        Rising instants within the duration. By default 64 per shorter loading period.
+    initial : State, optional
+        Displacement and velocity at t = 0 in the plate's frame. By default at rest in the equilibrium position.
+
+    Returns
+    -------
+    Trajectory
+        A motion that ends early has samples up to `instant`, and a status that says why. `stick` holds the intervals of
+        rest, or of creep below v_reg. `peak` has the largest accelerations, which the samples miss.
+
+    Raises
+    ------
+    ValueError
+        For an argument outside its range (`reference.problem.ranges`), in one line.
+
+    Examples
+    --------
+    >>> import reference
+    >>> motion = reference.trajectory(reference.load_scene("fig4-dry"), (2.0, 0.7), equations="small", times=[0.0, 1.5])
+    >>> motion.position.shape, motion.status
+    ((2, 2, 3), 'ok')
     """
     pair = checked_phase(phase)
     system, demand = checked_demand(scene, equations, regularization, tolerance, None, rest_condition)
@@ -70,15 +95,15 @@ def trajectory(
 def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) -> tuple[Outcome, float, Record, Array]:
     """The run with all its steps, however many: (how and when it ended, s, its record, its peaks, m/s^2)."""
     bodies = len(x)
-    room = ROOM
+    capacity = FIRST_CAPACITY
     while True:
-        record = record_of(room, bodies)
-        peaks, doubts = np.empty((1, bodies)), np.empty((1, bodies))
+        record = record_of(capacity, bodies)
+        peaks, reading_errors = np.empty((1, bodies)), np.empty((1, bodies))
         codes, instants, steps, reach = (np.empty(1) for _ in range(4))
-        runs(system, phase[None], x, v, demand, record, peaks, doubts, codes, instants, steps, reach)
-        if record.made.max() <= room:
+        runs(system, phase[None], x, v, demand, record, peaks, reading_errors, codes, instants, steps, reach)
+        if record.made.max() <= capacity:
             return OUTCOMES[int(codes[0])], float(instants[0]), record, peaks[0]
-        room = int(record.made.max())
+        capacity = int(record.made.max())
 
 
 def _acceleration(system: System, x: Array, v: Array) -> float:
@@ -91,7 +116,7 @@ def _acceleration(system: System, x: Array, v: Array) -> float:
 def _checked_times(scene: Scene, times: ArrayLike | None) -> Array:
     if times is None:
         samples = int(np.ceil(scene.duration / loading_period(scene) * SAMPLES_PER_PERIOD)) + 1
-        return np.linspace(0.0, scene.duration, min(samples, MOST_SAMPLES))
+        return np.linspace(0.0, scene.duration, min(samples, MAX_SAMPLES))
     rule = f"must be rising instants (T,) from 0 to the duration, {scene.duration} s"
     instants = checked_array("times", times, rule)
     inside = instants.ndim == 1 and np.all((instants >= 0.0) & (instants <= scene.duration))

@@ -1,7 +1,7 @@
 """
 Natural frequencies and modes of small undamped vibration (4.8)-(4.11), each axis on its own.
 
-Per axis the linearised (4.3)-(4.4) is M0 q'' + C0 q = 0: a chain of N masses whose first link is the pendulum stiffness
+Per axis the linearized (4.3)-(4.4) is M0 q'' + C0 q = 0: a chain of N masses whose first link is the pendulum stiffness
 of the isolator. A general eigensolver gets the low frequencies of a long or stiff chain wrong by eps * condition, so
 the chain is kept as its factor: C0 = D^T diag(k) D with D the elongation of each link, hence
 M0^-1/2 C0 M0^-1/2 = L^T L with L = diag(k)^1/2 D M0^-1/2 bidiagonal, its entries free of subtraction. The frequencies
@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh_tridiagonal
 
-from reference.problem.scene import GRAVITY, Scene
+from reference.problem import GRAVITY, Scene
 
 Array = NDArray[np.float64]
 
@@ -26,13 +26,18 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class Modes:
     """
-    Modes of a chain of N bodies; axis 0 is x, 1 is y; modes in order of rising frequency.
+    Modes of a chain of N bodies, in order of rising frequency; axis 0 is x, 1 is y.
 
-    frequency: (2, N), rad/s, omega_ix and omega_iy of (4.8), each to about 1e-13 of itself.
-    shape: (2, N, N), kg^-1/2, shape[axis, body, mode], the vectors X_i, Y_j of (4.10)-(4.11), scaled to unit modal mass
-    (shape^T M0 shape = identity) and signed so that the participation factor is not negative.
-    participation: (2, N), kg^1/2, shape^T M0 1: modal force per unit ground acceleration, Gamma_i; its square is the
-    effective modal mass, and these add up to m_sum.
+    Attributes
+    ----------
+    frequency : ndarray, (2, N), rad/s
+        omega_ix and omega_iy of (4.8), each to about 1e-13 of itself.
+    shape : ndarray, (2, N, N), kg^-1/2
+        shape[axis, body, mode], the vectors X_i, Y_j of (4.10)-(4.11), scaled to unit modal mass (shape^T M0 shape =
+        identity) and signed so that the participation factor is not negative.
+    participation : ndarray, (2, N), kg^1/2
+        shape^T M0 1: modal force per unit ground acceleration, Gamma_i. Its square is the effective modal mass; these
+        add up to m_sum.
     """
 
     frequency: Array
@@ -64,9 +69,29 @@ def linear_stiffness(scene: Scene) -> Array:
 
 def modes(scene: Scene) -> Modes:
     """
-    Natural frequencies, shapes and participation factors (4.8)-(4.11) of the frictionless linearised chain.
+    Natural frequencies, shapes and participation factors of the frictionless linearized chain.
 
-    The friction of the scene does not enter. See `Modes` for shapes and units.
+    Parameters
+    ----------
+    scene : Scene
+        Its friction and its loading do not enter.
+
+    Returns
+    -------
+    Modes
+
+    Notes
+    -----
+    Equations (4.8)-(4.11), for each axis on its own.
+
+    Examples
+    --------
+    >>> import reference
+    >>> natural = reference.modes(reference.load_scene("fig3-I"))
+    >>> natural.period.shape
+    (2, 2)
+    >>> round(float(natural.effective_mass[0].sum()), 12)  # kg, the mass of both bodies
+    2.0
     """
     per_axis = [_axis(scene.masses, stiffness) for stiffness in linear_stiffness(scene).T]
     frequency, shape, participation = (np.stack(parts) for parts in zip(*per_axis))

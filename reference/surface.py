@@ -1,4 +1,4 @@
-"""The amplification surface: every phase pair solved and certified, on all threads."""
+"""The amplification surface: mu with its error estimate for every phase pair, on all threads."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.closed_form.frictionless import frictionless_peaks
+from reference.analytical.frictionless import frictionless_peaks
 from reference.problem import (
     GRAVITY,
     Amplification,
@@ -32,7 +32,7 @@ from reference.problem.ranges import (
     checked_choice,
     checked_number,
 )
-from reference.solver.certified import NOT_MET, Peaks, certified_peaks
+from reference.solver.error_estimate import NOT_MET, Peaks, peaks_with_error
 from reference.solver.system import (
     OPEN,
     PAINLEVE,
@@ -55,13 +55,13 @@ OUTCOMES = {
     STEP_LIMIT: Outcome.STEP_LIMIT,
     UNSOLVED: Outcome.SOLVER_FAILED,
 }
-STEPS_PER_PERIOD = 1000  # a run in trouble ends after so many steps per loading period, and FIRST_STEPS more
+STEPS_PER_PERIOD = 1000  # a run in trouble ends after so many steps per loading period, and BASE_STEPS more
 STEPS_PER_KNOT = 10  # of a record, besides
-STEPS_PER_VIBRATION, MOST_FOR_VIBRATIONS = 30, 300_000  # of the chain's fastest, besides
-VIBRATIONS = 10.0  # of the chain during which forces hardly change: stiff links follow without swinging
-FIRST_STEPS = 20_000
-MOST_STEPS = 3_000_000  # half a minute for two bodies
-PARTS = 8  # pieces of the surface per thread, so that none waits long for another
+STEPS_PER_VIBRATION, MAX_VIBRATION_STEPS = 30, 300_000  # of the chain's fastest, besides
+VIBRATIONS_PER_TIME_SCALE = 10.0  # of the chain during which forces hardly change: stiff links follow without swinging
+BASE_STEPS = 20_000
+MAX_STEPS = 3_000_000  # half a minute for two bodies
+PARTS_PER_THREAD = 8  # pieces of the surface per thread, so that none waits long for another
 
 
 def amplification(
@@ -75,18 +75,51 @@ def amplification(
     full: bool = False,
 ) -> Amplification:
     """
-    Amplification factors mu_i (5.1) by the paper's equations, from rest, with certified errors.
+    Amplification factors mu_i of (5.1) by the paper's equations, from rest, with error estimates.
 
-    phases: (M, 2), rad. equations: "exact" (3.9)-(3.13) or "small" (4.3)-(4.4). regularization: v_reg, m/s, below
-    which dry friction is linear, or None for the set-valued law; a lubricated scene needs none. tolerance: relative
-    error asked of every mu. cutoff: v_c, m/s, of the resolved peak (set-valued law only), or None for the supremum with
-    its one-sided limits. rest_condition: "consistent", or "printed" for (4.6) as it stands. full: integrate every
-    motion, even where the scene does not require it (reference.problem.reductions). The range of every argument stands
-    in `reference.problem.ranges`.
+    Parameters
+    ----------
+    scene : Scene
+    phases : array_like, (M, 2), rad
+        Initial phases (alpha_1, alpha_2) of the loading.
+    equations : {"exact", "small"}
+        (3.9)-(3.13), or the equations of small vibration (4.3)-(4.4).
+    regularization : float, optional, m/s
+        v_reg: dry friction is linear below this speed. None takes the set-valued law. A lubricated scene needs none.
+    tolerance : float
+        Relative error asked of every mu.
+    cutoff : float, optional, m/s
+        v_c of the resolved peak: only rest and sliding faster than v_c count. None takes the supremum with its
+        one-sided limits. With the set-valued law only.
+    rest_condition : {"consistent", "printed"}
+        "printed" takes (4.6) as it stands in the paper.
+    full : bool
+        Integrate every motion, even where the scene does not require it (`reference.problem.reductions`).
 
-    Returns mu and error (M, N), status, instant and cap_share (M,), cost. Statuses: ok; tolerance not met (mu and its
-    larger error are given); and with mu NaN: rim reached (4.1), contact lost, painleve paradox, non-finite load, no
-    ground motion, step limit, solver failed. Raises ValueError for arguments outside these rules.
+    Returns
+    -------
+    Amplification
+        A point without an answer is NaN; its status says why. The other points do not depend on it.
+
+    Raises
+    ------
+    ValueError
+        For an argument outside its range (`reference.problem.ranges`), in one line.
+
+    Notes
+    -----
+    Every run is made twice with different tolerances; docs/reference.md says how the error follows from both. Statuses
+    are the values of `Outcome`: "ok"; "tolerance not met", with mu and its larger error; the others come with mu NaN.
+
+    Examples
+    --------
+    >>> import reference
+    >>> scene = reference.load_scene("fig4-dry")
+    >>> result = reference.amplification(scene, [(0.3, 1.1)], equations="small", tolerance=1e-4)
+    >>> result.mu.shape, str(result.status[0])
+    ((1, 2), 'ok')
+    >>> bool((result.error <= 1e-4 * result.mu).all())
+    True
     """
     pairs = checked_phases(phases)
     flat = not full and rest_condition == "consistent" and planar(scene).allowed  # (4.6) as printed knows directions
@@ -107,8 +140,12 @@ def amplification(
         shaken = ground >= LEAST_ACCELERATION
         status[part] = Outcome.NO_GROUND_MOTION.value
         places = np.arange(count)[part][shaken]
-        some = pairs[places]
-        peaks = superposed(scene, system, some, demand) if summed else certified_peaks(system, some, demand)
+        moving_pairs = pairs[places]
+        peaks = (
+            superposed(scene, system, moving_pairs, demand)
+            if summed
+            else peaks_with_error(system, moving_pairs, demand)
+        )
         outcomes = np.array([OUTCOMES[int(code)] for code in peaks.code], dtype=object)
         outcomes[(outcomes == Outcome.OK) & ~np.isfinite(peaks.value).all(axis=1)] = Outcome.SOLVER_FAILED
         known = (outcomes == Outcome.OK) | (outcomes == Outcome.TOLERANCE_NOT_MET)
@@ -126,7 +163,7 @@ def amplification(
     else:
         solve(slice(0, 1))  # compiled once, before the threads need it
         with ThreadPoolExecutor(threads) as pool:
-            cost = sum(pool.map(solve, parts(count, PARTS * threads)))
+            cost = sum(pool.map(solve, parts(count, PARTS_PER_THREAD * threads)))
     return Amplification(mu, error, status, instant, cost, cap_share)
 
 
@@ -135,15 +172,15 @@ def superposed(scene: Scene, system: System, phases: Array, demand: Demand) -> P
     value, error, reach, at_rim = frictionless_peaks(scene, phases)
     met = (error <= demand.tolerance * value).all(axis=1)
     nothing = np.zeros(len(phases))
-    found = Peaks(value, error, np.where(met, SOLVED, NOT_MET), nothing, nothing.copy(), reach)
+    peaks = Peaks(value, error, np.where(met, SOLVED, NOT_MET), nothing, nothing.copy(), reach)
     if at_rim.any():  # whether it does, and when, is for the run to say
-        for whole, ran in zip(found, certified_peaks(system, phases[at_rim], demand)):
+        for whole, ran in zip(peaks, peaks_with_error(system, phases[at_rim], demand)):
             whole[at_rim] = ran
-    return found
+    return peaks
 
 
 def parts(count: int, pieces: int) -> Iterator[slice]:
-    """`count` points cut into at most `pieces` runs of neighbours."""
+    """`count` points cut into at most `pieces` runs of neighbors."""
     size = max(1, -(-count // pieces))
     return (slice(first, min(first + size, count)) for first in range(0, count, size))
 
@@ -157,7 +194,26 @@ def checked_demand(
     rest_condition: str,
     axes: int = 2,
 ) -> tuple[System, Demand]:
-    """The scene in compiled form and what is asked of a run. Raises ValueError, one line, for a wrong argument."""
+    """
+    The scene in compiled form and what is asked of its runs.
+
+    Parameters
+    ----------
+    scene : Scene
+    equations, regularization, tolerance, cutoff, rest_condition
+        As in `amplification`.
+    axes : {2, 1}
+        1 for a motion in the plane of x and z.
+
+    Returns
+    -------
+    tuple of System and Demand
+
+    Raises
+    ------
+    ValueError
+        For an argument outside its range, in one line.
+    """
     checked_choice("equations", equations, ("exact", "small"))
     checked_choice("rest_condition", rest_condition, ("consistent", "printed"))
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
@@ -169,7 +225,7 @@ def checked_demand(
         raise ValueError(f"cutoff = {cutoff!r}: belongs to the set-valued law; give no regularization with it")
     system = pack(scene, equations == "small", regularization, rest_condition == "printed", axes)
     period, knots = loading_period(scene), STEPS_PER_KNOT * len(scene.record)
-    vibrations = min(STEPS_PER_VIBRATION * scene.duration * system.fastest / (2.0 * np.pi), MOST_FOR_VIBRATIONS)
+    vibrations = min(STEPS_PER_VIBRATION * scene.duration * system.fastest / (2.0 * np.pi), MAX_VIBRATION_STEPS)
     with np.errstate(over="ignore"):  # refused by loads_are_finite
         unit = float(np.sqrt((np.abs(system.amplitudes).sum(axis=1) ** 2).sum()))
         unit += float(np.sqrt((system.record[:, 1:] ** 2).sum(axis=1)).max(initial=0.0))
@@ -178,7 +234,7 @@ def checked_demand(
         unit=unit,
         period=time_scale(scene, unit, system.fastest),
         cutoff=0.0 if cutoff is None else cutoff,
-        step_limit=FIRST_STEPS + int(min(MOST_STEPS, STEPS_PER_PERIOD * scene.duration / period + vibrations + knots)),
+        step_limit=BASE_STEPS + int(min(MAX_STEPS, STEPS_PER_PERIOD * scene.duration / period + vibrations + knots)),
     )
 
 
@@ -186,14 +242,17 @@ def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
     """
     Time in which forces change, s, given the size of the loading, m/s^2, and the chain's fastest vibration, rad/s.
 
-    The shortest of the loading's and the pendulum's periods, the softest link's, VIBRATIONS of the fastest, the decay
-    of the loading, and the time in which it drives the platform across the cap.
+    The shortest of the loading's and the pendulum's periods, the softest link's, VIBRATIONS_PER_TIME_SCALE of the
+    fastest, the decay of the loading, and the time in which it drives the platform across the cap.
     """
     frequencies = [2.0 * np.pi / loading_period(scene), float(np.sqrt((GRAVITY + acceleration) / scene.radius))]
     if not scene.recorded:
         frequencies += (-exponents(scene).real).tolist()
     if len(scene.bodies) > 1:
-        frequencies += [float(np.sqrt((scene.stiffness / scene.masses[1:, None]).min())), fastest / VIBRATIONS]
+        frequencies += [
+            float(np.sqrt((scene.stiffness / scene.masses[1:, None]).min())),
+            fastest / VIBRATIONS_PER_TIME_SCALE,
+        ]
     return float(2.0 * np.pi / max(frequencies))
 
 

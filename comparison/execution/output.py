@@ -297,6 +297,7 @@ def _put(staging_folder: Path, place: Path, say: Callable[[str], None]) -> Path:
                 kept = {name: own[name] for name, _ in _files(old) if name in own and own[name].command != REPORT}
         for name in kept:
             shutil.copy2(old / name, new / name)
+        _prune(new)
         mine = {name: Own(REPORT, (_hash(file.read_bytes()),)) for name, file in _files(new) if name not in kept}
         write_manifest(new, kept | mine)
         there = next(name for name in names_after(place) if not (why and name == place) and _renamed_to_free(new, name))
@@ -309,6 +310,13 @@ def _put(staging_folder: Path, place: Path, say: Callable[[str], None]) -> Path:
     if there != place:
         say(f"{str(place)!r} stays as it is ({why or 'it appeared meanwhile'}): the report is in {str(there)!r}")
     return there
+
+
+def _prune(new: Path) -> None:
+    """Remove the empty folders of a new report: no file in the manifest would prove that they are the study's own."""
+    for folder in reversed([path for path, is_folder in _inside(new) if is_folder]):
+        with suppress(OSError):
+            folder.rmdir()
 
 
 def _put_back(old: Path, place: Path) -> Path:

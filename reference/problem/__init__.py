@@ -1,6 +1,32 @@
-"""The question both sides answer: scene, loading, measured quantity. The only thing they share."""
+"""
+The question that both sides answer: scene, loading, measured quantity. The only package that they share.
 
-from reference.problem.amplification import checked_phase, checked_phases, ground_peak, phase_grid
+Functions
+---------
+load_scene, parse_scene, load_family                            scenes from a name, a file or a text
+builtin_scenes, example_scenes                                  names of the scenes that are shipped
+ground_acceleration, ground_velocity, ground_displacement       motion of the ground (5.2)-(5.4)
+exponents, loading_period                                       of the loading
+ground_peak                                                     denominator of (5.1)
+checked_phase, checked_phases, phase_grid                       phase pairs
+half_turn, own_axes, planar, planar_chain, linear, no_friction,
+untilted, even_ring, unused_harmonics, in_plane                 what a scene does not require
+verbatim                                                        a text of a scene for matplotlib
+
+Classes
+-------
+Scene, Family                       the system with its loading; the scenes of one file
+State, Amplification, Trajectory    arguments and results of both sides
+Outcome, Reduction, SceneError      why a point has no answer; why work is left out; what is wrong with a scene
+
+Constants
+---------
+GRAVITY    9.81 m/s^2, the paper's value (section 5)
+ADVICE     what to try, for every `Outcome`
+"""
+
+from reference.problem.constants import GRAVITY
+from reference.problem.definition import ground_peak
 from reference.problem.excitation import (
     exponents,
     ground_acceleration,
@@ -8,9 +34,10 @@ from reference.problem.excitation import (
     ground_velocity,
     loading_period,
 )
-from reference.problem.family import Family, load_family
+from reference.problem.families import Family, load_family
 from reference.problem.figure_text import verbatim
 from reference.problem.outcome import ADVICE, Outcome
+from reference.problem.phases import checked_phase, checked_phases, phase_grid
 from reference.problem.reductions import (
     Reduction,
     even_ring,
@@ -25,8 +52,9 @@ from reference.problem.reductions import (
     unused_harmonics,
 )
 from reference.problem.result import Amplification, State, Trajectory
-from reference.problem.scene import GRAVITY, Scene, builtin_scenes, example_scenes, load_scene, parse_scene
+from reference.problem.scene import Scene
 from reference.problem.scene_error import SceneError
+from reference.problem.scene_file import builtin_scenes, example_scenes, load_scene, parse_scene
 
 __all__ = [
     "ADVICE",

@@ -37,9 +37,9 @@ class StoppedError(KeyboardInterrupt):
 class OutputError(Exception):
     """Standard output takes nothing more. No OSError: it must not be taken for a file that cannot be written."""
 
-    def __init__(self, fault: OSError) -> None:
-        super().__init__(fault.strerror or str(fault))
-        self.closed = isinstance(fault, BrokenPipeError)
+    def __init__(self, error: OSError) -> None:
+        super().__init__(error.strerror or str(error))
+        self.closed = isinstance(error, BrokenPipeError)
 
 
 def run_command(main: Callable[[], int]) -> NoReturn:
@@ -95,14 +95,14 @@ class _Output:
     def write(self, text: str) -> int:
         try:
             return self._stream.write(text)
-        except OSError as fault:
-            raise OutputError(fault) from None
+        except OSError as error:
+            raise OutputError(error) from None
 
     def flush(self) -> None:
         try:
             self._stream.flush()
-        except OSError as fault:
-            raise OutputError(fault) from None
+        except OSError as error:
+            raise OutputError(error) from None
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
@@ -118,19 +118,19 @@ def _code(main: Callable[[], int]) -> int:
         code = main()
         sys.stdout.flush()
         return code
-    except SceneError as fault:
-        _say(str(fault))
+    except SceneError as error:
+        _say(str(error))
         return 2
     except KeyboardInterrupt as stop:
         _say("interrupted")
         return 128 + int(getattr(stop, "number", signal.SIGINT))
-    except OutputError as fault:
-        _say(f"standard output cannot be written: {fault}: the command ended early")
-        return CLOSED if fault.closed else UNEXPECTED
+    except OutputError as error:
+        _say(f"standard output cannot be written: {error}: the command ended early")
+        return CLOSED if error.closed else UNEXPECTED
     except SystemExit as end:  # of argparse
         return _after_exit(end)
-    except Exception as fault:
-        what = " ".join(f"{type(fault).__name__}: {fault}".split())
+    except Exception as error:
+        what = " ".join(f"{type(error).__name__}: {error}".split())
         _say(f"unexpected error: {what[:500]}; {_details()}")
         return UNEXPECTED
 
@@ -139,9 +139,9 @@ def _after_exit(end: SystemExit) -> int:
     """The code of a parser that ends the process by itself, when what it printed is out."""
     try:
         sys.stdout.flush()
-    except OutputError as fault:
-        _say(f"standard output cannot be written: {fault}")
-        return CLOSED if fault.closed else UNEXPECTED
+    except OutputError as error:
+        _say(f"standard output cannot be written: {error}")
+        return CLOSED if error.closed else UNEXPECTED
     return end.code if isinstance(end.code, int) else 0 if end.code is None else UNEXPECTED
 
 
@@ -152,8 +152,8 @@ def _details() -> str:
         handle, name = tempfile.mkstemp(prefix="phase-resonance-", suffix=".log")
         with os.fdopen(handle, "w", encoding="utf-8", errors="backslashreplace") as file:
             file.write(text)
-    except OSError as fault:
-        return f"the details could not be written: {fault.strerror}"
+    except OSError as error:
+        return f"the details could not be written: {error.strerror}"
     return f"details: {name}"
 
 

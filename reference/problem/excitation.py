@@ -14,13 +14,35 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.problem.scene import Excitation, Scene
+from reference.problem.scene import Scene
+from reference.problem.tables import Excitation
 
 Array = NDArray[np.float64]
 
 
 def exponents(scene: Scene) -> NDArray[np.complex128]:
-    """Complex exponents s_i = -lambda_i + i nu_i of the harmonics, (2,), 1/s. Raises ValueError for a record."""
+    """
+    Complex exponents s_i = -lambda_i + i nu_i of the two harmonics.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    ndarray of complex, (2,), 1/s
+
+    Raises
+    ------
+    ValueError
+        For a recorded motion, which has no harmonics.
+
+    Examples
+    --------
+    >>> from reference.problem import load_scene
+    >>> exponents(load_scene("fig3-I")).imag.round(3).tolist()  # rad/s
+    [6.981, 5.712]
+    """
     load = scene.excitation
     if not isinstance(load, Excitation):
         raise ValueError(f"{scene.name}: a recorded motion has no harmonics")
@@ -29,8 +51,23 @@ def exponents(scene: Scene) -> NDArray[np.complex128]:
 
 def loading_period(scene: Scene) -> float:
     """
-    Time in which the ground acceleration changes, s: the shorter period, or 2 pi times the largest acceleration of the
-    record over its largest rate; the duration if a record is zero throughout.
+    Time in which the ground acceleration changes.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    float, s
+        The shorter of the two periods. Of a record, 2 pi times its largest acceleration over its largest rate; the
+        duration if a record is zero throughout.
+
+    Examples
+    --------
+    >>> from reference.problem import load_scene
+    >>> loading_period(load_scene("fig3-I"))
+    0.9
     """
     if isinstance(scene.excitation, Excitation):
         return min(scene.excitation.periods)
@@ -42,14 +79,52 @@ def loading_period(scene: Scene) -> float:
 
 
 def ground_acceleration(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
-    """Plate acceleration (xi'', eta'', zeta'') (5.3) at `time` (T,), s, for one phase pair (2,), rad: (T, 3), m/s^2."""
+    """
+    Acceleration of the plate, (xi'', eta'', zeta'') of (5.3), or of the record.
+
+    Parameters
+    ----------
+    scene : Scene
+    phase : array_like, (2,), rad
+        A recorded motion has no phases: they change nothing.
+    time : array_like, (T,), s
+
+    Returns
+    -------
+    ndarray, (T, 3), m/s^2
+
+    Examples
+    --------
+    >>> from reference.problem import load_scene
+    >>> ground_acceleration(load_scene("fig3-I"), (0.0, 0.0), [0.0])[0].tolist()
+    [1.0, 1.0, 0.0]
+    """
     if scene.recorded:
         return _integrated(scene.record, time, 0)
     return _superpose(scene, phase, np.exp(np.multiply.outer(np.asarray(time, float), exponents(scene))))
 
 
 def ground_velocity(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
-    """Plate velocity, (T, 3), m/s, zero at t = 0: the first integral of `ground_acceleration`."""
+    """
+    Velocity of the plate, the first integral of `ground_acceleration` from rest at t = 0.
+
+    Parameters
+    ----------
+    scene : Scene
+    phase : array_like, (2,), rad
+        A recorded motion has no phases: they change nothing.
+    time : array_like, (T,), s
+
+    Returns
+    -------
+    ndarray, (T, 3), m/s
+
+    Examples
+    --------
+    >>> from reference.problem import load_scene
+    >>> ground_velocity(load_scene("fig3-I"), (0.0, 0.0), [0.0])[0].tolist()
+    [0.0, 0.0, 0.0]
+    """
     if scene.recorded:
         return _integrated(scene.record, time, 1)
     s = exponents(scene)
@@ -57,7 +132,26 @@ def ground_velocity(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
 
 
 def ground_displacement(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
-    """Plate displacement, (T, 3), m, zero with zero velocity at t = 0: the second integral."""
+    """
+    Displacement of the plate, the second integral of `ground_acceleration` from rest at t = 0.
+
+    Parameters
+    ----------
+    scene : Scene
+    phase : array_like, (2,), rad
+        A recorded motion has no phases: they change nothing.
+    time : array_like, (T,), s
+
+    Returns
+    -------
+    ndarray, (T, 3), m
+
+    Examples
+    --------
+    >>> from reference.problem import load_scene
+    >>> ground_displacement(load_scene("fig3-I"), (0.0, 0.0), [0.0])[0].tolist()
+    [0.0, 0.0, 0.0]
+    """
     if scene.recorded:
         return _integrated(scene.record, time, 2)
     t = np.asarray(time, float)

@@ -6,7 +6,16 @@ from enum import StrEnum
 
 
 class Outcome(StrEnum):
-    """How the run of one phase pair ended. Anything but OK means that `mu` is NaN or its error above the tolerance."""
+    """
+    How the run of one phase pair ended.
+
+    Anything but OK means that `mu` is NaN or its error above the tolerance. `ADVICE` has what to try.
+
+    Examples
+    --------
+    >>> Outcome.RIM_REACHED == "rim reached"
+    True
+    """
 
     OK = "ok"
     TOLERANCE_NOT_MET = "tolerance not met"

@@ -58,7 +58,7 @@ SCENE: dict[str, Range] = {
     "excitation.periods": Range(1e-9, 1e12, "s"),
     "excitation.decay": Range(0.0, 1e12, "1/s"),
 }
-MOST_CYCLES = 1e6  # of the loading's shortest period, and of the pendulum's, in the duration
+MAX_CYCLES = 1e6  # of the loading's shortest period, and of the pendulum's, in the duration
 
 # rad; beyond, neighboring double-precision numbers are more than 1.2e-10 rad apart, the strictest tolerance
 PHASE = Range(-1e6, 1e6, "rad")

@@ -2,7 +2,7 @@
 Recorded accelerograms: CSV, all directions in one file, and PEER NGA .AT2, one direction per file.
 
 Both end as samples (K, 4): time from the first sample on, s, and acceleration along x, y, z, m/s^2, zero along a
-direction that was not recorded. What is between samples is said by `excitation.py`.
+direction that was not recorded. `excitation.py` defines the motion between samples.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.problem.constants import GRAVITY
 from reference.problem.ranges import brief
 
 Array = NDArray[np.float64]
 
-GRAVITY = 9.81  # m/s^2, the paper's value (section 5): a record in g keeps its ratio to the weight
 AXES = ("x", "y", "z")
 COLUMNS = ("time", "ax", "ay", "az")
 UNITS = {"m/s^2": 1.0, "m/s2": 1.0, "m/s²": 1.0, "m/s/s": 1.0, "g": GRAVITY, "cm/s^2": 0.01, "cm/s2": 0.01}
@@ -29,15 +29,15 @@ UNITS |= {"cm/s²": 0.01, "gal": 0.01}
 COLUMN = re.compile(r"(\w+)\s*(?:[\[(]\s*(.*?)\s*[\])])?")
 NEW_HEADER = re.compile(r"NPTS\s*=\s*([^\s,]+)[\s,]+DT\s*=\s*([^\s,]+)", re.IGNORECASE)
 OLD_HEADER = re.compile(r"([^\s,]+)[\s,]+([^\s,]+)[\s,]+NPTS[\s,]+DT", re.IGNORECASE)
-MOST_HEADER_LINES = 20
+MAX_HEADER_LINES = 20
 UNIT_LINE = re.compile(r"\bUNITS\b", re.IGNORECASE)
 UNIT_OF_G = re.compile(r"\bUNITS\s*(?:OF|ARE|:|=)?\s*(?:G|\(G\)|\[G\])\s*(?:\.(?:\s.*)?)?", re.IGNORECASE)
 NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?", re.IGNORECASE | re.ASCII)
 NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE | re.ASCII)
-MOST_DIGITS = 9  # of NPTS
-LARGEST = 1e300  # finite in any unit
-SHORTEST_INTERVAL = 1e-9  # s, between samples
-SAME_STEP = 1e-6  # relative: DT is printed with four to six digits
+MAX_COUNT_DIGITS = 9  # of NPTS
+MAX_ACCELERATION = 1e300  # finite in any unit
+MIN_INTERVAL = 1e-9  # s, between samples
+STEP_MISMATCH = 1e-6  # relative: DT is printed with four to six digits
 
 
 class RecordError(ValueError):
@@ -84,7 +84,7 @@ def at2_samples(texts: Mapping[str, str]) -> Array:
     for axis, text in texts.items():
         steps[axis], values[axis] = _at2(axis, text)
     for (first, step), (second, other) in pairwise(steps.items()):
-        if abs(step - other) > SAME_STEP * step:
+        if abs(step - other) > STEP_MISMATCH * step:
             raise RecordError(f"DT = {step:g} s along {first} and {other:g} s along {second}: must be the same")
     samples = np.zeros((max(map(len, values.values())), 4))
     samples[:, 0] = next(iter(steps.values())) * np.arange(len(samples))
@@ -96,20 +96,20 @@ def at2_samples(texts: Mapping[str, str]) -> Array:
 def _at2(axis: str, text: str) -> tuple[float, Array]:
     """DT, s, and the accelerations of one file, in g."""
     lines = text.splitlines()
-    found = next(((row, match) for row, line in enumerate(lines[:MOST_HEADER_LINES]) if (match := _sizes(line))), None)
-    if found is None:
-        _check_unit(axis, lines[:MOST_HEADER_LINES])
+    counts = next(((row, match) for row, line in enumerate(lines[:MAX_HEADER_LINES]) if (match := _sizes(line))), None)
+    if counts is None:
+        _check_unit(axis, lines[:MAX_HEADER_LINES])
         raise RecordError(f"{axis}: the header must have a line 'NPTS= 1000, DT= .0100 SEC'")
-    last, sizes = found
-    while last + 1 < min(len(lines), MOST_HEADER_LINES) and not _begins_with_a_number(lines[last + 1]):
+    last, sizes = counts
+    while last + 1 < min(len(lines), MAX_HEADER_LINES) and not _begins_with_a_number(lines[last + 1]):
         last += 1
     _check_unit(axis, lines[: last + 1])
     count, step = sizes.groups()
-    whole = count.isascii() and count.isdecimal() and len(count) <= MOST_DIGITS
+    whole = count.isascii() and count.isdecimal() and len(count) <= MAX_COUNT_DIGITS
     if not (whole and int(count) > 0):
-        rule = f"must be a whole number greater than 0 of at most {MOST_DIGITS} digits"
+        rule = f"must be a whole number greater than 0 of at most {MAX_COUNT_DIGITS} digits"
         raise RecordError(f"{axis}: NPTS = {brief(count)}: {rule}")
-    spacing = _number(found[0] + 1, step)
+    spacing = _number(counts[0] + 1, step)
     if spacing <= 0.0:
         raise RecordError(f"{axis}: DT = {step} s: must be greater than 0")
     values = [
@@ -126,8 +126,8 @@ def _check_unit(axis: str, header: list[str]) -> None:
     for line in lines or [""]:
         at = UNIT_LINE.search(line)
         if at is None or not UNIT_OF_G.fullmatch(line[at.start() :]):
-            said = f": {brief(line)}" if line else ""
-            raise RecordError(f"{axis}: the header names no unit that is known{said}: must say 'IN UNITS OF G'")
+            quoted = f": {brief(line)}" if line else ""
+            raise RecordError(f"{axis}: the header names no unit that is known{quoted}: must say 'IN UNITS OF G'")
 
 
 def _sizes(line: str) -> re.Match[str] | None:
@@ -142,8 +142,8 @@ def _begins_with_a_number(line: str) -> bool:
 def _cells(number: int, line: str) -> list[str]:
     try:
         return [cell.strip() for cell in next(csv.reader(io.StringIO(line)))]
-    except csv.Error as fault:
-        raise RecordError(f"line {number}: {brief(line)}: {fault}") from None
+    except csv.Error as error:
+        raise RecordError(f"line {number}: {brief(line)}: {error}") from None
 
 
 def _column(line: int, cell: str) -> tuple[str, float]:
@@ -155,8 +155,8 @@ def _column(line: int, cell: str) -> tuple[str, float]:
     units = {"s": 1.0} if name == "time" else UNITS
     allowed = "time [s]" if name == "time" else f"{name} [m/s^2], {name} [g] or {name} [cm/s^2]"
     if unit not in units:
-        said = f"unknown unit {brief(match[2])}" if unit else "no unit"
-        raise RecordError(f"line {line}: column {brief(cell)}: {said}: write {allowed}")
+        quoted = f"unknown unit {brief(match[2])}" if unit else "no unit"
+        raise RecordError(f"line {line}: column {brief(cell)}: {quoted}: write {allowed}")
     return name, units[unit]
 
 
@@ -166,8 +166,8 @@ def _number(line: int, cell: str) -> float:
     if not NUMBER.fullmatch(cell):
         raise RecordError(f"line {line}: {brief(cell)}: must be a number")
     value = float(cell)
-    if abs(value) > LARGEST:
-        raise RecordError(f"line {line}: {brief(cell)}: must be finite, at most {LARGEST:g} in size")
+    if abs(value) > MAX_ACCELERATION:
+        raise RecordError(f"line {line}: {brief(cell)}: must be finite, at most {MAX_ACCELERATION:g} in size")
     return value
 
 
@@ -176,6 +176,6 @@ def _checked(samples: Array) -> Array:
         raise RecordError(f"{len(samples)} samples: must have at least 2")
     samples[:, 0] -= samples[0, 0]
     shortest = float(np.diff(samples[:, 0]).min())
-    if shortest < SHORTEST_INTERVAL:
-        raise RecordError(f"{shortest:g} s from sample to sample: must be at least {SHORTEST_INTERVAL:g} s")
+    if shortest < MIN_INTERVAL:
+        raise RecordError(f"{shortest:g} s from sample to sample: must be at least {MIN_INTERVAL:g} s")
     return samples

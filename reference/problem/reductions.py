@@ -12,19 +12,30 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from reference.problem.constants import GRAVITY
 from reference.problem.excitation import exponents
-from reference.problem.scene import GRAVITY, Scene
+from reference.problem.scene import Scene
 
-FASTEST = 2e5  # rad in the whole motion: links that vibrate more often are stepped over at less cost than summed up
+# rad in the whole motion: links that vibrate more often are integrated at less cost than summed
+MAX_VIBRATION_ANGLE = 2e5
 RECORDED = "a recorded motion: no harmonics, no phases"
 
-LARGEST = 1e300  # m/s^2
-INSIDE = 2.0  # of the shift of the supports' load on a level sphere: covers a sphere that is not level
+MAX_TURNABLE_ACCELERATION = 1e300  # m/s^2: larger amplitudes may overflow when turned
+LOAD_SHIFT_FACTOR = 2.0  # times the shift of the supports' load on a level sphere: covers a sphere that is not level
 
 
 @dataclass(frozen=True)
 class Reduction:
-    """One thing that may be left out. allowed: whether this scene lets it; reason: why, or what forbids it."""
+    """
+    One thing that may be left out. True where it may.
+
+    Attributes
+    ----------
+    allowed : bool
+        Whether the scene lets it be left out.
+    reason : str
+        Why, or what forbids it.
+    """
 
     allowed: bool
     reason: str
@@ -34,7 +45,23 @@ class Reduction:
 
 
 def half_turn(scene: Scene) -> Reduction:
-    """Adding pi to both phases turns the motion by half a turn about the vertical: same mu."""
+    """
+    Adding pi to both phases turns the motion by half a turn about the vertical: same mu.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Reduction
+
+    Examples
+    --------
+    >>> from reference.problem import load_scene
+    >>> bool(half_turn(load_scene("fig3-I")))
+    True
+    """
     if scene.recorded:
         return Reduction(False, RECORDED)
     if scene.amplitudes[2].any():
@@ -43,7 +70,23 @@ def half_turn(scene: Scene) -> Reduction:
 
 
 def own_axes(scene: Scene) -> Reduction:
-    """Adding pi to either phase alone mirrors the motion: same mu."""
+    """
+    Adding pi to either phase alone mirrors the motion: same mu.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Reduction
+
+    Examples
+    --------
+    >>> from reference.problem import load_scene
+    >>> bool(own_axes(load_scene("fig3-I"))), bool(own_axes(load_scene("fig3-II")))
+    (True, False)
+    """
     if not half_turn(scene):
         return half_turn(scene)
     used = scene.amplitudes[:2] != 0.0
@@ -56,11 +99,27 @@ def own_axes(scene: Scene) -> Reduction:
 
 def untilted(scene: Scene) -> Reduction:
     """
-    Nothing turns the body of the spatial model: assumption (vi) holds, it moves like the translational one.
+    Nothing turns the body of the spatial model: assumption (vi) holds, and it moves like the translational one.
 
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Reduction
+
+    Notes
+    -----
     All contact forces on a body that does not turn are parallel, so a single body is in balance with them at unequal
     shares: at height 0 the supports' center of load is off by at most friction times R, and must stay inside the ring.
     The weight of a second body shifts with its displacement across the direction of sliding, and turns the platform.
+
+    Examples
+    --------
+    >>> from reference.problem import load_scene
+    >>> untilted(load_scene("fig3-I")).reason
+    'bodies above the platform: their weight shifts, tilts and twists it'
     """
     isolator = scene.isolator
     if isolator.supports is None or isolator.ring is None or isolator.sphere_radius is None:
@@ -75,17 +134,33 @@ def untilted(scene: Scene) -> Reduction:
         if scene.lubricated:
             return Reduction(False, "lubricated: the friction that shifts the supports' load has no limit")
         shift = scene.friction_coefficient * (scene.radius + isolator.sphere_radius)
-        if not INSIDE * shift <= isolator.ring * math.cos(math.pi / isolator.supports):
+        if not LOAD_SHIFT_FACTOR * shift <= isolator.ring * math.cos(math.pi / isolator.supports):
             return Reduction(False, "a narrow ring: friction may lift the platform off a support")
     return Reduction(True, "one body, its center level with the depressions: it does not turn")
 
 
 def planar(scene: Scene) -> Reduction:
-    """The motion stays in one vertical plane (4.7): half of the horizontal coordinates are enough (`in_plane`)."""
+    """
+    The motion stays in one vertical plane (4.7): half of the horizontal coordinates are enough (`in_plane`).
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Reduction
+
+    Examples
+    --------
+    >>> from reference.problem import load_scene
+    >>> planar(load_scene("fig3-I")).reason
+    'the harmonics act in different directions'
+    """
     if scene.recorded:
         return Reduction(False, RECORDED)
     x, y = scene.amplitudes[:2]
-    if not np.abs(scene.amplitudes).max() < LARGEST:
+    if not np.abs(scene.amplitudes).max() < MAX_TURNABLE_ACCELERATION:
         return Reduction(False, "loads that may overflow when turned")
     if not (x.any() and y.any()):
         return Reduction(True, "loading along one axis: the motion stays in its plane")
@@ -99,14 +174,47 @@ def planar(scene: Scene) -> Reduction:
 
 
 def planar_chain(scene: Scene) -> Reduction:
-    """The bodies above the platform need no coordinates across the plane of motion."""
+    """
+    The bodies above the platform need no coordinates across the plane of motion.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Reduction
+
+    Examples
+    --------
+    >>> from reference.problem import load_scene
+    >>> bool(planar_chain(load_scene("fig3-I")))
+    False
+    """
     if len(scene.bodies) == 1:
         return Reduction(False, "one body: none above it whose coordinates could be left out")
     return planar(scene)
 
 
 def in_plane(scene: Scene) -> Scene:
-    """A planar scene turned about the vertical so that its loading acts along x: the same mu for every body."""
+    """
+    A planar scene turned about the vertical so that its loading acts along x: the same mu for every body.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Scene
+
+    Examples
+    --------
+    >>> from reference.problem import load_scene
+    >>> along_y = load_scene("fig3-I").with_values({"excitation.amplitudes": [[0.0, 0.0], [1.0, 0.5]]})
+    >>> in_plane(along_y).amplitudes[0].tolist()
+    [1.0, 0.5]
+    """
     table = scene.model_dump(exclude_none=True)
     horizontal = scene.amplitudes[:2]
     if not horizontal[0].any():  # along y: the links' y becomes their x
@@ -121,24 +229,73 @@ def in_plane(scene: Scene) -> Scene:
 
 
 def even_ring(scene: Scene) -> Reduction:
-    """Supports and boxes of the spatial model are their own mirror images: it has the symmetries of the loading."""
+    """
+    Supports and boxes of the spatial model are their own mirror images: it has the symmetries of the loading.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Reduction
+
+    Examples
+    --------
+    >>> from reference.problem import load_scene
+    >>> bool(even_ring(load_scene("fig3-I")))
+    True
+    """
     supports = scene.isolator.supports or 0
     if supports % 2 or supports == 0:
         return Reduction(False, "an odd number of supports: a turned or mirrored ring is another one")
     return Reduction(
-        True, "an even number of supports on a ring, boxes centred above it: both are mirror images of themselves"
+        True, "an even number of supports on a ring, boxes centered above it: both are mirror images of themselves"
     )
 
 
 def unused_harmonics(scene: Scene) -> list[int]:
-    """Harmonics without any amplitude (0, 1): their phase changes nothing. Of a record none is left."""
+    """
+    Harmonics without any amplitude: their phase changes nothing. A record uses neither phase.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    list of int
+        0 for alpha_1, 1 for alpha_2.
+
+    Examples
+    --------
+    >>> from reference.problem import load_scene
+    >>> unused_harmonics(load_scene("synthetic-pair"))
+    [0, 1]
+    """
     if scene.recorded:
         return [0, 1]
     return [int(harmonic) for harmonic in np.flatnonzero(~scene.amplitudes.any(axis=0))]
 
 
 def no_friction(scene: Scene) -> Reduction:
-    """No law of friction is left to regularise or to resolve: such models are the exact equations over again."""
+    """
+    No law of friction is left to regularize or to resolve: such models repeat the exact equations.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Reduction
+
+    Examples
+    --------
+    >>> from reference.problem import load_scene
+    >>> bool(no_friction(load_scene("fig3-I").with_values({"isolator.friction": 0.0})))
+    True
+    """
     if scene.friction_coefficient > 0.0:
         return Reduction(False, "friction")
     return Reduction(True, "no friction: without it v_reg and v_c change nothing")
@@ -146,9 +303,25 @@ def no_friction(scene: Scene) -> Reduction:
 
 def linear(scene: Scene) -> Reduction:
     """
-    The small equations (4.3)-(4.4) are linear, and their motion is a sum of one complex motion per harmonic.
+    The small equations (4.3)-(4.4) are linear: their motion is a sum of one complex motion per harmonic.
 
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Reduction
+
+    Notes
+    -----
     A lubricated contact is not linear: R mu w = R f_c v is, but (4.3) keeps the term f_c u (p . v) / rho beside it.
+
+    Examples
+    --------
+    >>> from reference.problem import load_scene
+    >>> linear(load_scene("fig3-I")).reason
+    'dry friction is not linear'
     """
     if scene.lubricated and scene.friction_coefficient > 0.0:
         return Reduction(False, "lubricated: (4.3) keeps friction terms with xi'' x1 x1', which are not linear")
@@ -158,8 +331,8 @@ def linear(scene: Scene) -> Reduction:
         return Reduction(False, RECORDED)
     if scene.amplitudes[2].any():
         return Reduction(False, "vertical loading makes the pendulum's stiffness depend on time and phases")
-    if not fastest(scene) * scene.duration <= FASTEST:
-        return Reduction(False, f"more than {FASTEST:g} rad of the fastest vibration: cheaper to step over")
+    if not fastest(scene) * scene.duration <= MAX_VIBRATION_ANGLE:
+        return Reduction(False, f"more than {MAX_VIBRATION_ANGLE:g} rad of the fastest vibration: cheaper to step over")
     return Reduction(True, "no friction, no vertical loading: the small equations are linear, the surface is a sum")
 
 

@@ -15,10 +15,20 @@ class Amplification:
     """
     Dynamic amplification factors mu_i of (5.1) for M phase pairs and N bodies.
 
-    mu: (M, N), NaN where a point could not be solved. error: (M, N), estimated absolute error of mu.
-    status: (M,) strings, "ok" or another `Outcome`. instant: (M,), s, when the status arose, NaN where ok.
-    cost: s of compute, summed over processes and threads. cap_share: (M,), largest horizontal displacement of the
-    platform over rho, read between steps to 1e-3 of itself or better; NaN without an answer.
+    Attributes
+    ----------
+    mu : ndarray, (M, N)
+        NaN where a point has no answer.
+    error : ndarray, (M, N)
+        Estimated absolute error of mu.
+    status : ndarray of str, (M,)
+        "ok" or another value of `Outcome`.
+    instant : ndarray, (M,), s
+        When the status arose; NaN where it is "ok".
+    cost : float, s
+        Time of computing, summed over processes and threads.
+    cap_share : ndarray, (M,)
+        Largest horizontal displacement of the platform over rho, to 1e-3 of itself or better; NaN without an answer.
     """
 
     mu: Array
@@ -38,12 +48,27 @@ class Trajectory:
     """
     One motion in the plate's frame at T instants, N bodies, axes x, y, z.
 
-    time: (T,), s. position: (T, N, 3), m, displacement relative to the plate from the equilibrium position.
-    velocity: (T, N, 3), m/s. absolute_acceleration: (T, N, 3), m/s^2, acceleration plus ground acceleration.
-    contact_force: (T,), N, normal reaction of the isolator. stick: intervals (start, end), s, of rest.
-    status, instant: as in `Amplification`. extra: what only one model knows, by name. peak: (N,), m/s^2, largest
-    absolute acceleration of the run, found between the samples and at one-sided limits: mu of (5.1) is made of it. The
-    samples of `absolute_acceleration` miss it, by some percent at a stop or under a record. NaN if nothing was run.
+    Attributes
+    ----------
+    time : ndarray, (T,), s
+    position : ndarray, (T, N, 3), m
+        Displacement relative to the plate from the equilibrium position.
+    velocity : ndarray, (T, N, 3), m/s
+    absolute_acceleration : ndarray, (T, N, 3), m/s^2
+        Acceleration relative to the plate plus that of the ground.
+    contact_force : ndarray, (T,), N
+        Normal reaction of the isolator.
+    stick : list of (float, float), s
+        Start and end of every interval of rest.
+    status : str
+    instant : float, s
+        As in `Amplification`.
+    extra : dict of str to ndarray
+        What only one model has, by name.
+    peak : ndarray, (N,), m/s^2
+        Largest absolute acceleration of the run, found between the samples and at one-sided limits; mu of (5.1) follows
+        from it. The samples of `absolute_acceleration` miss it by some percent at a stop or under a record. NaN if
+        nothing was run.
     """
 
     time: Array
@@ -64,7 +89,19 @@ class Trajectory:
 
 @dataclass(frozen=True)
 class State:
-    """Initial displacement and velocity relative to the plate, (N, 2) each, m and m/s, axes x, y."""
+    """
+    Initial displacement and velocity relative to the plate, axes x and y.
+
+    Attributes
+    ----------
+    position : ndarray, (N, 2), m
+    velocity : ndarray, (N, 2), m/s
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> released = State(position=np.array([[0.05, 0.0], [0.05, 0.0]]), velocity=np.zeros((2, 2)))
+    """
 
     position: Array
     velocity: Array

@@ -10,12 +10,25 @@ from pydantic import ValidationError
 
 from reference.problem.ranges import brief
 
-LONGEST = 300  # letters of a path or a key in an error
-EXCITATIONS = ("two frequencies", "recorded motion")  # pydantic puts which was meant into the place of a fault
+MAX_LETTERS = 300  # letters of a path or a key in an error
+EXCITATIONS = ("two frequencies", "recorded motion")  # pydantic puts which was meant into the place of an error
 
 
 class SceneError(ValueError):
-    """A scene that cannot be used. `str(error)` is one line: file, key, value, rule."""
+    """
+    A scene that cannot be used. `str(error)` is one line: file, key, value, rule.
+
+    Parameters
+    ----------
+    file : str
+        Scene file or name.
+    key : str
+        Dotted key, as "isolator.friction".
+    value : object
+        What the scene has there.
+    rule : str
+        What it must be, or what to try.
+    """
 
     def __init__(self, file: str, key: str, value: Any, rule: str) -> None:
         self.file, self.key, self.value, self.rule = file, key, value, rule
@@ -26,7 +39,7 @@ class SceneError(ValueError):
 
 
 class MisfitError(ValueError):
-    """Values that are wrong together, found after each was valid alone; `first_fault` makes a SceneError of it."""
+    """Values that are wrong together, found after each was valid alone; `first_error` makes a SceneError of it."""
 
     def __init__(self, key: str, value: Any, rule: str) -> None:
         self.key, self.value, self.rule = key, value, rule
@@ -34,22 +47,22 @@ class MisfitError(ValueError):
 
 
 def one_line(text: str) -> str:
-    """The text, cut to LONGEST letters, or its Python literal if it would break the line."""
-    if len(text) > LONGEST:
-        text = f"{text[: LONGEST - 3]}..."
+    """The text, cut to MAX_LETTERS letters, or its Python literal if it would break the line."""
+    if len(text) > MAX_LETTERS:
+        text = f"{text[: MAX_LETTERS - 3]}..."
     return text if text.isprintable() else repr(text)
 
 
 def unknown_key(file: str, key: str, value: Any, valid: Sequence[str]) -> SceneError:
     """The error for the dotted `key` where the keys `valid` belong: it names the nearest of them."""
-    nearest = get_close_matches(key.rpartition(".")[2][:LONGEST], valid, n=2, cutoff=0.5)
-    way_out = f"did you mean {' or '.join(nearest)}?" if nearest else f"the keys here are {', '.join(valid)}"
-    return SceneError(file, key, value, f"unknown key; {way_out}")
+    nearest = get_close_matches(key.rpartition(".")[2][:MAX_LETTERS], valid, n=2, cutoff=0.5)
+    suggestion = f"did you mean {' or '.join(nearest)}?" if nearest else f"the keys here are {', '.join(valid)}"
+    return SceneError(file, key, value, f"unknown key; {suggestion}")
 
 
-def first_fault(file: str, fault: ValidationError, keys: Mapping[str, Sequence[str]]) -> SceneError:
-    """The first thing pydantic found wrong, in the words of the scene file; keys: those of every table, by its name."""
-    errors = fault.errors(include_url=False)
+def first_error(file: str, invalid: ValidationError, keys: Mapping[str, Sequence[str]]) -> SceneError:
+    """The first error that pydantic reports, in the words of the scene file. keys: of every table, by its name."""
+    errors = invalid.errors(include_url=False)
     # a misspelt key is unknown and its right name is missing: the first says more
     error = next((error for error in errors if error["type"] == "extra_forbidden"), errors[0])
     misfit = error.get("ctx", {}).get("error")

@@ -14,10 +14,11 @@ from pathlib import Path
 
 import numpy as np
 
-from reference.problem.record_files import GRAVITY, Array
+from reference.problem.constants import GRAVITY
+from reference.problem.record_files import Array
 
 PER_LINE = 5  # values in a line of an .AT2 file
-HOW = "Synthetic, made by this project, no measurement: velocity along axis k = 0, 1, 2 (x, y, z)"
+DESCRIPTION = "Synthetic, made by this project, no measurement: velocity along axis k = 0, 1, 2 (x, y, z)"
 FORMULA = (
     "sin^2(pi (t/T)^0.7) sum_j f_j^-0.5 sin(2 pi f_j t + 2 pi j (k+1) 0.618034), f_j = 0.5 1.3^j Hz, j = 0..11,"
     " T = {:g} s; its derivative, scaled to the peak"
@@ -43,7 +44,7 @@ def csv_text(duration: float, step: float, peaks: tuple[float, float]) -> str:
     time = step * np.arange(round(duration / step) + 1, dtype=float)
     columns = [time, *(acceleration(axis, time, peak) for axis, peak in enumerate(peaks))]
     rows = [",".join(f"{value:.6g}" for value in row) for row in zip(*columns)]
-    header = [f"# {HOW}", f"# {FORMULA.format(duration)}", "time [s],ax [m/s^2],ay [m/s^2]"]
+    header = [f"# {DESCRIPTION}", f"# {FORMULA.format(duration)}", "time [s],ax [m/s^2],ay [m/s^2]"]
     return "\n".join([*header, *rows]) + "\n"
 
 
@@ -52,7 +53,7 @@ def at2_text(axis: int, duration: float, step: float, peak: float) -> str:
     time = step * np.arange(round(duration / step) + 1, dtype=float)
     values = [f"{value:15.7E}" for value in acceleration(axis, time, peak) / GRAVITY]
     lines = ["".join(values[first : first + PER_LINE]) for first in range(0, len(values), PER_LINE)]
-    header = [HOW, FORMULA.format(duration), f"ACCELERATION TIME SERIES ALONG {'XYZ'[axis]} IN UNITS OF G"]
+    header = [DESCRIPTION, FORMULA.format(duration), f"ACCELERATION TIME SERIES ALONG {'XYZ'[axis]} IN UNITS OF G"]
     return "\n".join([*header, f"NPTS= {len(values):6d}, DT= {step:.4f} SEC,", *lines]) + "\n"
 
 

@@ -4,10 +4,8 @@ How the solver is compiled: numba, cached on disk under a hash of the solver's w
 Numba looks at the file of a function alone when it decides whether a cached build is still good, not at what it
 calls in other files. A build that belongs to all sources together cannot go stale.
 
-Sums are not reordered and products not fused with sums (no `fastmath`). What such freedom does depends on what the
-compiler has inlined and on the processor: with it mu differed in the eleventh digit between processors, and between the
-process that compiles, in which the parts compiled on the way stand in for their copies in the entry, and one that loads
-the build. Without it mu is the same to the last bit in all of them, for 2 to 5 % more time.
+Sums are not reordered and products are not fused with sums (no `fastmath`), so that mu is the same to the last bit in
+every process and on every processor: docs/decisions/0003-floating-point-flags.md.
 """
 
 from __future__ import annotations
@@ -31,8 +29,9 @@ def _cache_folder() -> str:
     for source in sorted(package.rglob("*.py")):
         digest.update(source.read_bytes())
     name = f"numba-{digest.hexdigest()[:12]}"
-    own = (package / "__pycache__", Path.home() / ".cache" / "phase-resonance", Path(tempfile.gettempdir()))
-    for parent in (Path(config.CACHE_DIR),) if config.CACHE_DIR else own:  # NUMBA_CACHE_DIR is the user's choice
+    default_parents = (package / "__pycache__", Path.home() / ".cache" / "phase-resonance", Path(tempfile.gettempdir()))
+    # NUMBA_CACHE_DIR is the user's choice
+    for parent in (Path(config.CACHE_DIR),) if config.CACHE_DIR else default_parents:
         try:
             parent.mkdir(parents=True, exist_ok=True)
         except OSError:
@@ -48,16 +47,16 @@ OPTIONS = {"error_model": "numpy", "nogil": True}
 
 
 def compiled(function: Callable[..., Any]) -> Any:
-    """A part of the solver, called by compiled code alone: it is built into the entry, and not wrapped for Python."""
+    """A part of the solver, called by compiled code alone: it is built into its caller and not wrapped for Python."""
     return njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)(function)
 
 
-def merged(function: Callable[..., Any]) -> Any:
-    """A part called in one place: its text becomes the caller's, which saves a round of optimizing all it calls."""
+def inlined(function: Callable[..., Any]) -> Any:
+    """A part called in one place: its body becomes part of the caller, which shortens compilation."""
     return njit(inline="always", **OPTIONS)(function)
 
 
-def entry(function: Callable[..., Any]) -> Any:
+def cached_entry_point(function: Callable[..., Any]) -> Any:
     """Compile `function` with everything it calls on first use, and keep the build on disk."""
     before = config.CACHE_DIR
     config.CACHE_DIR = CACHE_FOLDER

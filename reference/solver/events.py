@@ -6,11 +6,11 @@ import numpy as np
 
 from reference.solver.collocation import DENSE, DENSE_VALUES, MONOMIALS, STAGES
 from reference.solver.compiled import compiled
-from reference.solver.platform import rest_excess
+from reference.solver.contact.platform import rest_excess
 from reference.solver.system import Array, System, Work
 
-NEVER = 2.0
-SEARCHES = 30  # golden sections of two instants: a passing shorter than a millionth of the step moves nothing
+NEVER = 2.0  # theta of an event that is not within the step
+GOLDEN_SECTIONS = 30  # of two instants: an event shorter than a millionth of the step moves nothing
 BISECTIONS = 50
 
 
@@ -73,7 +73,7 @@ def first_crossing(values: Array, start: float, target: float) -> float:
     coefficients = powers_of(values)
     low, high = max(0.0, place - DENSE[1]), min(1.0, place + DENSE[1])
     begin = low
-    for _ in range(SEARCHES):
+    for _ in range(GOLDEN_SECTIONS):
         left, right = low + 0.382 * (high - low), high - 0.382 * (high - low)
         at_left = way * (value_at(coefficients, left) - target)
         at_right = way * (value_at(coefficients, right) - target)

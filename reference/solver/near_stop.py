@@ -13,30 +13,19 @@ from math import exp, log
 
 from reference.solver.collocation import NODES, STAGES, A
 from reference.solver.compiled import compiled
-from reference.solver.friction import heading, slip_vector
+from reference.solver.contact.friction import heading
+from reference.solver.contact.platform import directed
 from reference.solver.ground import ground_at
 from reference.solver.linear_solve import factorize, solve
-from reference.solver.platform import acceleration
 from reference.solver.steps import absolute_accelerations, beyond_rim
 from reference.solver.system import SLIDING, SOLVED, UNSOLVED, Array, System, Work
 
-ITERATIONS = 40
-SETTLED = 1e-13  # rad: rounding moves the angles by this much
-NUDGE = 1e-6  # rad, for the slope by the direction: Newton's method needs it to a few digits only
+MAX_ITERATIONS = 40  # of Newton's method
+ROUNDING_ANGLE = 1e-13  # rad: change of the angles by rounding alone
+DIRECTION_DIFFERENCE = 1e-6  # rad: step of the difference quotient by the direction, needed to a few digits only
 
 # rows of Work.turning
 DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, LOG_RATIO, SPEED, COSINE, SINE = range(11)
-
-
-@compiled
-def directed(
-    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, pressure: float,
-    speed: float, ex: float, ey: float,
-) -> tuple[float, float, float, float]:  # fmt: skip
-    """(ax, ay, reaction / m1, full over horizontal speed) when sliding in the direction (ex, ey) at any speed >= 0."""
-    sx, sy, ratio = slip_vector(px, py, ex, ey, system.friction, system.radius, system.small)
-    ax, ay, reaction, _ = acceleration(system, px, py, fx, fy, ux, uy, pressure, (speed * ratio) ** 2, sx, sy)
-    return ax, ay, reaction, ratio
 
 
 @compiled
@@ -65,7 +54,7 @@ def near_stop_step(
                 xs[i, axis, k] = x[i, axis]
                 a[i, axis, k] = work.a0[i, axis]
     reach = 0.0
-    for iteration in range(ITERATIONS):
+    for iteration in range(MAX_ITERATIONS):
         moved = 0.0
         for k in range(STAGES):
             turn[SPEED, k] = exp(turn[SIGMA, k])
@@ -110,13 +99,13 @@ def near_stop_step(
             if px * px + py * py >= system.radius**2:
                 return beyond_rim(system, work)
             ax, ay, reaction, ratio = directed(system, px, py, fx, fy, ux, uy, pressure, speed, ex, ey)
-            gx, gy = ex - NUDGE * ey, ey + NUDGE * ex
+            gx, gy = ex - DIRECTION_DIFFERENCE * ey, ey + DIRECTION_DIFFERENCE * ex
             bx, by, _, _ = directed(system, px, py, fx, fy, ux, uy, pressure, speed, gx, gy)
             a[0, 0, k], a[0, 1, k] = ax, ay
             turn[ALONG, k] = ax * ex + ay * ey
             turn[ACROSS, k] = ay * ex - ax * ey
-            turn[ALONG_SLOPE, k] = (bx * gx + by * gy - turn[ALONG, k]) / NUDGE
-            turn[ACROSS_SLOPE, k] = (by * gx - bx * gy - turn[ACROSS, k]) / NUDGE
+            turn[ALONG_SLOPE, k] = (bx * gx + by * gy - turn[ALONG, k]) / DIRECTION_DIFFERENCE
+            turn[ACROSS_SLOPE, k] = (by * gx - bx * gy - turn[ACROSS, k]) / DIRECTION_DIFFERENCE
             turn[LOG_RATIO, k] = log(ratio)
             stage[0, k], stage[1, k] = px, py
             stage[2, k], stage[3, k] = speed * ex, speed * ey
@@ -143,7 +132,7 @@ def near_stop_step(
         if not moved < 1e3 or (iteration > 4 and moved > 2.0 * reach):
             return UNSOLVED
         reach = moved
-        if moved <= max(tolerance, SETTLED):
+        if moved <= max(tolerance, ROUNDING_ANGLE):
             for i in range(bodies):
                 for axis in range(system.axes):
                     work.x1[i, axis] = xs[i, axis, STAGES - 1]

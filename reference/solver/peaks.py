@@ -10,9 +10,9 @@ from reference.solver.system import REACH, Array, Work
 
 # A step resolved to the tolerance turns by a small part of a wave between two stages: a peak between them stands less
 # than this share above the higher one.
-MARGIN = 0.2
-PARTS = 8  # of a step, at which the platform's displacement is looked at
-FARTHER = 1.5  # times the larger speed at its ends: more than any way back and forth within a step
+MAX_RISE_BETWEEN_STAGES = 0.2
+PARTS_PER_STEP = 8  # parts of a step at whose ends the platform's displacement is read
+MAX_WAY_FACTOR = 1.5  # bound on the way within a step, times the larger speed at its ends and its length
 
 
 @compiled
@@ -51,7 +51,7 @@ def take_peaks(work: Work, low: float, high: float) -> None:
             for axis in range(3):
                 squared += work.total[i, axis, k] ** 2
             highest = max(highest, squared)
-        if highest < (1.0 - MARGIN) * work.best[i]:
+        if highest < (1.0 - MAX_RISE_BETWEEN_STAGES) * work.best[i]:
             continue
         top, place = -1.0, low
         for n in range(DENSE.shape[0]):
@@ -87,7 +87,7 @@ def take_peaks(work: Work, low: float, high: float) -> None:
         top = max(top, squared)
         if top > work.best[i]:
             work.best[i] = top
-            work.doubt[i] = interpolation_error(theta) * work.defect[i]
+            work.reading_error[i] = interpolation_error(theta) * work.defect[i]
 
 
 @compiled
@@ -108,7 +108,7 @@ def take_reach(work: Work, h: float, stretched: bool) -> None:
     if stretched:
         for k in range(STAGES):
             far = max(far, work.chain[0, 0, k] ** 2 + work.chain[0, 1, k] ** 2)
-    elif sqrt(max(start, end)) + FARTHER * h * sqrt(speed2) > sqrt(far):
+    elif sqrt(max(start, end)) + MAX_WAY_FACTOR * h * sqrt(speed2) > sqrt(far):
         far = max(far, largest_square(work, h))
     work.run[REACH] = far
 
@@ -124,10 +124,10 @@ def largest_square(work: Work, h: float) -> float:
                 c += MONOMIALS[m, k] * work.a[0, axis, k]
             coefficients[axis, m] = h * h * c / ((m + 1.0) * (m + 2.0))
     best, place = -1.0, 0.0
-    for n in range(PARTS + 1):
-        value, _, _ = place_squares(work, h, n / PARTS)
+    for n in range(PARTS_PER_STEP + 1):
+        value, _, _ = place_squares(work, h, n / PARTS_PER_STEP)
         if value > best:
-            best, place = value, n / PARTS
+            best, place = value, n / PARTS_PER_STEP
     for _ in range(4):
         _, slope, curvature = place_squares(work, h, place)
         if not curvature < 0.0:

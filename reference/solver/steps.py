@@ -14,18 +14,18 @@ import numpy as np
 from reference.solver.chain import CHANNEL_ROUNDING, eliminate_chain, feed_back, load_chain, move_chain
 from reference.solver.collocation import A2, AT_START, NODES, STAGES, A
 from reference.solver.compiled import compiled
+from reference.solver.contact.platform import moving, slopes
 from reference.solver.equations import vertical_acceleration
 from reference.solver.events import lowest
 from reference.solver.ground import ground_at_stages
 from reference.solver.linear_solve import factorize, solve
-from reference.solver.platform import moving, slopes
 from reference.solver.system import OPEN, PAINLEVE, REST, RIM, SOLVED, UNSOLVED, Array, System, Work
 
-ITERATIONS = 14
-SLOW = 0.1  # a change that shrinks by less asks for a new derivative
-ROUNDING = 1e-13  # of the forces: what rounding leaves of the defect at the start of a step
-SETTLED = 4e-15  # of the accelerations: rounding alone changes them by this much from one iteration to the next
-CLOSE_TO_RIM = 0.99  # of the squared radius
+MAX_ITERATIONS = 14  # of Newton's method
+SLOW_CONVERGENCE = 0.1  # of the change before: a larger change asks for a new derivative
+FORCE_ROUNDING = 1e-13  # of the forces: what rounding leaves of the defect at the start of a step
+ROUNDING_CHANGE = 4e-15  # of the accelerations: change by rounding alone from one iteration to the next
+RIM_SQUARED_FRACTION = 0.99  # of the squared radius: an iteration that starts beyond it and strays has reached the rim
 
 
 @compiled
@@ -60,7 +60,7 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
     feed_back(system, work, h)
     a, stage = work.a, work.stage
     fresh, before = True, 0.0
-    for iteration in range(ITERATIONS):
+    for iteration in range(MAX_ITERATIONS):
         place_platform(work, h, system.axes)
         size = 0.0
         for k in range(STAGES):
@@ -91,7 +91,7 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
                 correction = work.residual[axis * STAGES + k]
                 a[0, axis, k] += correction
                 change = max(change, abs(correction))
-        settled = change <= max(tolerance, SETTLED * size)
+        settled = change <= max(tolerance, ROUNDING_CHANGE * size)
         if not np.isfinite(change) or (iteration > 1 and fresh and change > before and not settled):
             return UNSOLVED
         if settled:
@@ -99,7 +99,7 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
             move_chain(system, work, h)
             absolute_accelerations(system, work, contact)
             return SOLVED if lowest(stage[6]) > 0.0 else OPEN
-        fresh = iteration > 0 and change > SLOW * before
+        fresh = iteration > 0 and change > SLOW_CONVERGENCE * before
         before = change
     return UNSOLVED
 
@@ -143,7 +143,7 @@ def set_matrix(work: Work, h: float, axes: int) -> None:
 @compiled
 def beyond_rim(system: System, work: Work) -> int:
     """RIM (4.1) if the step began close to it; otherwise the iteration strayed there."""
-    return RIM if work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > CLOSE_TO_RIM * system.radius**2 else UNSOLVED
+    return RIM if work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > RIM_SQUARED_FRACTION * system.radius**2 else UNSOLVED
 
 
 @compiled
@@ -185,7 +185,7 @@ def step_error(work: Work, tolerance: float) -> float:
         load = max(load, abs(work.stage[4, k]) + abs(work.stage[5, k]))
         # friction may decelerate a platform that nothing drives
         load = max(load, abs(work.a[0, 0, k]) + abs(work.a[0, 1, k]))
-    noise = ROUNDING * load
+    noise = FORCE_ROUNDING * load
     channels = noise + (CHANNEL_ROUNDING * load if work.x.shape[0] > 1 else 0.0)
     worst = 0.0
     for i in range(work.x.shape[0]):

@@ -22,7 +22,7 @@ SET_VALUED, REGULARIZED, LUBRICATED = 0, 1, 2
 CONSISTENT, PRINTED = 0, 1
 # what the contact does
 # numpy integers: numba would build a function once more for every literal it is called with
-REST, SLIDING, CREEPING, WETTED, STOPPING = cast("tuple[int, ...]", tuple(map(np.int64, range(5))))
+REST, SLIDING, CREEPING, LUBRICATED_SLIDING, STOPPING = cast("tuple[int, ...]", tuple(map(np.int64, range(5))))
 # how the equations of one step, or a whole run, ended
 SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT = range(6)
 # entries of Work.run, the state of a run that is not an array
@@ -36,7 +36,7 @@ class System(NamedTuple):
     law: int
     rest_condition: int
     friction: float  # mu, or f_c in s/m
-    v_reg: float  # m/s, of the regularised law
+    v_reg: float  # m/s, of the regularized law
     mass_ratio: float  # m_sum / m1
     radius: float  # m
     gravity: float  # m/s^2
@@ -80,7 +80,7 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     slopes: Array  # (12, S) derivative of its acceleration
     matrix: Array  # (2 S, 2 S)
     residual: Array  # (2 S,)
-    pivots: Array  # (2 S,) rows of the factorised matrix
+    pivots: Array  # (2 S,) rows of the factorized matrix
     chain: Array  # (N, 2, S) position of the bodies at the stages of a step near a stop
     velocity: Array  # (N, 2, S)
     turning: Array  # (11, S) direction, speed and time there
@@ -89,7 +89,7 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     scale: Array  # (N,) m/s^2, what errors are measured against
     run: Array  # (9,)
     best: Array  # (N,) largest squared absolute acceleration so far
-    doubt: Array  # (N,) m/s^2, error of reading it inside its step
+    reading_error: Array  # (N,) m/s^2, error of reading it inside its step
     defect: Array  # (N,) m/s^2, interpolation error of the step at its start
 
 
@@ -125,7 +125,7 @@ class Demand(NamedTuple):
 
 
 def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = False, axes: int = 2) -> System:
-    """The scene in compiled form. `v_reg`, m/s, selects the regularised law; None the set-valued one."""
+    """The scene in compiled form. `v_reg`, m/s, selects the regularized law; None the set-valued one."""
     masses, links = scene.masses, scene.stiffness
     below, above = np.zeros((len(masses), 2)), np.zeros((len(masses), 2))
     below[1:] = links / masses[1:, None]
@@ -184,7 +184,7 @@ def workspace(bodies: int) -> Work:
         scale=np.zeros(n),
         run=np.zeros(9),
         best=np.zeros(n),
-        doubt=np.zeros(n),
+        reading_error=np.zeros(n),
         defect=np.zeros(n),
     )
 

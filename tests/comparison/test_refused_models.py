@@ -126,9 +126,12 @@ def test_a_check_without_limits_says_that_nothing_was_checked(command: Callable[
 @pytest.mark.parametrize(
     ("limits", "said"),
     [
-        ("[acceptance]\nmaximun = 1.0\n", "acceptance.maximun = 1.0: unknown key; did you mean 'maximum'?"),
-        ("[acceptance.totals]\nmedian = 1.0\n", "unknown key; did you mean 'total'?"),
-        ("[acceptance.total]\nclosure = 1.0\n", "acceptance.total.closure = 1.0: unknown key; valid here: median, "),
+        ("[acceptance]\nmaximun = 1.0\n", "acceptance.maximun = 1.0: unknown key; did you mean maximum?"),
+        ("[acceptance.totals]\nmedian = 1.0\n", "unknown key; did you mean total?"),
+        (
+            "[acceptance.total]\nclosure = 1.0\n",
+            "acceptance.total.closure = 1.0: unknown key; the keys here are median, ",
+        ),
         (
             "[acceptance]\nmedian = 1.0\n[acceptance.like_for_like]\nmedian = 2.0\n",
             "give median here or in like_for_like",

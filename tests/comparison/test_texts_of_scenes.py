@@ -142,5 +142,6 @@ def test_a_page_of_records_says_nothing_of_phases_over_which_it_is_not(command: 
     assert "48 ×" not in (run.report / "summary.md").read_text(encoding="utf-8")
     assert "over the phases" not in run.out
     mixed = command("synthetic-pair", "fig3-I", "--grid", "2")
+    assert mixed.code == 0, mixed.err
     page = (mixed.report / "index.html").read_text(encoding="utf-8")
     assert "over 2 × 2 initial phases of the two-frequency loading, or under a recorded motion" in page

@@ -13,8 +13,8 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
+from oracle_integration import Observation, Peaks, march
 from oracle_law import Law, RefusalError
-from oracle_march import Observation, Peaks, march
 from scipy.optimize import brentq, minimize_scalar
 
 from reference.problem import Scene, State, ground_peak

@@ -67,7 +67,7 @@ def test_the_process_that_compiles_and_one_that_loads_the_build_agree_to_the_las
 
 def test_no_part_of_the_solver_is_compiled_with_the_freedom_to_reorder_sums() -> None:
     """Such freedom is used otherwise on another processor, and otherwise where a part is not inlined."""
-    from reference.solver.runs import runs
+    from reference.solver.run import runs
 
     assert not runs.targetoptions.get("fastmath")
 

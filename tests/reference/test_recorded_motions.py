@@ -8,7 +8,7 @@ from oracle import set_valued_run, smooth_run
 
 import reference
 from reference.problem import Scene, ground_acceleration, ground_peak
-from reference.solver.certified import peaks_at
+from reference.solver.error_estimate import peaks_at
 from reference.surface import checked_demand
 
 ANY = (0.0, 0.0)  # a record has no phases
@@ -16,7 +16,7 @@ EXAMPLES = {name: reference.load_scene(name) for name in reference.example_scene
 LAWS = {
     "exact": {"equations": "exact"},
     "small": {"equations": "small"},
-    "regularised": {"regularization": 1e-3},
+    "regularized": {"regularization": 1e-3},
     "resolved": {"cutoff": 1e-3},
 }
 ORACLE = 5e-9  # what the independent code leaves at the tolerance it is given

@@ -15,7 +15,7 @@ from comparison.analysis.extremes.verdicts import NUMERICS, Judged, Reply, judge
 from comparison.study.batches import imported
 from reference.problem import Outcome, Scene
 from reference.problem.scene import KEYS
-from reference.problem.scene_error import first_fault
+from reference.problem.scene_error import first_error
 
 STRICTEST = 1e-10  # relative error that a model can be asked for
 
@@ -94,7 +94,7 @@ def _scene(written: Mapping[str, Any]) -> Scene:
     try:
         return Scene.model_validate({**_given(written), "name": "extreme"})
     except ValidationError as error:
-        raise first_fault("extreme", error, KEYS) from None
+        raise first_error("extreme", error, KEYS) from None
 
 
 def _given(written: Mapping[str, Any]) -> dict[str, Any]:

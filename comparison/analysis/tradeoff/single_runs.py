@@ -15,7 +15,7 @@ from multibody.refine import WORK
 from multibody.surface import assembled
 from multibody.system import EngineModel
 from reference.problem import Outcome, Scene, checked_phases, ground_acceleration, ground_peak
-from reference.solver.certified import peaks_at
+from reference.solver.error_estimate import peaks_at
 from reference.solver.system import SOLVED
 from reference.surface import checked_demand
 

@@ -135,7 +135,7 @@ PLACES = [
 def test_any_value_in_any_place_is_a_scene_or_a_scene_error(place, value):
     data = tomllib.loads(GOOD)
     put(data, place, value)
-    with mock.patch("reference.problem.scene.tomllib.loads", return_value=data):
+    with mock.patch("reference.problem.scene_file.tomllib.loads", return_value=data):
         told, scene = None, None
         try:
             scene = parse_scene(b"", "random")

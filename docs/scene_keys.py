@@ -1,0 +1,95 @@
+"""Write docs/scene.md, the table of every key of a scene file, from the schema: `python docs/scene_keys.py`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from reference.problem import Scene
+from reference.problem.ranges import MAX_CYCLES, SCENE
+
+PAGE = Path(__file__).with_name("scene.md")
+SET_BY_THE_READER = {"name", "samples"}  # fields of the models that are no keys of a file
+NESTED = {"isolator", "bodies", "excitation", "acceptance"}
+TABLES = (  # heading, model in the schema, dotted name, introduction
+    ("At the top of the file", "", "", ""),
+    ("`[isolator]`", "Isolator", "isolator", "The spherical gravity-friction isolator under the platform."),
+    (
+        "`[[bodies]]`",
+        "Body",
+        "bodies",
+        "One table per body, from the platform up. Every body is linked to the body before it.",
+    ),
+    ("`[excitation]`, two frequencies", "Excitation", "excitation", "Ground acceleration (5.2)-(5.4)."),
+    ("`[excitation]`, recorded motion", "Record", "excitation", "A record in place of the two frequencies."),
+    (
+        "`[acceptance]`",
+        "Acceptance",
+        "acceptance",
+        "Limits for `--check`. `median`, `maximum` and `ratio` here are those of `like_for_like`; the tables `total`,"
+        " `translational` and `like_for_like` take the same three keys.",
+    ),
+)
+INTRODUCTION = f"""# The scene file
+
+A scene is a TOML file in UTF-8. Its name is the stem of the file. `reference/problem/scenes` has the paper's four
+cases and `reference/problem/examples` two recorded motions. An unknown key is an error that names the nearest valid
+keys; a wrong value is an error in one line with file, key, value and rule.
+
+Every optional key is off by default. "All" models are the paper's equations and the two engine models, translational
+and spatial; the spatial model needs every key of its own but `support_stiffness`.
+
+One number of a scene may run over a range, which makes one scene of every value:
+`friction = {{range = [0.02, 0.2], steps = 10}}` or `friction = {{values = [0.05, 0.1]}}`.
+
+The duration is at most {MAX_CYCLES:g} periods, of the shortest period of the loading and the pendulum.
+
+This page is written by `python docs/scene_keys.py`.
+"""
+
+
+def page() -> str:
+    """The page docs/scene.md as the schema has it."""
+    schema = Scene.model_json_schema()
+    parts = [INTRODUCTION]
+    for heading, model, dotted, introduction in TABLES:
+        table = schema["$defs"][model] if model else schema
+        head = "| key | meaning | unit | default | range | read by |\n|---|---|---|---|---|---|"
+        text = f"{introduction}\n\n" if introduction else ""
+        parts.append(f"## {heading}\n\n{text}{head}\n" + "\n".join(_rows(table, dotted)) + "\n")
+    return "\n".join(parts)
+
+
+def _rows(table: dict[str, Any], dotted: str) -> Iterator[str]:
+    required = table.get("required", ())
+    for key, field in table["properties"].items():
+        if key in SET_BY_THE_READER or (not dotted and key in NESTED):
+            continue
+        default = "required" if key in required else _literal(field.get("default"))
+        unit = field["unit"] or "-"
+        limits = _limits(f"{dotted}.{key}" if dotted else key, field)
+        yield f"| `{key}` | {field['description']} | {unit} | {default} | {limits} | {field['models']} |"
+
+
+def _literal(default: Any) -> str:
+    return "none" if default is None else f"{default:g}"
+
+
+def _limits(key: str, field: dict[str, Any]) -> str:
+    """The range of a key: the one that `ranges.SCENE` states, or what its type says."""
+    if key in SCENE:
+        allowed = SCENE[key]
+        return f"{allowed.lowest:g} to {allowed.highest:g}"
+    kinds = [kind for kind in field.get("anyOf", [field]) if kind.get("type") != "null"]
+    if any("$ref" in kind for kind in kinds):
+        return "table"
+    if kinds[0]["type"] == "string":
+        return "text" if len(kinds) == 1 else "file, or table of files"
+    if "exclusiveMinimum" in kinds[0]:
+        return f"greater than {kinds[0]['exclusiveMinimum']:g}"
+    return f"{kinds[0]['minimum']} or more"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), encoding="utf-8")

@@ -1,0 +1,98 @@
+"""
+Circular shaking of a whole chain: every body runs on its own horizontal circle at constant speed, the platform sliding.
+
+Ground acceleration a exp(i omega t) in the complex plane x + i y, z = Z exp(i omega t). The contact carries m_sum g
+vertically and the slip is horizontal, so N = m_sum g / n_z with n_z = sqrt(1 - |Z1|^2/rho^2) is constant:
+    (K - omega^2 M) Z = -M 1 a - i mu N e_1 Z1/|Z1|,
+K the chain with the pendulum stiffness N/rho at its foot. With G = (K - omega^2 M)^-1, b = -(G M 1)_1 a and
+c = mu N G_11, the first row is |Z1|^2 = b^2 - c^2; n_z = 1 in the linearized equations, and one unknown |Z1| in the
+exact ones. (4.3) as printed has the same solution as the linearized ones: its extra friction terms hold p . v = 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from reference.problem import GRAVITY, Scene
+
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class CircularMotion:
+    """
+    Amplitudes Z, (N,), m, complex, of z = x + i y = Z exp(i omega t), while the ground accelerates a exp(i omega t).
+
+    amplification: (N,), mu_i of (5.1). normal: contact force, N.
+    """
+
+    amplitude: Complex
+    amplification: NDArray[np.float64]
+    normal: float
+
+
+def circular_shaking(scene: Scene, acceleration: float, frequency: float, equations: str = "exact") -> CircularMotion:
+    """
+    Steady circular motion of the chain under ground acceleration `acceleration`, m/s^2, at `frequency`, rad/s.
+
+    Dry friction and links that are equal in x and y. equations: "exact" or "small". Of several circles of the exact
+    equations the smallest is given. Raises ValueError where friction holds the platform, or no circle fits the cap.
+    """
+    if not np.array_equal(scene.stiffness[:, 0], scene.stiffness[:, 1]):
+        raise ValueError("links differ in x and y: the motion is not circular")
+    if scene.lubricated:
+        raise ValueError("dry friction only")
+
+    def misfit(radius: float) -> float:
+        free, held, _ = _response(scene, acceleration, frequency, radius if equations == "exact" else 0.0)
+        return free * free - held * held - radius * radius
+
+    if equations == "small":
+        square = misfit(0.0)
+        if square <= 0.0:
+            raise ValueError("friction is too strong for steady sliding")
+        radius = float(np.sqrt(square))
+    else:
+        radius = _first_circle(misfit, scene.radius)
+    free, held, normal = _response(scene, acceleration, frequency, radius if equations == "exact" else 0.0)
+    platform = free / (1.0 + 1j * held / radius)
+    load = (-acceleration * scene.masses).astype(np.complex128)
+    load[0] -= 1j * scene.friction_coefficient * normal * platform / radius
+    dynamic = _chain(scene, normal / scene.radius) - frequency**2 * np.diag(scene.masses)
+    amplitude: Complex = np.linalg.solve(dynamic, load).astype(np.complex128)
+    factor = np.abs(acceleration - frequency**2 * amplitude) / abs(acceleration)
+    return CircularMotion(amplitude, factor, normal)
+
+
+def _response(scene: Scene, acceleration: float, frequency: float, radius: float) -> tuple[float, float, float]:
+    """b, c and N for a platform on a circle of this radius; 0 gives the linearized equations."""
+    normal = scene.total_mass * GRAVITY / np.sqrt(1.0 - (radius / scene.radius) ** 2)
+    dynamic = _chain(scene, normal / scene.radius) - frequency**2 * np.diag(scene.masses)
+    first = np.linalg.solve(dynamic, np.eye(len(scene.masses))[0])  # row 1 of G, which is symmetric
+    return (
+        float(-acceleration * (first @ scene.masses)),
+        float(scene.friction_coefficient * normal * first[0]),
+        float(normal),
+    )
+
+
+def _chain(scene: Scene, foot: float) -> NDArray[np.float64]:
+    links = np.append(scene.stiffness[:, 0], 0.0)
+    below = np.concatenate([[foot], links[:-1]])
+    return np.diag(below + links) - np.diag(links[:-1], 1) - np.diag(links[:-1], -1)
+
+
+def _first_circle(misfit: Callable[[float], float], limit: float) -> float:
+    radii = np.linspace(0.0, limit * (1.0 - 1e-9), 401)
+    values = np.array([misfit(r) for r in radii])
+    # the misfit is continuous except where the chain resonates; a root is a change of sign that closes in on zero
+    for k in np.flatnonzero(np.sign(values[1:]) != np.sign(values[:-1])):
+        root = float(brentq(misfit, radii[k], radii[k + 1], xtol=1e-16, rtol=1e-15))
+        if abs(misfit(root)) < 1e-9 * limit**2 and root > 0.0:
+            return root
+    raise ValueError("no steady circle: friction is too strong, or the platform would leave the cap")

@@ -1,0 +1,110 @@
+"""
+Frictionless small vibration (4.3)-(4.4), mu = 0, from rest, under the damped cosines (5.3): the whole chain, exact.
+
+Per axis and natural mode, eta'' + omega^2 eta = -Gamma Re(sum_k a_k exp(i alpha_k) exp(s_k t)), solved from rest by
+    eta = -Gamma (D(s, i omega) - D(s, -i omega)) / (2 i omega),   D(s, z) = (exp(s t) - exp(z t)) / (s - z).
+D has a limit at resonance, t exp(z t), and D' = z D + exp(s t). The modes' participation adds up to a unit motion of
+every body, so the absolute acceleration is -sum_j X_j omega_j^2 eta_j: nothing of the ground is left to subtract.
+The response is linear in exp(i alpha_k): a whole surface follows from one complex response per harmonic.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reference.analytical.phase_peaks import Series, largest, reached
+from reference.natural_modes import Modes, modes
+from reference.problem import Scene, checked_phases, exponents, ground_peak, linear, loading_period
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+# per shortest period: the terms left out of a series of SERIES_TERMS are below 1e-14 of the motion
+INTERVALS_PER_PERIOD = 12
+SERIES_TERMS = 12
+ROUNDING_ERROR = 1e-13  # relative error of a frequency and of an operation
+
+
+def frictionless_motion(scene: Scene, phase: ArrayLike, time: ArrayLike) -> tuple[Array, Array, Array]:
+    """
+    Position, velocity and horizontal absolute acceleration at `time` (T,), s, for one phase pair (2,), rad.
+
+    (T, N, 2) each, m, m/s, m/s^2; displacement and velocity relative to the plate. Raises ValueError for a scene with
+    friction or with vertical loading, under which the pendulum's stiffness varies in time.
+    """
+    _check(scene)
+    turn = np.exp(1j * np.asarray(phase, dtype=float))
+    natural, instants = modes(scene), np.asarray(time, dtype=float)
+    position, velocity = ((part @ turn).real for part in _responses(scene, natural, instants, 2, absolute=False))
+    acceleration = (_responses(scene, natural, instants, 1, absolute=True)[0] @ turn).real
+    return position, velocity, acceleration
+
+
+def frictionless_amplification(scene: Scene, phases: ArrayLike) -> Array:
+    """mu_i of (5.1) for phase pairs (M, 2), rad: (M, N), to about 1e-12. Raises as `frictionless_motion`."""
+    pairs = checked_phases(phases)
+    result: Array = frictionless_peaks(scene, pairs)[0] / ground_peak(scene, pairs)[:, None]
+    return result
+
+
+def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
+    """
+    Largest absolute accelerations, m/s^2, and their errors, (M, N) each; largest displacement of the platform, m, (M,);
+    at which phases the rim (4.1) may be reached.
+
+    Raises as `frictionless_motion`. A motion to the rim has left the small equations: its peaks mean nothing.
+    """
+    _check(scene)
+    natural = modes(scene)
+    shortest = min(
+        loading_period(scene), 2.0 * np.pi / max(float(natural.frequency.max()), float(-exponents(scene).real.min()))
+    )
+    count = int(np.ceil(scene.duration / shortest * INTERVALS_PER_PERIOD))
+    half = 0.5 * scene.duration / count
+    centers: Array = half * (2.0 * np.arange(count, dtype=float) + 1.0)
+    series = Series.of(_responses(scene, natural, centers, SERIES_TERMS, absolute=True), half)
+    path = Series.of(_responses(scene, natural, centers, SERIES_TERMS, absolute=False, bodies=1), half)
+    peaks, search_error = largest(series, phases)
+    rounding = ROUNDING_ERROR * (10.0 + float(natural.frequency.max()) * scene.duration)
+    reach = largest(path, phases)[0][:, 0]
+    return peaks, search_error + rounding * series.envelope, reach, reached(path, phases, scene.radius)
+
+
+def _check(scene: Scene) -> None:
+    if not (allowed := linear(scene)):
+        raise ValueError(f"{scene.name}: {allowed.reason}: no closed form")
+
+
+def _responses(
+    scene: Scene, natural: Modes, time: Array, orders: int, *, absolute: bool, bodies: int | None = None
+) -> list[Complex]:
+    """
+    Complex response per harmonic and its derivatives up to order `orders` - 1: (T, N, 2 axes, 2 harmonics) each.
+
+    absolute: of the absolute acceleration, else of the displacement. bodies: of the first so many only.
+    """
+    shape = natural.shape[:, :bodies]
+    parts = [np.zeros((len(time), shape.shape[1], 2, 2), dtype=complex) for _ in range(orders)]
+    for axis in range(2):
+        omega = natural.frequency[axis]
+        weight = natural.participation[axis] / (2j * omega) * (omega**2 if absolute else -1.0)
+        for k, s in enumerate(exponents(scene)):
+            if scene.amplitudes[axis, k] == 0.0:
+                continue
+            forced = np.exp(s * time)[:, None]
+            rising, falling = (_divided(s, root, time) for root in (1j * omega, -1j * omega))
+            for part in parts:
+                part[:, :, axis, k] = (weight * (rising - falling)) @ shape[axis].T * scene.amplitudes[axis, k]
+                rising, falling = 1j * omega * rising + forced, -1j * omega * falling + forced
+                forced = s * forced
+    return parts
+
+
+def _divided(s: complex, roots: Complex, time: Array) -> Complex:
+    """D(s, z) for the roots z (N,), (T, N), s: t exp(z t) where s meets z."""
+    gap = s - roots
+    same = gap == 0.0
+    growth = np.expm1(np.multiply.outer(time, gap)) / np.where(same, 1.0, gap)
+    result: Complex = np.exp(np.multiply.outer(time, roots)) * np.where(same, time[:, None], growth)
+    return result

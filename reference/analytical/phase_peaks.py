@@ -1,0 +1,148 @@
+"""
+Largest length over time of vectors that are linear in exp(i alpha_1), exp(i alpha_2): whole surfaces from one motion.
+
+A body's vector is v(t) = Re(A_1(t) exp(i alpha_1) + A_2(t) exp(i alpha_2)), one entry per axis. Time is cut into
+intervals on which A is a short series; the terms behind the slope bound |v| on the whole interval, so that those which
+cannot hold the largest are skipped, and the others are searched on the series itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import factorial, sqrt
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+STARTING_POINTS = np.linspace(-1.0, 1.0, 5)
+NEWTON_STEPS = 5
+SERIES_REMAINDER = 1e-14  # relative: what the series leaves out
+
+
+@dataclass(frozen=True)
+class Series:
+    """
+    terms: (P, N, axes, 4, T), on interval T the coefficients of x^p, x from -1 to 1, of Re A_1, Im A_1, Re A_2, Im A_2.
+    rest: (N, axes, T), largest that the terms from p = 2 on can add up to at any phases. envelope: (N,), largest |v|
+    at any time and phases, from above.
+    """
+
+    terms: Array
+    rest: Array
+    envelope: Array
+
+    @classmethod
+    def of(cls, derivatives: Sequence[Complex], half: float) -> Series:
+        """From the derivatives (T, N, axes, 2) of A in the middle of intervals of length 2 `half`, s."""
+        scaled = np.stack([part * (half**order / factorial(order)) for order, part in enumerate(derivatives)])
+        sizes = np.abs(scaled).sum(axis=-1)  # the phases at their worst
+        terms = np.stack([scaled.real, scaled.imag], axis=-1).reshape(*scaled.shape[:-1], 4)
+        envelope = np.sqrt((sizes.sum(axis=0) ** 2).sum(axis=-1)).max(axis=0)
+        rest = np.moveaxis(sizes[2:].sum(axis=0), 0, -1)
+        return cls(np.ascontiguousarray(np.moveaxis(terms, 1, -1)), np.ascontiguousarray(rest), envelope)
+
+
+def largest(series: Series, phases: Array) -> tuple[Array, Array]:
+    """max_t |v| of every body for phase pairs (M, 2), rad, and the error of finding it: (M, N) each."""
+    peaks, errors = np.empty((2, len(phases), len(series.envelope)))
+    _largest(series.terms, series.rest, _turns(phases), peaks, errors)
+    return peaks, errors + SERIES_REMAINDER * series.envelope
+
+
+def reached(series: Series, phases: Array, bound: float) -> NDArray[np.bool_]:
+    """At which phase pairs (M, 2), rad, the first body's |v| may reach `bound`: (M,)."""
+    if series.envelope[0] < bound:
+        return np.zeros(len(phases), dtype=bool)
+    least, most = np.empty((2, series.terms.shape[-1]))
+    may_reach = np.empty(len(phases), dtype=bool)
+    for m, turn in enumerate(_turns(phases)):
+        _bounds(series.terms, series.rest, turn, 0, least, most)
+        may_reach[m] = most.max() >= bound * bound
+    return may_reach
+
+
+def _turns(phases: Array) -> Array:
+    """What multiplies the four coefficients, (M, 4)."""
+    return np.stack([np.cos(phases), -np.sin(phases)], axis=-1).reshape(-1, 4)
+
+
+@njit(cache=True)
+def _bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array, most: Array) -> None:
+    """Fills |v|^2 in the middle of each interval, and what it cannot exceed on it, (T,) each."""
+    a, b, c, d = turn
+    least[:] = 0.0
+    most[:] = 0.0
+    for axis in range(terms.shape[2]):
+        value, slope, remainder = terms[0, body, axis], terms[1, body, axis], rest[body, axis]
+        for n in range(len(least)):
+            v = a * value[0, n] + b * value[1, n] + c * value[2, n] + d * value[3, n]
+            s = a * slope[0, n] + b * slope[1, n] + c * slope[2, n] + d * slope[3, n]
+            size = abs(v) + abs(s) + remainder[n]
+            least[n] += v * v
+            most[n] += size * size
+
+
+@njit(cache=True, nogil=True)
+def _largest(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Array) -> None:
+    orders, bodies, axes, _, intervals = terms.shape
+    least, most = np.empty(intervals), np.empty(intervals)
+    series = np.empty((axes, orders))
+    for m in range(len(turns)):
+        for body in range(bodies):
+            _bounds(terms, rest, turns[m], body, least, most)
+            best = least.max()
+            possible = best
+            for n in range(intervals):
+                if most[n] < best:
+                    continue
+                for axis in range(axes):
+                    for order in range(orders):
+                        series[axis, order] = (turns[m] * terms[order, body, axis, :, n]).sum()
+                value, error = _searched(series)
+                best = max(best, value)
+                possible = max(possible, value + error)
+            peaks[m, body] = sqrt(best)
+            errors[m, body] = sqrt(max(best, possible)) - sqrt(best)
+
+
+@njit(cache=True)
+def _searched(series: Array) -> tuple[float, float]:
+    """Largest |v|^2 on an interval with these coefficients (axes, P), and what Newton's method leaves."""
+    best, place = -1.0, 0.0
+    for x in STARTING_POINTS:
+        value, _, _ = _squares(series, x)
+        if value > best:
+            best, place = value, x
+    left = 0.0
+    for _ in range(NEWTON_STEPS):
+        _, slope, curvature = _squares(series, place)
+        step = -slope / curvature if curvature < 0.0 else np.sign(slope)
+        target = min(max(place + step, -1.0), 1.0)
+        left = abs(slope * (target - place))
+        if target == place:
+            break
+        place = target
+        value, _, _ = _squares(series, place)
+        best = max(best, value)
+    return best, left
+
+
+@njit(cache=True)
+def _squares(series: Array, x: float) -> tuple[float, float, float]:
+    """|v|^2 at x and its first two derivatives."""
+    total = first = second = 0.0
+    for axis in range(series.shape[0]):
+        value = slope = curvature = 0.0
+        for order in range(series.shape[1] - 1, -1, -1):
+            curvature = curvature * x + 2.0 * slope
+            slope = slope * x + value
+            value = value * x + series[axis, order]
+        total += value * value
+        first += 2.0 * value * slope
+        second += 2.0 * (slope * slope + value * curvature)
+    return total, first, second

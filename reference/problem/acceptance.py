@@ -1,0 +1,80 @@
+"""Acceptance limits of a study: what `--check` compares the differences of the models with."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from reference.problem.tables import STUDY, Positive, Table, about
+
+
+class Limits(Table):
+    """Limits of the relative difference of two models over the phases, for every body."""
+
+    median: Annotated[
+        Positive | None, about("limit of the median relative difference of mu_i over the phases", "", STUDY)
+    ] = None
+    maximum: Annotated[
+        Positive | None, about("limit of the largest relative difference of mu_i over the phases", "", STUDY)
+    ] = None
+    ratio: Annotated[
+        Positive | None,
+        about("limit of the largest difference in units of the two error estimates together", "", STUDY),
+    ] = None
+
+    def stated(self) -> dict[str, float]:
+        """The limits that are present, by key."""
+        limits = {"median": self.median, "maximum": self.maximum, "ratio": self.ratio}
+        return {key: limit for key, limit in limits.items() if limit is not None}
+
+
+class Acceptance(Limits):
+    """Limits for `--check`. The keys of `Limits` given here are those of `like_for_like`."""
+
+    total: Annotated[
+        Limits | None,
+        about("table of limits: the paper's printed equations against the most complete model", "", STUDY),
+    ] = None
+    translational: Annotated[
+        Limits | None,
+        about("table of limits: the paper's printed equations against the engine without rotations", "", STUDY),
+    ] = None
+    like_for_like: Annotated[
+        Limits | None,
+        about("table of limits: the exact equations against that engine under the same friction law", "", STUDY),
+    ] = None
+    closure: Annotated[
+        Positive | None,
+        about("limit of the size of (sum of the models' steps - total) relative to mu_i, for every body", "", STUDY),
+    ] = None
+    failed: Annotated[
+        Annotated[int, Field(ge=0)] | None,
+        about("points without an answer that are allowed, of all models; 0 where another limit is given", "", STUDY),
+    ] = None
+
+    @model_validator(mode="after")
+    def _once(self) -> Acceptance:
+        if twice := sorted(self.stated().keys() & (self.like_for_like or Limits()).stated().keys()):
+            raise ValueError(f"give {twice[0]} here or in like_for_like, which mean the same, not in both")
+        return self
+
+    def differences(self) -> list[tuple[str, str, str, float]]:
+        """Key as written, pair of models, measure and limit of every difference that is limited."""
+        tables = (
+            ("", "like-for-like", self),
+            ("like_for_like.", "like-for-like", self.like_for_like),
+            ("translational.", "translational", self.translational),
+            ("total.", "total", self.total),
+        )
+        return [
+            (f"{start}{key}", pair, key, limit)
+            for start, pair, limits in tables
+            if limits is not None
+            for key, limit in limits.stated().items()
+        ]
+
+    @property
+    def failures(self) -> int | None:
+        """Points without an answer that are allowed: none where only other limits are given; None without any limit."""
+        return 0 if self.failed is None and (self.differences() or self.closure is not None) else self.failed

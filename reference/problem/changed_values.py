@@ -1,0 +1,42 @@
+"""One value of a scene, set by its dotted key."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from reference.problem.scene_error import SceneError, unknown_key
+
+
+def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapping[str, Sequence[str]]) -> None:
+    """
+    Set one value by its dotted key in the tables `data` of a scene; None leaves an optional key out.
+
+    keys: the valid keys of every table, by its name. Raises SceneError.
+    """
+    parts = key.split(".")
+    if key == "excitation.record":
+        raise SceneError(scene, key, value, "the files of a record are read by load_scene: write a scene file")
+    place: Any = data
+    for depth, part in enumerate(parts):
+        last = depth == len(parts) - 1
+        if isinstance(place, list):
+            if not (part.isascii() and part.isdecimal() and len(part) < 9 and int(part) < len(place)):
+                rule = f"{'.'.join(parts[:depth])} has the indices 0 to {len(place) - 1}"
+                raise SceneError(scene, key, value, rule)
+            index: Any = int(part)
+        else:
+            table = ".".join(name for name in parts[:depth] if not name.isdecimal())
+            if not (isinstance(place, dict) and part in keys.get(table, ()) and (last or part in place)):
+                raise unknown_key(scene, ".".join(parts[: depth + 1]), value, keys.get(table, ()))
+            index = part
+        if not last:
+            place = place[index]
+        elif value is not None:
+            place[index] = value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+        elif isinstance(place, dict):
+            place.pop(index, None)
+        else:
+            raise SceneError(scene, key, value, "must be a number")

@@ -1,0 +1,177 @@
+"""
+A family of scenes that differ in one value: `friction = {range = [0.02, 0.2], steps = 10}` in place of a number.
+
+Any key of a scene file that holds one value may run: evenly over a range, or through `{values = [...]}`, of a record
+also through its files: `record = {values = ["a.csv", "b.csv"]}` or `{values = [{x = "a.AT2"}, {x = "b.AT2"}]}`.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from reference.problem.scene import Scene
+from reference.problem.scene_error import SceneError
+from reference.problem.scene_file import scene_tables, scene_text, validated_scene
+
+RANGE, VALUES = {"range", "steps"}, {"values"}
+MAX_SCENES = 1000  # scenes of one family
+
+Value = float | int | str
+Files = dict[str, str]  # of a record, by direction
+
+
+@dataclass(frozen=True)
+class Family:
+    """
+    The scenes of one file.
+
+    Attributes
+    ----------
+    name : str
+        File stem or built-in name.
+    scenes : tuple of Scene
+        Named "file[friction=0.02]" where a key runs.
+    key : str
+        The key that runs, as "isolator.friction"; "" where none does and there is one scene.
+    values : tuple
+        Values of the key, in the order of the scenes.
+    """
+
+    name: str
+    scenes: tuple[Scene, ...]
+    key: str = ""
+    values: tuple[Value, ...] = ()
+
+    @property
+    def bodies(self) -> int:
+        """Bodies of a scene: no range changes their number."""
+        return len(self.scenes[0].bodies)
+
+
+def load_family(source: str | Path, amplitude: float | None = None) -> Family:
+    """
+    Every scene of a built-in name or a TOML file in which one value may run.
+
+    Parameters
+    ----------
+    source : str or Path
+        As in `load_scene`.
+    amplitude : float, optional, m/s^2
+        As in `load_scene`.
+
+    Returns
+    -------
+    Family
+
+    Raises
+    ------
+    SceneError
+        As `load_scene`; for a range that is none, for a second one, and for a value that makes its scene impossible.
+
+    Examples
+    --------
+    >>> load_family("fig3-I").bodies
+    2
+    """
+    label, name = str(source), Path(source).stem
+    data = scene_tables(scene_text(source), label)
+    running = list(_running((), data))
+    if not running:
+        scene = validated_scene(data, label, name)
+        return Family(name, (scene if amplitude is None else scene.with_amplitude(amplitude),))
+    (path, table), *others = running
+    key = ".".join(map(str, path))
+    for other, second in others:
+        rule = f"only one key of a scene may run, and {key} does: give it a value, or write a file for each"
+        raise SceneError(label, ".".join(map(str, other)), second, rule)
+    listed = _values(label, key, table)
+    values: Sequence[Value] = [_named(value) if isinstance(value, dict) else value for value in listed]
+    short = key if any(isinstance(part, int) for part in path) else str(path[-1])
+    scenes = []
+    for value, text in zip(listed, _texts(label, key, values)):
+        member = validated_scene(_with(data, path, value), label, f"{name}[{short}={text}]")
+        scenes.append(member if amplitude is None else member.with_amplitude(amplitude))
+    return Family(name, tuple(scenes), key, tuple(values))
+
+
+def _running(path: tuple[str | int, ...], value: Any) -> Iterator[tuple[tuple[str | int, ...], dict[str, Any]]]:
+    """Where in the tables something runs, and the inline table that says how."""
+    if isinstance(value, dict) and path and value.keys() & (RANGE | VALUES):
+        yield path, value
+    elif isinstance(value, dict | list):
+        for key, part in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from _running((*path, key), part)
+
+
+def _values(label: str, key: str, table: dict[str, Any]) -> Sequence[Value | Files]:
+    if set(table) == VALUES:
+        return _listed(label, f"{key}.values", table["values"])
+    if set(table) != RANGE:
+        rule = "must be {range = [lowest, highest], steps = N} or {values = [...]} and hold nothing else"
+        raise SceneError(label, key, table, rule)
+    ends, steps = table["range"], table["steps"]
+    numbers = isinstance(ends, list) and len(ends) == 2 and all(_is_number(end) for end in ends)
+    if not (numbers and ends[0] < ends[1]):
+        raise SceneError(label, f"{key}.range", ends, "must be two finite numbers, the smaller first")
+    if not (isinstance(steps, int) and not isinstance(steps, bool) and 2 <= steps <= MAX_SCENES):
+        raise SceneError(
+            label, f"{key}.steps", steps, f"must be a whole number from 2 to {MAX_SCENES}, the ends included"
+        )
+    spaced = [
+        float(f"{value:.12g}") for value in np.linspace(ends[0], ends[1], steps)
+    ]  # 0.06, not 0.060000000000000005
+    whole = all(isinstance(end, int) for end in ends) and all(value.is_integer() for value in spaced)
+    return [int(value) for value in spaced] if whole else spaced
+
+
+def _listed(label: str, key: str, values: Any) -> Sequence[Value | Files]:
+    kinds = (_is_number, lambda value: isinstance(value, str), _is_files)
+    alike = isinstance(values, list) and any(all(map(is_kind, values)) for is_kind in kinds)
+    if not (alike and 1 <= len(values) <= MAX_SCENES):
+        rule = f"must be a list of 1 to {MAX_SCENES} finite numbers, or of texts, or of tables of files"
+        raise SceneError(label, key, values, rule)
+    return list(values)
+
+
+def _is_files(value: Any) -> bool:
+    return isinstance(value, dict) and len(value) > 0 and all(isinstance(name, str) for name in value.values())
+
+
+def _named(files: Files) -> str:
+    """The files of one record as one text."""
+    return "+".join(Path(name).stem for name in files.values())
+
+
+def _is_number(value: Any) -> bool:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # an integer beyond double precision
+        return False
+
+
+def _texts(label: str, key: str, values: Sequence[Value]) -> list[str]:
+    """The values as they stand in names: short, but no two alike. A path is named by its file."""
+    for digits in range(4, 18):
+        texts = [Path(v).stem if isinstance(v, str) else f"{v:.{digits}g}" for v in values]
+        if len(set(texts)) == len(texts):
+            return texts
+    twice = next(value for value, text in zip(values, texts) if texts.count(text) > 1)
+    raise SceneError(label, key, twice, "is there twice, and the scenes are named by it: leave one away")
+
+
+def _with(data: dict[str, Any], path: tuple[str | int, ...], value: Value | Files) -> dict[str, Any]:
+    changed: Any = copy.deepcopy(data)
+    place = changed
+    for part in path[:-1]:
+        place = place[part]
+    place[path[-1]] = value
+    return dict(changed)

@@ -1,0 +1,96 @@
+"""Phase pairs (alpha_1, alpha_2) of the loading: their check, and grids of them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reference.problem.ranges import PHASE, checked_array
+
+Array = NDArray[np.float64]
+
+
+def checked_phases(phases: ArrayLike) -> Array:
+    """
+    Phase pairs as a contiguous array; phases beyond a full turn are reduced to (-pi, pi].
+
+    Parameters
+    ----------
+    phases : array_like, (M, 2), rad
+
+    Returns
+    -------
+    ndarray, (M, 2), rad
+
+    Raises
+    ------
+    ValueError
+        In one line, for another shape, entries that are no numbers or masked, and phases outside `ranges.PHASE`.
+
+    Notes
+    -----
+    Sine and cosine reduce a double-precision number exactly, so the reduced phase is that of the number given.
+
+    Examples
+    --------
+    >>> checked_phases([(0.5, 1.0)]).tolist()
+    [[0.5, 1.0]]
+    """
+    array = checked_array("phases", phases, f"must be (M, 2), {PHASE.rule}")
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise ValueError(f"phases: shape {array.shape}: must be (M, 2), rad")
+    if array.size and (np.abs(array) > PHASE.highest).any():
+        largest = array.flat[np.abs(array).argmax()]
+        raise ValueError(f"phases: {largest:g}: {PHASE.rule}: reduce it modulo 2 pi")
+    return np.where(np.abs(array) <= 2.0 * np.pi, array, np.arctan2(np.sin(array), np.cos(array)))
+
+
+def checked_phase(phase: ArrayLike) -> Array:
+    """
+    One phase pair as an array.
+
+    Parameters
+    ----------
+    phase : array_like, (2,), rad
+
+    Returns
+    -------
+    ndarray, (2,), rad
+
+    Raises
+    ------
+    ValueError
+        As `checked_phases`.
+
+    Examples
+    --------
+    >>> checked_phase((0.5, 1.0)).tolist()
+    [0.5, 1.0]
+    """
+    pair = checked_array("phases", phase, f"must be (2,), {PHASE.rule}")
+    if pair.size != 2:
+        raise ValueError(f"phases: shape {pair.shape}: must be (2,), rad")
+    return checked_phases(pair.reshape(1, 2))[0]
+
+
+def phase_grid(points: int) -> Array:
+    """
+    All pairs of equally spaced phases on [0, 2 pi).
+
+    Parameters
+    ----------
+    points : int
+        Phases per axis.
+
+    Returns
+    -------
+    ndarray, (points^2, 2), rad
+        alpha_2 runs fastest.
+
+    Examples
+    --------
+    >>> phase_grid(2).round(3).tolist()
+    [[0.0, 0.0], [0.0, 3.142], [3.142, 0.0], [3.142, 3.142]]
+    """
+    axis = 2.0 * np.pi * np.arange(points) / points
+    return np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)

@@ -1,0 +1,68 @@
+"""
+A recorded motion as the excitation of a scene: `record = "motion.csv"`, or one .AT2 file per direction, and `scale`.
+
+The files are read once, when the scene is: from then on the samples are the scene's own, so that worker processes,
+stores and hashes need no file.
+"""
+
+from __future__ import annotations
+
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from reference.problem.record_files import AXES, Array, RecordError, at2_samples, csv_samples
+from reference.problem.scene_error import SceneError
+
+EXAMPLES = resources.files("reference.problem") / "examples"
+RECORD_RULE = 'must be a CSV file, "motion.csv", or .AT2 files by direction, {x = "a.AT2", y = "b.AT2"}'
+OF_TWO_FREQUENCIES = ("amplitudes", "periods", "decay")
+
+
+def with_samples(data: dict[str, Any], label: str) -> dict[str, Any]:
+    """
+    The tables of a scene file with the samples of its record read from the files it names.
+
+    Paths are relative to the scene file `label`; a name that is no file there may be that of a shipped record. Without
+    a `duration` the scene lasts as long as its record. Raises SceneError.
+    """
+    table = data.get("excitation")
+    if not (isinstance(table, dict) and "record" in table):
+        return data
+    for key in OF_TWO_FREQUENCIES:
+        if key in table:
+            rule = "a record takes the place of amplitudes, periods and decay: remove it, or the record"
+            raise SceneError(label, f"excitation.{key}", table[key], rule)
+    if "samples" in table:
+        raise SceneError(label, "excitation.samples", table["samples"], "unknown key; remove it")
+    samples = _samples(table["record"], label)
+    return {"duration": float(samples[-1, 0]), **data, "excitation": {**table, "samples": samples.tolist()}}
+
+
+def _samples(record: Any, label: str) -> Array:
+    """Samples (K, 4) of the files that `record` names."""
+    files = record if isinstance(record, dict) else {"": record}
+    named = all(isinstance(name, str) and name for name in files.values())
+    if not named or not files or (isinstance(record, dict) and not set(files) <= set(AXES)):
+        raise SceneError(label, "excitation.record", record, RECORD_RULE)
+    kinds = {Path(name).suffix.lower() for name in files.values()}
+    if kinds != ({".at2"} if isinstance(record, dict) else {".csv"}):
+        raise SceneError(label, "excitation.record", record, RECORD_RULE)
+    texts = {axis: _text(label, f"excitation.record{'.' if axis else ''}{axis}", name) for axis, name in files.items()}
+    try:
+        return at2_samples(texts) if isinstance(record, dict) else csv_samples(texts[""])
+    except RecordError as error:
+        raise SceneError(label, "excitation.record", record, str(error)) from None
+
+
+def _text(label: str, key: str, name: str) -> str:
+    path, shipped = Path(label).parent / name, EXAMPLES / name
+    try:
+        ours = (EXAMPLES / f"{label}.toml").is_file() or not path.exists()
+        content = shipped.read_bytes() if ours and shipped.is_file() else path.read_bytes()
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise SceneError(label, key, name, "must be text in UTF-8") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise SceneError(label, key, name, f"{reason}; paths are relative to the scene file") from None

@@ -1,0 +1,155 @@
+"""Reading of scenes: the built-in ones, the examples, and TOML files."""
+
+from __future__ import annotations
+
+import tomllib
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from reference.problem.record_loading import EXAMPLES, with_samples
+from reference.problem.scene import KEYS, Scene
+from reference.problem.scene_error import SceneError, first_error
+
+MAX_NESTING = 10  # tables and lists within one another in a scene file
+
+
+def builtin_scenes() -> list[str]:
+    """
+    Names of the paper's own cases, in the order of its figures.
+
+    Returns
+    -------
+    list of str
+
+    Examples
+    --------
+    >>> builtin_scenes()
+    ['fig3-I', 'fig3-II', 'fig4-dry', 'fig4-viscous']
+    """
+    folder = resources.files("reference.problem") / "scenes"
+    return sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
+
+
+def example_scenes() -> list[str]:
+    """
+    Names of the scenes with a recorded motion that are shipped as examples.
+
+    Returns
+    -------
+    list of str
+
+    Examples
+    --------
+    >>> example_scenes()
+    ['synthetic-pair', 'synthetic-triple']
+    """
+    return sorted(entry.name.removesuffix(".toml") for entry in EXAMPLES.iterdir() if entry.name.endswith(".toml"))
+
+
+def load_scene(source: str | Path, amplitude: float | None = None) -> Scene:
+    """
+    Read a scene.
+
+    Parameters
+    ----------
+    source : str or Path
+        A built-in name (`builtin_scenes`, `example_scenes`) or a path to a TOML file; docs/scene.md lists the keys.
+    amplitude : float, optional, m/s^2
+        Scale the amplitude matrix, or the record, so that its largest entry has this value.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    SceneError
+        File, key, value and rule in one line, if anything in the scene is wrong.
+
+    Examples
+    --------
+    >>> load_scene("fig3-I").friction_coefficient
+    0.1
+    """
+    scene = parse_scene(scene_text(source), str(source))
+    return scene if amplitude is None else scene.with_amplitude(amplitude)
+
+
+def scene_text(source: str | Path) -> bytes:
+    """What is written in a built-in scene or a file. Raises SceneError if there is none."""
+    label = str(source)
+    if label in example_scenes():
+        return (EXAMPLES / f"{label}.toml").read_bytes()
+    if label in builtin_scenes():
+        return (resources.files("reference.problem") / "scenes" / f"{label}.toml").read_bytes()
+    try:
+        return Path(source).read_bytes()
+    except (OSError, ValueError) as error:  # ValueError: no path at all, such as one with a null byte
+        reason = getattr(error, "strerror", None) or error
+        rule = f"{reason}; give a TOML file or one of {', '.join(builtin_scenes() + example_scenes())}"
+        raise SceneError(label, "scene", label, rule) from None
+
+
+def parse_scene(text: bytes, label: str) -> Scene:
+    '''
+    The scene in a text.
+
+    Parameters
+    ----------
+    text : bytes
+        TOML in UTF-8.
+    label : str
+        Name or path of the scene in errors; records are looked for beside it.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    SceneError
+        As `load_scene`.
+
+    Examples
+    --------
+    >>> text = b"""
+    ... title = "one body"
+    ... duration = 10.0
+    ... isolator = {period = 1.0, friction = 0.1}
+    ... bodies = [{mass = 1.0}]
+    ... excitation = {amplitudes = [[1.0, 0.0], [0.0, 1.0]], periods = [0.9, 1.1], decay = [0.3, 0.3]}
+    ... """
+    >>> parse_scene(text, "one-body.toml").name
+    'one-body'
+    '''
+    return validated_scene(scene_tables(text, label), label, Path(label).stem)
+
+
+def scene_tables(text: bytes, label: str) -> dict[str, Any]:
+    """The tables of a scene file, not validated. Raises SceneError if they cannot be read."""
+    try:
+        data: dict[str, Any] = tomllib.loads(text.decode("utf-8-sig"))
+    except (ValueError, RecursionError) as error:
+        raise SceneError(label, "file", str(error), "must be valid TOML in UTF-8") from None
+    if _deeper(data, MAX_NESTING):
+        raise SceneError(label, "file", label, f"must have at most {MAX_NESTING} tables and lists within one another")
+    if "name" in data:
+        raise SceneError(label, "name", data["name"], "unknown key; the scene is named after its file")
+    return data
+
+
+def validated_scene(data: dict[str, Any], label: str, name: str) -> Scene:
+    """The scene of these tables under this name, its record read; `label` names it in errors. Raises SceneError."""
+    try:
+        return Scene.model_validate({**with_samples(data, label), "name": name})
+    except ValidationError as error:
+        raise first_error(label, error, KEYS) from None
+
+
+def _deeper(data: Any, levels: int) -> bool:
+    """Whether tables and lists are nested in more than so many levels."""
+    inner = data.values() if isinstance(data, dict) else data if isinstance(data, list) else ()
+    return any(levels == 0 or _deeper(part, levels - 1) for part in inner if isinstance(part, dict | list))

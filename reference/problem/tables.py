@@ -1,0 +1,188 @@
+"""The tables of a scene file as validated models: isolator, body, two-frequency excitation, recorded excitation."""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Self
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+
+from reference.problem.ranges import SCENE
+from reference.problem.scene_error import EXCITATIONS
+
+USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
+
+
+ALL = "all"  # models that read a key
+SPATIAL = "spatial"
+STUDY = "`--check`"
+NONE = "none"
+
+
+def about(meaning: str, unit: str, models: str) -> Any:
+    """A key in docs/scene.md: its meaning, its unit ("" for a plain number or text), the models that read it."""
+    return Field(description=meaning, json_schema_extra={"unit": unit, "models": models})
+
+
+def within(key: str) -> AfterValidator:
+    """The rule that a number lies within the range of `key` in `ranges.SCENE`."""
+    allowed = SCENE[key]
+
+    def check(value: float) -> float:
+        if value not in allowed:
+            raise ValueError(allowed.rule)
+        return value
+
+    return AfterValidator(check)
+
+
+def _without_control_characters(text: str) -> str:
+    if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in text):
+        raise ValueError("must have no control characters")
+    return text
+
+
+Text = Annotated[str, AfterValidator(_without_control_characters)]
+Positive = Annotated[float, Field(gt=0.0)]
+NonNegative = Annotated[float, Field(ge=0.0)]
+LinkPeriods = Annotated[list[Annotated[Positive, within("bodies.period")]], Field(min_length=2, max_length=2)]
+LinkStiffness = Annotated[list[Annotated[Positive, within("bodies.stiffness")]], Field(min_length=2, max_length=2)]
+Size = Annotated[list[Annotated[Positive, within("bodies.size")]], Field(min_length=3, max_length=3)]
+Row = Annotated[list[Annotated[float, within("excitation.amplitudes")]], Field(min_length=2, max_length=2)]
+Periods = Annotated[list[Annotated[Positive, within("excitation.periods")]], Field(min_length=2, max_length=2)]
+Decay = Annotated[list[Annotated[NonNegative, within("excitation.decay")]], Field(min_length=2, max_length=2)]
+
+
+class Table(BaseModel):
+    """One table of the file: unknown keys, wrong types and numbers outside their range are refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """A copy without changes. Raises ValueError with `update`, which pydantic would not validate."""
+        if update:
+            raise ValueError(USE_WITH_VALUES)
+        return super().model_copy(deep=deep)
+
+
+def exactly_one(table: BaseModel, first: str, second: str) -> None:
+    present = [key for key in (first, second) if getattr(table, key) is not None]
+    if len(present) != 1:
+        raise ValueError(f"give exactly one of {first} and {second}, not {len(present)} of them")
+
+
+class Isolator(Table):
+    """Spherical gravity-friction isolator. Exactly one of period and radius, one of friction and lubrication."""
+
+    period: Annotated[
+        Annotated[Positive, within("isolator.period")] | None,
+        about("natural period T_c of one mass alone on the isolator; give this or radius", "s", ALL),
+    ] = None
+    radius: Annotated[
+        Annotated[Positive, within("isolator.radius")] | None,
+        about("rho = R - r, depression's radius less that of the sphere; give this or period", "m", ALL),
+    ] = None
+    friction: Annotated[
+        Annotated[NonNegative, within("isolator.friction")] | None,
+        about("dry friction coefficient mu of (2.5); give this or lubrication", "", ALL),
+    ] = None
+    lubrication: Annotated[
+        Annotated[NonNegative, within("isolator.lubrication")] | None,
+        about("coefficient f_c of lubricated friction (3.14), mu = f_c v; give this or friction", "s/m", ALL),
+    ] = None
+    supports: Annotated[
+        Annotated[int, Field(ge=3, le=int(SCENE["isolator.supports"].highest))] | None,
+        about("number K of supports, evenly spaced on a ring", "", SPATIAL),
+    ] = None
+    ring: Annotated[
+        Annotated[Positive, within("isolator.ring")] | None,
+        about("radius of the ring of supports", "m", SPATIAL),
+    ] = None
+    sphere_radius: Annotated[
+        Annotated[Positive, within("isolator.sphere_radius")] | None,
+        about("radius r of the spheres", "m", SPATIAL),
+    ] = None
+    support_stiffness: Annotated[
+        Annotated[Positive, within("isolator.support_stiffness")] | None,
+        about(
+            "vertical stiffness of each support; without it only four and more supports give way, to share the load",
+            "N/m",
+            SPATIAL,
+        ),
+    ] = None
+
+    @model_validator(mode="after")
+    def _alternatives(self) -> Isolator:
+        exactly_one(self, "period", "radius")
+        exactly_one(self, "friction", "lubrication")
+        return self
+
+
+class Body(Table):
+    """One rigid body; the first is the platform, every other body is linked to the body before it."""
+
+    mass: Annotated[Positive, within("bodies.mass"), about("mass m_i", "kg", ALL)]
+    period: Annotated[
+        LinkPeriods | None,
+        about(
+            "2 pi sqrt(m_i / k) along x and y of the link to the body below; give this or stiffness, "
+            "for the platform neither",
+            "s",
+            ALL,
+        ),
+    ] = None
+    stiffness: Annotated[
+        LinkStiffness | None,
+        about("stiffness k of that link along x and y; give this or period, for the platform neither", "N/m", ALL),
+    ] = None
+    height: Annotated[
+        Annotated[NonNegative, within("bodies.height")] | None,
+        about("height of the center of mass above the centers of the depressions", "m", SPATIAL),
+    ] = None
+    size: Annotated[
+        Size | None,
+        about("edges of the body, a homogeneous box, along x, y and z", "m", SPATIAL),
+    ] = None
+
+
+class Excitation(Table):
+    """Two-frequency damped ground acceleration (5.2)-(5.4): rows x, y and optionally z, columns the harmonics."""
+
+    amplitudes: Annotated[
+        list[Row],
+        Field(min_length=2, max_length=3),
+        about("amplitudes a_ki of (5.4): rows x, y and optionally z, columns the two harmonics", "m/s^2", ALL),
+    ]
+    periods: Annotated[Periods, about("periods T_i of the two harmonics", "s", ALL)]
+    decay: Annotated[Decay, about("rates of decay lambda_i of the two harmonics", "1/s", ALL)]
+
+
+class Record(Table):
+    """Recorded ground acceleration in place of the two frequencies: its files, and the samples read from them."""
+
+    record: Annotated[
+        Text | dict[str, Text],
+        about(
+            "recorded motion in place of amplitudes, periods and decay: a CSV file, or .AT2 files by direction "
+            "`{x = ..., y = ..., z = ...}`; relative to the scene file",
+            "",
+            ALL,
+        ),
+    ]
+    scale: Annotated[Positive, about("factor of every acceleration of the record", "", ALL)] = 1.0
+    # s and m/s^2 along x, y, z, unscaled; read from the files, no key of a scene file
+    samples: list[Annotated[list[float], Field(min_length=4, max_length=4)]]
+
+    @property
+    def files(self) -> str:
+        """File names of the record, for titles and tables."""
+        names = self.record.values() if isinstance(self.record, dict) else [self.record]
+        return ", ".join(Path(name).name for name in names)
+
+
+def kind_of_excitation(excitation: Any) -> str:
+    """Which of the two an excitation is meant to be."""
+    recorded = "record" in excitation if isinstance(excitation, dict) else isinstance(excitation, Record)
+    return EXCITATIONS[int(recorded)]

@@ -1,0 +1,117 @@
+"""
+The one-sided limits at a stop, closed: every acceleration the platform takes on the way into rest.
+
+As |v| goes to zero forces are frozen, but the slip direction still turns, theta' = a . e_perp(theta), until its
+acceleration points along it. The supremum of (5.1) runs over that whole arc of directions.
+"""
+
+from __future__ import annotations
+
+from math import cos, pi, sin, sqrt
+
+from reference.solver.compiled import compiled
+from reference.solver.contact.platform import directed
+from reference.solver.system import System
+
+SAMPLES_PER_TURN = 48
+GOLDEN_SECTIONS = 20  # they leave 1e-5 of a sample, and an error of the order of its square
+MAX_ROUNDING_TURN = 1e-9  # of the drive: sideways acceleration that rounding may make
+
+
+@compiled
+def sideways(
+    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float
+) -> float:
+    """a . e_perp: positive when the direction turns counter-clockwise."""
+    ex, ey = cos(angle), sin(angle)
+    ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, ex, ey)
+    return ay * ex - ax * ey
+
+
+@compiled
+def squared_total(
+    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float
+) -> float:
+    """Squared absolute acceleration of the platform sliding in the direction `angle` at vanishing speed."""
+    ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, cos(angle), sin(angle))
+    az = uz
+    if not system.small:
+        az += (px * ax + py * ay) / sqrt(system.radius**2 - px * px - py * py)
+    return (ax + ux) ** 2 + (ay + uy) ** 2 + az * az
+
+
+@compiled
+def settled_direction(
+    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float,
+    no_turn: float,
+) -> float:  # fmt: skip
+    """The direction at which the turning from `angle` ends; `angle` itself if it turns by less than no_turn."""
+    here = sideways(system, px, py, fx, fy, ux, uy, uz, angle)
+    drive = sqrt(fx * fx + fy * fy) + system.friction * abs(system.gravity + uz)
+    if abs(here) <= no_turn * drive:
+        return angle
+    sense = 1.0 if here > 0.0 else -1.0
+    inside = angle
+    outside = angle
+    for _ in range(SAMPLES_PER_TURN):
+        outside = inside + sense * 2.0 * pi / SAMPLES_PER_TURN
+        if sense * sideways(system, px, py, fx, fy, ux, uy, uz, outside) <= 0.0:
+            break
+        inside = outside
+    return turning_ends(system, px, py, fx, fy, ux, uy, uz, inside, outside)
+
+
+@compiled
+def turning_ends(
+    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float,
+    inside: float, outside: float,
+) -> float:  # fmt: skip
+    """The direction between the two that does not turn, by the Illinois variant of regula falsi."""
+    low, high = inside, outside
+    at_low = sideways(system, px, py, fx, fy, ux, uy, uz, low)
+    at_high = sideways(system, px, py, fx, fy, ux, uy, uz, high)
+    for _ in range(60):
+        if at_low == at_high or abs(high - low) < 1e-15:
+            break
+        angle = (low * at_high - high * at_low) / (at_high - at_low)
+        here = sideways(system, px, py, fx, fy, ux, uy, uz, angle)
+        if here == 0.0:
+            return angle
+        if (here > 0.0) == (at_high > 0.0):
+            at_low *= 0.5
+        else:
+            low, at_low = high, at_high
+        done = abs(angle - high) < 1e-14
+        high, at_high = angle, here
+        if done:
+            break
+    return high
+
+
+@compiled
+def arc_peak(
+    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float
+) -> float:
+    """Largest squared absolute acceleration of the platform over the arc that begins at `angle`, m^2/s^4."""
+    end = settled_direction(system, px, py, fx, fy, ux, uy, uz, angle, MAX_ROUNDING_TURN)
+    samples = 4 + int(abs(end - angle) * SAMPLES_PER_TURN / (2.0 * pi))
+    stride = (end - angle) / samples
+    best, top = -1.0, 0
+    for n in range(samples + 1):
+        value = squared_total(system, px, py, fx, fy, ux, uy, uz, angle + n * stride)
+        if value > best:
+            best, top = value, n
+    low = angle + max(top - 1, 0) * stride
+    high = angle + min(top + 1, samples) * stride
+    golden = 0.5 * (sqrt(5.0) - 1.0)
+    for _ in range(GOLDEN_SECTIONS):
+        left = high - golden * (high - low)
+        right = low + golden * (high - low)
+        at_left = squared_total(system, px, py, fx, fy, ux, uy, uz, left)
+        at_right = squared_total(system, px, py, fx, fy, ux, uy, uz, right)
+        best = max(best, at_left, at_right)
+        if at_left > at_right:
+            high = right
+        else:
+            low = left
+    return best

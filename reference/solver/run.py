@@ -1,0 +1,149 @@
+"""
+One run from 0 to the end of the motion: the three-structure model around (4.6), every change located.
+
+    rest      -> sliding                     when friction can no longer hold the platform
+    sliding   -> stopping                    when the slide would stop within a step
+    stopping  -> rest, creep or sliding      into the stop, below v_reg, or past the stop
+    creep     -> sliding                     at v_reg (regularized law)
+A lubricated contact stays lubricated. Each phase carries the state in `Work` on until the contact changes.
+"""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+from reference.solver.compiled import cached_entry_point, compiled, inlined
+from reference.solver.contact.platform import rest_excess
+from reference.solver.ground import ground_at
+from reference.solver.phases.rest import rest_phase
+from reference.solver.phases.sliding import barely_slips, sliding_phase, speed2
+from reference.solver.phases.smooth import smooth_phase
+from reference.solver.phases.stopping import stopping_phase
+from reference.solver.step_control import drive, remaining
+from reference.solver.system import (
+    CREEPING,
+    HELD,
+    LENGTH,
+    LUBRICATED,
+    LUBRICATED_SLIDING,
+    REACH,
+    REGULARIZED,
+    REST,
+    RIM,
+    SET_VALUED,
+    SLIDING,
+    SOLVED,
+    STEP_LIMIT,
+    STEPS,
+    TIME,
+    UNSOLVED,
+    Array,
+    Demand,
+    Record,
+    System,
+    Work,
+    workspace,
+)
+
+FIRST_STEP = 0.02  # of the period (Demand.period)
+NEGLIGIBLE_REMAINDER = 1e-8  # of the period: a run that fails so shortly before its end counts as finished
+RIM_SQUARED_FRACTION = 0.998  # of the squared radius: a run that fails beyond it has reached the rim
+HOLDING_TIME = 1e-6  # of the period: time in rest or creep of a state on the border of two phases
+MAX_CRAWL_SPEED = 1e-8  # of the loading's velocity: a slide that cannot go on at this speed has not moved
+
+
+@compiled
+def first_contact(system: System, phase: Array, work: Work) -> int:
+    """What the contact does in the initial state."""
+    if system.law == LUBRICATED:
+        return LUBRICATED_SLIDING
+    speed = speed2(system, work)
+    if system.law == REGULARIZED:
+        return CREEPING if speed < system.v_reg**2 else SLIDING
+    if speed > 0.0:
+        return SLIDING
+    ux, uy, uz = ground_at(system, phase, 0.0)
+    fx, fy = drive(system, work, ux, uy)
+    excess, reaction = rest_excess(system, work.x[0, 0], work.x[0, 1], fx, fy, ux, uy, system.gravity + uz)
+    return SLIDING if excess > 0.0 and reaction > 0.0 else REST
+
+
+@compiled
+def named(system: System, work: Work, demand: Demand, code: int) -> int:
+    """What a run that cannot go on has come to: nearly its end, the rim (4.1), or the trouble that it reports."""
+    if code != STEP_LIMIT and system.duration - work.run[TIME] < NEGLIGIBLE_REMAINDER * demand.period:
+        return SOLVED
+    at_rim = work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > RIM_SQUARED_FRACTION * system.radius**2
+    return RIM if at_rim and code in (UNSOLVED, STEP_LIMIT) else code
+
+
+@compiled
+def crawls(system: System, phase: Array, work: Work, contact: int, demand: Demand) -> bool:
+    """Whether a slide that cannot go on hardly moves, under a drive that hardly exceeds the friction limit."""
+    if system.law != SET_VALUED or contact == REST:
+        return False
+    slow2 = (MAX_CRAWL_SPEED * demand.unit * demand.period / (2.0 * pi)) ** 2
+    return speed2(system, work) <= slow2 and barely_slips(system, phase, work)
+
+
+@inlined
+def integrate(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> int:
+    """
+    Follow the motion from the state in work.x, work.v to the end; how it ended (system.py), at time work.run[TIME].
+
+    work.best (N,) holds the squared peaks of absolute acceleration, m^2/s^4.
+    """
+    for i in range(work.x.shape[0]):
+        work.best[i] = work.reading_error[i] = 0.0
+    for index in range(work.run.shape[0]):
+        work.run[index] = 0.0
+    work.run[LENGTH] = min(FIRST_STEP * demand.period, system.duration)
+    contact = first_contact(system, phase, work)
+    before, idle = -1.0, 0
+    while remaining(system, work, demand) > 0.0:
+        if contact == REST:
+            code, contact = rest_phase(system, phase, work, demand, record)
+        elif contact == SLIDING:
+            code, contact = sliding_phase(system, phase, work, demand, record)
+        elif contact in (CREEPING, LUBRICATED_SLIDING):
+            code, contact = smooth_phase(system, phase, work, contact, demand, record)
+        else:
+            code, contact = stopping_phase(system, phase, work, demand, record)
+        if code == UNSOLVED and crawls(system, phase, work, contact, demand):
+            work.v[0, 0] = work.v[0, 1] = 0.0
+            work.run[HELD] = max(work.run[HELD], HOLDING_TIME * demand.period)
+            code, contact = SOLVED, REST
+        if code != SOLVED:
+            return named(system, work, demand, code)
+        idle = idle + 1 if work.run[TIME] == before else 0
+        before = work.run[TIME]
+        if idle > 4:  # a state on the border of two phases that each gives to the other
+            work.run[HELD] = max(work.run[HELD], HOLDING_TIME * demand.period)
+    return SOLVED
+
+
+@cached_entry_point
+def runs(
+    system: System, phases: Array, x: Array, v: Array, demand: Demand, record: Record,
+    peaks: Array, reading_errors: Array, codes: Array, instants: Array, steps: Array, reach: Array,
+) -> None:  # fmt: skip
+    """
+    Follow the motion from x, v (N, 2) for every phase pair (M, 2), rad.
+
+    Fills peaks (M, N), the largest absolute accelerations, m/s^2, and reading_errors (M, N), their
+    errors inside their steps; how (system.py), when (s) and after how many steps each run ended (M,); reach (M,), m,
+    the platform's largest displacement.
+    """
+    work = workspace(peaks.shape[1])
+    for m in range(phases.shape[0]):
+        for i in range(x.shape[0]):
+            for axis in range(2):
+                work.x[i, axis] = x[i, axis]
+                work.v[i, axis] = v[i, axis]
+        codes[m] = integrate(system, phases[m], work, demand, record)
+        instants[m] = work.run[TIME]
+        steps[m] = work.run[STEPS]
+        reach[m] = sqrt(work.run[REACH])
+        for i in range(peaks.shape[1]):
+            peaks[m, i] = sqrt(work.best[i])
+            reading_errors[m, i] = work.reading_error[i]

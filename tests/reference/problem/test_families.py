@@ -1,0 +1,115 @@
+"""One value of a scene that runs over a range makes a scene of each of its values; what is no range is one line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from reference.problem import SceneError, builtin_scenes, load_family, load_scene
+from reference.problem.scene_file import scene_text
+
+
+def _file(tmp_path: Path, old: str, new: str) -> Path:
+    text = scene_text("fig3-I").decode()
+    assert old in text
+    file = tmp_path / "mine.toml"
+    file.write_text(text.replace(old, new), encoding="utf-8")
+    return file
+
+
+def test_a_range_makes_a_scene_of_every_value(tmp_path: Path) -> None:
+    family = load_family(_file(tmp_path, "friction = 0.1", "friction = {range = [0.02, 0.2], steps = 10}"))
+    assert (family.name, family.key) == ("mine", "isolator.friction")
+    assert family.values == (0.02, 0.04, 0.06, 0.08, 0.1, 0.12, 0.14, 0.16, 0.18, 0.2), "no digits of rounding"
+    assert [scene.friction_coefficient for scene in family.scenes] == list(family.values)
+    assert [scene.name for scene in family.scenes][:2] == ["mine[friction=0.02]", "mine[friction=0.04]"]
+    fifth = family.scenes[4]
+    assert fifth.digest() == load_scene("fig3-I").digest(), "the same question as with the number written there"
+
+
+KEYS = {
+    "at the top": ("duration = 20.0", "duration = {range = [5, 20], steps = 4}", "duration", (5, 10, 15, 20)),
+    "whole numbers": ("supports = 4", "supports = {range = [3, 5], steps = 3}", "isolator.supports", (3, 4, 5)),
+    "of a body": ("mass = 1.0\nperiod", "mass = {range = [1, 2], steps = 3}\nperiod", "bodies.1.mass", (1.0, 1.5, 2.0)),
+    "in a list": ("[[1.0, 0.0]", "[[{range = [1.0, 2.0], steps = 2}, 0.0]", "excitation.amplitudes.0.0", (1.0, 2.0)),
+    "values": ("friction = 0.1", "friction = {values = [0.3, 0.05]}", "isolator.friction", (0.3, 0.05)),
+    "texts": (
+        'title = "Fig. 3a, b: each harmonic along its own axis"',
+        'title = {values = ["a", "b"]}',
+        "title",
+        ("a", "b"),
+    ),
+}
+
+
+@pytest.mark.parametrize(("old", "new", "key", "values"), KEYS.values(), ids=KEYS.keys())
+def test_any_key_of_one_value_may_run(tmp_path: Path, old: str, new: str, key: str, values: tuple[object, ...]) -> None:
+    family = load_family(_file(tmp_path, old, new))
+    assert (family.key, family.values) == (key, values)
+    assert len({scene.name for scene in family.scenes}) == len(family.scenes) == len(values)
+    short = key if any(part.isdigit() for part in key.split(".")) else key.split(".")[-1]
+    assert family.scenes[0].name == f"mine[{short}={values[0]:g}]" if key != "title" else "mine[title=a]"
+
+
+def test_names_have_as_many_digits_as_it_takes(tmp_path: Path) -> None:
+    family = load_family(_file(tmp_path, "friction = 0.1", "friction = {range = [0.1, 0.10001], steps = 3}"))
+    assert [scene.name for scene in family.scenes] == [
+        "mine[friction=0.1]",
+        "mine[friction=0.100005]",
+        "mine[friction=0.10001]",
+    ]
+
+
+def test_a_scene_without_a_range_is_a_family_of_one() -> None:
+    for name in builtin_scenes():
+        family = load_family(name)
+        assert family.scenes == (load_scene(name),)
+        assert (family.name, family.key, family.values) == (name, "", ())
+
+
+def test_the_amplitude_scales_every_member(tmp_path: Path) -> None:
+    family = load_family(_file(tmp_path, "friction = 0.1", "friction = {range = [0.1, 0.2], steps = 2}"), 3.0)
+    assert [scene.amplitudes.max() for scene in family.scenes] == [3.0, 3.0]
+    assert family.scenes[0].name == "mine[friction=0.1]"
+
+
+WRONG = {
+    "no steps": (
+        "{range = [0.1, 0.2]}",
+        "isolator.friction = {'range': [0.1, 0.2]}: must be {range = [lowest, highest]",
+    ),
+    "no range": ("{steps = 3}", "isolator.friction = {'steps': 3}: must be {range = "),
+    "another key": ("{range = [0.1, 0.2], step = 3}", "isolator.friction = {'range': [0.1, 0.2], 'step': 3}: must be"),
+    "three ends": ("{range = [0.1, 0.2, 0.3], steps = 3}", "isolator.friction.range = [0.1, 0.2, 0.3]: must be two"),
+    "backwards": (
+        "{range = [0.2, 0.1], steps = 3}",
+        "isolator.friction.range = [0.2, 0.1]: must be two finite numbers",
+    ),
+    "infinite": ("{range = [0.2, inf], steps = 3}", "isolator.friction.range = [0.2, inf]: must be two finite numbers"),
+    "a flag": ("{range = [0.2, true], steps = 3}", "isolator.friction.range = [0.2, True]: must be two finite numbers"),
+    "one step": (
+        "{range = [0.1, 0.2], steps = 1}",
+        "isolator.friction.steps = 1: must be a whole number from 2 to 1000",
+    ),
+    "half steps": ("{range = [0.1, 0.2], steps = 2.5}", "isolator.friction.steps = 2.5: must be a whole number"),
+    "impossible member": ("{range = [-0.1, 0.2], steps = 4}", "isolator.friction = -0.1: Input should be greater than"),
+    "no values": ("{values = []}", "isolator.friction.values = []: must be a list of 1 to 1000 finite numbers"),
+    "mixed values": ("{values = [1, 'a']}", "isolator.friction.values = [1, 'a']: must be a list of 1 to 1000 finite"),
+    "twice": ("{values = [0.1, 0.1]}", "isolator.friction = 0.1: is there twice"),
+    "two ranges": (
+        "{range = [0.1, 0.2], steps = 2}\nring = {range = [1.0, 2.0], steps = 2}",
+        "isolator.ring = {'range': [1.0, 2.0], 'steps': 2}: only one key of a scene may run, and isolator",
+    ),
+}
+
+
+@pytest.mark.parametrize(("table", "line"), WRONG.values(), ids=WRONG.keys())
+def test_what_is_no_range_is_one_line_with_file_key_value_and_rule(tmp_path: Path, table: str, line: str) -> None:
+    file = _file(tmp_path, "friction = 0.1", f"friction = {table}")
+    if "ring" in table:
+        file.write_text(file.read_text(encoding="utf-8").replace("ring = 1.0 ", ""), encoding="utf-8")
+    with pytest.raises(SceneError) as fault:
+        load_family(file)
+    assert str(fault.value).startswith(f"{file}: {line}")
+    assert "\n" not in str(fault.value)
