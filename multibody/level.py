@@ -32,7 +32,7 @@ LAG = 0.3  # x at level 0 where rounding allows: from there on a level halves th
 NEWTON = 1e-5  # relative tolerance of the forces, at level 0
 NOISE = 0.25  # share of the tolerance that rounding of the forces may take
 PEAK = 0.2  # of g: the peak for which it does
-MOST, USUAL = 4e-4, 1e-3  # largest share of rho by which warping may give way; tolerance for which it is the smallest
+MOST = 4e-4  # largest share of rho by which warping may give way: what real bearings do
 FALL = 4.0  # of the penetration from level to level
 RATIO = 4  # between neighbouring step sizes
 SHALLOWEST, FINEST = 7, 0.05  # step sizes below the largest, at least; the smallest in allowed steps at a stop
@@ -111,7 +111,6 @@ def levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
     softest = float(np.clip(min(LAG * model.relaxation, 1.0) ** 2, stiffest, PENETRATION))
     stiffenings = math.floor(math.log(softest / stiffest, FALL) + 1e-9)
     penetrations = [softest / FALL ** min(level, stiffenings) for level in range(LEVELS)]
-    gives_way = float(np.clip(GIVES_WAY * USUAL / tolerance, GIVES_WAY, MOST))
     at_stop = FINEST * TURN * model.relaxation
     brief = brief_motions(scene, model, step)
     smallest = min([at_stop, *(needed for _, needed in brief)])
@@ -125,7 +124,7 @@ def levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
             model.rounding / penetration,
             deepest,
             CHANCE / 4.0**level,
-            gives_way,
+            GIVES_WAY,
             tuple((until, needed / 2.0**level) for until, needed in brief),
         )
         for level, penetration in enumerate(penetrations)

@@ -31,6 +31,7 @@ LONG, SHORT = 256, 32  # steps in a chunk at the largest step at most, at smalle
 ITERATIONS = 2  # of Newton's method in a step that costs what `Budget` says
 STEPS_OF_RATE = 4  # over which the rate of a gap is taken
 BEHIND = 4.0  # allowed turns times the relaxation of friction: first step behind a kink of the loading
+RELAXES = 20.0  # roots of the share by which warping gives way, until it has relaxed
 LATEST = 8  # rows at the end of a chunk that decide whether the step may grow
 
 
@@ -70,6 +71,7 @@ class March:
     steps: int = 0
     runs: int = 0
     warping: float = 0.0  # largest load that supports on a plane would not carry, in shares of the weight
+    opened: float = -math.inf  # when a support was without load last, in units of the model
     reach: float = 0.0  # largest horizontal displacement of the platform, in units of length
     chunks: list[Motion] = field(default_factory=list)
 
@@ -125,7 +127,7 @@ def march(
                 result.chunks.append(kept.upto(row))
             if outcome != Outcome.OK:
                 return _ended(result, outcome, float(kept.time[row]))
-            result.warping = max(result.warping, _warping(kept, engine, level))
+            _warp(result, kept, engine, level)
             result.reach = max(result.reach, _reach(kept, model.bodies[0, :2]))
             result.peaks.add(kept.time, absolute[: last + 1], kept.slip)
             state, time = kept.state(last), float(kept.time[last])
@@ -186,12 +188,20 @@ def _behind_kinks(motion: Motion, platform: Array, engine: Engine, peak: float, 
     return excess
 
 
-def _warping(motion: Motion, engine: Engine, level: Level) -> float:
-    """Largest load that warping takes while all contacts are closed: what keeps the supports from elastic sharing."""
+def _warp(result: March, motion: Motion, engine: Engine, level: Level) -> None:
+    """
+    Note the largest load that warping takes while all contacts are closed: it keeps the supports from elastic sharing.
+
+    While a support is open the others warp the ring, and for some time after it has closed: that load is no error.
+    """
     if engine.model.warped is None:
-        return 0.0
-    closed = (motion.gap < 0.0).all(axis=1)
-    return float(engine.model.warped(motion.coordinates)[closed].max(initial=0.0)) / level.gives_way
+        return
+    is_open = (motion.gap >= 0.0).any(axis=1)
+    opened = np.maximum.accumulate(np.where(is_open, motion.time, result.opened))
+    settled = motion.time - opened > RELAXES * math.sqrt(level.gives_way)
+    warped = engine.model.warped(motion.coordinates)[settled]
+    result.warping = max(result.warping, float(warped.max(initial=0.0)) / level.gives_way)
+    result.opened = float(opened[-1])
 
 
 def _gap_rate(motion: Motion) -> Array:

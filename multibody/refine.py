@@ -115,7 +115,8 @@ def refine(
                 break
             continue
         best = None
-        if now.warping * WARPING > SHARING * tolerance:
+        # a support that closes again would hit a platform whose supports give way by more
+        if now.warping * WARPING > SHARING * tolerance and now.opened == -math.inf:
             rest = slice(number + 1, len(plan))
             plan[rest] = [_yielding(later, now.warping, tolerance) for later in plan[rest]]
         if number == 0 or marches[-2].outcome != now.outcome:
