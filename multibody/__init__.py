@@ -10,13 +10,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from multibody.integration.work_limit import refusal
     from multibody.motion import trajectory
-    from multibody.work_limit import refusal
     from multibody.surface import amplification
 
 ENGINE = {
     "amplification": "multibody.surface",
-    "refusal": "multibody.work_limit",
+    "refusal": "multibody.integration.work_limit",
     "trajectory": "multibody.motion",
 }
 

@@ -26,11 +26,11 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from multibody.engine import exudyn
-from multibody.integrate import place
+from multibody.integration.constant_step import place
+from multibody.integration.work_limit import refusal
+from multibody.models.assembly import assembled
+from multibody.models.engine import exudyn
 from multibody.motion import trajectory
-from multibody.work_limit import refusal
-from multibody.surface import assembled
 from reference.problem import (
     ADVICE,
     Outcome,

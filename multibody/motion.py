@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from multibody.integrate import Motion, silence
-from multibody.refine import refine
-from multibody.surface import assembled
+from multibody.integration.constant_step import Motion, silence
+from multibody.integration.refine import refine
+from multibody.models.assembly import assembled
 from reference.problem import Scene, State, Trajectory, checked_phase, ground_acceleration
 from reference.problem.ranges import TOLERANCE, checked_number, checked_state
 

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from multibody.engine import reset_with
-from multibody.integrate import silence
-from multibody.plate import LOADINGS
-from multibody.refine import refine
-from multibody.spatial import spatial
-from multibody.system import EngineModel
-from multibody.translational import translational
+from multibody.integration.constant_step import silence
+from multibody.integration.refine import refine
+from multibody.models.assembly import assembled
 from reference.problem import (
     Amplification,
     Outcome,
@@ -25,34 +20,7 @@ from reference.problem import (
     planar_chain,
     untilted,
 )
-from reference.problem.ranges import LEAST_ACCELERATION, REGULARIZATION, TOLERANCE, checked_choice, checked_number
-
-BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": translational, "spatial": spatial}
-
-
-def assembled(
-    scene: Scene,
-    model: str,
-    regularization: float | None,
-    *,
-    loading: str = "inertial",
-    contact_force: bool = False,
-    **more: int,
-) -> EngineModel:
-    """
-    The engine's system of `scene`; more: what its builder takes besides.
-
-    Raises ValueError for an unknown model or loading, a wrong or missing v_reg.
-    """
-    checked_choice("loading", loading, LOADINGS)
-    checked_choice("model", model, sorted(BUILDERS))
-    if regularization is not None:
-        regularization = checked_number("regularization", regularization, REGULARIZATION)
-    elif not scene.lubricated and scene.friction_coefficient > 0.0:
-        raise ValueError("regularization: None: the engine's dry friction needs v_reg in m/s, greater than 0")
-    built = BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **more)
-    reset_with(built.recorders, built.container)  # which a copy of the model with other settings shares
-    return built
+from reference.problem.ranges import LEAST_ACCELERATION, TOLERANCE, checked_number
 
 
 def amplification(

@@ -27,9 +27,9 @@ from comparison.plan.study import Study
 from comparison.sweep.executors import Pool, process_pool
 from comparison.sweep.sweep import sweep
 from multibody import amplification as engine_amplification
-from multibody.integrate import Engine, silence
-from multibody.peak import Peaks
-from multibody.surface import assembled
+from multibody.integration.constant_step import Engine, silence
+from multibody.integration.peak import Peaks
+from multibody.models.assembly import assembled
 from reference import amplification
 from reference.problem import Outcome, Scene, exponents, ground_acceleration, ground_peak, loading_period
 

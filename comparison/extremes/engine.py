@@ -14,11 +14,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from multibody.integrate import silence
-from multibody.level import RATIO, Level, levels
-from multibody.refine import refine
-from multibody.surface import assembled
-from multibody.system import EngineModel
+from multibody.integration.constant_step import silence
+from multibody.integration.level import RATIO, Level, levels
+from multibody.integration.refine import refine
+from multibody.models.assembly import assembled
+from multibody.models.system import EngineModel
 from reference.problem import GRAVITY, Amplification, Outcome, Scene, checked_phases, ground_peak
 
 LEVELS = 4  # few: what is wanted is the answer at this choice, not the way from it to a good one

@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from multibody.contact import DAMPING, contact_law
-from multibody.engine import exudyn, items, reset_with
-from multibody.integrate import CONTRACTIVITY, SPECTRAL_RADIUS, silence
-from multibody.loading import Ground, SymbolicGround, symbolic_load
-from multibody.surface import assembled
-from multibody.translational import HOLLOW
-from multibody.units import link_stiffness, units_of
+from multibody.integration.constant_step import CONTRACTIVITY, SPECTRAL_RADIUS, silence
+from multibody.models.assembly import assembled
+from multibody.models.contact import DAMPING, contact_law
+from multibody.models.engine import exudyn, items, reset_with
+from multibody.models.loading import Ground, SymbolicGround, symbolic_load
+from multibody.models.translational import HOLLOW
+from multibody.models.units import link_stiffness, units_of
 from reference.problem import Scene, checked_phases, ground_acceleration, ground_peak
 
 Array = NDArray[np.float64]

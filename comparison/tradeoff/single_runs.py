@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from multibody.balance import balanced
-from multibody.integrate import Engine, silence
-from multibody.level import Level, levels
-from multibody.march import Budget, march
-from multibody.refine import WORK
-from multibody.surface import assembled
-from multibody.system import EngineModel
+from multibody.integration.adaptive import Budget, march
+from multibody.integration.balance import balanced
+from multibody.integration.constant_step import Engine, silence
+from multibody.integration.level import Level, levels
+from multibody.integration.refine import WORK
+from multibody.models.assembly import assembled
+from multibody.models.system import EngineModel
 from reference.problem import Outcome, Scene, checked_phases, ground_acceleration, ground_peak
 from reference.solver.certified import peaks_at
 from reference.solver.system import SOLVED

@@ -13,8 +13,8 @@ import pytest
 
 import multibody
 from comparison.tradeoff.constant_step import FORMULATIONS, PENETRATION, SOLVERS, run
-from multibody import level
-from multibody.integrate import Engine
+from multibody.integration import level
+from multibody.integration.constant_step import Engine
 from reference.problem import load_scene
 
 PHASE = np.array([0.3, 1.1])

@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 
 import multibody
 import reference
-from multibody.integrate import Engine, silence
-from multibody.surface import assembled
+from multibody.integration.constant_step import Engine, silence
+from multibody.models.assembly import assembled
 from reference.problem import Amplification, Scene, ground_acceleration, ground_peak
 
 NEWTON = 1e-5  # tolerance of the coarse engine's iteration

@@ -9,9 +9,9 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 import multibody
-from multibody.integrate import Engine, silence
-from multibody.surface import assembled
-from multibody.system import EngineState
+from multibody.integration.constant_step import Engine, silence
+from multibody.models.assembly import assembled
+from multibody.models.system import EngineState
 from reference.problem import GRAVITY, Scene, State, Trajectory
 
 

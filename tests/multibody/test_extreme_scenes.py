@@ -10,9 +10,9 @@ from scenes_at_hand import changed
 
 import multibody
 import reference
-from multibody import refine
-from multibody.integrate import Engine
-from multibody.march import March, march
+from multibody.integration import refine
+from multibody.integration.adaptive import March, march
+from multibody.integration.constant_step import Engine
 from reference.problem import Outcome, Scene, load_scene
 
 PHASE = [(0.3, 1.1)]

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import pytest
 
-from multibody.surface import assembled
+from multibody.models.assembly import assembled
 from reference.problem import load_scene
 
 CALLS = 60

@@ -7,8 +7,8 @@ import pytest
 
 import multibody
 import reference
-from multibody.peak import Peaks
-from multibody.recorded import aligned
+from multibody.integration.peak import Peaks
+from multibody.models.recorded import aligned
 from reference.problem import Scene, ground_velocity
 
 ANY = (0.0, 0.0)  # a record has no phases

@@ -10,8 +10,8 @@ from rigid_chain import spatial_motion
 from scenes_at_hand import CONSTANT, changed, one_body
 
 import multibody
-from multibody.engine import exudyn, items
-from multibody.spatial import link_between, stiffen_link
+from multibody.models.engine import exudyn, items
+from multibody.models.spatial import link_between, stiffen_link
 from reference.problem import GRAVITY, Outcome, Scene, ground_acceleration, load_scene
 
 LOST = (Outcome.CONTACT_LOST, Outcome.RIM_REACHED, Outcome.SOLVER_FAILED)

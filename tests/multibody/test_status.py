@@ -8,9 +8,9 @@ from scenes_at_hand import CONSTANT, changed, one_body
 from scipy.integrate import solve_ivp
 
 import multibody
-from multibody import refine
-from multibody.level import levels
-from multibody.surface import assembled
+from multibody.integration import refine
+from multibody.integration.level import levels
+from multibody.models.assembly import assembled
 from reference.problem import GRAVITY, Outcome, load_scene
 
 

@@ -17,11 +17,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.integrate import Engine, Motion
-from multibody.level import RATIO, Level
-from multibody.peak import NEAR, Peaks, kinks
-from multibody.recorded import aligned
-from multibody.system import EngineState
+from multibody.integration.constant_step import Engine, Motion
+from multibody.integration.level import RATIO, Level
+from multibody.integration.peak import NEAR, Peaks, kinks
+from multibody.models.recorded import aligned
+from multibody.models.system import EngineState
 from reference.problem import Outcome
 
 Array = NDArray[np.float64]

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.loading import Ground
-from multibody.units import Units
+from multibody.models.loading import Ground
+from multibody.models.units import Units
 from reference.problem import State
 
 Array = NDArray[np.float64]

@@ -6,8 +6,8 @@ import numpy as np
 from scenes_at_hand import changed, one_body
 
 import multibody
-from multibody.integrate import Engine, silence
-from multibody.surface import assembled
+from multibody.integration.constant_step import Engine, silence
+from multibody.models.assembly import assembled
 from reference.problem import State, load_scene
 
 

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from multibody.engine import items
-from multibody.loading import Ground, symbolic_load
+from multibody.models.engine import items
+from multibody.models.loading import Ground, symbolic_load
 
 LOADINGS = ("inertial", "plate")
 HEAVY = 1e6  # mass of the plate over that of all bodies: what they do to it is a millionth of what it does to them

@@ -18,14 +18,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.contact import DAMPING, ROUNDING, contact_law, corner_and_relaxation, pressed_in
-from multibody.engine import exudyn, items
-from multibody.loading import Ground, ground_of, symbolic_load
-from multibody.plate import plate_for
-from multibody.recorders import recorded
-from multibody.supports import DETERMINATE, GIVES_WAY, fixed_supports, sharing_supports, sphere_nodes
-from multibody.system import EngineModel, EngineState
-from multibody.units import Units, link_stiffness, units_of
+from multibody.models.contact import DAMPING, ROUNDING, contact_law, corner_and_relaxation, pressed_in
+from multibody.models.engine import exudyn, items
+from multibody.models.loading import Ground, ground_of, symbolic_load
+from multibody.models.plate import plate_for
+from multibody.models.recorders import recorded
+from multibody.models.supports import DETERMINATE, GIVES_WAY, fixed_supports, sharing_supports, sphere_nodes
+from multibody.models.system import EngineModel, EngineState
+from multibody.models.units import Units, link_stiffness, units_of
 from reference.problem import Scene, State
 
 Array = NDArray[np.float64]

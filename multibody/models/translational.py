@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.contact import DAMPING, ROUNDING, contact_law, corner_and_relaxation, pressed_in, settled
-from multibody.engine import exudyn, items
-from multibody.loading import Ground, ground_of, symbolic_load
-from multibody.plate import COORDINATES, LOCKED, Plate, plate_for
-from multibody.recorders import recorded
-from multibody.system import EngineModel, EngineState
-from multibody.units import link_stiffness, units_of
+from multibody.models.contact import DAMPING, ROUNDING, contact_law, corner_and_relaxation, pressed_in, settled
+from multibody.models.engine import exudyn, items
+from multibody.models.loading import Ground, ground_of, symbolic_load
+from multibody.models.plate import COORDINATES, LOCKED, Plate, plate_for
+from multibody.models.recorders import recorded
+from multibody.models.system import EngineModel, EngineState
+from multibody.models.units import link_stiffness, units_of
 from reference.problem import Scene, State
 
 Array = NDArray[np.float64]

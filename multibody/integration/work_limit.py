@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from multibody.integrate import silence
-from multibody.level import STEPS_PER_PERIOD, levels
-from multibody.refine import GROWTH, PREDICTED, work_needed
-from multibody.surface import assembled
+from multibody.integration.constant_step import silence
+from multibody.integration.level import STEPS_PER_PERIOD, levels
+from multibody.integration.refine import GROWTH, PREDICTED, work_needed
+from multibody.models.assembly import assembled
 from reference.problem import Scene, untilted
 
 

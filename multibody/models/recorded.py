@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.engine import exudyn
-from multibody.units import Units
+from multibody.models.engine import exudyn
+from multibody.models.units import Units
 from reference.problem import Scene
 
 Array = NDArray[np.float64]

@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.engine import items
-from multibody.plate import COORDINATES, LOCKED, Plate
+from multibody.models.engine import items
+from multibody.models.plate import COORDINATES, LOCKED, Plate
 
 Array = NDArray[np.float64]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from multibody.engine import exudyn, items
-from multibody.system import Recorders
+from multibody.models.engine import exudyn, items
+from multibody.models.system import Recorders
 
 
 def recorded(mbs: Any, nodes: list[Any], contact_nodes: list[Any], contacts: list[Any], plate: Any = None) -> Recorders:

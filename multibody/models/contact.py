@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.system import EngineState
-from multibody.units import Units
+from multibody.models.system import EngineState
+from multibody.models.units import Units
 from reference.problem import Scene
 
 Array = NDArray[np.float64]

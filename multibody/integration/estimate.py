@@ -14,10 +14,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.level import Level
-from multibody.march import March
-from multibody.peak import Peaks
-from multibody.system import EngineModel
+from multibody.integration.adaptive import March
+from multibody.integration.level import Level
+from multibody.integration.peak import Peaks
+from multibody.models.system import EngineModel
 from reference.problem import Outcome
 
 Array = NDArray[np.float64]

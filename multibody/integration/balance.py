@@ -12,9 +12,9 @@ import math
 
 import numpy as np
 
-from multibody.integrate import Engine
-from multibody.level import Level
-from multibody.system import EngineState
+from multibody.integration.constant_step import Engine
+from multibody.integration.level import Level
+from multibody.models.system import EngineState
 
 TIMES = 60.0  # sqrt(penetration): bars and contacts have settled
 STEPS = 300

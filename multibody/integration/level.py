@@ -15,10 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from multibody.contact import viscous_relaxation
-from multibody.supports import GIVES_WAY
-from multibody.system import EngineModel
-from multibody.units import link_stiffness
+from multibody.models.contact import viscous_relaxation
+from multibody.models.supports import GIVES_WAY
+from multibody.models.system import EngineModel
+from multibody.models.units import link_stiffness
 from reference.problem import Scene, exponents
 
 LEVELS = 8

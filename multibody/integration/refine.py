@@ -15,13 +15,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.balance import balanced
-from multibody.estimate import WARPING, from_compliance, from_levels, from_sharing
-from multibody.integrate import Engine
-from multibody.level import FALL, MOST, Level, levels
-from multibody.march import LONG, Budget, March, march
-from multibody.peak import Peaks
-from multibody.system import EngineModel
+from multibody.integration.adaptive import LONG, Budget, March, march
+from multibody.integration.balance import balanced
+from multibody.integration.constant_step import Engine
+from multibody.integration.estimate import WARPING, from_compliance, from_levels, from_sharing
+from multibody.integration.level import FALL, MOST, Level, levels
+from multibody.integration.peak import Peaks
+from multibody.models.system import EngineModel
 from reference.problem import Outcome, Scene, State, ground_acceleration
 
 Array = NDArray[np.float64]

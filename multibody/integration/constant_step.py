@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.engine import exudyn
-from multibody.plate import COORDINATES, HEAVY, carried_along
-from multibody.system import EngineModel, EngineState
+from multibody.models.engine import exudyn
+from multibody.models.plate import COORDINATES, HEAVY, carried_along
+from multibody.models.system import EngineModel, EngineState
 
 Array = NDArray[np.float64]
 
