@@ -2,7 +2,7 @@
 Look at one motion: `python -m multibody.animate SCENE --phases A1 A2 [--model spatial] [--out run.gif]`.
 
 First the boxes from above, in the plate's frame, with the path of the contact point on every support; then the chain
-from two sides, with the curve on which the platform's centre swings. Boxes turn as the spatial model's do; the title
+from two sides, with the curve on which the platform's center swings. Boxes turn as the spatial model's do; the title
 says how many times displacements, contact paths, tilt and yaw are drawn larger. `--view` opens the engine's own viewer
 on the same model.
 """
@@ -26,9 +26,9 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from multibody.integration.constant_step import place
+from multibody.integration.constant_step import set_initial_state
 from multibody.integration.work_limit import refusal
-from multibody.models.assembly import assembled
+from multibody.models.assembly import assemble
 from multibody.models.engine import exudyn
 from multibody.motion import trajectory
 from reference.problem import (
@@ -63,11 +63,11 @@ def frames(time: Array, values: Array, rate: float) -> Array:
     return np.stack(columns, axis=-1).reshape(count, *values.shape[1:])
 
 
-def box_corners(centre: Array, size: Array, turns: Array) -> Array:
-    """Corners (..., 8, 3), m, of boxes at `centre` (..., 3), m, turned by Rx(a) Ry(b) Rz(c), `turns` (..., 3), rad."""
+def box_corners(center: Array, size: Array, turns: Array) -> Array:
+    """Corners (..., 8, 3), m, of boxes at `center` (..., 3), m, turned by Rx(a) Ry(b) Rz(c), `turns` (..., 3), rad."""
     matrices = Rotation.from_euler("XYZ", turns.reshape(-1, 3)).as_matrix().reshape(*turns.shape, 3)
     turned: Array = (CORNERS * np.asarray(size)[..., None, :]) @ np.swapaxes(matrices, -1, -2)
-    return centre[..., None, :] + turned
+    return center[..., None, :] + turned
 
 
 def magnified(values: Array, seen: float) -> float:
@@ -82,7 +82,7 @@ def contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
     """
     From each support to its contact point in plan, (F, K, 2), m, for the platform's `shift` and `turns` (F, 3).
 
-    The point lies on the sphere of radius r, in the direction from the depression's centre to the sphere's.
+    The point lies on the sphere of radius r, in the direction from the depression's center to the sphere's.
     """
     supports = _supports(scene)
     arms = np.column_stack([supports, np.full(len(supports), -(scene.bodies[0].height or 0.0))])
@@ -152,15 +152,15 @@ def draw(scene: Scene, motion: Trajectory, out: Path, *, stretch: float, speed: 
     figure.subplots_adjust(left=0.05, right=0.99, bottom=0.2, top=0.86, wspace=0.2)
     reach = 1.08 * float(np.abs(corners[..., :2]).max())
     low, high = float(corners[..., 2].min()) - 0.15, float(corners[..., 2].max()) + 0.15
-    colours = [f"C{i}" for i in range(len(heights))]
+    colors = [f"C{i}" for i in range(len(heights))]
     outlines = []  # panel by panel, each body's
     for panel, axes in zip(panels, ((0, 1), (0, 2), (1, 2))):
         names = ["xyz"[axis] for axis in axes]
         panel.set(xlim=(-reach, reach), aspect="equal", xlabel=f"{names[0]} [m]", ylabel=f"{names[1]} [m]")
         panel.set(ylim=(-reach, reach) if axes[1] == 1 else (low, high))
-        for i, colour in enumerate(colours):
+        for i, color in enumerate(colors):
             name = f"body {i + 1}" if i else "platform"
-            outline = panel.fill([0.0], [0.0], facecolor=colour, edgecolor=colour, alpha=0.35, label=name)[0]
+            outline = panel.fill([0.0], [0.0], facecolor=color, edgecolor=color, alpha=0.35, label=name)[0]
             outlines.append((outline, i, list(axes)))
 
     above, *sides = panels
@@ -173,10 +173,10 @@ def draw(scene: Scene, motion: Trajectory, out: Path, *, stretch: float, speed: 
     rise = scene.radius - np.sqrt(scene.radius**2 - swing**2)
     masts = []
     for axis, side in enumerate(sides):
-        for support in supports[:, axis]:  # the sphere's centre stands rho above the depression's
+        for support in supports[:, axis]:  # the sphere's center stands rho above the depression's
             side.plot([support, support], [low, scene.radius], color="0.5", linewidth=1.5)
             side.plot(support, scene.radius, "o", color="0.4", markersize=6)
-        side.plot(swing * stretch, heights[0] + rise * stretch, ":", color="0.2", label="swing of the centre")
+        side.plot(swing * stretch, heights[0] + rise * stretch, ":", color="0.2", label="swing of the center")
         masts.append(side.plot([], [], "o-", color="0.2", markersize=3, linewidth=1.0)[0])
     handles = dict(zip(*reversed(above.get_legend_handles_labels())))
     handles |= dict(zip(*reversed(sides[0].get_legend_handles_labels())))
@@ -195,9 +195,9 @@ def draw(scene: Scene, motion: Trajectory, out: Path, *, stretch: float, speed: 
         for line, path in zip(lines, np.swapaxes(paths, 0, 1)):
             line.set_data(*path[: frame + 1].T)
         points.set_data(*paths[frame].T)
-        centres = rest + shifts[frame] * stretch
+        centers = rest + shifts[frame] * stretch
         for axis, mast in enumerate(masts):
-            mast.set_data(centres[:, axis], centres[:, 2])
+            mast.set_data(centers[:, axis], centers[:, 2])
         title.set_text(f"{verbatim(scene.title)}\nt = {frame / rate:.2f} s; {scales}")
         return [title, points, *lines, *masts, *(outline for outline, _, _ in outlines)]
 
@@ -213,12 +213,12 @@ def view(scene: Scene, phase: Array, model: str, regularization: float | None) -
     """Run the model in the engine's own viewer. Raises ValueError without a screen."""
     if sys.platform == "linux" and not os.environ.get("DISPLAY"):
         raise ValueError("--view: no screen: DISPLAY is not set; leave --view out to write a film instead")
-    built = assembled(scene, model, regularization)
+    built = assemble(scene, model, regularization)
     penetration = 1e-6
-    built.stiffen(penetration)
+    built.set_contact(penetration)
     built.ground.set_phase(phase)
     state = built.start(None, ground_acceleration(scene, phase, [0.0])[0], penetration)
-    place(built, state)
+    set_initial_state(built, state)
     settings = exudyn.SimulationSettings()
     settings.timeIntegration.endTime = scene.duration / built.units.time
     settings.timeIntegration.numberOfSteps = round(scene.duration * 1000.0)

@@ -1,10 +1,10 @@
 """
 Error of a run's peaks, from the same run at coarser levels.
 
-Peaks in smooth motion converge by four from level to level, those at stops by two to four, and by less where the
-contact is slower than friction relaxes (see `level`): there a level takes away no more than 1 / (2 + x) of what is
-left, x of the coarser of the two. A difference that is smaller than convergence by four explains is chance, sources
-that cancel, and counts for nothing.
+Peaks in smooth motion converge by a factor of four from level to level. Those at stops converge by two to four. Where
+the contact is slower than friction relaxes (see `level`) a level removes at most 1 / (2 + x) of the error, x being that
+of the coarser level. A difference that is smaller than convergence by four explains is accidental: errors cancel. It
+does not count.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.integration.adaptive import March
+from multibody.integration.adaptive import EngineRun
 from multibody.integration.level import Level
 from multibody.integration.peak import Peaks
 from multibody.models.system import EngineModel
@@ -22,35 +22,36 @@ from reference.problem import Outcome
 
 Array = NDArray[np.float64]
 
-SAFETY_TWO, SAFETY_MORE = 1.5, 1.25  # on the error that two levels, and three or more, show (Roache)
-SLOWEST, FASTEST = 2.0, 4.0  # factor by which a level reduces the error: at stops, in smooth motion
-TOO_GOOD = 5.0  # a larger factor is chance
-WARPING = 0.05  # relative change of a peak over the largest load that warping takes (measured: up to 0.02)
-FLOOR = 1e-6  # relative: what is left below is not measured
+SAFETY_TWO_LEVELS, SAFETY_THREE_LEVELS = 1.5, 1.25  # on the error that so many levels, or more, show (Roache)
+MIN_RATE, MAX_RATE = 2.0, 4.0  # factor by which a level reduces the error: at stops, in smooth motion
+MAX_CREDIBLE_RATE = 5.0  # a larger factor is accidental
+ERROR_PER_WARPING_LOAD = 0.05  # relative change of a peak over the largest warping load (measured: up to 0.02)
+MIN_RELATIVE_ERROR = 1e-6  # of a peak: smaller errors are not measured
+SMALLEST_CHANGE = 1e-290  # keeps a rate finite
 
 
 def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> Array:
     """Error (N,) of the last of `peaks`, two or three of the last of consecutive levels, in units of the model."""
-    now, before = peaks[-1].value, peaks[-2].value
-    change = np.abs(now - before)
-    safety, rate = SAFETY_TWO, np.full_like(change, SLOWEST)
+    last, before = peaks[-1].value, peaks[-2].value
+    change = np.abs(last - before)
+    safety, rate = SAFETY_TWO_LEVELS, np.full_like(change, MIN_RATE)
     if len(peaks) > 2:
-        safety, earlier = SAFETY_MORE, np.abs(before - peaks[-3].value)
-        rate = earlier / np.maximum(change, 1e-290)
-        change = np.where(rate > TOO_GOOD, earlier / SLOWEST, change)
-        rate = np.where(rate > TOO_GOOD, SLOWEST, np.clip(rate, SLOWEST, FASTEST))
+        safety, earlier = SAFETY_THREE_LEVELS, np.abs(before - peaks[-3].value)
+        rate = earlier / np.maximum(change, SMALLEST_CHANGE)
+        change = np.where(rate > MAX_CREDIBLE_RATE, earlier / MIN_RATE, change)
+        rate = np.where(rate > MAX_CREDIBLE_RATE, MIN_RATE, np.clip(rate, MIN_RATE, MAX_RATE))
     change = safety * change * (1.0 + lag(levels[-2], model)) / (rate - 1.0)
-    likely: Array = np.maximum(change, levels[-1].chance * now)
-    return likely + peaks[-1].sampling + levels[-1].rounding + FLOOR * now
+    level_error: Array = np.maximum(change, levels[-1].error_floor * last)
+    return level_error + peaks[-1].sampling + levels[-1].rounding + MIN_RELATIVE_ERROR * last
 
 
-def from_sharing(run: March) -> Array:
+def from_sharing(run: EngineRun) -> Array:
     """Error (N,) of a run whose supports do not quite share the load as elastic ones do."""
-    error: Array = WARPING * run.warping * run.peaks.value
+    error: Array = ERROR_PER_WARPING_LOAD * run.warping_load * run.peaks.value
     return error
 
 
-def from_compliance(stiff: Peaks, soft: March, level: Level, model: EngineModel) -> Array:
+def from_compliance(stiff: Peaks, soft: EngineRun, level: Level, model: EngineModel) -> Array:
     """
     Error (N,) that the contact's compliance leaves in `stiff`, from a run with the softer contact of `level`.
 
@@ -58,7 +59,7 @@ def from_compliance(stiff: Peaks, soft: March, level: Level, model: EngineModel)
     """
     if soft.outcome != Outcome.OK:
         return np.full_like(stiff.value, np.inf)
-    change: Array = SAFETY_TWO * np.abs(stiff.value - soft.peaks.value) * (1.0 + lag(level, model))
+    change: Array = SAFETY_TWO_LEVELS * np.abs(stiff.value - soft.peaks.value) * (1.0 + lag(level, model))
     return change + level.penetration * stiff.value
 
 

@@ -15,7 +15,7 @@ from reference.problem.ranges import REGULARIZATION, checked_choice, checked_num
 BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": translational, "spatial": spatial}
 
 
-def assembled(
+def assemble(
     scene: Scene,
     model: str,
     regularization: float | None,
