@@ -47,11 +47,14 @@ from reference.problem.files import write_new
 Array = NDArray[np.float64]
 
 FRAMES_PER_SECOND = 25
-MOST_FRAMES = 1500  # of a film, which is held in memory whole: 3.6 MB each
-MOST_STRETCHED = 1e6  # times
+MAX_FRAMES = 1500  # of a film, which is held in memory whole: 3.6 MB each
+MAX_STRETCH = 1e6  # times
 SUFFIXES = (".gif",)  # of files that can be written with what is installed
 RING, SUPPORTS, SPHERE, STOREY = 1.0, 4, 0.05, 1.0  # m, -, m, m: drawn where the scene gives no spatial data
-SEEN, LARGEST = 0.3, 1e4  # rad or m, up to which turns and contact paths are magnified; by this much at most
+MAX_DRAWN, MAX_MAGNIFICATION = (
+    0.3,
+    1e4,
+)  # rad or m, up to which turns and contact paths are magnified; by this much at most
 CORNERS = 0.5 * np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 
 
@@ -71,9 +74,9 @@ def box_corners(center: Array, size: Array, turns: Array) -> Array:
 
 
 def magnified(values: Array, seen: float) -> float:
-    """Factor, 1, 2 or 5 times a power of ten and at most `LARGEST`, which makes the largest value `seen` or less."""
+    """Factor, 1, 2 or 5 times a power of ten and at most `MAX_MAGNIFICATION`, which makes the largest value `seen` or less."""
     largest = float(np.abs(values).max())
-    wanted = min(max(seen / largest, 1.0), LARGEST) if largest > 0.0 else LARGEST
+    wanted = min(max(seen / largest, 1.0), MAX_MAGNIFICATION) if largest > 0.0 else MAX_MAGNIFICATION
     power = 10.0 ** np.floor(np.log10(wanted))
     return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted))
 
@@ -100,15 +103,15 @@ def frame_count(duration: float, speed: float) -> int:
 
 def refuse_film(scene: Scene, out: Path, stretch: float, speed: float) -> None:
     """Raise ValueError, one line, if no film can be written to `out` or it would be absurd: before anything is run."""
-    if not (np.isfinite(stretch) and 0.0 < stretch <= MOST_STRETCHED):
-        raise ValueError(f"--stretch: {stretch}: must be greater than 0 and at most {MOST_STRETCHED:g}")
+    if not (np.isfinite(stretch) and 0.0 < stretch <= MAX_STRETCH):
+        raise ValueError(f"--stretch: {stretch}: must be greater than 0 and at most {MAX_STRETCH:g}")
     if not (np.isfinite(speed) and speed > 0.0):
         raise ValueError(f"--speed: {speed}: must be finite and greater than 0")
     fastest = scene.duration * FRAMES_PER_SECOND
-    slowest = fastest / (MOST_FRAMES - 1)
-    if speed > fastest or frame_count(scene.duration, speed) > MOST_FRAMES:
+    slowest = fastest / (MAX_FRAMES - 1)
+    if speed > fastest or frame_count(scene.duration, speed) > MAX_FRAMES:
         raise ValueError(
-            f"--speed: {speed:g}: a film of {scene.duration:g} s of motion has 2 to {MOST_FRAMES} frames, "
+            f"--speed: {speed:g}: a film of {scene.duration:g} s of motion has 2 to {MAX_FRAMES} frames, "
             f"{FRAMES_PER_SECOND} per second: give {slowest:.2g} to {fastest:.2g}"
         )
     if out.is_dir():
@@ -140,12 +143,12 @@ def draw(scene: Scene, motion: Trajectory, out: Path, *, stretch: float, speed: 
     rate = FRAMES_PER_SECOND / speed
     shifts = frames(motion.time, motion.position, rate)
     turns = frames(motion.time, motion.extra.get("turns", np.zeros_like(motion.position)), rate)
-    tilt, yaw = magnified(turns[..., :2], SEEN), magnified(turns[..., 2], SEEN)
+    tilt, yaw = magnified(turns[..., :2], MAX_DRAWN), magnified(turns[..., 2], MAX_DRAWN)
     supports, heights, sizes = _supports(scene), *_boxes(scene)
     rest = heights[:, None] * np.array([0.0, 0.0, 1.0])
     corners = box_corners(rest + shifts * stretch, sizes, turns * np.array([tilt, tilt, yaw]))
     paths = contact_paths(scene, shifts[:, 0], turns[:, 0])
-    closer = magnified(paths, SEEN)
+    closer = magnified(paths, MAX_DRAWN)
     paths = supports + paths * closer
 
     figure, panels = plt.subplots(1, 3, figsize=(15.0, 6.0))
@@ -263,24 +266,24 @@ def _arguments(words: list[str] | None) -> argparse.Namespace:
 
 def main(words: list[str] | None = None) -> int:
     """Exit code 0, or 2 and one line for a wrong scene or option."""
-    given = _arguments(words)
-    phase = np.array(given.phases)
+    options = _arguments(words)
+    phase = np.array(options.phases)
     try:
-        scene = load_scene(given.scene, given.amplitude)
-        if given.view:
-            view(scene, phase, given.model, given.regularization)
+        scene = load_scene(options.scene, options.amplitude)
+        if options.view:
+            view(scene, phase, options.model, options.regularization)
             return 0
-        refuse_film(scene, given.out, given.stretch, given.speed)
-        motion = trajectory(scene, phase, given.model, given.regularization)
+        refuse_film(scene, options.out, options.stretch, options.speed)
+        motion = trajectory(scene, phase, options.model, options.regularization)
         if len(motion.time) == 0:
-            reason = refusal(scene, given.model, given.regularization, full=True) or ADVICE[Outcome(motion.status)]
+            reason = refusal(scene, options.model, options.regularization, full=True) or ADVICE[Outcome(motion.status)]
             raise ValueError(f"{scene.name}: there is no motion to show: {motion.status}: {reason}")
-    except (SceneError, ValueError) as fault:
-        print(fault, file=sys.stderr)
+    except (SceneError, ValueError) as error:
+        print(error, file=sys.stderr)
         return 2
-    film = draw(scene, motion, given.out, stretch=given.stretch, speed=given.speed)
-    if film != given.out:
-        print(f"{given.out} exists and stays: the film is in {film}", file=sys.stderr)
+    film = draw(scene, motion, options.out, stretch=options.stretch, speed=options.speed)
+    if film != options.out:
+        print(f"{options.out} exists and stays: the film is in {film}", file=sys.stderr)
     print(f"{film}: {motion.time[-1]:.2f} s of motion, status {motion.status}")
     return 0
 

@@ -69,8 +69,8 @@ def trajectory(
     --------
     >>> import multibody, reference
     >>> scene = reference.load_scene("fig3-I").with_values({"duration": 1.0})
-    >>> multibody.trajectory(scene, (2.0, 0.7)).status
-    'ok'
+    >>> multibody.trajectory(scene, (2.0, 0.7)).status == "ok"
+    True
     """
     pair = checked_phase(phase)
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)

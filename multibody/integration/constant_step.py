@@ -123,7 +123,7 @@ class Engine:
         self.explicit = EXPLICIT.get(integrator)
         if self.explicit:
             kind = getattr(exudyn.DynamicSolverType, self.explicit)
-            self.settings.timeIntegration.explicitIntegration.dynamicSolverType = kind
+            self.settings.timeIntegration.solverType = kind
         self.iterations = 0  # of Newton's method in the last run, with those of steps that were tried again
 
     def run(self, state: EngineState, begin: float, step: float, count: int) -> Motion | None:

@@ -22,10 +22,10 @@ def assemble(
     *,
     loading: str = "inertial",
     contact_force: bool = False,
-    **more: int,
+    **options: int,
 ) -> EngineModel:
     """
-    The engine's system of `scene`; more: what its builder takes besides.
+    Assemble the engine's system of `scene`; options: further arguments of the model's builder.
 
     Raises ValueError for an unknown model or loading, a wrong or missing v_reg.
     """
@@ -35,6 +35,6 @@ def assemble(
         regularization = checked_number("regularization", regularization, REGULARIZATION)
     elif not scene.lubricated and scene.friction_coefficient > 0.0:
         raise ValueError("regularization: None: the engine's dry friction needs v_reg in m/s, greater than 0")
-    built = BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **more)
-    reset_with(built.recorders, built.container)  # which a copy of the model with other settings shares
+    built = BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **options)
+    reset_with(built.recorders, built.container)  # a copy of the model with other settings shares them
     return built

@@ -13,7 +13,7 @@ from reference.problem import Scene
 
 Array = NDArray[np.float64]
 
-DAMPING_RATIO = 1.0  # ratio of the contact: its own motion dies out within a few of its periods and is not seen
+DAMPING_RATIO = 1.0  # of the contact: its own motion dies out within a few of its periods and is not seen
 FORCE_ROUNDING = 1e-15  # of a position about rho away, in units of rho; over the penetration: of the force, in weights
 MAX_LINEAR_SPEED = 1e6  # v_reg of the lubricated contact in units of velocity, above any speed: mu = f_c |v| throughout
 

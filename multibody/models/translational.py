@@ -66,20 +66,7 @@ def translational(
     ground = ground_of(mbs, scene, units)
     plate = plate_for(mbs, loading, ground)
     friction, threshold = contact_law(scene, regularization, units)
-    contact_node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
-    contact = mbs.AddObject(
-        items.ObjectContactSphereSphere(
-            markerNumbers=[
-                mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body, localPosition=[0.0, 0.0, 1.0])),
-                depression,
-            ],
-            nodeNumber=contact_node,
-            spheresRadii=[HOLLOW_RADIUS - 1.0, HOLLOW_RADIUS],
-            isHollowSphere1=True,
-            dynamicFriction=friction,
-            frictionProportionalZone=threshold,
-        )
-    )
+    contact, contact_node = _contact(mbs, plate, depression, friction, threshold)
     expressions = _inertial_loads(mbs, ground, plate, masses, depression, nodes, axes)
     recorders = add_recorders(mbs, nodes, [contact_node], [contact] if contact_force else [], plate.node)
     mbs.Assemble()
@@ -125,6 +112,21 @@ def translational(
         carried=bodies,
         references=(container, expressions),
     )
+
+
+def _contact(mbs: Any, plate: Plate, depression: Any, friction: float, threshold: float) -> tuple[Any, Any]:
+    """A sphere on the plate inside the platform's hollow sphere, and its data node; `set_contact` completes it."""
+    node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
+    sphere = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body, localPosition=[0.0, 0.0, 1.0]))
+    contact = items.ObjectContactSphereSphere(
+        markerNumbers=[sphere, depression],
+        nodeNumber=node,
+        spheresRadii=[HOLLOW_RADIUS - 1.0, HOLLOW_RADIUS],
+        isHollowSphere1=True,
+        dynamicFriction=friction,
+        frictionProportionalZone=threshold,
+    )
+    return mbs.AddObject(contact), node
 
 
 def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array) -> Any:

@@ -138,14 +138,14 @@ def test_frames_follow_the_motion() -> None:
 
 
 def test_the_drawn_corners_turn_with_the_body() -> None:
-    centre, size = np.array([1.0, 2.0, 3.0]), np.array([4.0, 2.0, 1.0])
-    quarter = box_corners(centre, size, np.array([0.0, 0.0, np.pi / 2.0])) - centre
+    center, size = np.array([1.0, 2.0, 3.0]), np.array([4.0, 2.0, 1.0])
+    quarter = box_corners(center, size, np.array([0.0, 0.0, np.pi / 2.0])) - center
     # a quarter about z swaps length and width; the corner at (+, +) goes to (-, +)
     np.testing.assert_allclose(np.abs(quarter), np.tile([1.0, 2.0, 0.5], (8, 1)), atol=1e-15)
     np.testing.assert_allclose(quarter[-1], [-1.0, 2.0, 0.5], atol=1e-15)
     angles = np.array([0.3, -0.2, 0.5])
-    turned = box_corners(centre, size, angles) - centre
-    straight = box_corners(centre, size, np.zeros(3)) - centre
+    turned = box_corners(center, size, angles) - center
+    straight = box_corners(center, size, np.zeros(3)) - center
     # the engine's own matrix of its angles
     np.testing.assert_allclose(turned, straight @ RotXYZ2RotationMatrix(angles).T, atol=1e-14)
 

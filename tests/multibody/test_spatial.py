@@ -233,7 +233,7 @@ def test_supports_share_the_load_as_the_overturning_moment_demands() -> None:
     forces = motion.extra["support_force"][-1]
     places = ring * np.cos(2.0 * np.pi * (np.arange(4) + 0.5) / 4.0)
     assert forces.sum() == pytest.approx(GRAVITY, rel=1e-4)
-    # about the plane in which the spheres touch, a radius R = rho + r above the depressions' centres
+    # about the plane in which the spheres touch, a radius R = rho + r above the depressions' centers
     assert forces @ places == pytest.approx(push * (height - lever), rel=1e-2)
 
 
