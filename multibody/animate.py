@@ -51,10 +51,8 @@ MAX_FRAMES = 1500  # of a film, which is held in memory whole: 3.6 MB each
 MAX_STRETCH = 1e6  # times
 SUFFIXES = (".gif",)  # of files that can be written with what is installed
 RING, SUPPORTS, SPHERE, STOREY = 1.0, 4, 0.05, 1.0  # m, -, m, m: drawn where the scene gives no spatial data
-MAX_DRAWN, MAX_MAGNIFICATION = (
-    0.3,
-    1e4,
-)  # rad or m, up to which turns and contact paths are magnified; by this much at most
+MAX_DRAWN = 0.3  # rad or m, up to which turns and contact paths are magnified
+MAX_MAGNIFICATION = 1e4  # times
 CORNERS = 0.5 * np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 
 
@@ -74,7 +72,7 @@ def box_corners(center: Array, size: Array, turns: Array) -> Array:
 
 
 def magnified(values: Array, seen: float) -> float:
-    """Factor, 1, 2 or 5 times a power of ten and at most `MAX_MAGNIFICATION`, which makes the largest value `seen` or less."""
+    """Factor 1, 2 or 5 times a power of ten, up to `MAX_MAGNIFICATION`, with which the largest value is at most `seen`."""
     largest = float(np.abs(values).max())
     wanted = min(max(seen / largest, 1.0), MAX_MAGNIFICATION) if largest > 0.0 else MAX_MAGNIFICATION
     power = 10.0 ** np.floor(np.log10(wanted))

@@ -69,7 +69,7 @@ class RecordedGround:
 
 def align_steps(knots: Array, near: float, time: float, step: float, count: int) -> tuple[float, int]:
     """
-    Step and number of steps from `time` on, neither larger than `step` and `count`, such that steps end at every knot passed.
+    Step and number of steps from `time` on, at most `step` and `count`, such that steps end at every knot passed.
 
     From a knot on over as many intervals of the same length as `count` reaches; from elsewhere to the next knot.
     """
