@@ -139,7 +139,7 @@ def test_a_wrong_command_is_one_line(words: list[str], said: str, capsys: pytest
 
 def test_a_file_that_is_no_trade_is_refused_in_one_line(tmp_path: Path) -> None:
     (tmp_path / FILE).write_text('{"schema": "another"}', encoding="utf-8")
-    with pytest.raises(ValueError, match="not a measured trade: its schema is 'another'"):
+    with pytest.raises(ValueError, match="not a measured trade: schema = 'another'"):
         read(tmp_path)
 
 
