@@ -29,12 +29,12 @@ from rich.console import Console
 from comparison.analysis.assumptions.validity import ValidityRanges
 from comparison.analysis.effective import effective_values
 from comparison.analysis.errata import errata_effects
-from comparison.analysis.extremes.matrix import read as stored_extremes
+from comparison.analysis.extremes.matrix import load as stored_extremes
 from comparison.analysis.further import further_findings
 from comparison.analysis.surfaces import labeled_surfaces, wide_swings
 from comparison.analysis.targets import targets_met
 from comparison.analysis.tasks import analysis_cost, analysis_tasks, motion_tasks
-from comparison.analysis.tradeoff.trade import read as stored_trades
+from comparison.analysis.tradeoff.trade import load as stored_trades
 from comparison.analysis.trajectories import stored_motions
 from comparison.analysis.unanswered import with_silent_models
 from comparison.cli.options import Options, UsageError, parsed
@@ -228,10 +228,10 @@ def _more(study: Study, surfaces: xr.Dataset, options: Options, executor: Callab
     }
 
 
-def _taken_up(read: Callable[[Path], Any], out: Path) -> Any:
+def _taken_up(load: Callable[[Path], Any], out: Path) -> Any:
     """What another command left beside the report; a file that has appeared since and is none of theirs is left."""
     try:
-        return read(out)
+        return load(out)
     except (OSError, ValueError) as error:
         on_stderr(str(error))
         return None

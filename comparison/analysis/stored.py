@@ -13,7 +13,7 @@ FILE_FORMAT = ConfigDict(extra="forbid", use_attribute_docstrings=True)
 T = TypeVar("T")
 
 
-def load(file: Path, kind: type[T], what: str, command: str) -> T | None:
+def load_file(file: Path, kind: type[T], what: str, command: str) -> T | None:
     """
     The content of a JSON file as the dataclass `kind`.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -89,27 +90,27 @@ def verdict(study: Study, surfaces: xr.Dataset, scene: Scene) -> Verdict:
     compared = sum(int(hierarchy[-1].known.sum()) for hierarchy in ladders)
     body, size = max(enumerate(sizes, start=1), key=lambda pair: pair[1].max())
     total = ladders[body - 1][-1]
-    models = total.first.title, total.second.title
+    titles = {"first": total.first.title, "second": total.second.title}
+    facts: dict[str, Any] = {"scene": scene.name, **titles, "recorded": scene.recorded}
+    nan = float("nan")
     if size.max() < 0.0:
-        return Verdict(scene.name, *models, scene.recorded, compared, 0.0 if compared else float("nan"))
+        return Verdict(**facts, compared=compared, real=0.0 if compared else nan)
     row, column = (int(index) for index in np.unravel_index(np.argmax(size), size.shape))
     place = row * total.stride, column * total.stride
     cause, part = _cause(ladders[body - 1][:-1], place)
     lowest, mu, highest = _heights(surfaces, scene.name, total, place)
     return Verdict(
-        scene.name,
-        *models,
-        scene.recorded,
-        int(total.known.sum()),
-        float(total.real[total.known].mean()),
-        float(total.size[row, column]),
-        body,
-        (float("nan"), float("nan")) if scene.recorded else (float(total.alpha1[row]), float(total.alpha2[column])),
-        cause,
-        part,
-        mu,
-        lowest,
-        highest,
+        **facts,
+        compared=int(total.known.sum()),
+        real=float(total.real[total.known].mean()),
+        size=float(total.size[row, column]),
+        body=body,
+        phases=(nan, nan) if scene.recorded else (float(total.alpha1[row]), float(total.alpha2[column])),
+        cause=cause,
+        part=part,
+        mu=mu,
+        lowest=lowest,
+        highest=highest,
     )
 
 

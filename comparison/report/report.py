@@ -26,7 +26,7 @@ from comparison.analysis.surfaces import wide_swings
 from comparison.report.assemble import assemble
 from comparison.report.figures.assumptions import assumption_figure_name, draw_assumptions
 from comparison.report.figures.budget import budget_figure_name
-from comparison.report.figures.extremes import COLORS, MEANING, draw_extremes, said
+from comparison.report.figures.extremes import COLORS, MEANING, describe, draw_extremes
 from comparison.report.figures.families import draw_families, family_figure_name
 from comparison.report.figures.pairs import figure_name
 from comparison.report.figures.pictures import PAGE, for_page, smaller
@@ -199,10 +199,10 @@ def _page(figures: Path, found: Findings, results: Results) -> str:
         checks=CHECKS,
         claim_signs=SIGNS,
         verdicts=[(verdict.value, COLORS[verdict], MEANING[verdict]) for verdict in Verdict],
-        said=said,
+        describe=describe,
         digests={scene.digest() for scene in study.scenes},
-        hump_share=SHARE,
-        hump_shares=(LEAST_SHARE, MOST_SHARE),
+        peak_share=SHARE,
+        peak_shares=(LEAST_SHARE, MOST_SHARE),
         outcomes=_outcomes(results),
         broken=results.broken,
         faults=results.faults,

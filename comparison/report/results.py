@@ -250,7 +250,7 @@ class BudgetEntry(Part):
     """fraction of the points where |D| > 5 u_D"""
     unresolved: Number
     """fraction of the points where u_D < |D| <= 5 u_D"""
-    uncertain: Number
+    error_estimate: Number
     """median of u_D"""
     peak_moves: Number
     """how far the highest point of the surface moves at least on the periodic square, rad"""

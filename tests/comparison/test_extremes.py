@@ -13,7 +13,7 @@ from rich.console import Console
 import reference
 from comparison.analysis.extremes.cells import Cell, _scene, cells, solve_cell
 from comparison.analysis.extremes.engine import amplification
-from comparison.analysis.extremes.matrix import FILE, Entry, Matrix, read, written
+from comparison.analysis.extremes.matrix import FILE, Entry, Matrix, as_json, load
 from comparison.analysis.extremes.rows import COLUMNS, Column, Row, rows, scene
 from comparison.analysis.extremes.verdicts import Verdict
 from comparison.cli.extremes import main, reduced, run
@@ -141,7 +141,7 @@ def test_the_command_writes_the_matrix_and_its_picture(tmp_path, capsys):
     out = capsys.readouterr().out
     assert code == 0
     assert "0 FAILED" in out
-    found = read(tmp_path)
+    found = load(tmp_path)
     assert found is not None
     assert found.run["command"].startswith("python -m comparison.extremes --models small ")
     assert {row.group for row in found.rows} == {"amplitude, m/s^2", "outside the rules"} - {"outside the rules"}
@@ -167,13 +167,37 @@ def test_the_file_is_read_back_as_it_was_and_another_file_is_refused(tmp_path: P
         [_extreme("converged", 1e-7), _extreme("FAILED", None)],
         {"command": "a test", "seconds": 1.0, "cpu_seconds": 2.0},
     )
-    assert read(tmp_path) is None
-    (tmp_path / FILE).write_bytes(written(found))
-    assert read(tmp_path) == found
+    assert load(tmp_path) is None
+    (tmp_path / FILE).write_bytes(as_json(found))
+    assert load(tmp_path) == found
     draw_extremes(tmp_path / "picture.png", found)
     (tmp_path / "extremes.json").write_text(json.dumps({"rows": []}), encoding="utf-8")
     with pytest.raises(ValueError, match="not a matrix of extremes"):
-        read(tmp_path)
+        load(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        ('{"columns": {}, "rows": [], "run": {}, "old": 1}', "old = 1: "),
+        ('{"columns": {}, "rows": 3, "run": {}}', "rows = 3: "),
+        ('{"columns": {}', "Invalid JSON"),
+        ("\xff", "Invalid JSON"),
+    ],
+)
+def test_a_matrix_of_an_earlier_version_is_refused_in_one_line(content: str, reason: str, tmp_path: Path):
+    (tmp_path / FILE).write_bytes(content.encode("latin-1"))
+    with pytest.raises(ValueError, match="not a matrix of extremes") as error:
+        load(tmp_path)
+    assert reason in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_a_matrix_with_a_verdict_that_is_none_is_refused(tmp_path: Path):
+    found = Matrix({"fake": "a fake"}, [_extreme("fine", 1e-7)], {"command": "a test"})
+    (tmp_path / FILE).write_bytes(as_json(found))
+    with pytest.raises(ValueError, match="'fine' is not a valid Verdict"):
+        load(tmp_path)
 
 
 def _extreme(verdict: str, error: float | None):

@@ -76,7 +76,7 @@ def test_it_belongs_to_function_task_versions_and_source(tmp_path: Path, monkeyp
     _fetched(task, tmp_path)
     scene, *rest = task.argument
     others = {
-        "function": replace(task, solve=another),
+        "function": replace(task, function=another),
         "scene": _errand((scene.with_values({"duration": 3.0}), *rest)),
         "name, which the answer may hold": _errand((scene.with_values({"name": "other"}), *rest)),
         "number": _errand((scene, 2, *rest[1:])),

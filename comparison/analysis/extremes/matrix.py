@@ -17,7 +17,7 @@ from comparison.analysis.extremes.cells import Cell, Solved
 from comparison.analysis.extremes.rows import Column
 from comparison.analysis.extremes.verdicts import Judged, Verdict
 from comparison.analysis.extremes.worker import NoAnswer
-from comparison.analysis.stored import FILE_FORMAT, load
+from comparison.analysis.stored import FILE_FORMAT, load_file
 
 FILE, PICTURE = "extremes.json", "extremes.png"
 
@@ -116,11 +116,11 @@ def as_entry(result: Solved | NoAnswer) -> Entry:
     return Entry(verdict.verdict.value, verdict.reason, error, round(result.seconds, 3), round(result.total, 3))
 
 
-def written(found: Matrix) -> bytes:
+def as_json(found: Matrix) -> bytes:
     """The content of the file."""
     return (json.dumps(asdict(found), indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
 
 
-def read(folder: Path) -> Matrix | None:
-    """The matrix that `written` left in the folder, None if there is none. Raises ValueError if it is another file."""
-    return load(folder / FILE, Matrix, "a matrix of extremes", "python -m comparison.extremes")
+def load(folder: Path) -> Matrix | None:
+    """The matrix that `as_json` left in the folder, None if there is none. Raises ValueError if it is another file."""
+    return load_file(folder / FILE, Matrix, "a matrix of extremes", "python -m comparison.extremes")

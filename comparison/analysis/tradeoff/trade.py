@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.analysis.stored import FILE_FORMAT, load
+from comparison.analysis.stored import FILE_FORMAT, load_file
 
 Array = NDArray[np.float64]
 
@@ -48,14 +48,14 @@ class Entry:
     seconds: float
     """processor time per point, s"""
     median: Sequence[float | None]
-    """median relative error of each mu against the truth; null without a value"""
+    """median relative error of each mu against the reference solution; null without a value"""
     most: Sequence[float | None]
     """relative error of each mu that 95 % of the points meet; null without a value"""
-    claimed: Sequence[float | None]
+    error_estimate: Sequence[float | None]
     """relative error estimate of each mu that 95 % of the points meet; null without estimates"""
     step: float | None = None
     """mean step, s; null where the method does not tell it"""
-    front: Sequence[bool] = ()
+    pareto_front: Sequence[bool] = ()
     """for each mu, whether no other method is as accurate (95 %) in less time"""
     error_message: str = ""
     """what went wrong, or empty"""
@@ -63,7 +63,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Answered:
-    """One question with its truth."""
+    """One question with its reference solution."""
 
     __pydantic_config__ = FILE_FORMAT
 
@@ -73,12 +73,12 @@ class Answered:
     """equations and law of friction"""
     points: int
     """phase pairs of the sample"""
-    truth: str
+    reference_solution: str
     """what the errors are against"""
     error: float
-    """largest relative error estimate of the truth"""
+    """largest relative error estimate of the reference solution"""
     checks: Sequence[str]
-    """how the truth was checked"""
+    """how the reference solution was checked"""
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ def on_pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[bool]
 
 
 def with_pareto_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
-    """The entries with `front` filled in: within each question, among those that answer it at every point."""
+    """The entries with `pareto_front` filled in: within each question, among those that answer it at every point."""
     marks: dict[int, list[bool]] = {place: [False] * bodies for place in range(len(entries))}
     for question in {entry.question for entry in entries}:
         own = [
@@ -144,7 +144,7 @@ def with_pareto_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
             known = [math.inf if error is None else error for error in errors]
             for place, mark in zip(own, on_pareto_front([entries[place].seconds for place in own], known)):
                 marks[place][body] = mark
-    return [Entry(**{**vars(entry), "front": tuple(marks[place])}) for place, entry in enumerate(entries)]
+    return [Entry(**{**vars(entry), "pareto_front": tuple(marks[place])}) for place, entry in enumerate(entries)]
 
 
 @dataclass(frozen=True)
@@ -159,20 +159,20 @@ class TradeFile:
     """one per scene"""
 
 
-def written(found: Sequence[Trade]) -> bytes:
+def as_json(found: Sequence[Trade]) -> bytes:
     """The content of the file."""
     content = asdict(TradeFile(SCHEMA, list(found)))
     return (json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
 
 
-def read(folder: Path) -> list[Trade] | None:
-    """The trades that `written` left in the folder, None if there are none. Raises ValueError for another file."""
-    content = load(folder / FILE, TradeFile, "a measured trade", "python -m comparison.tradeoff")
+def load(folder: Path) -> list[Trade] | None:
+    """The trades that `as_json` left in the folder, None if there are none. Raises ValueError for another file."""
+    content = load_file(folder / FILE, TradeFile, "a measured trade", "python -m comparison.tradeoff")
     return None if content is None else content.trades
 
 
 def labeled(
-    entries: Sequence[Entry], mu: Sequence[Array], truth: Sequence[Array], claimed: Sequence[Array],
+    entries: Sequence[Entry], mu: Sequence[Array], reference_solution: Sequence[Array], error_estimate: Sequence[Array],
     phases: Array, run: Mapping[str, Any],
 ) -> xr.Dataset:  # fmt: skip
     """Every value by setting, point and body; a question with fewer points leaves the rest NaN."""
@@ -188,8 +188,16 @@ def labeled(
     data = xr.Dataset(
         {
             "mu": (axes, padded(mu), {"long_name": "amplification factor (5.1)", "units": "1"}),
-            "truth": (axes, padded(truth), {"long_name": "the same by the truth of the question", "units": "1"}),
-            "claimed": (axes, padded(claimed), {"long_name": "estimated absolute error of mu", "units": "1"}),
+            "reference_solution": (
+                axes,
+                padded(reference_solution),
+                {"long_name": "the same by the reference solution of the question", "units": "1"},
+            ),
+            "error_estimate": (
+                axes,
+                padded(error_estimate),
+                {"long_name": "estimated absolute error of mu", "units": "1"},
+            ),
             "seconds": ("setting", [entry.seconds for entry in entries], {"units": "s", "long_name": "per point"}),
             "value": ("setting", [entry.value for entry in entries]),
             **{
