@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
-from comparison.analysis.claims.table import ClaimTable, claims_tested
+from comparison.analysis.claims.table import claims_tested
 from comparison.analysis.convergence import convergence_trends
 from comparison.analysis.scaling import scaling_trends
 from comparison.analysis.tasks import paper_complete
-from comparison.analysis.trends import Trend
 from comparison.execution.executors import Pool
 from comparison.study.study import Study
 
@@ -20,47 +18,3 @@ def further_findings(study: Study, jobs: int, executor: Pool) -> dict[str, Any]:
     scaling = scaling_trends(study, jobs, executor) if study.phased else None
     convergence = convergence_trends(study, jobs, executor) if study.phased else None
     return {"claims": claims, "scaling": scaling, "convergence": convergence}
-
-
-def claims_summary(table: ClaimTable | None) -> dict[str, Any] | None:
-    """The table of claims for summary.json: readings, verdicts in their order, the best, and what none reproduces."""
-    if table is None:
-        return None
-    return {
-        "grid": table.grid,
-        "readings": [reading.name for reading in table.readings],
-        "reproduced": [table.held(column) for column in range(len(table.readings))],
-        "best": [reading.name for reading in table.best],
-        "never": [f"{claim.figure}: {claim.says}" for claim in table.never],
-        "claims": [
-            {
-                "figure": claim.figure,
-                "says": claim.says,
-                "rule": claim.rule,
-                "weaker": claim.weaker,
-                "verdicts": [{"finding": str(verdict.finding), "found": verdict.found} for verdict in row],
-            }
-            for claim, row in zip(table.claims, table.verdicts)
-        ],
-    }
-
-
-def trends_summary(trends: Sequence[Trend] | None) -> list[dict[str, Any]] | None:
-    """Trends for summary.json; numbers that are NaN are for the caller to replace."""
-    if trends is None:
-        return None
-    return [
-        {
-            "scene": one.scene,
-            "body": one.body,
-            "what": one.what,
-            "parameter": list(one.parameter),
-            "medians": one.medians,
-            "exponent": one.slope.exponent,
-            "uncertainty": one.slope.uncertainty,
-            "points": one.slope.points,
-            "expected": one.expected,
-            "verdict": one.verdict,
-        }
-        for one in trends
-    ]

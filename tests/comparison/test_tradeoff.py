@@ -17,7 +17,7 @@ import xarray as xr
 from comparison.analysis.tradeoff import measure
 from comparison.analysis.tradeoff.measure import Found, entry, measured, sample
 from comparison.analysis.tradeoff.settings import QUESTIONS, RUN, Setting, settings
-from comparison.analysis.tradeoff.trade import FILE, Trade, load, on_pareto_front, quantile, with_pareto_fronts
+from comparison.analysis.tradeoff.trade import FILE, Trade, as_json, load, on_pareto_front, quantile, with_pareto_fronts
 from comparison.cli import tradeoff as command
 from reference.problem import Scene, load_scene
 
@@ -148,8 +148,18 @@ def test_a_wrong_command_is_one_line(words: list[str], said: str, capsys: pytest
 
 def test_a_file_that_is_no_trade_is_refused_in_one_line(tmp_path: Path) -> None:
     (tmp_path / FILE).write_text('{"schema": "another"}', encoding="utf-8")
-    with pytest.raises(ValueError, match="not a measured trade: its schema is 'another'"):
+    with pytest.raises(ValueError, match="not a measured trade: schema = 'another'"):
         load(tmp_path)
+
+
+def test_a_trade_of_an_earlier_version_is_refused_in_one_line_that_names_the_key(trade: Trade, tmp_path: Path) -> None:
+    text = as_json([trade]).decode().replace('"pareto_front"', '"front"')
+    (tmp_path / FILE).write_text(text, encoding="utf-8")
+    with pytest.raises(
+        ValueError, match=r"trades\.0\.entries\.0\.front = .*: run python -m comparison.tradeoff$"
+    ) as error:
+        load(tmp_path)
+    assert "\n" not in str(error.value)
 
 
 def test_a_model_that_raises_leaves_points_without_a_value(monkeypatch: pytest.MonkeyPatch) -> None:
