@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -117,3 +118,24 @@ def trend(
     """A trend from arrays (P, S)."""
     rows = [tuple(tuple(map(float, row)) for row in values) for values in (sizes, errors)]
     return Trend(scene, body, what, tuple(parameter), rows[0], rows[1], expected)
+
+
+def trends_summary(trends: Sequence[Trend] | None) -> list[dict[str, Any]] | None:
+    """Trends for summary.json; numbers that are NaN are for the caller to replace."""
+    if trends is None:
+        return None
+    return [
+        {
+            "scene": one.scene,
+            "body": one.body,
+            "what": one.what,
+            "parameter": list(one.parameter),
+            "medians": one.medians,
+            "exponent": one.slope.exponent,
+            "uncertainty": one.slope.uncertainty,
+            "points": one.slope.points,
+            "expected": one.expected,
+            "verdict": one.verdict,
+        }
+        for one in trends
+    ]

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from comparison.analysis.claims.table import claims_summary
 from comparison.analysis.errata import ERRATA
-from comparison.analysis.further import claims_summary, trends_summary
 from comparison.analysis.surfaces import largest_cap_share, outcome_counts
+from comparison.analysis.trends import trends_summary
 from comparison.analysis.verdicts import verdict
 from comparison.report.findings import Findings
 from comparison.study.models import models_of
