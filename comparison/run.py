@@ -25,10 +25,10 @@ from typing import Any
 
 from rich.console import Console
 
-from comparison.analysis.extremes.matrix import read as stored_extremes
+from comparison.analysis.extremes.matrix import load as stored_extremes
 from comparison.analysis.surfaces import labeled_surfaces, wide_swings
 from comparison.analysis.targets import targets_met
-from comparison.analysis.tradeoff.trade import read as stored_trades
+from comparison.analysis.tradeoff.trade import load as stored_trades
 from comparison.analysis.unanswered import with_silent_models
 from comparison.cli.options import Options, UsageError, parsed
 from comparison.cli.terminal import print_differences, print_plan, print_study_plan, print_targets_met, print_unanswered
@@ -219,10 +219,10 @@ def _checked(found: Findings) -> list[str]:
     return lines
 
 
-def _taken_up(read: Callable[[Path], Any], out: Path) -> Any:
+def _taken_up(load: Callable[[Path], Any], out: Path) -> Any:
     """What another command left beside the report; a file that has appeared since and is none of theirs is left."""
     try:
-        return read(out)
+        return load(out)
     except (OSError, ValueError) as error:
         on_stderr(str(error))
         return None

@@ -32,7 +32,7 @@ class Entry:
     the signed one, so that a step which only raises is told from one that scatters; NaN without a point.
 
     phases: (alpha1, alpha2) of the maximum, rad. real: share of the points where the step is known to a fifth of itself
-    or better, |D| > 5 u_D; unresolved: where u_D < |D| <= 5 u_D, not counted as real. uncertain: median of u_D.
+    or better, |D| > 5 u_D; unresolved: where u_D < |D| <= 5 u_D, not counted as real. error_estimate: median of u_D.
     peak_moves: rad on the periodic square, how far the highest point of the surface moves at least; points whose error
     estimates let them be the highest count alike, because symmetric surfaces have several. correlation: of the two
     surfaces. points: how many phase pairs have a value on both models, of the `asked`.
@@ -51,7 +51,7 @@ class Entry:
     phases: tuple[float, float]
     real: float
     unresolved: float
-    uncertain: float
+    error_estimate: float
     peak_moves: float
     correlation: float
     points: int
@@ -109,7 +109,7 @@ def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> Entry:
     }
     if not known.any():
         sizes = ("mean", "median", "rms", "percentile95", "maximum")
-        shares = ("real", "unresolved", "uncertain", "peak_moves", "correlation")
+        shares = ("real", "unresolved", "error_estimate", "peak_moves", "correlation")
         nothing: dict[str, Any] = dict.fromkeys((*sizes, *shares), float("nan"))
         return Entry(**names, **nothing)
     data = common_phases(surfaces, scene, [step.first.key, step.second.key]).sel(body=step.body)
@@ -128,7 +128,7 @@ def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> Entry:
         maximum=float(size.max()),
         real=float(step.real[known].mean()),
         unresolved=float(step.unresolved[known].mean()),
-        uncertain=float(np.median(step.uncertainty[known])),
+        error_estimate=float(np.median(step.uncertainty[known])),
         peak_moves=float("nan")
         if step.recorded
         else min(torus_distance(one, other) for one in highest[0] for other in highest[1]),

@@ -79,9 +79,17 @@ def scene_trends(task: Arguments) -> list[Trend]:
     halving_error = np.hypot(small_error[:-1], small_error[1:]) / small[1:]
     name = _peak(scene, supremum)
     return [
-        trend(scene.name, body + 1, f"{what}, {name}", SCALES[: len(size)], size[..., body].T, blur[..., body].T, 2.0)
+        trend(
+            scene.name,
+            body + 1,
+            f"{what}, {name}",
+            SCALES[: len(size)],
+            size[..., body].T,
+            error_estimate[..., body].T,
+            2.0,
+        )
         for body in range(len(scene.bodies))
-        for what, size, blur in ((STEP, step, step_error), (PRINTED, halving, halving_error))
+        for what, size, error_estimate in ((STEP, step, step_error), (PRINTED, halving, halving_error))
     ]
 
 

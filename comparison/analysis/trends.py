@@ -91,14 +91,14 @@ def fitted(parameter: Sequence[float], sizes: Array, errors: Array) -> Slope:
     freedom = points - len(rows) - 1
     if freedom < 1:
         return Slope(np.nan, np.nan, points, len(rows))
-    x, y, blur = [], [], []
+    x, y, error_estimate = [], [], []
     for row in rows:
         one = np.log(np.asarray(parameter)[known[row]])
         other = np.log(np.abs(sizes[row, known[row]]))
         x.append(one - one.mean())
         y.append(other - other.mean())
-        blur.append(errors[row, known[row]] / np.abs(sizes[row, known[row]]))
-    along, up, noise = (np.concatenate(parts) for parts in (x, y, blur))
+        error_estimate.append(errors[row, known[row]] / np.abs(sizes[row, known[row]]))
+    along, up, noise = (np.concatenate(parts) for parts in (x, y, error_estimate))
     spread = float(along @ along)
     exponent = float(along @ up) / spread
     scatter = float(((up - exponent * along) ** 2).sum()) / freedom / spread

@@ -118,7 +118,7 @@ def _print(console: Console, scene: Scene, cells: Sequence[Cell]) -> None:
             f"{cell.variation.height:g}",
             str(own.supports),
             "  ".join(f"{100.0 * cell.largest(body):.3f}" for body in bodies),
-            "  ".join(f"{100.0 * cell.uncertain(body):.3f}" for body in bodies),
+            "  ".join(f"{100.0 * cell.error_estimate(body):.3f}" for body in bodies),
             ", ".join(sorted(set(cell.status))),
         )
     console.print(table)

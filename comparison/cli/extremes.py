@@ -21,7 +21,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
 
 from comparison.analysis.extremes.cells import Cell, Solved, cells, solve_cell
-from comparison.analysis.extremes.matrix import FILE, PICTURE, Matrix, as_entry, matrix, written
+from comparison.analysis.extremes.matrix import FILE, PICTURE, Matrix, as_entry, as_json, matrix
 from comparison.analysis.extremes.rows import COLUMNS, EQUATIONS, REFERENCE, Column, Row, rows
 from comparison.analysis.extremes.verdicts import Verdict
 from comparison.analysis.extremes.worker import answers
@@ -62,7 +62,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
     picture = made_by(lambda folder: draw_extremes(folder / PICTURE, found))
     try:
-        files = publish(out, {FILE: written(found), **picture}, "comparison.extremes")
+        files = publish(out, {FILE: as_json(found), **picture}, "comparison.extremes")
     except OSError as error:
         print(f"command line: --out = {str(out)!r}: could not be written: {error}", file=sys.stderr)
         return 3

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
 
-from comparison.analysis.extremes.matrix import read as stored_extremes
-from comparison.analysis.tradeoff.trade import read as stored_trades
+from comparison.analysis.extremes.matrix import load as stored_extremes
+from comparison.analysis.tradeoff.trade import load as stored_trades
 from comparison.execution.cache import refuse_foreign_store
 from comparison.execution.executors import cores
 from comparison.execution.output import destination, refuse_foreign_report

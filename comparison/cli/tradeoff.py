@@ -23,7 +23,7 @@ from rich.console import Console
 from rich.table import Table
 
 from comparison.analysis.tradeoff.measure import Task, measured, tasks
-from comparison.analysis.tradeoff.trade import FILE, Trade, read, written
+from comparison.analysis.tradeoff.trade import FILE, Trade, as_json, load
 from comparison.execution.executors import Pool, cores, process_pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
 from comparison.execution.progress import Stage, progress, wide_console
@@ -50,11 +50,13 @@ def main(argv: Sequence[str] | None = None, executor: Pool = process_pool) -> in
         scenes = [load_scene(name) for name in given.scenes or [DEFAULT]]
         for scene in scenes:
             if scene.recorded:
-                rule = "its truths are for phases, which a recorded motion has not: give a scene of two frequencies"
+                rule = (
+                    "reference solutions need phases, which a recorded motion has not: give a scene of two frequencies"
+                )
                 raise SceneError(scene.name, "excitation.record", scene.name, rule)
         refuse_same_names((scene.name, scene.name) for scene in scenes)
         out = destination(given.out)
-        read(out)  # a file that is no trade is refused before anything is measured
+        load(out)  # a file that is no trade is refused before anything is measured
         pictures = [figure_file(scene.name, "tradeoff", ending=f".{end}") for scene in scenes for end in ENDINGS]
         refuse_foreign_files(out, [FILE, *pictures])
         trades = []
@@ -62,9 +64,9 @@ def main(argv: Sequence[str] | None = None, executor: Pool = process_pool) -> in
             trade, data = watched(scene, given.quick, given.jobs, console, words, executor)
             trades.append(trade)
             publish(out, _files(trade, data), COMMAND)
-        before = {trade.scene: trade for trade in read(out) or []}
+        before = {trade.scene: trade for trade in load(out) or []}
         kept = list((before | {trade.scene: trade for trade in trades}).values())
-        (file,) = publish(out, {FILE: written(kept)}, COMMAND)
+        (file,) = publish(out, {FILE: as_json(kept)}, COMMAND)
     except (SceneError, ValueError) as error:
         print(error, file=sys.stderr)
         return 2
@@ -125,16 +127,18 @@ def _files(trade: Trade, data: xr.Dataset) -> dict[str, bytes]:
 
 
 def print_trade(console: Console, trade: Trade) -> None:
-    """The fronts: what to take for which accuracy; and how each truth was checked."""
+    """The fronts: what to take for which accuracy; and how each reference solution was checked."""
     for question in trade.questions:
         console.print(f"{trade.scene}, {question.title}: {question.points} phase pairs", style="bold")
-        console.print(f"  truth: {question.truth}; {'; '.join(question.checks)}", soft_wrap=True)
+        console.print(
+            f"  reference solution: {question.reference_solution}; {'; '.join(question.checks)}", soft_wrap=True
+        )
         table = Table(box=SIMPLE_HEAD, pad_edge=False)
         table.add_column("on the Pareto front of a mu", no_wrap=True)
         for heading in ("value", "s per point", "median error", "95 %"):
             table.add_column(heading, justify="right", no_wrap=True)
         for entry in sorted(trade.of(question.key), key=lambda one: one.seconds):
-            if any(entry.front):
+            if any(entry.pareto_front):
                 sizes = ("  ".join(f"{part:.0e}" for part in parts) for parts in (entry.median, entry.most))
                 value = f"{entry.value:.0e} {entry.unit}".strip()
                 table.add_row(entry.method, value, f"{entry.seconds:.4f}", *sizes)

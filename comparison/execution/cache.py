@@ -135,9 +135,9 @@ def refuse_foreign_store(out: Path) -> None:
     try:
         if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
             raise refusal("is not the folder that keeps results of this study: move it away")
-        uncalibrated = [entry.name for entry in os.scandir(folder) if not _is_group(entry)] if folder.exists() else []
-        if uncalibrated:
-            raise refusal(f"is not a store of results of this study, it holds {min(uncalibrated)!r}: move it away")
+        foreign_files = [entry.name for entry in os.scandir(folder) if not _is_group(entry)] if folder.exists() else []
+        if foreign_files:
+            raise refusal(f"is not a store of results of this study, it holds {min(foreign_files)!r}: move it away")
         if folder.exists() and not os.access(folder, os.W_OK | os.X_OK):
             raise refusal("cannot be written")
     except OSError as error:

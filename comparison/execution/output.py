@@ -105,13 +105,13 @@ def refuse_foreign_report(out: Path) -> None:
         if _is_mount_point(place):
             raise refusal("is a mount point, which cannot be replaced: give a directory inside it")
         try:
-            uncalibrated = foreign(place)
+            foreign_files = foreign(place)
         except OSError as error:
             raise refusal(f"cannot be read: {error.strerror}: give another directory") from None
-        if uncalibrated and not read_manifest(place):
+        if foreign_files and not read_manifest(place):
             raise refusal("exists and is not a report of this study: give another directory, or empty this one")
-        if uncalibrated:
-            raise refusal(f"the report there also holds {uncalibrated[0]!r}, which would be lost: move it away")
+        if foreign_files:
+            raise refusal(f"the report there also holds {foreign_files[0]!r}, which would be lost: move it away")
     refuse_unwritable(out, place.parent)
 
 
@@ -160,11 +160,11 @@ def atomic_replace(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
     place = out.resolve()
     made = _make_parents(place.parent)
     try:
-        with staging(place) as aside:
-            report = Report(aside / NEW, place)
+        with staging(place) as staging_folder:
+            report = Report(staging_folder / NEW, place)
             yield report
             with locked(place.parent):
-                report.place = _put(aside, place, say)
+                report.place = _put(staging_folder, place, say)
     except BaseException:
         with suppress(OSError):
             for parent in made:
@@ -179,14 +179,14 @@ def clear_dead(out: Path, say: Callable[[str], None] = on_stderr) -> None:
     One that was killed between taking the old report away and putting the new one in its place gets its old one back.
     """
     place = out.resolve()
-    for aside in dead_staging(place):
-        old = aside / OLD
+    for staging_folder in dead_staging(place):
+        old = staging_folder / OLD
         with suppress(OSError):
             if old.exists() and not os.path.lexists(place):
                 os.rename(old, place)
             elif old.exists():
                 _remove_own(old, place, say)
-        clear_staging(aside)
+        clear_staging(staging_folder)
 
 
 def publish(
@@ -246,13 +246,13 @@ def foreign(folder: Path) -> list[str]:
     if not own:
         return sorted(os.listdir(folder))
     folders = {str(parent) for name in own for parent in Path(name).parents}
-    uncalibrated = []
+    foreign_files = []
     for path, is_folder in _inside(folder):
         name = path.relative_to(folder).as_posix()
         if name != MANIFEST and not (name in folders if is_folder else _is_own(path, own.get(name))):
-            uncalibrated.append(name)
+            foreign_files.append(name)
     # of a folder that is not ours the files in it say more
-    return sorted(name for name in uncalibrated if not any(other.startswith(f"{name}/") for other in uncalibrated))
+    return sorted(name for name in foreign_files if not any(other.startswith(f"{name}/") for other in foreign_files))
 
 
 def read_manifest(folder: Path) -> dict[str, Own]:
@@ -277,9 +277,9 @@ def write_manifest(folder: Path, own: Mapping[str, Own]) -> None:
     write_atomically(folder / MANIFEST, text.encode())
 
 
-def _put(aside: Path, place: Path, say: Callable[[str], None]) -> Path:
+def _put(staging_folder: Path, place: Path, say: Callable[[str], None]) -> Path:
     """Give the new report its place, or one beside it; the place."""
-    new, old = aside / NEW, aside / OLD
+    new, old = staging_folder / NEW, staging_folder / OLD
     kept: dict[str, Own] = {}
     why = "" if place.is_dir() or not os.path.lexists(place) else "it is no directory"
     try:
@@ -289,8 +289,8 @@ def _put(aside: Path, place: Path, say: Callable[[str], None]) -> Path:
         why = error.strerror or str(error)
     try:
         if os.path.lexists(old):
-            if uncalibrated := [place.name] if old.is_symlink() else foreign(old):
-                why = f"{uncalibrated[0]!r} there is not a file of this study"
+            if foreign_files := [place.name] if old.is_symlink() else foreign(old):
+                why = f"{foreign_files[0]!r} there is not a file of this study"
                 _put_back(old, place)
             else:
                 own = read_manifest(old)

@@ -33,7 +33,6 @@ class Task:
     seconds: float  # predicted cost, as `Model.seconds_per_point`
     about: Any = None  # what its directory in the cache belongs to
     needs_compiled_reference: bool = True  # on a new installation it waits until one worker has compiled the reference
-    timeout: float | None = None  # s of processor time, after which its process is ended
 
     @cached_property
     def key(self) -> str:

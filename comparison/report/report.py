@@ -31,7 +31,7 @@ from comparison.analysis.unanswered import advice
 from comparison.analysis.verdicts import bar, verdict
 from comparison.report.figures.assumptions import assumption_figure_name, draw_assumptions
 from comparison.report.figures.budget import budget_figure_name
-from comparison.report.figures.extremes import COLORS, MEANING, draw_extremes, said
+from comparison.report.figures.extremes import COLORS, MEANING, describe, draw_extremes
 from comparison.report.figures.families import draw_families, family_figure_name
 from comparison.report.figures.pairs import figure_name
 from comparison.report.figures.pictures import PAGE, for_page, smaller
@@ -198,10 +198,10 @@ def _page(figures: Path, found: Findings) -> str:
         checks=CHECKS,
         claim_signs=SIGNS,
         verdicts=[(verdict.value, COLORS[verdict], MEANING[verdict]) for verdict in Verdict],
-        said=said,
+        describe=describe,
         digests={scene.digest() for scene in study.scenes},
-        hump_share=SHARE,
-        hump_shares=(LEAST_SHARE, MOST_SHARE),
+        peak_share=SHARE,
+        peak_shares=(LEAST_SHARE, MOST_SHARE),
         outcomes=_outcomes(study, found.surfaces),
         broken=found.broken,
         faults=found.faults,

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 FILE = Path(__file__).with_name("accuracy_record.json")
-SHARE = 0.99  # of the points that must meet a tolerance, by the error estimate and in truth
-TIGHTER = 9.9  # times, at least, is the truth tighter: 100 but where the model takes no such tolerance
+SHARE = 0.99  # of the points that must meet a tolerance, by the error estimate and in fact
+TIGHTER = 9.9  # times, at least, is the reference solution tighter: 100 but where the model takes no such tolerance
 
 
 @dataclass(frozen=True)
@@ -41,8 +41,9 @@ class AccuracyRecord:
 @dataclass(frozen=True)
 class RecordedModels:
     """
-    yardsticks: processor time of a fixed piece of work of each side, s, on the machine of the record. reach: by the key
-    of the model. seconds: of a point at the usual tolerance, by the digest of the scene and the key of the model.
+    machine_benchmark: processor time of a fixed piece of work of each side, s, on the machine of the record. accuracy:
+    by the key of the model. seconds: of a point at the usual tolerance, by the digest of the scene and the key of the
+    model.
     """
 
     machine: str
@@ -52,7 +53,7 @@ class RecordedModels:
 
 
 def _met(row: Mapping[str, float]) -> bool:
-    return min(row["met"], row["claimed"]) >= SHARE and TIGHTER * row["truth"] <= row["tolerance"]
+    return min(row["met"], row["met_by_estimate"]) >= SHARE and TIGHTER * row["reference_tolerance"] <= row["tolerance"]
 
 
 @cache

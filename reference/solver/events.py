@@ -9,8 +9,8 @@ from reference.solver.compiled import compiled
 from reference.solver.contact.platform import rest_excess
 from reference.solver.system import Array, System, Work
 
-NEVER = 2.0
-GOLDEN_SECTIONS = 30  # golden sections of two instants: a passing shorter than a millionth of the step moves nothing
+NEVER = 2.0  # theta of an event that is not within the step
+GOLDEN_SECTIONS = 30  # of two instants: an event shorter than a millionth of the step moves nothing
 BISECTIONS = 50
 
 

@@ -20,9 +20,9 @@ from reference.solver.linear_solve import factorize, solve
 from reference.solver.steps import absolute_accelerations, beyond_rim
 from reference.solver.system import SLIDING, SOLVED, UNSOLVED, Array, System, Work
 
-MAX_ITERATIONS = 40
-ROUNDING_ANGLE = 1e-13  # rad: rounding moves the angles by this much
-DIRECTION_DIFFERENCE = 1e-6  # rad, for the slope by the direction: Newton's method needs it to a few digits only
+MAX_ITERATIONS = 40  # of Newton's method
+ROUNDING_ANGLE = 1e-13  # rad: change of the angles by rounding alone
+DIRECTION_DIFFERENCE = 1e-6  # rad: step of the difference quotient by the direction, needed to a few digits only
 
 # rows of Work.turning
 DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, LOG_RATIO, SPEED, COSINE, SINE = range(11)

@@ -11,8 +11,8 @@ from reference.solver.system import REACH, Array, Work
 # A step resolved to the tolerance turns by a small part of a wave between two stages: a peak between them stands less
 # than this share above the higher one.
 MAX_RISE_BETWEEN_STAGES = 0.2
-PARTS_PER_STEP = 8  # of a step, at which the platform's displacement is looked at
-MAX_WAY_FACTOR = 1.5  # times the larger speed at its ends: more than any way back and forth within a step
+PARTS_PER_STEP = 8  # parts of a step at whose ends the platform's displacement is read
+MAX_WAY_FACTOR = 1.5  # bound on the way within a step, times the larger speed at its ends and its length
 
 
 @compiled

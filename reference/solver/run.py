@@ -45,11 +45,10 @@ from reference.solver.system import (
     workspace,
 )
 
-FIRST_STEP = 0.02  # of the period (system.py): first step
-
-NEGLIGIBLE_REMAINDER = 1e-8  # of it: what little may be left when a step fails
-RIM_SQUARED_FRACTION = 0.998  # of the squared radius
-HOLDING_TIME = 1e-6  # of it: for so long such a state is left to rest or creep
+FIRST_STEP = 0.02  # of the period (Demand.period)
+NEGLIGIBLE_REMAINDER = 1e-8  # of the period: a run that fails so shortly before its end counts as finished
+RIM_SQUARED_FRACTION = 0.998  # of the squared radius: a run that fails beyond it has reached the rim
+HOLDING_TIME = 1e-6  # of the period: time in rest or creep of a state on the border of two phases
 MAX_CRAWL_SPEED = 1e-8  # of the loading's velocity: a slide that cannot go on at this speed has not moved
 
 

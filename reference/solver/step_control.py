@@ -29,12 +29,12 @@ from reference.solver.system import (
 )
 
 MIN_LENGTH_FACTOR, MAX_LENGTH_FACTOR, SAFETY_FACTOR = 0.1, 5.0, 0.85
-ERROR_ORDER = 7.0  # of the error estimate in the step length
-MIN_SCALE_FRACTION = 0.02  # a body that hardly accelerates is measured against this share of the loading
-FATAL_STEP = 1e-9  # of the period: a step this short that still fails has found the instant
-MIN_STEP = 1e-16  # of the period
-NEGLIGIBLE_TIME = 1e-11  # of it, or of the duration: a time within which no acceleration changes
-NEWTON_FRACTION = 0.01  # of the tolerance: where the iteration for a step may end
+ERROR_ORDER = 7.0  # order of the error estimate in the step length
+MIN_SCALE_FRACTION = 0.02  # of the loading: lower bound on the acceleration that the error of a body is relative to
+FATAL_STEP = 1e-9  # of the period (Demand.period): a step this short that still fails has located the instant
+MIN_STEP = 1e-16  # of the period: shortest step
+NEGLIGIBLE_TIME = 1e-11  # of the shorter of period and duration: no acceleration changes within it
+NEWTON_FRACTION = 0.01  # of the tolerance: change of the accelerations at which Newton's method ends
 
 
 @compiled

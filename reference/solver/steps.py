@@ -21,11 +21,11 @@ from reference.solver.ground import ground_at_stages
 from reference.solver.linear_solve import factorize, solve
 from reference.solver.system import OPEN, PAINLEVE, REST, RIM, SOLVED, UNSOLVED, Array, System, Work
 
-MAX_ITERATIONS = 14
-SLOW_CONVERGENCE = 0.1  # a change that shrinks by less asks for a new derivative
+MAX_ITERATIONS = 14  # of Newton's method
+SLOW_CONVERGENCE = 0.1  # of the change before: a larger change asks for a new derivative
 FORCE_ROUNDING = 1e-13  # of the forces: what rounding leaves of the defect at the start of a step
-ROUNDING_CHANGE = 4e-15  # of the accelerations: rounding alone changes them by this much from one iteration to the next
-RIM_SQUARED_FRACTION = 0.99  # of the squared radius
+ROUNDING_CHANGE = 4e-15  # of the accelerations: change by rounding alone from one iteration to the next
+RIM_SQUARED_FRACTION = 0.99  # of the squared radius: an iteration that starts beyond it and strays has reached the rim
 
 
 @compiled

@@ -160,13 +160,16 @@ def planted(
     return smooth(scene, phases, tolerance if claimed is None else claimed, gap)
 
 
-def errors_in(gaps: Mapping[str, float], claimed: Mapping[str, float] | None = None) -> tuple[Model, ...]:
-    """The real model hierarchy: the models named lie `gaps` above the others and claim relative errors `claimed`."""
+def errors_in(gaps: Mapping[str, float], error_estimates: Mapping[str, float] | None = None) -> tuple[Model, ...]:
+    """
+    The real model hierarchy: the models named lie `gaps` above the others and state the relative errors
+    `error_estimates`.
+    """
     return tuple(
         replace(
             model,
             amplification="fake_models:planted",
-            settings={"gap": gaps.get(model.key, 0.0), "claimed": (claimed or {}).get(model.key, 1e-5)},
+            settings={"gap": gaps.get(model.key, 0.0), "claimed": (error_estimates or {}).get(model.key, 1e-5)},
             symmetric=never,
             refusal=None,
         )

@@ -76,10 +76,10 @@ def test_an_error_in_one_rung_alone_shows_in_both_its_steps_and_cancels_in_the_t
 
 
 def test_a_coarse_step_with_an_honest_error_is_not_called_a_difference() -> None:
-    study, surfaces = _solved(errors_in({"translational": 0.02}, claimed={"translational": 0.03}))
+    study, surfaces = _solved(errors_in({"translational": 0.02}, error_estimates={"translational": 0.03}))
     table = _table(study, surfaces)
     assert table["translational"].real == 0.0
-    assert table["translational"].uncertain == pytest.approx(0.03 * 1.02, rel=1e-3)  # u_A = 1e-5 adds 5e-8
+    assert table["translational"].error_estimate == pytest.approx(0.03 * 1.02, rel=1e-3)  # u_A = 1e-5 adds 5e-8
 
 
 @pytest.mark.parametrize("grid", [12, 34, 48, 50])
@@ -94,21 +94,21 @@ def test_phases_that_are_not_computed_again_are_pi_away_from_those_that_are(grid
 
 def test_a_step_known_to_less_than_a_fifth_is_counted_apart_and_not_as_real() -> None:
     for gap, expected in ((0.9, (0.0, 0.0)), (1.1, (0.0, 1.0)), (4.9, (0.0, 1.0)), (5.1, (1.0, 0.0))):
-        study, surfaces = _solved(errors_in({"exact": gap * 1e-3}, claimed={"small": 6e-4, "exact": 8e-4}))
+        study, surfaces = _solved(errors_in({"exact": gap * 1e-3}, error_estimates={"small": 6e-4, "exact": 8e-4}))
         entry = _table(study, surfaces)["exact"]
         assert (entry.real, entry.unresolved) == expected, "u_D is 1e-3, up to the 0.5 % that the step itself adds"
 
 
 def test_a_coarse_step_with_a_false_error_is_blamed_on_the_engine_rung_like_for_like() -> None:
-    """The like-for-like step must vanish: one far above its u_D is an error claimed too small, not physics."""
-    study, surfaces = _solved(errors_in({"translational": 0.02}, claimed={"translational": 1e-6}))
+    """The like-for-like step must vanish: one far above its u_D is an error error_estimates too small, not physics."""
+    study, surfaces = _solved(errors_in({"translational": 0.02}, error_estimates={"translational": 1e-6}))
     table = _table(study, surfaces)
     assert table["translational"].real == 1.0
-    assert table["translational"].median > 100.0 * table["translational"].uncertain
+    assert table["translational"].median > 100.0 * table["translational"].error_estimate
 
 
 def test_uncertainties_of_the_two_rungs_add_in_quadrature() -> None:
-    study, surfaces = _solved(errors_in({}, claimed={"exact": 3e-3, "small": 4e-3}))
+    study, surfaces = _solved(errors_in({}, error_estimates={"exact": 3e-3, "small": 4e-3}))
     np.testing.assert_allclose(steps(study, surfaces, "fig3-I", 1)[0].uncertainty, 5e-3, rtol=1e-12)
 
 
@@ -126,8 +126,8 @@ def test_a_point_without_a_value_is_left_out_of_the_steps_to_and_from_it_and_of_
 def test_a_value_not_known_to_half_of_itself_counts_as_missing() -> None:
     study, surfaces = _solved(errors_in({}))
     place = {"model": "spatial", "body": 1, "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][6]}
-    for claimed, points in ((49.0, 16), (51.0, 15)):
-        surfaces["mu"].loc[place], surfaces["error"].loc[place] = 100.0, claimed
+    for error_estimates, points in ((49.0, 16), (51.0, 15)):
+        surfaces["mu"].loc[place], surfaces["error"].loc[place] = 100.0, error_estimates
         assert _table(study, surfaces)["spatial"].points == points
 
 
@@ -182,7 +182,7 @@ def test_of_several_equal_peaks_the_nearest_counts() -> None:
     for model in study.hierarchy:
         _with_peak_at(surfaces, model.key, 1, 1)
     other = {"model": "exact", "body": 1, "alpha1": surfaces["alpha1"][5], "alpha2": surfaces["alpha2"][5]}
-    surfaces["mu"].loc[other] = 2.0 * (1.0 + 1e-7)  # higher by less than the error claimed
+    surfaces["mu"].loc[other] = 2.0 * (1.0 + 1e-7)  # higher by less than the error error_estimates
     assert _table(study, surfaces)["exact"].peak_moves == 0.0
 
 

@@ -40,10 +40,10 @@ def _seen(mu_1: Array, mu_2: Array, bend: Bend = FOLD, apart: float = 1.0, swing
 FOUR = 2.5 - np.cos(2.0 * (A1 - A2))  # drawn: four ridges along the diagonal and three valleys between them
 TWO = 2.5 - np.cos(A1 - A2)
 CORNERS = 1.5 + 0.5 * (np.cos(A1) + np.cos(A2))
-HUMPS = 1.5 + 0.25 * np.cos(2.0 * A1) + 0.25 * np.cos(2.0 * A2)
+SEVERAL_PEAKS = 1.5 + 0.25 * np.cos(2.0 * A1) + 0.25 * np.cos(2.0 * A2)
 
 PAPER: Mapping[str, Evidence] = {  # surfaces as the paper describes them
-    "fig3-I": _seen(FOUR, HUMPS),
+    "fig3-I": _seen(FOUR, SEVERAL_PEAKS),
     "fig3-I alone": Evidence(FOUR[..., None], 1e-4, ("ok",)),
     "fig3-II": _seen(TWO, CORNERS, apart=0.0),
     "fig3-II alone": Evidence(TWO[..., None], 1e-4, ("ok",)),
@@ -67,21 +67,21 @@ ONE_AXIS, BOTH_AXES, DRY, WET = (PAPER[name] for name in ("fig3-I", "fig3-II", "
 ROUGH = np.where(np.random.default_rng(2).uniform(size=(N, N)) > 0.5, 1.0, 3.0)
 VIOLATIONS: list[tuple[str, str, Mapping[str, Evidence]]] = [
     ("Fig. 3", "small", {"fig3-II": replace(BOTH_AXES, swing=0.2)}),
-    ("Fig. 3a, b", "more intensively", {"fig3-I": _seen(HUMPS, FOUR)}),
-    ("Fig. 3a", "four humps", {"fig3-I": _seen(TWO, HUMPS)}),
-    ("Fig. 3a", "four humps", {"fig3-I": _seen(2.5 + np.cos(3.0 * (A1 - A2)), HUMPS)}),
-    ("Fig. 3a", "four humps", {"fig3-I": _seen(1.0 + 1e-3 * FOUR, HUMPS)}),  # no resonance
+    ("Fig. 3a, b", "more intensively", {"fig3-I": _seen(SEVERAL_PEAKS, FOUR)}),
+    ("Fig. 3a", "four peaks", {"fig3-I": _seen(TWO, SEVERAL_PEAKS)}),
+    ("Fig. 3a", "four peaks", {"fig3-I": _seen(2.5 + np.cos(3.0 * (A1 - A2)), SEVERAL_PEAKS)}),
+    ("Fig. 3a", "four peaks", {"fig3-I": _seen(1.0 + 1e-3 * FOUR, SEVERAL_PEAKS)}),  # no resonance
     ("Fig. 3a", "one-mass", {"fig3-I alone": Evidence(-FOUR[..., None] + 5.0, 1e-4, ("ok",))}),
-    ("Fig. 3b", "more complex", {"fig3-I": _seen(HUMPS, TWO)}),
+    ("Fig. 3b", "more complex", {"fig3-I": _seen(SEVERAL_PEAKS, TWO)}),
     ("Fig. 3b", "x_2(t) differs", {"fig3-I": replace(ONE_AXIS, apart=(1.0, 0.01))}),
-    ("Fig. 3c", "two humps", {"fig3-II": _seen(FOUR, CORNERS)}),
+    ("Fig. 3c", "two peaks", {"fig3-II": _seen(FOUR, CORNERS)}),
     ("Fig. 3c", "one degree", {"fig3-II alone": Evidence(np.roll(TWO, N // 4, axis=0)[..., None], 1e-4, ("ok",))}),
     ("Fig. 3d", "corners", {"fig3-II": _seen(TWO, np.roll(CORNERS, N // 2, axis=1))}),
-    ("Fig. 3d", "nonresonant", {"fig3-II oscillator": Evidence(HUMPS[..., None], 1e-4, ("ok",))}),
+    ("Fig. 3d", "nonresonant", {"fig3-II oscillator": Evidence(SEVERAL_PEAKS[..., None], 1e-4, ("ok",))}),
     ("Fig. 3", "not smooth", {"fig3-I": replace(ONE_AXIS, bends=(FOLD, SMOOTH))}),
     ("Fig. 4a, b", "plane", {"fig4-dry": replace(DRY, apart=(0.0, 1e-3))}),
     ("Fig. 4a", "similar", {"fig4-dry": _seen(FOUR, CORNERS)}),
-    ("Fig. 4b", "similar", {"fig4-dry": _seen(TWO, HUMPS)}),
+    ("Fig. 4b", "similar", {"fig4-dry": _seen(TWO, SEVERAL_PEAKS)}),
     ("Fig. 4c, d", "makes the surfaces smooth", {"fig4-viscous": replace(WET, bends=(SMOOTH, FOLD))}),
     ("Fig. 4c, d", "smoother", {"fig4-viscous": _seen(ROUGH, CORNERS)}),
 ]
@@ -104,7 +104,7 @@ def test_the_loading_is_near_no_natural_period_of_the_paper() -> None:
 
 
 def test_counts_that_only_the_drawn_square_shows_are_told_apart() -> None:
-    verdict = _claim("Fig. 3a", "four humps").verdict(PAPER)
+    verdict = _claim("Fig. 3a", "four peaks").verdict(PAPER)
     assert verdict == Verdict(Finding.AS_DRAWN, "periodic 2 and 2; drawn 4 and 3")
 
 
@@ -118,7 +118,7 @@ def test_a_case_without_an_answer_leaves_its_claims_open() -> None:
     }
     assert _claim("Fig. 3a", "four").verdict(changed) == Verdict(Finding.OPEN, "fig3-I: ok, rim reached")
     assert _claim("Fig. 4a", "similar").verdict(changed) == Verdict(Finding.OPEN, "fig4-dry: broke")
-    assert _claim("Fig. 3c", "two humps").verdict(changed).finding.holds
+    assert _claim("Fig. 3c", "two peaks").verdict(changed).finding.holds
 
 
 def test_similarity_compares_the_same_phases_of_a_coarser_surface() -> None:
@@ -163,7 +163,7 @@ def test_a_case_that_fails_or_dies_is_named_and_the_others_answered(monkeypatch:
     table = collected(Claims(N, READINGS[:2]), PAPERS)
     findings = {claim.says: row[0] for claim, row in zip(table.claims, table.verdicts)}
     assert findings["mu_1 is similar to case II"].found == "fig4-dry: solver failed: RuntimeError: singular"
-    assert findings["mu_1 has two humps separated by a valley"].finding.holds
+    assert findings["mu_1 has two peaks separated by a valley"].finding.holds
 
 
 def test_what_a_solver_complains_about_becomes_the_fault(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -205,7 +205,7 @@ def test_evidence_of_the_paper_is_what_the_equations_give() -> None:
 
 
 @pytest.mark.long
-def test_four_humps_and_three_valleys_are_a_matter_of_the_drawing() -> None:
+def test_four_peaks_and_three_valleys_are_a_matter_of_the_drawing() -> None:
     """1 m/s^2, resolved peak: two ridges on the square that closes; cut open they are the paper's four and three."""
     table = collected(Claims(16, [Reading()], [_claim("Fig. 3a", "four"), _claim("Fig. 3c", "two")]), PAPERS)
     assert [row[0].finding for row in table.verdicts] == [Finding.AS_DRAWN] * 2

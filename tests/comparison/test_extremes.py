@@ -13,7 +13,7 @@ from rich.console import Console
 import reference
 from comparison.analysis.extremes.cells import Cell, _scene, cells, solve_cell
 from comparison.analysis.extremes.engine import amplification
-from comparison.analysis.extremes.matrix import FILE, Entry, Matrix, read, written
+from comparison.analysis.extremes.matrix import FILE, Entry, Matrix, as_json, load
 from comparison.analysis.extremes.rows import COLUMNS, Column, Row, rows, scene
 from comparison.analysis.extremes.verdicts import Verdict
 from comparison.cli.extremes import main, reduced, run
@@ -141,7 +141,7 @@ def test_the_command_writes_the_matrix_and_its_picture(tmp_path, capsys):
     out = capsys.readouterr().out
     assert code == 0
     assert "0 FAILED" in out
-    found = read(tmp_path)
+    found = load(tmp_path)
     assert found is not None
     assert found.run["command"].startswith("python -m comparison.extremes --models small ")
     assert {row.group for row in found.rows} == {"amplitude, m/s^2", "outside the rules"} - {"outside the rules"}
@@ -167,13 +167,13 @@ def test_the_file_is_read_back_as_it_was_and_another_file_is_refused(tmp_path: P
         [_extreme("converged", 1e-7), _extreme("FAILED", None)],
         {"command": "a test", "seconds": 1.0, "cpu_seconds": 2.0},
     )
-    assert read(tmp_path) is None
-    (tmp_path / FILE).write_bytes(written(found))
-    assert read(tmp_path) == found
+    assert load(tmp_path) is None
+    (tmp_path / FILE).write_bytes(as_json(found))
+    assert load(tmp_path) == found
     draw_extremes(tmp_path / "picture.png", found)
     (tmp_path / "extremes.json").write_text(json.dumps({"rows": []}), encoding="utf-8")
     with pytest.raises(ValueError, match="not a matrix of extremes"):
-        read(tmp_path)
+        load(tmp_path)
 
 
 def _extreme(verdict: str, error: float | None):

@@ -24,12 +24,12 @@ def page(finished: Path) -> str:
     return (finished / "index.html").read_text(encoding="utf-8")
 
 
-def test_the_page_states_the_definition_of_a_hump_and_the_best_reading(page: str) -> None:
+def test_the_page_states_the_definition_of_a_peak_and_the_best_reading(page: str) -> None:
     assert (
         "(how far one must go down from it to reach anything higher) is at least\n30 % of the surface's range" in page
     )
     assert "Most claims, 2 of 3, are reproduced under\n1 m/s², resolved." in page
-    assert "No reading reproduces: Fig. 3b, μ<sub>2</sub> has several humps and valleys" in page
+    assert "No reading reproduces: Fig. 3b, μ<sub>2</sub> has several peaks and valleys" in page
 
 
 def test_every_verdict_is_on_the_page_with_what_was_found(page: str) -> None:
@@ -55,7 +55,7 @@ def test_the_summary_has_them_without_nan(finished: Path) -> None:
     claims = summary["claims"]
     assert claims["reproduced"] == [1, 2]
     assert [verdict["finding"] for verdict in claims["claims"][0]["verdicts"]] == ["reproduced", "as drawn"]
-    assert claims["never"] == ["Fig. 3b: mu_2 has several humps and valleys, more complex than those of mu_1"]
+    assert claims["never"] == ["Fig. 3b: mu_2 has several peaks and valleys, more complex than those of mu_1"]
     assert summary["scaling"][0]["exponent"] == pytest.approx(2.0)
     assert summary["convergence"][0]["exponent"] is None
     assert (claims_summary(None), trends_summary(None)) == (None, None)

@@ -173,7 +173,7 @@ def test_collecting_computes_nothing_and_looks_every_result_up(monkeypatch: pyte
     assert len(collected(errata.Errata(), study)) == len(calls) == len(errata.Errata().tasks(study))
 
 
-def test_every_errand_of_a_study_has_a_place_of_its_own() -> None:
+def test_every_task_of_a_study_has_a_place_of_its_own() -> None:
     study = Study(tuple(map(load_scene, builtin_scenes())), 6, 1e-3)
     found = first_tasks(study, ANALYSES)
     assert paper_complete(study)

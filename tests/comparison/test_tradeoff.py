@@ -1,4 +1,7 @@
-"""The measured trade: fronts that nothing beats, errors that fall along every parameter, truths that are checked."""
+"""
+The measured trade: fronts that nothing beats, errors that fall along every parameter, reference_solutions that are
+checked.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ import xarray as xr
 from comparison.analysis.tradeoff import measure
 from comparison.analysis.tradeoff.measure import Found, entry, measured, sample
 from comparison.analysis.tradeoff.settings import QUESTIONS, RUN, Setting, settings
-from comparison.analysis.tradeoff.trade import FILE, Trade, on_pareto_front, quantile, read, with_pareto_fronts
+from comparison.analysis.tradeoff.trade import FILE, Trade, load, on_pareto_front, quantile, with_pareto_fronts
 from comparison.cli import tradeoff as command
 from reference.problem import Scene, load_scene
 
@@ -57,11 +60,17 @@ def test_the_share_of_points_is_met_by_a_value_that_occurred() -> None:
 
 def test_a_setting_that_leaves_points_without_a_value_or_solves_another_model_is_not_on_the_front() -> None:
     setting = Setting("exact", "one", "step", "", 1.0, RUN, {}, 1.0)
-    truth = np.ones((3, 1))
-    good = entry(setting, Found(truth * 1.1, truth * np.nan, 3.0, np.nan), truth)
-    lost = entry(setting, Found(truth * [[1.0], [np.nan], [1.0]], truth * np.nan, 1.0, np.nan), truth)
-    other = replace(entry(setting, Found(truth, truth, 0.1, np.nan), truth), model_error=True)
-    assert [one.front for one in with_pareto_fronts([good, lost, other], 1)] == [(True,), (False,), (False,)]
+    reference_solution = np.ones((3, 1))
+    good = entry(setting, Found(reference_solution * 1.1, reference_solution * np.nan, 3.0, np.nan), reference_solution)
+    lost = entry(
+        setting,
+        Found(reference_solution * [[1.0], [np.nan], [1.0]], reference_solution * np.nan, 1.0, np.nan),
+        reference_solution,
+    )
+    other = replace(
+        entry(setting, Found(reference_solution, reference_solution, 0.1, np.nan), reference_solution), model_error=True
+    )
+    assert [one.pareto_front for one in with_pareto_fronts([good, lost, other], 1)] == [(True,), (False,), (False,)]
     assert lost.answered == 2
 
 
@@ -77,8 +86,8 @@ def test_every_error_estimate_of_the_reference_holds_at_95_percent_of_the_points
     own = [one for one in trade.entries if one.controlled and one.method.startswith("reference")]
     assert own
     for one in own:
-        for error, claimed in zip(one.most, one.claimed, strict=True):
-            assert error <= max(claimed, 1e-10), one  # the truth is not known better
+        for error, error_estimate in zip(one.most, one.error_estimate, strict=True):
+            assert error <= max(error_estimate, 1e-10), one  # the reference solution is not known better
 
 
 def test_scipy_and_the_engine_tend_to_the_truth_of_the_reference(trade: Trade) -> None:
@@ -96,7 +105,7 @@ def test_v_reg_is_a_model_error_that_falls_towards_the_peak_that_motion_resolves
     own = [one for one in trade.of("exact") if "faster than v_reg" in one.method]
     errors = np.array([one.most for one in own], dtype=float)
     assert len(own) > 2
-    assert all(one.model_error and not any(one.front) for one in own)
+    assert all(one.model_error and not any(one.pareto_front) for one in own)
     assert (np.diff(errors[:, 1]) < 0.0).all(), "mu_2 is well conditioned: in proportion to v_reg"
 
 
@@ -107,7 +116,7 @@ def test_truths_are_a_hundred_times_tighter_than_every_tolerance_held_against_th
         side = "multibody" if question.key == "spatial" else "reference"
         held = [one.value for one in own if one.question == question.key and one.controlled and side in one.function]
         assert asked
-        assert question.truth[1]["tolerance"] <= 1.0001e-2 * min(held)
+        assert question.reference_solution[1]["tolerance"] <= 1.0001e-2 * min(held)
 
 
 def test_the_command_writes_what_the_report_reads(
@@ -118,7 +127,7 @@ def test_the_command_writes_what_the_report_reads(
     assert command.main(["fig3-I", "--quick", "--out", str(tmp_path / "out")]) == 0
     names = {file.name for file in (tmp_path / "out").iterdir()}
     assert names == {FILE, "fig3-I-tradeoff.nc", "fig3-I-tradeoff.png", "fig3-I-tradeoff.pdf", "manifest.json"}
-    again = read(tmp_path / "out")
+    again = load(tmp_path / "out")
     assert again is not None
     assert json.loads(json.dumps(again[0].__dict__, default=vars)) == json.loads(
         json.dumps(trade.__dict__, default=vars)
@@ -140,7 +149,7 @@ def test_a_wrong_command_is_one_line(words: list[str], said: str, capsys: pytest
 def test_a_file_that_is_no_trade_is_refused_in_one_line(tmp_path: Path) -> None:
     (tmp_path / FILE).write_text('{"schema": "another"}', encoding="utf-8")
     with pytest.raises(ValueError, match="not a measured trade: its schema is 'another'"):
-        read(tmp_path)
+        load(tmp_path)
 
 
 def test_a_model_that_raises_leaves_points_without_a_value(monkeypatch: pytest.MonkeyPatch) -> None:

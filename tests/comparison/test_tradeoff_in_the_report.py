@@ -63,7 +63,7 @@ def test_the_diagrams_beside_a_report_are_part_of_the_next_and_stay_there(
     summary = json.loads((report / "summary.json").read_text(encoding="utf-8"))
     schema = json.loads((resources.files("comparison.report") / "summary.schema.json").read_text(encoding="utf-8"))
     assert [error_message.message for error_message in Draft202012Validator(schema).iter_errors(summary)] == []
-    assert summary["tradeoff"][0]["entries"][0]["front"] == [True, True]
+    assert summary["tradeoff"][0]["entries"][0]["pareto_front"] == [True, True]
 
 
 def test_diagrams_of_another_scene_are_added_and_said_to_be_none_of_the_study(

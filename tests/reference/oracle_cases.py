@@ -113,7 +113,7 @@ SMOOTH = [
     Case("lubricated-thick", (0.3, 1.1), "exact"),
     *(Case("frictionless", (0.3, 1.1), e) for e in BOTH),
 ]
-REGULARISED = [
+REGULARIZED = [
     *(Case("fig3-I", (0.3, 1.1), "exact", v) for v in (1e-2, 1e-3, 1e-4, 1e-6)),
     Case("fig3-I", (0.3, 1.1), "small", 1e-3),
     Case("fig3-I", (2.0, 0.7), "exact", 1e-3),
@@ -124,4 +124,4 @@ REGULARISED = [
     Case("deep", (0.3, 1.1), "exact", 1e-3),
     Case("one-axis", (0.3, 1.1), "exact", 1e-4),
 ]
-CASES = [*SET_VALUED, *SMOOTH, *REGULARISED]
+CASES = [*SET_VALUED, *SMOOTH, *REGULARIZED]

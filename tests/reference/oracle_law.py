@@ -130,7 +130,7 @@ class Law:
     def smooth(
         self, t: float, q: list[float], force: list[float], vx: float, vy: float, v_reg: float | None, inside: bool
     ) -> tuple[float, float, float, float]:
-        """Laws that are smooth in each zone: lubricated, frictionless, or regularised in- or outside |v| = v_reg."""
+        """Laws that are smooth in each zone: lubricated, frictionless, or regularized in- or outside |v| = v_reg."""
         x, y = q[0], q[1]
         square = self.speed_square(x, y, vx, vy)
         if self.lubricated:

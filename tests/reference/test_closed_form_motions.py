@@ -200,7 +200,7 @@ def test_a_shaken_chain_stays_on_its_circles(count, equations):
     assert run.status == "ok"
     found = run.position[:, :, 0] + 1j * run.position[:, :, 1]
     wanted = np.exp(1j * omega * run.time)[:, None] * circle.amplitude
-    # the circle may repel its neighbours: they part at most like the chain's free vibration, hence the factor
+    # the circle may repel its neighbors: they part at most like the chain's free vibration, hence the factor
     np.testing.assert_allclose(found, wanted, atol=1000 * TOLERANCE * np.abs(circle.amplitude).max())
     horizontal = np.hypot(run.absolute_acceleration[:, :, 0], run.absolute_acceleration[:, :, 1])
     np.testing.assert_allclose(

@@ -47,7 +47,7 @@ def test_uniform_chain_frequencies_and_shapes_are_the_closed_form(count):
     # participation of these shapes is sum_i sin(i theta) > 0 by the cotangent of theta/2
     for axis in range(2):
         np.testing.assert_allclose(modes.frequency[axis], exact, rtol=1e-12)
-        # vectors are as good as eps over the relative gap of neighbours, which is ~ 1/N
+        # vectors are as good as eps over the relative gap of neighbors, which is ~ 1/N
         np.testing.assert_allclose(modes.shape[axis], shape, atol=1e-14 * count * np.abs(shape).max())
 
 
@@ -105,7 +105,7 @@ def test_modes_diagonalise_mass_and_stiffness_and_sum_to_the_rigid_shift(masses,
         shape, frequency = modes.shape[axis], modes.frequency[axis]
         k = linear_stiffness(scene)[:, axis]
         normal = np.sqrt(scene.masses)[:, None] * shape
-        # gaps between neighbouring frequencies may be narrow for random chains: 1e-10 leaves room for 1e-5 of relgap
+        # gaps between neighboring frequencies may be narrow for random chains: 1e-10 leaves room for 1e-5 of relgap
         np.testing.assert_allclose(normal.T @ normal, np.eye(len(masses)), atol=1e-10)
         residual = stiffness_matrix(k) @ shape - scene.masses[:, None] * shape * frequency**2
         largest = frequency.max() ** 2 * np.sqrt(scene.masses)[:, None]

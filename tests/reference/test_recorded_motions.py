@@ -16,7 +16,7 @@ EXAMPLES = {name: reference.load_scene(name) for name in reference.example_scene
 LAWS = {
     "exact": {"equations": "exact"},
     "small": {"equations": "small"},
-    "regularised": {"regularization": 1e-3},
+    "regularized": {"regularization": 1e-3},
     "resolved": {"cutoff": 1e-3},
 }
 ORACLE = 5e-9  # what the independent code leaves at the tolerance it is given

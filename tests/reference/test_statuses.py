@@ -17,7 +17,7 @@ BOTH = pytest.mark.parametrize("equations", ["exact", "small"])
 
 
 def refused(scene: Scene, outcome: Outcome, **options) -> float:
-    """The instant of the outcome; mu is NaN, a good neighbour in the same call is untouched."""
+    """The instant of the outcome; mu is NaN, a good neighbor in the same call is untouched."""
     found = reference.amplification(scene, [PHASE, PHASE], **options)
     assert found.status.tolist() == [outcome, outcome]
     assert np.isnan(found.mu).all()
@@ -119,7 +119,7 @@ def test_a_run_of_endless_steps_ends():
     assert np.isnan(found.instant[0]) if found.status[0] == Outcome.OK else 0.0 <= found.instant[0] <= scene.duration
 
 
-def test_a_failed_point_leaves_its_neighbours_alone():
+def test_a_failed_point_leaves_its_neighbors_alone():
     """Phases that reach the rim and phases that do not, in one call: the good ones as if asked alone."""
     scene = chain(0.25, 0.05, [2.0], amplitudes=[[2.0, 0.5], [0.3, 1.5]])
     phases = phase_grid(4) + 0.1

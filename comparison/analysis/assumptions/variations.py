@@ -81,13 +81,13 @@ class Cell:
         """Largest |change| of mu_i over the phase pairs; NaN if one has no value: nothing is claimed then."""
         return float(np.abs([row[body - 1] for row in self.change]).max())
 
-    def uncertain(self, body: int) -> float:
+    def error_estimate(self, body: int) -> float:
         """Largest uncertainty of mu_i over the phase pairs; NaN likewise."""
         return float(np.max([row[body - 1] for row in self.uncertainty]))
 
     def holds(self, body: int, share: float) -> bool:
         """Whether mu_i stays within `share` at every phase pair, uncertainty included."""
-        return self.largest(body) + self.uncertain(body) <= share
+        return self.largest(body) + self.error_estimate(body) <= share
 
 
 @dataclass(frozen=True)

@@ -51,8 +51,8 @@ def judged(holds: bool, found: str) -> Verdict:
     return Verdict(Finding.REPRODUCED if holds else Finding.NOT, found)
 
 
-def counted(case: str, body: int, humps: int, valleys: int) -> Check:
-    """As many humps and valleys as the paper counts, both on the periodic square or both as drawn."""
+def counted(case: str, body: int, peaks: int, valleys: int) -> Check:
+    """As many peaks and valleys as the paper counts, both on the periodic square or both as drawn."""
 
     def check(evidence: Mapping[str, Evidence]) -> Verdict:
         mu, error = evidence[case].mu[..., body - 1], evidence[case].error
@@ -60,7 +60,7 @@ def counted(case: str, body: int, humps: int, valleys: int) -> Check:
             return judged(False, "flat")
         shares = SHARE, LEAST_SHARE, MOST_SHARE
         views = {"periodic": [periodic(mu, error, s) for s in shares], "drawn": [drawn(mu, error, s) for s in shares]}
-        holds = {name: counts[0] == Counts(humps, valleys) for name, counts in views.items()}
+        holds = {name: counts[0] == Counts(peaks, valleys) for name, counts in views.items()}
         finding = Finding.NOT
         if holds["drawn"]:
             finding = Finding.AS_DRAWN
@@ -72,8 +72,8 @@ def counted(case: str, body: int, humps: int, valleys: int) -> Check:
 
 
 def _told(counts: list[Counts]) -> str:
-    humps, valleys = [count.humps for count in counts], [count.valleys for count in counts]
-    return f"{_span(humps)} and {_span(valleys)}"
+    peaks, valleys = [count.peaks for count in counts], [count.valleys for count in counts]
+    return f"{_span(peaks)} and {_span(valleys)}"
 
 
 def _span(counts: list[int]) -> str:
@@ -95,16 +95,16 @@ def more_intense(case: str) -> Check:
 def more_complex(case: str) -> Check:
     def check(evidence: Mapping[str, Evidence]) -> Verdict:
         first, second = (periodic(evidence[case].mu[..., body], evidence[case].error, LEAST_SHARE) for body in (0, 1))
-        several = second.humps > 1 and second.valleys > 1
-        more = second.humps + second.valleys > first.humps + first.valleys
-        words = f"mu_2 {second.humps} and {second.valleys}, mu_1 {first.humps} and {first.valleys}"
+        several = second.peaks > 1 and second.valleys > 1
+        more = second.peaks + second.valleys > first.peaks + first.valleys
+        words = f"mu_2 {second.peaks} and {second.valleys}, mu_1 {first.peaks} and {first.valleys}"
         return judged(several and more, words)
 
     return check
 
 
 def near_corners(case: str, body: int) -> Check:
-    """Every hump's top near a corner of the square: on the square that closes, its four corners are one point."""
+    """Every peak's top near a corner of the square: on the square that closes, its four corners are one point."""
 
     def check(evidence: Mapping[str, Evidence]) -> Verdict:
         mu = evidence[case].mu[..., body - 1]
@@ -113,7 +113,7 @@ def near_corners(case: str, body: int) -> Check:
         step = 2.0 * np.pi / len(mu)
         tops = [(step * row, step * column) for row, column in relief(mu, evidence[case].error).tops]
         places = ", ".join(f"({np.degrees(top[0]):.0f}°, {np.degrees(top[1]):.0f}°)" for top in tops)
-        return judged(all(torus_distance(top, (0.0, 0.0)) <= CORNER for top in tops), f"humps at {places}")
+        return judged(all(torus_distance(top, (0.0, 0.0)) <= CORNER for top in tops), f"peaks at {places}")
 
     return check
 

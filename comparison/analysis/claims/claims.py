@@ -57,7 +57,9 @@ class Claim:
         return self.check(evidence)
 
 
-_HUMPS = f"prominence of {100 * SHARE:.0f} % of the range or more, both numbers on the periodic square or both as drawn"
+_PEAKS_AND_VALLEYS = (
+    f"prominence of {100 * SHARE:.0f} % of the range or more, both numbers on the periodic square or both as drawn"
+)
 _SIMILAR = f"correlation over the phases at least {SIMILAR:g}"
 _ZOOM = "where it bends most on the grid, in a zoom of 32 times, the second difference falls like"
 _I, _II, _DRY, _WET = "fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"
@@ -84,7 +86,7 @@ CLAIMS: tuple[Claim, ...] = (
         (_I,),
         more_intense(_I),
     ),
-    Claim("Fig. 3a", "mu_1 has four humps separated by three valleys", _HUMPS, (_I,), counted(_I, 1, 4, 3)),
+    Claim("Fig. 3a", "mu_1 has four peaks separated by three valleys", _PEAKS_AND_VALLEYS, (_I,), counted(_I, 1, 4, 3)),
     Claim(
         "Fig. 3a",
         "mu_1 is similar to the surface of a one-mass system",
@@ -94,13 +96,13 @@ CLAIMS: tuple[Claim, ...] = (
     ),
     Claim(
         "Fig. 3b",
-        "mu_2 has several humps and valleys, more complex than those of mu_1",
+        "mu_2 has several peaks and valleys, more complex than those of mu_1",
         f"at least two of each and together more, at a prominence of {100 * LEAST_SHARE:.0f} % of the range",
         (_I,),
         more_complex(_I),
     ),
     Claim("Fig. 3b", "x_2(t) differs from y_2(t)", f"by more than {APART:g} of the largest", (_I,), unequal(_I, 2)),
-    Claim("Fig. 3c", "mu_1 has two humps separated by a valley", _HUMPS, (_II,), counted(_II, 1, 2, 1)),
+    Claim("Fig. 3c", "mu_1 has two peaks separated by a valley", _PEAKS_AND_VALLEYS, (_II,), counted(_II, 1, 2, 1)),
     Claim(
         "Fig. 3c",
         "mu_1 is typical of one degree of freedom",
@@ -111,7 +113,7 @@ CLAIMS: tuple[Claim, ...] = (
     Claim(
         "Fig. 3d",
         "mu_2 has peaks near the corners",
-        f"the top of every hump within {np.degrees(CORNER):.0f}° of a corner",
+        f"the top of every peak within {np.degrees(CORNER):.0f}° of a corner",
         (_II,),
         near_corners(_II, 2),
     ),

@@ -15,9 +15,9 @@ from reference.problem import Amplification, Outcome, Scene
 
 Array = NDArray[np.float64]
 
-TOLERANCE = 1e-3  # relative, of the surfaces: humps are counted in parts of their range
+TOLERANCE = 1e-3  # relative, of the surfaces: peaks are counted in parts of their range
 SHARP = 1e-6  # of the values that tell a fold from a curvature
-FLAT = 0.05  # range of a surface over its mean, below which it has no humps to speak of
+FLAT = 0.05  # range of a surface over its mean, below which it has no peaks to speak of
 MOTIONS = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (0.0, np.pi))  # rad, whose motion is looked at
 
 

@@ -1,9 +1,9 @@
 """
-Humps and valleys of a surface over the phases, by prominence.
+Peaks and valleys of a surface over the phases, by prominence.
 
-A hump is a maximum whose prominence is at least SHARE of the surface's range (highest minus lowest value) and larger
+A peak is a maximum whose prominence is at least SHARE of the surface's range (highest minus lowest value) and larger
 than what the errors of the values can make; its prominence is how far one must go down from it to reach anything
-higher. A valley is a hump of the surface upside down. The square is periodic, so a ridge that leaves through one edge
+higher. A valley is a peak of the surface upside down. The square is periodic, so a ridge that leaves through one edge
 comes back through the opposite one and counts once. `drawn` counts on one period as it is drawn instead, bounded by
 its edges, where the same ridge is cut in two.
 """
@@ -29,7 +29,7 @@ class Relief:
     """
     What prominence finds on a surface (n, m).
 
-    tops: (row, column) of every hump, highest first. regions: (n, m), number of the hump that steepest ascent over all
+    tops: (row, column) of every peak, highest first. regions: (n, m), number of the peak that steepest ascent over all
     lesser maxima leads to; -1 on a flat surface.
     """
 
@@ -39,34 +39,34 @@ class Relief:
 
 @dataclass(frozen=True)
 class Counts:
-    """Humps and valleys of one surface."""
+    """Peaks and valleys of one surface."""
 
-    humps: int
+    peaks: int
     valleys: int
 
 
 def periodic(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
-    """Humps and valleys on the square that closes at 2 pi; mu (n, n) at phases 2 pi k / n, finite, known to `error`."""
+    """Peaks and valleys on the square that closes at 2 pi; mu (n, n) at phases 2 pi k / n, finite, known to `error`."""
     return Counts(len(relief(mu, error, share).tops), len(relief(-mu, error, share).tops))
 
 
 def drawn(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
     """
-    Humps and valleys on the closed square [0, 2 pi]^2 as it is drawn, bounded by its edges.
+    Peaks and valleys on the closed square [0, 2 pi]^2 as it is drawn, bounded by its edges.
 
-    Only valleys between two humps count: what lies beyond the outermost hump separates it from nothing.
+    Only valleys between two peaks count: what lies beyond the outermost peak separates it from nothing.
     """
     square = np.pad(mu, ((0, 1), (0, 1)), mode="wrap")
-    humps, valleys = (relief(side * square, error, share, closed=False) for side in (1.0, -1.0))
-    between = [np.unique(humps.regions[valleys.regions == number]) for number in range(len(valleys.tops))]
-    return Counts(len(humps.tops), sum(len(sides) > 1 for sides in between))
+    peaks, valleys = (relief(side * square, error, share, closed=False) for side in (1.0, -1.0))
+    between = [np.unique(peaks.regions[valleys.regions == number]) for number in range(len(valleys.tops))]
+    return Counts(len(peaks.tops), sum(len(sides) > 1 for sides in between))
 
 
 def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = True) -> Relief:
     """
-    The humps of mu (n, m), finite; periodic in both directions if `closed`. error: absolute, of the values.
+    The peaks of mu (n, m), finite; periodic in both directions if `closed`. error: absolute, of the values.
 
-    A surface whose range is within its errors is flat: it has no hump at all.
+    A surface whose range is within its errors is flat: it has no peak at all.
     """
     span = float(np.ptp(mu))
     if not span > 2.0 * error:
@@ -97,10 +97,10 @@ def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = T
             parent[lesser] = highest
             if height[lesser] - height[node] < least:
                 into[lesser] = int(climbs[islands[highest]])
-    humps = [top for top in tops if top not in into]
-    number = {top: humps.index(_settled(into, top)) for top in tops}
+    peaks = [top for top in tops if top not in into]
+    number = {top: peaks.index(_settled(into, top)) for top in tops}
     regions = np.array([number[int(top)] for top in climbs]).reshape(mu.shape)
-    return Relief([divmod(top, mu.shape[1]) for top in humps], regions)
+    return Relief([divmod(top, mu.shape[1]) for top in peaks], regions)
 
 
 def _settled(into: dict[int, int], top: int) -> int:

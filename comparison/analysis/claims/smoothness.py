@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 DIRECTIONS = np.array([(1, 0), (0, 1), (1, 1), (1, -1)])
 PLACES = 2  # of the grid, that are looked at
 HALVINGS = 5
-JUDGED = 3  # the last halvings, from which the exponent is taken: the first still see the shape of the hump
+JUDGED = 3  # the last halvings, from which the exponent is taken: the first still see the shape of the peak
 FOLD, JUMP = 1.5, 0.5  # exponents below these are a fold, a jump
 
 

@@ -91,13 +91,13 @@ def as_entry(result: Solved | NoAnswer) -> Entry:
     return Entry(verdict.verdict.value, verdict.reason, error, round(result.seconds, 3), round(result.total, 3))
 
 
-def written(found: Matrix) -> bytes:
+def as_json(found: Matrix) -> bytes:
     """The content of the file."""
     return (json.dumps(asdict(found), indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
 
 
-def read(folder: Path) -> Matrix | None:
-    """The matrix that `written` left in the folder, None if there is none. Raises ValueError if it is another file."""
+def load(folder: Path) -> Matrix | None:
+    """The matrix that `as_json` left in the folder, None if there is none. Raises ValueError if it is another file."""
     file = folder / FILE
     if not file.exists():
         return None

@@ -1,5 +1,5 @@
 """
-Settings measured on worker processes: processor time per point, warm, and errors against the truths.
+Settings measured on worker processes: processor time per point, warm, and errors against the reference_solutions.
 
 A worker solves a short motion with a function before its time counts, so that nothing is compiled or loaded within it.
 """
@@ -44,10 +44,10 @@ class Task:
 
 @dataclass(frozen=True)
 class Found:
-    """mu, claimed (M, N), NaN without; processor time, s; mean step, s, or NaN; what went wrong, or ""."""
+    """mu, error_estimate (M, N), NaN without; processor time, s; mean step, s, or NaN; what went wrong, or ""."""
 
     mu: Array
-    claimed: Array
+    error_estimate: Array
     seconds: float
     step: float
     error_message: str = ""
@@ -55,7 +55,9 @@ class Found:
     def upto(self, count: int) -> Found:
         """The first phase pairs, with their share of the time."""
         share = min(1.0, count / len(self.mu))
-        return replace(self, mu=self.mu[:count], claimed=self.claimed[:count], seconds=self.seconds * share)
+        return replace(
+            self, mu=self.mu[:count], error_estimate=self.error_estimate[:count], seconds=self.seconds * share
+        )
 
 
 def sample(points: int) -> Array:
@@ -103,7 +105,7 @@ def functions(scene: Scene, quick: bool) -> dict[str, tuple[Function, int, float
     """Every function to call: itself, its number of points, seconds per point."""
     points = {question.key: question.quick if quick else question.points for question in asked(scene)}
     own = settings(scene, quick)
-    calls = [(question.truth, points[question.key], question.seconds) for question in asked(scene)]
+    calls = [(question.reference_solution, points[question.key], question.seconds) for question in asked(scene)]
     calls += [(one.against, points[one.question], 0.01) for one in own if one.against]
     calls += [((one.function, one.settings), points[one.question], one.seconds) for one in own]
     found: dict[str, tuple[Function, int, float]] = {}
@@ -140,36 +142,36 @@ def measured(
     for task, found in zip(work, results):
         parts.setdefault(key(task.function), []).append((task.first, found))
     whole = {name: _joined([found for _, found in sorted(own, key=lambda one: one[0])]) for name, own in parts.items()}
-    entries, mu, truths, claims = [], [], [], []
+    entries, mu, reference_solutions, claims = [], [], [], []
     for setting in settings(scene, quick):
         question = next(one for one in asked(scene) if one.key == setting.question)
         count = question.quick if quick else question.points
-        truth = whole[key(setting.against or question.truth)].upto(count)
+        reference_solution = whole[key(setting.against or question.reference_solution)].upto(count)
         found = whole[key((setting.function, setting.settings))].upto(count)
-        entries.append(entry(setting, found, truth.mu))
+        entries.append(entry(setting, found, reference_solution.mu))
         mu.append(found.mu)
-        truths.append(truth.mu)
-        claims.append(found.claimed)
+        reference_solutions.append(reference_solution.mu)
+        claims.append(found.error_estimate)
     entries = with_pareto_fronts(entries, len(scene.bodies))
-    questions = [_answered(question, whole[key(question.truth)], entries) for question in asked(scene)]
+    questions = [_answered(question, whole[key(question.reference_solution)], entries) for question in asked(scene)]
     trade = Trade(scene.name, scene.title, scene.digest(), len(scene.bodies), questions, entries, run)
     most = sample(max(question.points for question in questions))
-    return trade, labeled(entries, mu, truths, claims, most, run)
+    return trade, labeled(entries, mu, reference_solutions, claims, most, run)
 
 
 def _joined(parts: Sequence[Found]) -> Found:
     return Found(
         np.concatenate([part.mu for part in parts]),
-        np.concatenate([part.claimed for part in parts]),
+        np.concatenate([part.error_estimate for part in parts]),
         sum(part.seconds for part in parts),
         float(np.mean([part.step for part in parts])),
         next((part.error_message for part in parts if part.error_message), ""),
     )
 
 
-def entry(setting: Setting, found: Found, truth: Array) -> Entry:
-    """What one setting gave, against the truth (M, N)."""
-    error, claimed = np.abs(found.mu / truth - 1.0), found.claimed / np.abs(found.mu)
+def entry(setting: Setting, found: Found, reference_solution: Array) -> Entry:
+    """What one setting gave, against the reference solution (M, N)."""
+    error, error_estimate = np.abs(found.mu / reference_solution - 1.0), found.error_estimate / np.abs(found.mu)
     points, bodies = found.mu.shape
     return Entry(
         question=setting.question,
@@ -184,32 +186,36 @@ def entry(setting: Setting, found: Found, truth: Array) -> Entry:
         seconds=found.seconds / points,
         median=[quantile(error[:, body], 0.5) for body in range(bodies)],
         most=[quantile(error[:, body], 0.95) for body in range(bodies)],
-        claimed=[quantile(claimed[:, body], 0.95) for body in range(bodies)],
+        error_estimate=[quantile(error_estimate[:, body], 0.95) for body in range(bodies)],
         step=found.step if np.isfinite(found.step) else None,
         error_message=found.error_message,
     )
 
 
-def _answered(question: Question, truth: Found, entries: Sequence[Entry]) -> Answered:
-    """The question with its truth, and what is known about that."""
-    claimed = truth.claimed / np.abs(truth.mu)
-    error = float(np.nanmax(claimed)) if np.isfinite(claimed).any() else float("inf")
-    tolerance = question.truth[1]["tolerance"]
-    side = "the reference" if question.truth[0].startswith("reference") else "the engine"
+def _answered(question: Question, reference_solution: Found, entries: Sequence[Entry]) -> Answered:
+    """The question with its reference solution, and what is known about that."""
+    error_estimate = reference_solution.error_estimate / np.abs(reference_solution.mu)
+    error = float(np.nanmax(error_estimate)) if np.isfinite(error_estimate).any() else float("inf")
+    tolerance = question.reference_solution[1]["tolerance"]
+    side = "the reference" if question.reference_solution[0].startswith("reference") else "the engine"
+    seconds = reference_solution.seconds / len(reference_solution.mu)
     return Answered(
         question.key,
         question.title,
-        len(truth.mu),
-        f"{side} at a tolerance of {tolerance:.0e}, {truth.seconds / len(truth.mu):.2g} s per point",
+        len(reference_solution.mu),
+        f"{side} at a tolerance of {tolerance:.0e}, {seconds:.2g} s per point",
         error,
         [f"its own error estimate is {error:.0e} at most", *_agreements(question, entries)],
     )
 
 
 def _agreements(question: Question, entries: Sequence[Entry]) -> list[str]:
-    """How far the most accurate setting of other methods agrees with the truth; of the same one where there is none."""
+    """
+    How far the most accurate setting of other methods agrees with the reference solution; of the same one where there
+    is none.
+    """
     own = [one for one in entries if one.question == question.key and not one.model_error and one.answered]
-    engine = question.truth[0].startswith("multibody")
+    engine = question.reference_solution[0].startswith("multibody")
     others = {
         "SciPy": "another method on the same equations",
         "translational": "other code from the bodies up",

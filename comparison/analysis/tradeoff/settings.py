@@ -1,7 +1,7 @@
 """
-What is measured: questions, each with a truth, and the settings of methods that answer them.
+What is measured: questions, each with a reference solution, and the settings of methods that answer them.
 
-A truth is a run at a tolerance at least 100 times tighter than any setting that is held against it.
+A reference solution is a run at a tolerance at least 100 times tighter than any setting that is held against it.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ SCIPY = "comparison.analysis.tradeoff.outside:factors_by_scipy"
 TIGHT = 1e-10  # the tightest the reference takes
 SPATIAL_TIGHT = 1e-5
 STEPS = {
-    "generalised alpha": (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4),
+    "generalized alpha": (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4),
     "trapezoidal": (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4),
     "RK44": (4e-4, 2e-4, 1e-4),
     "velocity Verlet": (4e-4, 2e-4, 1e-4, 5e-5),
@@ -39,16 +39,16 @@ Settings = Mapping[str, Any]
 @dataclass(frozen=True)
 class Question:
     """
-    One panel of the diagram. truth: function and settings of its truth. check: how good that is known to be, in words
-    that the measured numbers complete. points, quick: phase pairs of the sample.
+    One panel of the diagram. reference_solution: function and settings of its reference solution. check: how good that
+    is known to be, in words that the measured numbers complete. points, quick: phase pairs of the sample.
     """
 
     key: str
     title: str
-    truth: tuple[str, Settings]
+    reference_solution: tuple[str, Settings]
     points: int
     quick: int
-    seconds: float  # of the truth, per point, about
+    seconds: float  # of the reference solution, per point, about
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,8 @@ class Setting:
     """
     One point of a diagram. function: answers (scene, phases, **settings). method: the curve it belongs to; parameter:
     what varies along that, value: here. controlled: comes with an error estimate. model_error: `question` is not what
-    the equations solved here ask. against: truth of its own in place of the question's. seconds: per point, about.
+    the equations solved here ask. against: reference solution of its own in place of the question's. seconds: per
+    point, about.
     """
 
     question: str
@@ -147,7 +148,9 @@ def _reference(scene: Scene) -> list[Setting]:
 
 def _scipy(quick: bool) -> list[Setting]:
     seconds = {"LSODA": 0.15, "Radau": 1.0, "DOP853": 1.0}
-    lsoda, others = ((4, 10), (4, 8)) if quick else ((3, 4, 6, 8, 10), (3, 4, 6, 8))  # LSODA checks the truth, too
+    lsoda, others = (
+        ((4, 10), (4, 8)) if quick else ((3, 4, 6, 8, 10), (3, 4, 6, 8))
+    )  # LSODA checks the reference solution, too
     powers = {"LSODA": lsoda, "Radau": others, "DOP853": others}
     return [
         Setting("regularised", f"SciPy {method}", "relative tolerance of a step", "", 10.0**-power, SCIPY,
@@ -190,10 +193,8 @@ def _levels(quick: bool) -> list[Setting]:
 
 
 def _constant(quick: bool) -> list[Setting]:
-    """The engine at constant step, by its solvers and formulations."""
+    """The engine at constant step, by its integrators."""
     curves = [(f"Exudyn, {solver}", {"solver": solver}, steps, 0.25e-3) for solver, steps in STEPS.items()]
-    tree = {"solver": "trapezoidal", "formulation": "prismatic tree"}
-    curves.append(("Exudyn, trapezoidal, kinematic tree", tree, (2e-3, 1e-3), 0.75e-3))
     return [
         Setting("regularised", method, "constant step", "s", step, CONSTANT,
                 {**given, "step": step, "v_reg": V_REG}, cost / step)

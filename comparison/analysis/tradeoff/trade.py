@@ -22,9 +22,9 @@ FILE, SCHEMA = "tradeoff.json", "phase-resonance/tradeoff"
 class Entry:
     """
     One setting. points, answered: phase pairs asked for, and with a value. seconds: of processor time per point.
-    median, most: relative error of each mu against the truth, at half and at 95 % of the points; None without a value.
-    claimed: 95 % of the relative error estimates, None where the method has none. front: for each mu, whether no other
-    method here is as accurate (95 %) in less time. Other fields as in `settings.Setting`.
+    median, most: relative error of each mu against the reference solution, at half and at 95 % of the points; None
+    without a value. error_estimate: 95 % of the relative error estimates, None where the method has none. pareto_front:
+    for each mu, whether no other method here is as accurate (95 %) in less time. Other fields as in `settings.Setting`.
     """
 
     question: str
@@ -39,20 +39,23 @@ class Entry:
     seconds: float
     median: Sequence[float | None]
     most: Sequence[float | None]
-    claimed: Sequence[float | None]
+    error_estimate: Sequence[float | None]
     step: float | None = None  # s, mean step, where the method tells it
-    front: Sequence[bool] = ()
+    pareto_front: Sequence[bool] = ()
     error_message: str = ""
 
 
 @dataclass(frozen=True)
 class Answered:
-    """One question: its title, its truth in words, the truth's relative error estimate, and how it was checked."""
+    """
+    One question: its title, its reference solution in words, the reference solution's relative error estimate, and how
+    it was checked.
+    """
 
     key: str
     title: str
     points: int
-    truth: str
+    reference_solution: str
     error: float
     checks: Sequence[str]
 
@@ -98,7 +101,7 @@ def on_pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[bool]
 
 
 def with_pareto_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
-    """The entries with `front` filled in: within each question, among those that answer it at every point."""
+    """The entries with `pareto_front` filled in: within each question, among those that answer it at every point."""
     marks: dict[int, list[bool]] = {place: [False] * bodies for place in range(len(entries))}
     for question in {entry.question for entry in entries}:
         own = [
@@ -111,17 +114,17 @@ def with_pareto_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
             known = [math.inf if error is None else error for error in errors]
             for place, mark in zip(own, on_pareto_front([entries[place].seconds for place in own], known)):
                 marks[place][body] = mark
-    return [Entry(**{**vars(entry), "front": tuple(marks[place])}) for place, entry in enumerate(entries)]
+    return [Entry(**{**vars(entry), "pareto_front": tuple(marks[place])}) for place, entry in enumerate(entries)]
 
 
-def written(found: Sequence[Trade]) -> bytes:
+def as_json(found: Sequence[Trade]) -> bytes:
     """The content of the file."""
     content = {"schema": SCHEMA, "trades": [asdict(trade) for trade in found]}
     return (json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
 
 
-def read(folder: Path) -> list[Trade] | None:
-    """The trades that `written` left in the folder, None if there are none. Raises ValueError for another file."""
+def load(folder: Path) -> list[Trade] | None:
+    """The trades that `as_json` left in the folder, None if there are none. Raises ValueError for another file."""
     file = folder / FILE
     if not file.exists():
         return None
@@ -144,7 +147,7 @@ def read(folder: Path) -> list[Trade] | None:
 
 
 def labeled(
-    entries: Sequence[Entry], mu: Sequence[Array], truth: Sequence[Array], claimed: Sequence[Array],
+    entries: Sequence[Entry], mu: Sequence[Array], reference_solution: Sequence[Array], error_estimate: Sequence[Array],
     phases: Array, run: Mapping[str, Any],
 ) -> xr.Dataset:  # fmt: skip
     """Every value by setting, point and body; a question with fewer points leaves the rest NaN."""
@@ -160,8 +163,16 @@ def labeled(
     data = xr.Dataset(
         {
             "mu": (axes, padded(mu), {"long_name": "amplification factor (5.1)", "units": "1"}),
-            "truth": (axes, padded(truth), {"long_name": "the same by the truth of the question", "units": "1"}),
-            "claimed": (axes, padded(claimed), {"long_name": "estimated absolute error of mu", "units": "1"}),
+            "reference_solution": (
+                axes,
+                padded(reference_solution),
+                {"long_name": "the same by the reference solution of the question", "units": "1"},
+            ),
+            "error_estimate": (
+                axes,
+                padded(error_estimate),
+                {"long_name": "estimated absolute error of mu", "units": "1"},
+            ),
             "seconds": ("setting", [entry.seconds for entry in entries], {"units": "s", "long_name": "per point"}),
             "value": ("setting", [entry.value for entry in entries]),
             **{

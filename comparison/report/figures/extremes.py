@@ -93,12 +93,12 @@ def _field(axes: Axes, place: int, line: int, entry: Entry) -> None:
     dark = verdict == Verdict.FAILED
     axes.add_patch(Rectangle((place + 0.02, line + 0.06), 0.96, 0.88, color=COLORS[verdict], lw=0))
     axes.text(
-        place + 0.5, line + 0.52, said(entry), ha="center", va="center", fontsize=6.5,
+        place + 0.5, line + 0.52, describe(entry), ha="center", va="center", fontsize=6.5,
         color="white" if dark else "#1b1f24",
     )  # fmt: skip
 
 
-def said(entry: Entry) -> str:
+def describe(entry: Entry) -> str:
     """What stands in the field: the error claimed, or the status in its own words."""
     if entry.verdict == Verdict.CONVERGED and entry.error is not None:
         return f"{entry.error:.0e}"

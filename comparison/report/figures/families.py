@@ -49,14 +49,14 @@ def draw_family(path: Path, family: Family, entries: Sequence[Entry], hierarchy:
     places = np.array(family.values, dtype=float) if numbers else np.arange(len(family.values), dtype=float)
     steps = [key for key in titles if any(e.step == key and e.scene == family.scenes[0].name for e in entries)]
     for number, step in enumerate([*(key for key in steps if key != TOTAL), TOTAL]):
-        mean, largest, uncertain = (
-            _over(family, entries, body, step, part) for part in ("mean", "maximum", "uncertain")
+        mean, largest, error_estimate = (
+            _over(family, entries, body, step, part) for part in ("mean", "maximum", "error_estimate")
         )
         look: dict[str, Any] = {"marker": MARKERS[number % len(MARKERS)], "markersize": 4.0, "linewidth": 1.2}
         look["color"] = "black" if step == TOTAL else COLORS[number % len(COLORS)]
         left.plot(places, 100.0 * mean, **look)
         right.plot(places, 100.0 * largest, label=titles[step], **look)
-        right.plot(places, 100.0 * uncertain, color=look["color"], linewidth=0.8, linestyle="--")
+        right.plot(places, 100.0 * error_estimate, color=look["color"], linewidth=0.8, linestyle="--")
     alone = family.scenes[0].recorded  # one value, no phases
     left.set_ylabel(f"{'signed size' if alone else 'mean over the phases'}, % of the first model's value")
     right.set_ylabel("absolute size, %" if alone else "largest over the phases, %")

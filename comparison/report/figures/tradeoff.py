@@ -56,7 +56,7 @@ def draw_tradeoff(path: Path, trade: Trade) -> None:
     figure.suptitle(
         verbatim(f"{trade.title} ({trade.scene}): speed for accuracy")
         + "\nline: error that 95 % of the points meet; dotted: median; ring: on the Pareto front; dashed: model error"
-        + "\nshaded: below the error estimate of the truth",
+        + "\nshaded: below the error estimate of the reference solution",
         fontsize=11,
     )
     save(figure, path)
@@ -74,7 +74,9 @@ def _panel(axes: Axes, trade: Trade, question: Answered, body: int) -> None:
         family, dark, light = next((one for one in FAMILIES if method.startswith(one[0])), FAMILIES[0])
         number = seen[family] = seen.get(family, -1) + 1
         _curve(axes, method, entries, body, dark if number % 2 == 0 else light, MARKERS[number])
-    front = sorted((entry.seconds, _height(entry.most[body])) for entry in trade.of(question.key) if entry.front[body])
+    front = sorted(
+        (entry.seconds, _height(entry.most[body])) for entry in trade.of(question.key) if entry.pareto_front[body]
+    )
     if front:
         axes.plot(*np.transpose(front), "o", ms=12, mfc="none", mec="k", mew=1.1, label="on the Pareto front")
 

@@ -14,8 +14,8 @@ from reference.solver.contact.platform import directed
 from reference.solver.system import System
 
 SAMPLES_PER_TURN = 48
-GOLDEN_SECTIONS = 20  # steps of the search: its error is of the order of the square of 1e-5 of a sample
-MAX_ROUNDING_TURN = 1e-9  # of the drive: a sideways acceleration that rounding could have made turns nothing
+GOLDEN_SECTIONS = 20  # they leave 1e-5 of a sample, and an error of the order of its square
+MAX_ROUNDING_TURN = 1e-9  # of the drive: sideways acceleration that rounding may make
 
 
 @compiled

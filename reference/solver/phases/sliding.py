@@ -51,19 +51,19 @@ from reference.solver.system import (
     Work,
 )
 
-MAX_FIRST_STEP = 0.2  # of the period: longest first step of a slide
-CAUTIOUS_GROWTH = 2.0  # growth of a step that had to be shortened
-STOP_WITHIN_STEPS = 1.5  # a slide that would stop within so many steps is followed in stretched time
-STOP_WITHIN_TIME = 0.05  # of the period: or would stop within this time
-MAX_CHAIN_ANGLE = 0.5  # rad: what the chain's fastest vibration may turn in the time that is left then
+MAX_FIRST_STEP = 0.2  # of the period (Demand.period): longest first step of a slide
+CAUTIOUS_GROWTH = 2.0  # largest growth of a step that had to be shortened
+STOP_WITHIN_STEPS = 1.5  # steps: a slide that would stop within them is followed in stretched time,
+STOP_WITHIN_TIME = 0.05  # of the period: or within this time
+MAX_CHAIN_ANGLE = 0.5  # rad: most that the chain's fastest vibration may turn in the time that is left then
 MIN_TURN_COSINE = 0.3  # cosine of the largest turn of the velocity between two stages
 LEVEL_TOLERANCE = 1e-9  # of the squared speed: a slide this close to v_reg has come down to it
-NEAR_LEVEL_FACTOR = 1.25  # of the squared v_reg: a slide that comes so near may pass it between two stages
-# share of the friction limit times the step: at a lower speed the direction follows the force
+NEAR_LEVEL_FACTOR = 1.25  # of the squared v_reg: a slide below it may pass v_reg between two stages
+# of the friction limit times the step: at a lower speed the direction follows the force
 STIFF_SPEED_FRACTION = 0.03
 MIN_ACCELERATION_FRACTION = 1e-12  # of the drive: a slide that begins has a direction
-BARELY_SLIPPING_EXCESS = 1e-4  # of the squared friction limit
-NEGLIGIBLE_STEP = 1e-6  # of the period: sliding that cannot be begun with a step this long moves nothing
+BARELY_SLIPPING_EXCESS = 1e-4  # of the squared friction limit: a slide with less excess need not begin yet
+NEGLIGIBLE_STEP = 1e-6  # of the period, or of a step: sliding that cannot begin with a step this long moves nothing
 
 
 @compiled

@@ -48,23 +48,23 @@ from reference.solver.system import (
     Work,
 )
 
-MAX_CHAIN_ANGLE = 0.7  # rad: what the chain's fastest vibration may turn during one step
-# of the length of a plain step: time scale at which a slide that gathers speed leaves stretched time
+MAX_CHAIN_ANGLE = 0.7  # rad: most that the chain's fastest vibration may turn during one step
+# of the length of a plain step: time scale at which a slide that gathers speed leaves stretched time,
 LEAVING_TIME_FRACTION = 0.3
-MIN_LEAVING_TIME = 0.05  # of the period: and at least this time scale
-MAX_STOPPED_SPEED = 1e-5  # of the loading's velocity: a platform that friction can hold has stopped
-MIN_FOLLOWED_SPEED = 1e-10  # of it: so far a stop is followed whose arc decides the peak
-DECISIVE_ARC_FRACTION = 0.97  # an arc that stays below this share of the peak so far decides nothing
+MIN_LEAVING_TIME = 0.05  # of the period (Demand.period): and its lower bound
+MAX_STOPPED_SPEED = 1e-5  # of the loading's velocity: below it a platform that friction can hold has stopped
+MIN_FOLLOWED_SPEED = 1e-10  # of the loading's velocity: a stop whose arc decides the peak is followed down to it
+DECISIVE_ARC_FRACTION = 0.97  # of the peak so far: an arc that stays below it decides nothing
 LEVEL_TOLERANCE = 1e-9  # of ln v: a slide this close to v_reg has come down to it
-MAX_FROZEN_TIME = 1e-4  # of the period: time left at a stop within which forces are frozen
-MAX_STRAIGHT_TURN = 1e-6  # of the friction: a slide that turns by less turns back on its own line
-# of the loading's velocity: a straight slide that friction cannot hold has come to its turning point
+MAX_FROZEN_TIME = 1e-4  # of the period: time left at a stop within which forces count as constant
+MAX_STRAIGHT_TURN = 1e-6  # of the friction: a slide with a smaller sideways acceleration turns back on its own line
+# of the loading's velocity: below it a straight slide that friction cannot hold is at its turning point
 MAX_TURNING_POINT_SPEED = 1e-12
-NEWTON_FRACTION = 1e-3  # of the tolerance
-# Time and place are integrals of v and v^2 over tau. Where forces stay as they are no acceleration shows their error,
-# which ln v may change by so much in one step without making 1e-8 of what is left of the slide where it is entered
+NEWTON_FRACTION = 1e-3  # of the tolerance: change of the angle at which Newton's method ends
+# Time and place are integrals of v and v^2 over tau. Where forces stay constant no acceleration shows their error. With
+# these bounds on the change of ln v in one step it stays below 1e-8 of what is left of the slide at its start.
 MAX_FIRST_LOG_SPEED_CHANGE = 2.0  # in the first step
-LOG_SPEED_CHANGE_GROWTH = 0.7  # and more, per unit by which ln v has fallen since
+LOG_SPEED_CHANGE_GROWTH = 0.7  # growth of the bound per unit by which ln v has fallen since
 
 
 @compiled

@@ -36,7 +36,7 @@ def test_forces_balance_on_the_sphere_at_every_instant(acceleration):
         acting[:-1] += elastic
         acting[1:] -= elastic
         np.testing.assert_allclose(acting[1:], 0.0, atol=1e-12)
-        # contact: the normal reaction points to the centre of the sphere, friction against the velocity
+        # contact: the normal reaction points to the center of the sphere, friction against the velocity
         x, y = place[0].real, place[0].imag
         normal = np.array([-x, -y, np.sqrt(scene.radius**2 - x * x - y * y)]) / scene.radius
         velocity = 1j * FREQUENCY * place[0]
@@ -47,7 +47,7 @@ def test_forces_balance_on_the_sphere_at_every_instant(acceleration):
         np.testing.assert_allclose(total, 0.0, atol=1e-11 * abs(weight))
 
 
-def test_small_amplitudes_agree_with_the_linearised_circle_with_a_gap_of_second_order():
+def test_small_amplitudes_agree_with_the_linearized_circle_with_a_gap_of_second_order():
     gaps = []
     for scale in (1e-1, 1e-2):
         scene = chain(friction=0.08 * scale)

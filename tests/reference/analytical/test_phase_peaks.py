@@ -22,8 +22,8 @@ def example(seed: int) -> tuple[np.ndarray, np.ndarray, Series, np.ndarray]:
     random = np.random.default_rng(seed)
     rates = -random.uniform(0.0, 1.0, 3) + 1j * random.uniform(-5.0, 5.0, 3)
     weights = random.normal(size=(3, 2, 2, 2)) + 1j * random.normal(size=(3, 2, 2, 2))
-    centres = HALF * (2.0 * np.arange(INTERVALS) + 1.0)
-    return rates, weights, Series.of(derivatives(rates, weights, centres), HALF), random.uniform(0.0, 6.3, (4, 2))
+    centers = HALF * (2.0 * np.arange(INTERVALS) + 1.0)
+    return rates, weights, Series.of(derivatives(rates, weights, centers), HALF), random.uniform(0.0, 6.3, (4, 2))
 
 
 def sampled(rates: np.ndarray, weights: np.ndarray, phases: np.ndarray) -> np.ndarray:

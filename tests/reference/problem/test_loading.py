@@ -86,11 +86,11 @@ def test_series_and_closed_form_of_the_displacement_join():
     """At |s t| = 0.01 the formula changes; the second difference across it must stay the acceleration."""
     load = scene()
     for s in exponents(load):
-        centre, step = 0.01 / abs(s), 2e-5
-        ring = ground_displacement(load, PHASE, [centre - step, centre, centre + step])
+        center, step = 0.01 / abs(s), 2e-5
+        ring = ground_displacement(load, PHASE, [center - step, center, center + step])
         second = (ring[0] - 2.0 * ring[1] + ring[2]) / step**2
         # rounding: 1e-16 * 1e-6 m / step^2 = 3e-13; the jump that matters would be 1e-14 m / step^2 = 2e-5
-        np.testing.assert_allclose(second, ground_acceleration(load, PHASE, [centre])[0], atol=1e-6)
+        np.testing.assert_allclose(second, ground_acceleration(load, PHASE, [center])[0], atol=1e-6)
 
 
 def test_the_plate_starts_from_rest():
