@@ -194,6 +194,31 @@ def test_the_command_prints_the_table(
     assert "'7': must be a whole number, 8 or more" in capsys.readouterr().err
 
 
+def test_the_command_goes_on_where_it_stopped(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    asked: list[Question] = []
+    total = len(questions(READINGS, CLAIMS, 16))
+
+    def gathered(question: Question) -> Evidence:
+        asked.append(question)
+        if 5 < len(asked) <= total:  # all of the first command but its first five
+            raise RuntimeError("stopped")
+        return PAPER[question.case]
+
+    monkeypatch.setattr(table_module, "gathered", gathered)
+    monkeypatch.setattr(runner, "compiling_task", lambda stage: Task(len, (), stage, 0.0, None, False))
+    words = ["--jobs", "1", "--grid", "16", "--out", str(tmp_path / "report")]
+    tables = []
+    for computed in (total, total - 5, 0):
+        count = len(asked)
+        assert main(words, ThreadPoolExecutor) == 0
+        tables.append(capsys.readouterr().out.split("of 16")[-1])
+        assert len(asked) - count == computed
+    assert tables[1] == tables[2] != tables[0]
+    assert not (tmp_path / "report").exists(), "the command writes no report"
+
+
 def test_evidence_of_the_paper_is_what_the_equations_give() -> None:
     """Short and coarse: the plane of (4.7) to rounding, two unequal axes apart, no fold without a grid to see one."""
     dry = evidence.gathered(Question("fig4-dry", Reading(duration=1.5), 4))
