@@ -72,7 +72,7 @@ def box_corners(center: Array, size: Array, turns: Array) -> Array:
 
 
 def magnified(values: Array, seen: float) -> float:
-    """Factor 1, 2 or 5 times a power of ten, up to `MAX_MAGNIFICATION`: the largest value is at most `seen` with it."""
+    """Factor 1, 2 or 5 times a power of ten, at most MAX_MAGNIFICATION, that makes the largest value at most `seen`."""
     largest = float(np.abs(values).max())
     wanted = min(max(seen / largest, 1.0), MAX_MAGNIFICATION) if largest > 0.0 else MAX_MAGNIFICATION
     power = 10.0 ** np.floor(np.log10(wanted))
