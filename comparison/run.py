@@ -23,19 +23,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-import xarray as xr
 from rich.console import Console
 
-from comparison.analysis.assumptions.validity import ValidityRanges
-from comparison.analysis.effective import effective_values
-from comparison.analysis.errata import errata_effects
 from comparison.analysis.extremes.matrix import load as stored_extremes
-from comparison.analysis.further import further_findings
 from comparison.analysis.surfaces import labeled_surfaces, wide_swings
 from comparison.analysis.targets import targets_met
-from comparison.analysis.tasks import analysis_cost, analysis_tasks, motion_tasks
 from comparison.analysis.tradeoff.trade import load as stored_trades
-from comparison.analysis.trajectories import stored_motions
 from comparison.analysis.unanswered import with_silent_models
 from comparison.cli.options import Options, UsageError, parsed
 from comparison.cli.terminal import print_differences, print_plan, print_study_plan, print_targets_met, print_unanswered
@@ -47,9 +40,10 @@ from comparison.execution.output import atomic_replace, clear_dead, on_stderr
 from comparison.execution.progress import wide_console
 from comparison.execution.provenance import provenance
 from comparison.execution.resume import command_line, resume_hint, without_scheduler
-from comparison.execution.runner import computed, fetched
-from comparison.execution.task_cache import TaskCache
-from comparison.report.findings import Findings, findings
+from comparison.execution.runner import Computed, Runner
+from comparison.execution.task_results import TaskResults
+from comparison.registry import analysis_cost, chosen_analyses, first_tasks
+from comparison.report.findings import Findings, collect_findings
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.planning import BudgetError, StudyPlan, StudyRequest, plan_study
 from comparison.study.study import Study
@@ -137,59 +131,53 @@ def _run(
     executor: Callable[[int], Executor],
     store: Cache,
 ) -> int:
-    # plotting libraries: not needed to refuse a command or to plan
-    from comparison.report.figures import pictures as drawing
-    from comparison.report.report import write_report
+    from comparison.report.report import write_report  # plotting: not needed to refuse a command or to plan
 
     begin, began = time.monotonic(), datetime.now(UTC)
     clear_dead(options.out)
-    study = plan.study
-    batches = study.batches()
-    keys = [batch_key(batch) for batch in batches]
+    study, analyses = plan.study, chosen_analyses(plan.with_analyses)
+    keys = [batch_key(batch) for batch in study.batches()]
     store.trim(keys)
     if options.fresh:
         store.forget(keys)
-    known = TaskCache(store, options.fresh)
-    done = computed(study, store, console, options.jobs, executor, analysis_tasks(study, plan.with_analyses), known)
-    seconds, answers = time.monotonic() - begin, done.answers
-    surfaces = labeled_surfaces(study, batches, answers)
+
+    runner = Runner(TaskResults(store, options.fresh), console, options.jobs, executor)
+    computed = runner.run_study(study, first_tasks(study, analyses))
+    seconds = time.monotonic() - begin
+    surfaces = labeled_surfaces(study, computed.batches, computed.answers)
     study = with_silent_models(study, surfaces)
     console.print("Keeping a few motions of every scene for the report, and drawing the surfaces.")
-    motions = motion_tasks(study, surfaces) if plan.with_analyses else []
-    fetched([*motions, *drawing.picture_tasks(study, surfaces)], known, console, options.jobs, executor)
-    executor = known.on(executor)  # what the analyses ask has been fetched
-    pictures = drawing.all_drawn(study, surfaces, options.jobs, executor)
-    effective = effective_values(study, options.jobs, executor)
-    effects = errata_effects(study, options.jobs, executor)
-    more = _more(study, surfaces, options, executor) if plan.with_analyses else {}
-    beside = {"extremes": _taken_up(stored_extremes, options.out), "tradeoff": _taken_up(stored_trades, options.out)}
-    families = [family for family in options.families if len(family.scenes) > 1] or None
-    titles = {model.key: model.title for model in study.hierarchy}
-    faults = sorted(
-        {
-            f"{batch.scene.name}, {titles[batch.model]}: {a.error_message}"
-            for batch, a in zip(batches, answers)
-            if a.error_message
-        }
-    )
+    later = [analysis for analysis in analyses if analysis.needs_surfaces]
+    runner.run_tasks([task for analysis in later for task in analysis.tasks(study, surfaces)])
+
+    faults = _faults(study, computed)
     run: dict[str, Any] = {
         "command": command,
         "began": began.isoformat(timespec="seconds"),
         "seconds": round(seconds, 1),
         "compute_seconds": round(float(surfaces["cost"].sum()), 1),
         "predicted_compute_seconds": round(sum(study.seconds(model) for model in study.hierarchy), 1),
-        "tiles": len(batches),
-        "tiles_stored_before": done.stored,
+        "tiles": len(computed.batches),
+        "tiles_stored_before": computed.stored,
         "parts": {
             stage: {"tasks": part.tasks, "stored_before": part.stored, "seconds": round(part.seconds, 2)}
-            for stage, part in known.parts.items()
+            for stage, part in runner.results.parts.items()
         },
         "jobs": options.jobs,
         "choice": targets_met(plan, options.tolerance, options.budget, surfaces) if options.by_trade else None,
         "provenance": provenance(),
     }
-    of_run = {"families": families, "pictures": pictures}
-    found = findings(study, surfaces, effective, effects, faults, run, **of_run, **beside, **more)
+    found = collect_findings(
+        study,
+        surfaces,
+        {analysis.key: analysis.collect(study, surfaces, runner.results) for analysis in analyses},
+        faults,
+        run,
+        families=[family for family in options.families if len(family.scenes) > 1] or None,
+        extremes=_taken_up(stored_extremes, options.out),
+        tradeoff=_taken_up(stored_trades, options.out),
+    )
+
     console.print("Writing the report.")
     with atomic_replace(options.out) as report:
         write_report(report.folder, found)
@@ -208,6 +196,18 @@ def _run(
     return 1 if options.check and found.broken else 0
 
 
+def _faults(study: Study, computed: Computed) -> list[str]:
+    """What solvers reported, one line for each scene and model."""
+    titles = {model.key: model.title for model in study.hierarchy}
+    return sorted(
+        {
+            f"{batch.scene.name}, {titles[batch.model]}: {answer.error_message}"
+            for batch, answer in zip(computed.batches, computed.answers)
+            if answer.error_message
+        }
+    )
+
+
 def _checked(found: Findings) -> list[str]:
     """What `--check` says: every broken limit, and the scenes that state none."""
     limited = {limit.scene for limit in found.limits}
@@ -217,15 +217,6 @@ def _checked(found: Findings) -> list[str]:
         which = "no scene states" if not limited else f"{', '.join(unlimited)}: no limits are stated under"
         lines.append(f"--check: {which} [acceptance]{' limits' if not limited else ''}: nothing was checked")
     return lines
-
-
-def _more(study: Study, surfaces: xr.Dataset, options: Options, executor: Callable[[int], Executor]) -> dict[str, Any]:
-    """Fields of the findings that a report can do without."""
-    return {
-        "motions": stored_motions(study, surfaces, options.jobs, executor),
-        "assumptions": ValidityRanges.of(study, options.jobs, executor),
-        **further_findings(study, options.jobs, executor),
-    }
 
 
 def _taken_up(load: Callable[[Path], Any], out: Path) -> Any:

@@ -2,7 +2,8 @@
 How far the paper's assumptions carry: `python -m comparison.assumptions [SCENE ...]`.
 
 Varies the ring of supports and the heights of the bodies and prints how far mu_i then is from the translational result,
-and where it stays within 1 % and 5 %. Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
+and where it stays within 1 % and 5 %. Every variation is stored as it is finished: the same command goes on where it
+stopped. Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
 """
 
 from __future__ import annotations
@@ -14,14 +15,15 @@ from pathlib import Path
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TimeRemainingColumn
 from rich.table import Table
 
-from comparison.analysis.assumptions.validity import describe
-from comparison.analysis.assumptions.variations import DURATION, MANY, PHASES, Cell, assumption_cells, ranges
+from comparison.analysis.assumptions.validity import Assumptions, describe
+from comparison.analysis.assumptions.variations import DURATION, MANY, PHASES, Cell, ranges
+from comparison.cli.stored import OUT_HELP, results_beside
 from comparison.execution.executors import process_pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
-from comparison.execution.progress import description, wide_console
+from comparison.execution.progress import wide_console
+from comparison.execution.runner import Runner
 from comparison.report.figures.file_names import figure_file
 from comparison.study.models import has_spatial_data
 from comparison.study.study import Study, refuse_same_names
@@ -39,6 +41,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help="TOML file or built-in name (default: the paper's)")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="worker processes (default %(default)s)")
     parser.add_argument("--figures", type=Path, metavar="DIR", help="write one picture per scene into this directory")
+    parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help=OUT_HELP)
     given = parser.parse_args(argv)
     if given.jobs < 1:
         parser.error(f"--jobs {given.jobs}: must be a whole number from 1")
@@ -46,6 +49,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         names = given.scenes or builtin_scenes()
         scenes = [_spatial(name) for name in names]
         refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
+        results = results_beside(given.out)
         if given.figures:
             given.figures = destination(given.figures, "--figures")
             pictures = [figure_file(s.name, "assumptions", ending=end) for s in scenes for end in (".png", ".pdf")]
@@ -61,7 +65,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         f"{len(MANY)} variations at {len(PHASES)} phase pairs over {DURATION:g} s of motion: minutes for each scene."
     )
     for scene in scenes:
-        cells = _watched(console, scene, given.jobs)
+        cells = _computed(Runner(results, console, given.jobs, process_pool), scene)
         _print(console, scene, cells)
         if given.figures:
             _draw(given.figures, scene, cells)
@@ -92,11 +96,13 @@ def _spatial(name: str) -> Scene:
     return scene
 
 
-def _watched(console: Console, scene: Scene, jobs: int) -> list[Cell]:
-    with Progress(description(), BarColumn(), TimeRemainingColumn(), console=console, transient=True) as progress:
-        bar = progress.add_task(scene.name, total=1 + len(MANY))
-        study = Study((scene,), 1, TOLERANCE)
-        return assumption_cells(study, jobs, process_pool, MANY, lambda: progress.advance(bar))
+def _computed(runner: Runner, scene: Scene) -> Sequence[Cell]:
+    """Every variation of a scene."""
+    study, assumptions = Study((scene,), 1, TOLERANCE), Assumptions(MANY)
+    runner.run_tasks(assumptions.tasks(study))
+    found = assumptions.collect(study, None, runner.results)
+    assert found is not None, "the scene has both models of the engine"
+    return found.cells
 
 
 def _print(console: Console, scene: Scene, cells: Sequence[Cell]) -> None:

@@ -1,20 +1,29 @@
 """
 The claims of section 5 against readings of the paper: `python -m comparison.claims [--grid N] [--jobs J] [--all]`.
+
+Every case is stored as it is finished: the same command goes on where it stopped.
 """
 
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Callable, Sequence
+from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 
-from comparison.analysis.claims.claims import CLAIMS
 from comparison.analysis.claims.readings import EVERY_READING, READINGS
-from comparison.analysis.claims.table import GRID, SECONDS, SIGNS, ClaimTable, claims_tested, questions
+from comparison.analysis.claims.table import GRID, SIGNS, Claims, ClaimTable
+from comparison.cli.stored import OUT_HELP, results_beside
 from comparison.execution.executors import Pool, cores, process_pool
-from comparison.execution.progress import Stage, progress, wide_console
+from comparison.execution.progress import wide_console
+from comparison.execution.runner import Runner
+from comparison.study.study import Study
+from reference.problem import SceneError, builtin_scenes, load_scene
+
+TOLERANCE = 1e-3  # of a study; the surfaces of the claims have one of their own
 
 
 def main(argv: Sequence[str] | None = None, executor: Pool = process_pool) -> int:
@@ -25,16 +34,19 @@ def main(argv: Sequence[str] | None = None, executor: Pool = process_pool) -> in
     parser.add_argument("--grid", type=_at_least(8), default=GRID, metavar="N", help="phases per axis (%(default)s)")
     parser.add_argument("--jobs", type=_at_least(1), default=cores(), metavar="J", help="worker processes")
     parser.add_argument("--all", action="store_true", help="every reading: more amplitudes, durations and f_c")
+    parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help=OUT_HELP)
     parser.add_argument("--words", action="store_true", help="print what every check found, too")
     given = parser.parse_args(argv)
-    readings = EVERY_READING if given.all else READINGS
-    console = wide_console()
-    count = len(questions(readings, CLAIMS, given.grid))
-    stage = Stage(count, count * SECONDS * (given.grid / GRID) ** 2)
-    with progress(console, {"claims": stage}, given.jobs) as display:
-        table = claims_tested(
-            given.jobs, executor, given.grid, readings, done=lambda question: display.advance("claims", 1)
-        )
+    claims, console = Claims(given.grid, EVERY_READING if given.all else READINGS), wide_console()
+    try:
+        results = results_beside(given.out)
+    except SceneError as error:
+        print(error, file=sys.stderr)
+        return 2
+    study = Study(tuple(map(load_scene, builtin_scenes())), given.grid, TOLERANCE)
+    Runner(results, console, given.jobs, executor).run_tasks(claims.tasks(study), compile_first=True)
+    table = claims.collect(study, None, results)
+    assert table is not None, "the study has every scene of the paper"
     print_claims(console, table, given.words)
     return 0
 

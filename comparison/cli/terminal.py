@@ -10,12 +10,12 @@ from rich.console import Console
 from rich.table import Table
 
 from comparison.analysis.differences import Difference
-from comparison.analysis.tasks import analysis_tasks, predicted
 from comparison.analysis.unanswered import Unanswered
 from comparison.cli.options import Options
 from comparison.execution.cache import Cache, store_beside
 from comparison.execution.keys import batch_key
-from comparison.execution.task_cache import TaskCache
+from comparison.execution.task_results import TaskResults
+from comparison.registry import chosen_analyses, first_tasks, predicted_costs
 from comparison.study.accuracy_record import recorded
 from comparison.study.batches import refusal_of
 from comparison.study.models import RECORDED_ON
@@ -42,7 +42,8 @@ def print_plan(console: Console, study: Study, options: Options, with_analyses: 
             table.add_row(scene.name, model.title, *cells)
     console.print(table)
     _print_reductions(console, study)
-    costs = predicted(study, with_analyses)
+    analyses = chosen_analyses(with_analyses)
+    costs = predicted_costs(study, analyses)
     others = ", ".join(f"{name} {seconds:.0f} s ({tasks})" for name, (tasks, seconds) in costs.items() if tasks)
     console.print(f"Beside the surfaces, s on one core and tasks: {others}.")
     total += sum(seconds for _, seconds in costs.values())
@@ -55,11 +56,10 @@ def print_plan(console: Console, study: Study, options: Options, with_analyses: 
     console.print(f"{over}{options.jobs} worker processes: about {wall:.0f} s.")
     store, batches = Cache(store_beside(options.out)), study.batches()
     if not options.fresh and (stored := sum(store.holds(batch_key(batch)) for batch in batches)):
-        asked, known = analysis_tasks(study, with_analyses), TaskCache(store)
-        analyses = f"{sum(map(known.holds, asked))} of {len(asked)} analyses"
+        asked, known = first_tasks(study, analyses), TaskResults(store)
+        others = f"{sum(map(known.holds, asked))} of {len(asked)} analyses"
         console.print(
-            f"{stored} of {len(batches)} batches are in {store.folder} already, {analyses}: "
-            "they are not computed again."
+            f"{stored} of {len(batches)} batches are in {store.folder} already, {others}: they are not computed again."
         )
     if not options.by_trade:
         console.print(f"Costs were recorded on {RECORDED_ON}; another machine scales them all alike.")

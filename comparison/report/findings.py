@@ -31,8 +31,8 @@ class Findings:
     values read back from each model. effects: what errata of the print do to mu. unanswered: models without a value
     somewhere. limits: the acceptance limits that scenes state, held against the rest. faults: what solvers complained
     about. run: command, times, provenance. pictures: files of the surfaces' by name. Fields that may be None are what
-    only some commands compute. motions: see `stored_motions`. claims, scaling, convergence: see `further_findings`.
-    assumptions: how far the paper's carry, see `ValidityRanges`. families: those of more than one scene. extremes: the
+    only some commands compute. motions, claims, scaling, convergence, assumptions: what the analyses of these keys
+    collect. families: those of more than one scene. extremes: the
     matrix that `python -m comparison.extremes` left beside the report. tradeoff: what `python -m comparison.tradeoff`
     left there.
     """
@@ -63,27 +63,49 @@ class Findings:
         return [line for limit in self.limits for line in limit.broken]
 
 
-def findings(
+def collect_findings(
     study: Study,
     surfaces: xr.Dataset,
-    effective: Sequence[Effective],
-    effects: Sequence[Effect],
+    collected: Mapping[str, Any],
     faults: Sequence[str],
     run: Mapping[str, Any],
     **more: Any,
 ) -> Findings:
-    """What the surfaces say once they are complete; `more`: the fields that may be None."""
+    """
+    What a run found.
+
+    Parameters
+    ----------
+    study, surfaces : Study, xr.Dataset
+        What was computed.
+    collected : mapping of str to object
+        What each analysis of the run collected, by its key.
+    faults : sequence of str
+        What solvers reported.
+    run : mapping
+        Command, times, provenance.
+    **more
+        Other fields of `Findings` that may be None.
+
+    Returns
+    -------
+    Findings
+        All of it, with differences, budget, gaps and limits.
+    """
     rows, lacking = differences(study, surfaces), unanswered(study, surfaces)
+    optional = {key: collected.get(key) for key in ("motions", "claims", "scaling", "convergence", "assumptions")}
     return Findings(
-        study,
-        surfaces,
-        rows,
-        budget(study, surfaces),
-        effective,
-        effects,
-        lacking,
-        checked_limits(study, surfaces, rows, lacking),
-        faults,
-        run,
+        study=study,
+        surfaces=surfaces,
+        rows=rows,
+        budget=budget(study, surfaces),
+        effective=collected.get("effective") or [],
+        effects=collected.get("errata") or [],
+        unanswered=lacking,
+        limits=checked_limits(study, surfaces, rows, lacking),
+        faults=faults,
+        run=run,
+        pictures=collected.get("pictures") or {},
+        **optional,
         **more,
     )

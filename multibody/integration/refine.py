@@ -31,7 +31,7 @@ from reference.problem import Outcome, Scene, State
 
 Array = NDArray[np.float64]
 
-MAX_WORK = 8e6  # nominal microseconds (see `Budget`) of all runs of one point
+MAX_WORK = 14e6  # nominal microseconds (see `Budget`) of all runs of one point
 UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
 FIRST_LEVELS_STEPS = 3.0  # steps of the first two levels over those of the first: without both there is no answer
 MAX_WARPING_ERROR_SHARE = 0.2  # of the tolerance, that the load of warped supports may take as an error

@@ -22,7 +22,7 @@ from comparison.report.figures.assumptions import draw_assumptions
 from comparison.report.figures.families import draw_family
 from comparison.report.figures.file_names import figure_file, with_ending
 from comparison.report.figures.paper import draw_paper_figure, paper_figure_name
-from comparison.report.findings import findings
+from comparison.report.findings import collect_findings
 from comparison.report.junit import junit
 from comparison.report.summary_text import summary_text
 from comparison.study.batches import execute_batch
@@ -130,7 +130,7 @@ def test_junit_and_summary_are_well_formed_whatever_a_scene_is_called() -> None:
     scene = Scene.model_construct(**{**dict(valid), "name": "a\x00\x01\ud800\ufffe<b>", "title": title})
     study = Study((scene,), 2, 1e-3, fake_hierarchy())
     surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
-    found = findings(study, surfaces, [], [], [], RUN)
+    found = collect_findings(study, surfaces, {}, [], RUN)
     assert found.broken
     suites = ElementTree.fromstring(junit(assemble(found)).encode())
     assert suites[0].get("name") == "a\ufffd\ufffd\ufffd\ufffd<b>"
