@@ -7,9 +7,8 @@ and where it stays within 1 % and 5 %. Exit codes: 0 done; 2 a wrong scene or op
 
 from __future__ import annotations
 
-import argparse
-import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from pathlib import Path
 
 from rich.box import SIMPLE_HEAD
@@ -19,52 +18,47 @@ from rich.table import Table
 
 from comparison.analysis.assumptions.validity import describe
 from comparison.analysis.assumptions.variations import DURATION, MANY, PHASES, Cell, assumption_cells, ranges
-from comparison.execution.executors import process_pool
+from comparison.cli.arguments import CommandParser, command, jobs, writing
+from comparison.execution.executors import Pool, process_pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
 from comparison.execution.progress import description, wide_console
+from comparison.execution.workers import workers
 from comparison.report.figures.file_names import figure_file
 from comparison.study.models import has_spatial_data
 from comparison.study.study import Study, refuse_same_names
 from reference.problem import Scene, SceneError, builtin_scenes, load_scene
 
+ENGINE = "multibody:amplification"  # what the workers ask
 TOLERANCE = 1e-3
 
 
-def main(argv: Sequence[str] | None = None) -> int:
+@command
+def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     """Vary the scenes the command line names and print what that does; the exit code."""
-    parser = argparse.ArgumentParser(
-        prog="python -m comparison.assumptions",
-        description="How far mu_i of the spatial model is from the translational one, over the ring and the heights.",
+    parser = CommandParser(
+        "assumptions", "How far mu_i of the spatial model is from the translational one, over the ring and the heights."
     )
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="TOML file or built-in name (default: the paper's)")
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="worker processes (default %(default)s)")
+    parser.add_scenes("the paper's")
+    parser.add_jobs(cluster=True)
     parser.add_argument("--figures", type=Path, metavar="DIR", help="write one picture per scene into this directory")
-    given = parser.parse_args(argv)
-    if given.jobs < 1:
-        parser.error(f"--jobs {given.jobs}: must be a whole number from 1")
-    try:
-        names = given.scenes or builtin_scenes()
-        scenes = [_spatial(name) for name in names]
-        refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
-        if given.figures:
-            given.figures = destination(given.figures, "--figures")
-            pictures = [figure_file(s.name, "assumptions", ending=end) for s in scenes for end in (".png", ".pdf")]
-            refuse_foreign_files(given.figures, pictures, "--figures")
-    except SceneError as error:
-        print(error, file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"command line: --figures = {str(given.figures)!r}: cannot be made: {error.strerror}", file=sys.stderr)
-        return 2
-    console = wide_console()
-    console.print(
-        f"{len(MANY)} variations at {len(PHASES)} phase pairs over {DURATION:g} s of motion: minutes for each scene."
-    )
-    for scene in scenes:
-        cells = _watched(console, scene, given.jobs)
-        _print(console, scene, cells)
-        if given.figures:
-            _draw(given.figures, scene, cells)
+    options = parser.parse_args(argv)
+    names = options.scenes or builtin_scenes()
+    scenes = [_spatial(name) for name in names]
+    refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
+    figures = destination(options.figures, "--figures") if options.figures else None
+    if figures:
+        pictures = [figure_file(s.name, "assumptions", ending=end) for s in scenes for end in (".png", ".pdf")]
+        refuse_foreign_files(figures, pictures, "--figures")
+    with workers(jobs(options), options.scheduler, {ENGINE}, executor) as (width, make):
+        console = wide_console()
+        about = f"{len(MANY)} variations at {len(PHASES)} phase pairs over {DURATION:g} s of motion"
+        console.print(f"{about}: minutes for each scene.")
+        for scene in scenes:
+            cells = _watched(console, scene, width, make)
+            _print(console, scene, cells)
+            if figures:
+                with writing(figures, "--figures"):
+                    _draw(figures, scene, cells)
     return 0
 
 
@@ -92,11 +86,11 @@ def _spatial(name: str) -> Scene:
     return scene
 
 
-def _watched(console: Console, scene: Scene, jobs: int) -> list[Cell]:
+def _watched(console: Console, scene: Scene, width: int, make: Callable[[int], Executor]) -> list[Cell]:
     with Progress(description(), BarColumn(), TimeRemainingColumn(), console=console, transient=True) as progress:
         bar = progress.add_task(scene.name, total=1 + len(MANY))
         study = Study((scene,), 1, TOLERANCE)
-        return assumption_cells(study, jobs, process_pool, MANY, lambda: progress.advance(bar))
+        return assumption_cells(study, width, make, MANY, lambda: progress.advance(bar))
 
 
 def _print(console: Console, scene: Scene, cells: Sequence[Cell]) -> None:

@@ -1,11 +1,10 @@
 """
-The claims of section 5 against readings of the paper: `python -m comparison.claims [--grid N] [--jobs J] [--all]`.
+The claims of section 5 against readings of the paper: `python -m comparison.claims [--grid N] [--jobs N] [--all]`.
 """
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from rich.console import Console
 from rich.table import Table
@@ -13,29 +12,32 @@ from rich.table import Table
 from comparison.analysis.claims.claims import CLAIMS
 from comparison.analysis.claims.readings import EVERY_READING, READINGS
 from comparison.analysis.claims.table import GRID, SECONDS, SIGNS, ClaimTable, claims_tested, questions
-from comparison.execution.executors import Pool, cores, process_pool
+from comparison.cli.arguments import CommandParser, command, jobs, whole_number
+from comparison.execution.executors import Pool, process_pool
 from comparison.execution.progress import Stage, progress, wide_console
+from comparison.execution.workers import workers
+
+SURFACES = "reference:amplification"  # what the workers ask
 
 
-def main(argv: Sequence[str] | None = None, executor: Pool = process_pool) -> int:
-    """Print the table of claims against readings; the exit code: 0, or 2 for a wrong option."""
-    parser = argparse.ArgumentParser(
-        prog="python -m comparison.claims", description="The claims of section 5 of the paper against readings of it."
-    )
-    parser.add_argument("--grid", type=_at_least(8), default=GRID, metavar="N", help="phases per axis (%(default)s)")
-    parser.add_argument("--jobs", type=_at_least(1), default=cores(), metavar="J", help="worker processes")
+@command
+def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
+    """Print the table of claims against readings; the exit code."""
+    parser = CommandParser("claims", "The claims of section 5 of the paper against readings of it.")
+    parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {GRID})")
+    parser.add_jobs(cluster=True)
     parser.add_argument("--all", action="store_true", help="every reading: more amplitudes, durations and f_c")
     parser.add_argument("--words", action="store_true", help="print what every check found, too")
-    given = parser.parse_args(argv)
-    readings = EVERY_READING if given.all else READINGS
-    console = wide_console()
-    count = len(questions(readings, CLAIMS, given.grid))
-    stage = Stage(count, count * SECONDS * (given.grid / GRID) ** 2)
-    with progress(console, {"claims": stage}, given.jobs) as display:
-        table = claims_tested(
-            given.jobs, executor, given.grid, readings, done=lambda question: display.advance("claims", 1)
-        )
-    print_claims(console, table, given.words)
+    options = parser.parse_args(argv)
+    grid = GRID if options.grid is None else whole_number("--grid", options.grid, 8, 512)
+    readings = EVERY_READING if options.all else READINGS
+    with workers(jobs(options), options.scheduler, {SURFACES}, executor) as (width, make):
+        console = wide_console()
+        count = len(questions(readings, CLAIMS, grid))
+        stage = Stage(count, count * SECONDS * (grid / GRID) ** 2)
+        with progress(console, {"claims": stage}, width) as display:
+            table = claims_tested(width, make, grid, readings, done=lambda question: display.advance("claims", 1))
+    print_claims(console, table, options.words)
     return 0
 
 
@@ -56,12 +58,3 @@ def print_claims(console: Console, table: ClaimTable, words: bool = False) -> No
     console.print(f"Most claims are reproduced under: {'; '.join(reading.name for reading in table.best)}.")
     never = [f"{claim.figure}: {claim.says}" for claim in table.never]
     console.print(f"Under no reading: {'; '.join(never) or 'none'}.")
-
-
-def _at_least(least: int) -> Callable[[str], int]:
-    def number(text: str) -> int:
-        if not text.isdecimal() or int(text) < least:
-            raise argparse.ArgumentTypeError(f"{text!r}: must be a whole number, {least} or more")
-        return int(text)
-
-    return number

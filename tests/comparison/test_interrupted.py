@@ -21,9 +21,9 @@ import signal, sys
 signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background inherits it ignored
 sys.path[:0] = [{here!r}, {root!r}]
 from comparison.run import main
-from fake_models import fake_ladder
+from fake_models import fake_hierarchy
 if __name__ == "__main__":
-    sys.exit(main(["fig3-I", "--grid", "16", "--jobs", "2", "--out", "report"], fake_ladder("slow", batch=1)))
+    sys.exit(main(["fig3-I", "--grid", "16", "--jobs", "2", "--out", "report"], fake_hierarchy("slow", batch=1)))
 """
 
 

@@ -50,7 +50,7 @@ def forbidden(jobs: int) -> Executor:
     raise AssertionError("nothing should have been computed")
 
 
-def _errand(task: tuple[Any, ...] = (load_scene("fig3-I"), 1, 0.5, np.arange(3.0))) -> Task:
+def _task(task: tuple[Any, ...] = (load_scene("fig3-I"), 1, 0.5, np.arange(3.0))) -> Task:
     return Task("motions", motion, task, 0.1, task[0])
 
 
@@ -61,7 +61,7 @@ def _fetched(task: Task, folder: Path, make: Callable[[int], Executor] = ThreadP
 
 
 def test_an_answer_comes_back_to_the_last_bit_and_is_not_computed_twice(tmp_path: Path) -> None:
-    task = _errand()
+    task = _task()
     found = [_fetched(task, tmp_path), _fetched(task, tmp_path, forbidden)]
     assert [answers.parts["motions"].stored for answers in found] == [0, 1]
     first, second = (answers.on(forbidden)(1).submit(motion, task.argument).result() for answers in found)
@@ -72,17 +72,17 @@ def test_an_answer_comes_back_to_the_last_bit_and_is_not_computed_twice(tmp_path
 
 
 def test_it_belongs_to_function_task_versions_and_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    task = _errand()
+    task = _task()
     _fetched(task, tmp_path)
     scene, *rest = task.argument
     others = {
         "function": replace(task, function=another),
-        "scene": _errand((scene.with_values({"duration": 3.0}), *rest)),
-        "name, which the answer may hold": _errand((scene.with_values({"name": "other"}), *rest)),
-        "number": _errand((scene, 2, *rest[1:])),
-        "last bit": _errand((scene, 1, np.nextafter(0.5, 1.0), rest[2])),
-        "array": _errand((scene, 1, 0.5, np.arange(3.0) + 1e-16 * np.array([1.0, 0.0, 0.0]))),
-        "shape": _errand((scene, 1, 0.5, np.arange(3.0)[None])),
+        "scene": _task((scene.with_values({"duration": 3.0}), *rest)),
+        "name, which the answer may hold": _task((scene.with_values({"name": "other"}), *rest)),
+        "number": _task((scene, 2, *rest[1:])),
+        "last bit": _task((scene, 1, np.nextafter(0.5, 1.0), rest[2])),
+        "array": _task((scene, 1, 0.5, np.arange(3.0) + 1e-16 * np.array([1.0, 0.0, 0.0]))),
+        "shape": _task((scene, 1, 0.5, np.arange(3.0)[None])),
     }
     for name, other in others.items():
         assert TaskCache(Cache(tmp_path)).missing([other]), name
@@ -112,7 +112,7 @@ def test_what_names_a_fault_serves_the_run_and_is_tried_again_by_the_next(tmp_pa
 
 @pytest.mark.parametrize("damage", ["torn", "one bit", "a foreign class"])
 def test_what_is_damaged_or_would_run_foreign_code_is_computed_again(tmp_path: Path, damage: str) -> None:
-    task = _errand()
+    task = _task()
     _fetched(task, tmp_path)
     (file,) = tmp_path.glob("*/*.answer")
     text = file.read_bytes()
@@ -125,9 +125,9 @@ def test_what_is_damaged_or_would_run_foreign_code_is_computed_again(tmp_path: P
 
 
 def test_an_analysis_asks_itself_for_what_was_not_fetched(tmp_path: Path) -> None:
-    answers = _fetched(_errand(), tmp_path)
+    answers = _fetched(_task(), tmp_path)
     calls.clear()
-    tasks = [_errand().argument, (1,)]
+    tasks = [_task().argument, (1,)]
     found = sweep(tasks, motion, lambda *rest: None, lambda *rest: None, 2, answers.on(ThreadPoolExecutor))
     assert len(found) == 2
     assert calls == [(1,)]
@@ -135,8 +135,8 @@ def test_an_analysis_asks_itself_for_what_was_not_fetched(tmp_path: Path) -> Non
 
 def test_an_errand_whose_worker_died_is_left_to_its_analysis() -> None:
     answers = TaskCache(Cache(Path("unused")))
-    answers.put(_errand(), None)
-    assert answers.missing([_errand()])
+    answers.put(_task(), None)
+    assert answers.missing([_task()])
     answers.put(Task("errata", broken, 1, 0.1), TaskResult(Effect("s", 1, error_message=str(Outcome.WORKER_DIED)), 0.0))
     assert answers.parts["errata"].tasks == 1
 
