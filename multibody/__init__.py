@@ -1,6 +1,13 @@
 """
 The same question put to a multibody engine: rigid bodies, springs, and a compliant contact with friction.
 
+Functions:
+    amplification(scene, phases, ...)   amplification factors with an error estimate
+    trajectory(scene, phase, ...)       one motion to a tolerance
+    single_run(scene, phase, ...)       one run at a level of accuracy or a constant step, without an error estimate
+    levels(scene, ...)                  the levels of accuracy (`Level`) that `amplification` goes through
+    refusal(scene, ...)                 why a model is refused for a scene, or ""
+
 The engine is loaded on first use, so that a command can be stopped while it loads.
 """
 
@@ -10,20 +17,28 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from multibody.motion import trajectory
+    from multibody.integration.level import Level, levels
+    from multibody.integration.work_limit import refusal
+    from multibody.motion import single_run, trajectory
     from multibody.surface import amplification
-    from multibody.work_limit import refusal
 
 ENGINE = {
+    "Level": "multibody.integration.level",
     "amplification": "multibody.surface",
-    "refusal": "multibody.work_limit",
+    "levels": "multibody.integration.level",
+    "refusal": "multibody.integration.work_limit",
+    "single_run": "multibody.motion",
     "trajectory": "multibody.motion",
 }
 
-__all__ = ["amplification", "refusal", "trajectory"]
+__all__ = ["Level", "amplification", "levels", "refusal", "single_run", "trajectory"]
 
 
 def __getattr__(name: str) -> Any:
     if name in ENGINE:
         return getattr(import_module(ENGINE[name]), name)
     raise AttributeError(f"module 'multibody' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -2,7 +2,7 @@
 Look at one motion: `python -m multibody.animate SCENE --phases A1 A2 [--model spatial] [--out run.gif]`.
 
 First the boxes from above, in the plate's frame, with the path of the contact point on every support; then the chain
-from two sides, with the curve on which the platform's centre swings. Boxes turn as the spatial model's do; the title
+from two sides, with the curve on which the platform's center swings. Boxes turn as the spatial model's do; the title
 says how many times displacements, contact paths, tilt and yaw are drawn larger. `--view` opens the engine's own viewer
 on the same model.
 """
@@ -26,11 +26,11 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from multibody.engine import exudyn
-from multibody.integrate import place
+from multibody.integration.constant_step import set_initial_state
+from multibody.integration.work_limit import refusal
+from multibody.models.assembly import assemble
+from multibody.models.engine import exudyn
 from multibody.motion import trajectory
-from multibody.surface import assembled
-from multibody.work_limit import refusal
 from reference.problem import (
     ADVICE,
     Outcome,
@@ -47,11 +47,12 @@ from reference.problem.files import write_new
 Array = NDArray[np.float64]
 
 FRAMES_PER_SECOND = 25
-MOST_FRAMES = 1500  # of a film, which is held in memory whole: 3.6 MB each
-MOST_STRETCHED = 1e6  # times
+MAX_FRAMES = 1500  # of a film, which is held in memory whole: 3.6 MB each
+MAX_STRETCH = 1e6  # times
 SUFFIXES = (".gif",)  # of files that can be written with what is installed
 RING, SUPPORTS, SPHERE, STOREY = 1.0, 4, 0.05, 1.0  # m, -, m, m: drawn where the scene gives no spatial data
-SEEN, LARGEST = 0.3, 1e4  # rad or m, up to which turns and contact paths are magnified; by this much at most
+MAX_DRAWN = 0.3  # rad or m, up to which turns and contact paths are magnified
+MAX_MAGNIFICATION = 1e4  # times
 CORNERS = 0.5 * np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 
 
@@ -63,17 +64,17 @@ def frames(time: Array, values: Array, rate: float) -> Array:
     return np.stack(columns, axis=-1).reshape(count, *values.shape[1:])
 
 
-def box_corners(centre: Array, size: Array, turns: Array) -> Array:
-    """Corners (..., 8, 3), m, of boxes at `centre` (..., 3), m, turned by Rx(a) Ry(b) Rz(c), `turns` (..., 3), rad."""
+def box_corners(center: Array, size: Array, turns: Array) -> Array:
+    """Corners (..., 8, 3), m, of boxes at `center` (..., 3), m, turned by Rx(a) Ry(b) Rz(c), `turns` (..., 3), rad."""
     matrices = Rotation.from_euler("XYZ", turns.reshape(-1, 3)).as_matrix().reshape(*turns.shape, 3)
     turned: Array = (CORNERS * np.asarray(size)[..., None, :]) @ np.swapaxes(matrices, -1, -2)
-    return centre[..., None, :] + turned
+    return center[..., None, :] + turned
 
 
 def magnified(values: Array, seen: float) -> float:
-    """Factor, 1, 2 or 5 times a power of ten and at most `LARGEST`, which makes the largest value `seen` or less."""
+    """Factor 1, 2 or 5 times a power of ten, at most MAX_MAGNIFICATION, that makes the largest value at most `seen`."""
     largest = float(np.abs(values).max())
-    wanted = min(max(seen / largest, 1.0), LARGEST) if largest > 0.0 else LARGEST
+    wanted = min(max(seen / largest, 1.0), MAX_MAGNIFICATION) if largest > 0.0 else MAX_MAGNIFICATION
     power = 10.0 ** np.floor(np.log10(wanted))
     return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted))
 
@@ -82,7 +83,7 @@ def contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
     """
     From each support to its contact point in plan, (F, K, 2), m, for the platform's `shift` and `turns` (F, 3).
 
-    The point lies on the sphere of radius r, in the direction from the depression's centre to the sphere's.
+    The point lies on the sphere of radius r, in the direction from the depression's center to the sphere's.
     """
     supports = _supports(scene)
     arms = np.column_stack([supports, np.full(len(supports), -(scene.bodies[0].height or 0.0))])
@@ -100,15 +101,15 @@ def frame_count(duration: float, speed: float) -> int:
 
 def refuse_film(scene: Scene, out: Path, stretch: float, speed: float) -> None:
     """Raise ValueError, one line, if no film can be written to `out` or it would be absurd: before anything is run."""
-    if not (np.isfinite(stretch) and 0.0 < stretch <= MOST_STRETCHED):
-        raise ValueError(f"--stretch: {stretch}: must be greater than 0 and at most {MOST_STRETCHED:g}")
+    if not (np.isfinite(stretch) and 0.0 < stretch <= MAX_STRETCH):
+        raise ValueError(f"--stretch: {stretch}: must be greater than 0 and at most {MAX_STRETCH:g}")
     if not (np.isfinite(speed) and speed > 0.0):
         raise ValueError(f"--speed: {speed}: must be finite and greater than 0")
     fastest = scene.duration * FRAMES_PER_SECOND
-    slowest = fastest / (MOST_FRAMES - 1)
-    if speed > fastest or frame_count(scene.duration, speed) > MOST_FRAMES:
+    slowest = fastest / (MAX_FRAMES - 1)
+    if speed > fastest or frame_count(scene.duration, speed) > MAX_FRAMES:
         raise ValueError(
-            f"--speed: {speed:g}: a film of {scene.duration:g} s of motion has 2 to {MOST_FRAMES} frames, "
+            f"--speed: {speed:g}: a film of {scene.duration:g} s of motion has 2 to {MAX_FRAMES} frames, "
             f"{FRAMES_PER_SECOND} per second: give {slowest:.2g} to {fastest:.2g}"
         )
     if out.is_dir():
@@ -140,27 +141,27 @@ def draw(scene: Scene, motion: Trajectory, out: Path, *, stretch: float, speed: 
     rate = FRAMES_PER_SECOND / speed
     shifts = frames(motion.time, motion.position, rate)
     turns = frames(motion.time, motion.extra.get("turns", np.zeros_like(motion.position)), rate)
-    tilt, yaw = magnified(turns[..., :2], SEEN), magnified(turns[..., 2], SEEN)
+    tilt, yaw = magnified(turns[..., :2], MAX_DRAWN), magnified(turns[..., 2], MAX_DRAWN)
     supports, heights, sizes = _supports(scene), *_boxes(scene)
     rest = heights[:, None] * np.array([0.0, 0.0, 1.0])
     corners = box_corners(rest + shifts * stretch, sizes, turns * np.array([tilt, tilt, yaw]))
     paths = contact_paths(scene, shifts[:, 0], turns[:, 0])
-    closer = magnified(paths, SEEN)
+    closer = magnified(paths, MAX_DRAWN)
     paths = supports + paths * closer
 
     figure, panels = plt.subplots(1, 3, figsize=(15.0, 6.0))
     figure.subplots_adjust(left=0.05, right=0.99, bottom=0.2, top=0.86, wspace=0.2)
     reach = 1.08 * float(np.abs(corners[..., :2]).max())
     low, high = float(corners[..., 2].min()) - 0.15, float(corners[..., 2].max()) + 0.15
-    colours = [f"C{i}" for i in range(len(heights))]
+    colors = [f"C{i}" for i in range(len(heights))]
     outlines = []  # panel by panel, each body's
     for panel, axes in zip(panels, ((0, 1), (0, 2), (1, 2))):
         names = ["xyz"[axis] for axis in axes]
         panel.set(xlim=(-reach, reach), aspect="equal", xlabel=f"{names[0]} [m]", ylabel=f"{names[1]} [m]")
         panel.set(ylim=(-reach, reach) if axes[1] == 1 else (low, high))
-        for i, colour in enumerate(colours):
+        for i, color in enumerate(colors):
             name = f"body {i + 1}" if i else "platform"
-            outline = panel.fill([0.0], [0.0], facecolor=colour, edgecolor=colour, alpha=0.35, label=name)[0]
+            outline = panel.fill([0.0], [0.0], facecolor=color, edgecolor=color, alpha=0.35, label=name)[0]
             outlines.append((outline, i, list(axes)))
 
     above, *sides = panels
@@ -173,10 +174,10 @@ def draw(scene: Scene, motion: Trajectory, out: Path, *, stretch: float, speed: 
     rise = scene.radius - np.sqrt(scene.radius**2 - swing**2)
     masts = []
     for axis, side in enumerate(sides):
-        for support in supports[:, axis]:  # the sphere's centre stands rho above the depression's
+        for support in supports[:, axis]:  # the sphere's center stands rho above the depression's
             side.plot([support, support], [low, scene.radius], color="0.5", linewidth=1.5)
             side.plot(support, scene.radius, "o", color="0.4", markersize=6)
-        side.plot(swing * stretch, heights[0] + rise * stretch, ":", color="0.2", label="swing of the centre")
+        side.plot(swing * stretch, heights[0] + rise * stretch, ":", color="0.2", label="swing of the center")
         masts.append(side.plot([], [], "o-", color="0.2", markersize=3, linewidth=1.0)[0])
     handles = dict(zip(*reversed(above.get_legend_handles_labels())))
     handles |= dict(zip(*reversed(sides[0].get_legend_handles_labels())))
@@ -195,9 +196,9 @@ def draw(scene: Scene, motion: Trajectory, out: Path, *, stretch: float, speed: 
         for line, path in zip(lines, np.swapaxes(paths, 0, 1)):
             line.set_data(*path[: frame + 1].T)
         points.set_data(*paths[frame].T)
-        centres = rest + shifts[frame] * stretch
+        centers = rest + shifts[frame] * stretch
         for axis, mast in enumerate(masts):
-            mast.set_data(centres[:, axis], centres[:, 2])
+            mast.set_data(centers[:, axis], centers[:, 2])
         title.set_text(f"{verbatim(scene.title)}\nt = {frame / rate:.2f} s; {scales}")
         return [title, points, *lines, *masts, *(outline for outline, _, _ in outlines)]
 
@@ -213,12 +214,12 @@ def view(scene: Scene, phase: Array, model: str, regularization: float | None) -
     """Run the model in the engine's own viewer. Raises ValueError without a screen."""
     if sys.platform == "linux" and not os.environ.get("DISPLAY"):
         raise ValueError("--view: no screen: DISPLAY is not set; leave --view out to write a film instead")
-    built = assembled(scene, model, regularization)
+    built = assemble(scene, model, regularization)
     penetration = 1e-6
-    built.stiffen(penetration)
+    built.set_contact(penetration)
     built.ground.set_phase(phase)
     state = built.start(None, ground_acceleration(scene, phase, [0.0])[0], penetration)
-    place(built, state)
+    set_initial_state(built, state)
     settings = exudyn.SimulationSettings()
     settings.timeIntegration.endTime = scene.duration / built.units.time
     settings.timeIntegration.numberOfSteps = round(scene.duration * 1000.0)
@@ -264,23 +265,23 @@ def _arguments(words: list[str] | None) -> argparse.Namespace:
 def main(words: list[str] | None = None) -> int:
     """Exit code 0, or 2 and one line for a wrong scene or option."""
     try:
-        given = _arguments(words)
-        phase = np.array(given.phases)
-        scene = load_scene(given.scene, given.amplitude)
-        if given.view:
-            view(scene, phase, given.model, given.regularization)
+        options = _arguments(words)
+        phase = np.array(options.phases)
+        scene = load_scene(options.scene, options.amplitude)
+        if options.view:
+            view(scene, phase, options.model, options.regularization)
             return 0
-        refuse_film(scene, given.out, given.stretch, given.speed)
-        motion = trajectory(scene, phase, given.model, given.regularization)
+        refuse_film(scene, options.out, options.stretch, options.speed)
+        motion = trajectory(scene, phase, options.model, options.regularization)
         if len(motion.time) == 0:
-            reason = refusal(scene, given.model, given.regularization, full=True) or ADVICE[Outcome(motion.status)]
+            reason = refusal(scene, options.model, options.regularization, full=True) or ADVICE[Outcome(motion.status)]
             raise ValueError(f"{scene.name}: there is no motion to show: {motion.status}: {reason}")
-    except (SceneError, ValueError) as fault:
-        print(fault, file=sys.stderr)
+    except (SceneError, ValueError) as error:
+        print(error, file=sys.stderr)
         return 2
-    film = draw(scene, motion, given.out, stretch=given.stretch, speed=given.speed)
-    if film != given.out:
-        print(f"{given.out} exists and stays: the film is in {film}", file=sys.stderr)
+    film = draw(scene, motion, options.out, stretch=options.stretch, speed=options.speed)
+    if film != options.out:
+        print(f"{options.out} exists and stays: the film is in {film}", file=sys.stderr)
     print(f"{film}: {motion.time[-1]:.2f} s of motion, status {motion.status}")
     return 0
 

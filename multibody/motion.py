@@ -1,15 +1,24 @@
-"""One trajectory with the engine."""
+"""One motion with the engine: to a tolerance, or from a single run without an error estimate."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from multibody.integrate import Motion, silence
-from multibody.refine import refine
-from multibody.surface import assembled
+from multibody.integration.adaptive import Budget, EngineRun
+from multibody.integration.constant_step import INTEGRATORS, Motion, silence
+from multibody.integration.level import Level
+from multibody.integration.one_run import PhasePair
+from multibody.integration.refine import MAX_WORK, refine
+from multibody.models.assembly import assemble
+from multibody.models.system import EngineModel
 from reference.problem import Scene, State, Trajectory, checked_phase, ground_acceleration
-from reference.problem.ranges import TOLERANCE, checked_number, checked_state
+from reference.problem.ranges import TOLERANCE, Range, checked_choice, checked_number, checked_state
+
+SINGLE_RUN_WORK = 10.0 * MAX_WORK  # nominal microseconds of one run in place of all that refine a point
+MAX_STEPS = 1e7  # of a run at constant step, which is held in memory whole
+PENETRATION = Range(1e-14, 0.1, "of rho")
+NEWTON = Range(1e-14, 1.0)
 
 
 def trajectory(
@@ -22,52 +31,169 @@ def trajectory(
     loading: str = "inertial",
 ) -> Trajectory:
     """
-    One motion in the plate's frame for one phase pair (2,), rad, from rest or from `initial`.
+    Compute one motion in the plate's frame with the engine, to a tolerance.
 
-    Other arguments as in `amplification`.
+    Parameters
+    ----------
+    scene, model, regularization, loading
+        As in `amplification`.
+    phase : array_like, shape (2,)
+        Initial phases of the two harmonics, rad.
+    tolerance : float
+        Relative error that is asked of the largest accelerations.
+    initial : State, optional
+        Displacements (N, 2), m, and velocities (N, 2), m/s, at time zero; at rest without.
 
-    The instants are the engine's own, closer at stops, and miss the largest accelerations, which `peak` has; they are
-    those of the run whose peaks meet `tolerance`, as in `amplification`, with the same statuses; a run that ends early
-    is returned up to there. `contact_force`: sum over the supports. `stick`: intervals in which every support slips
-    slower than v_reg. `extra`: slip_speed (T, K), m/s, and support_force (T, K), N, of K contacts (one in the
-    translational model); the spatial model adds yaw and tilt of the platform (T,), rad, turns (T, N, 3), rad, the
-    angles a, b, c of every body, which is turned against the plate by Rx(a) Ry(b) Rz(c), and liftoff (L, 3): support,
-    start and end, s, of every time a contact is open. Raises ValueError for wrong arguments.
+    Returns
+    -------
+    Trajectory
+        With T instants: `position`, `velocity` and `absolute_acceleration` (T, N, 3); `contact_force` (T,), N, the sum
+        over the supports; `stick`, the intervals in which every support slips slower than v_reg; `peak` (N,), m/s^2;
+        `status` and `instant` as in `amplification`. A run that ends early is returned up to there.
+        `extra` has slip_speed (T, K), m/s, and support_force (T, K), N, of K contacts (one in the translational model).
+        The spatial model adds yaw and tilt of the platform (T,), rad; turns (T, N, 3), rad, the angles a, b, c of
+        every body, which is turned against the plate by Rx(a) Ry(b) Rz(c); and liftoff (L, 3): support, start and
+        end, s, of every time that a contact is open.
+
+    Raises
+    ------
+    ValueError
+        For wrong arguments.
+
+    Notes
+    -----
+    The instants are the engine's own, closer at stops. They miss the largest accelerations, which `peak` has. They are
+    those of the finest run, as in `amplification`.
+
+    Examples
+    --------
+    >>> import multibody, reference
+    >>> scene = reference.load_scene("fig3-I").with_values({"duration": 1.0})
+    >>> multibody.trajectory(scene, (2.0, 0.7)).status == "ok"
+    True
     """
     pair = checked_phase(phase)
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
     if initial is not None:
         initial = State(*checked_state(initial, len(scene.bodies), scene.radius))
     with silence():
-        built = assembled(scene, model, regularization, loading=loading, contact_force=True)
+        built = assemble(scene, model, regularization, loading=loading, contact_force=True)
         point = refine(scene, built, pair, tolerance, initial=initial, keep=True)
-    units, bodies = built.units, built.bodies
-    motion = Motion.joined(point.finest.chunks) if point.finest.chunks else Motion.none(built)
+    return _trajectory(PhasePair(scene, built, pair, initial), point.finest, point.outcome, point.instant)
+
+
+def single_run(
+    scene: Scene,
+    phase: ArrayLike,
+    model: str = "translational",
+    regularization: float | None = 1e-3,
+    *,
+    level: Level | None = None,
+    step: float | None = None,
+    penetration: float = 1e-6,
+    newton: float = 1e-5,
+    residual: float | None = None,
+    integrator: str = "generalized alpha",
+    discontinuous: float | None = None,
+) -> Trajectory:
+    """
+    Run the engine once, at a level of accuracy or at a constant step, without an error estimate.
+
+    Parameters
+    ----------
+    scene, model, regularization
+        As in `amplification`. The model is never reduced.
+    phase : array_like, shape (2,)
+        Initial phases of the two harmonics, rad.
+    level : Level, optional
+        Run with adaptive steps at this level of accuracy (`multibody.levels`).
+    step : float, optional
+        Run with this constant step, s, rounded so that the duration is a whole number of steps. Exactly one of `level`
+        and `step` is required. The arguments below belong to `step`.
+    penetration : float
+        Of the contact under the weight, in units of rho: the inverse of its stiffness.
+    newton : float
+        Tolerance of the forces in Newton's iteration, relative to the first residual of a step.
+    residual : float, optional
+        Smallest residual that is asked for, in units of the weight; 1e-3 of `newton` without.
+    integrator : {"generalized alpha", "trapezoidal", "RK44", "velocity Verlet"}
+        The last two are explicit.
+    discontinuous : float, optional
+        Tolerance of the engine's iteration over contacts that open or turn within a step; `newton` without. The
+        engine's own default is 1, with which it leaves stops less accurate.
+
+    Returns
+    -------
+    Trajectory
+        As in `trajectory`. `peak` is read between the samples; it is NaN where the engine gives up. `status` is "ok",
+        "rim reached", "contact lost", "solver failed" or "step limit".
+
+    Raises
+    ------
+    ValueError
+        For wrong arguments.
+
+    Notes
+    -----
+    At a constant step the kinks of a recorded motion lie inside the steps. Use a level for such a scene.
+
+    Examples
+    --------
+    >>> import multibody, reference
+    >>> scene = reference.load_scene("fig3-I").with_values({"duration": 1.0})
+    >>> len(multibody.single_run(scene, (0.3, 1.1), step=2e-3).time)
+    501
+    """
+    pair = checked_phase(phase)
+    if (level is None) == (step is None):
+        raise ValueError("level, step: give exactly one of the two")
+    checked_choice("integrator", integrator, INTEGRATORS)
+    penetration = checked_number("penetration", penetration, PENETRATION)
+    newton = checked_number("newton", newton, NEWTON)
+    with silence():
+        built = assemble(scene, model, regularization, contact_force=True)
+        point = PhasePair(scene, built, pair)
+        if level is not None:
+            run = point.at_level(level, Budget.of(SINGLE_RUN_WORK, built.coordinates), keep=True)
+        else:
+            allowed = Range(scene.duration / MAX_STEPS, scene.duration, "s")
+            count = round(scene.duration / checked_number("step", step, allowed))
+            residual = 1e-3 * newton if residual is None else residual
+            run = point.at_constant_step(count, penetration, newton, residual, integrator, discontinuous)
+    return _trajectory(point, run, run.outcome, run.instant * built.units.time)
+
+
+def _trajectory(pair: PhasePair, run: EngineRun, status: str, instant: float) -> Trajectory:
+    """The motion of a run in SI units, with the accelerations of the plate."""
+    model, motion = pair.model, Motion.concatenated(run.chunks) if run.chunks else Motion.empty(pair.model)
+    units, bodies = model.units, model.bodies
     time = motion.time * units.time
-    resting = not built.moving_plate
-    ground = ground_acceleration(scene, pair, time) if resting else motion.plate[:, 2] * units.acceleration
+    if model.moving_plate:
+        ground = motion.plate[:, 2] * units.acceleration
+    else:
+        ground = ground_acceleration(pair.scene, pair.phase, time)
     vectors = motion.force.reshape(len(time), motion.force.shape[1] // 6, 2, 3)  # per contact: force, normal
     support_force = np.abs((vectors[:, :, 0] * vectors[:, :, 1]).sum(axis=-1)) * units.force
     extra = {"slip_speed": motion.slip * units.velocity, "support_force": support_force}
-    if model == "spatial":
-        extra |= _attitude(motion, bodies, time)
+    if model.allows_liftoff:
+        extra |= _attitude(model, motion, time)
     return Trajectory(
         time=time,
         position=motion.coordinates[:, bodies] * units.length,
         velocity=motion.velocities[:, bodies] * units.velocity,
         absolute_acceleration=motion.accelerations[:, bodies] * units.acceleration + ground[:, None, :],
         contact_force=support_force.sum(axis=1),
-        stick=_intervals(time, (motion.slip < built.corner).all(axis=1) & np.isfinite(built.corner)),
-        status=point.outcome,
-        instant=point.instant,
+        stick=_intervals(time, (motion.slip < model.corner).all(axis=1) & np.isfinite(model.corner)),
+        status=status,
+        instant=instant,
         extra=extra,
-        peak=point.finest.peaks.value * units.acceleration if len(time) else np.full(len(bodies), np.nan),
+        peak=run.peaks.value * units.acceleration if len(time) else np.full(len(bodies), np.nan),
     )
 
 
-def _attitude(motion: Motion, bodies: NDArray[np.int_], time: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+def _attitude(model: EngineModel, motion: Motion, time: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
     """How the bodies turn, and when the platform leaves a support."""
-    turns = motion.coordinates[:, bodies + 3]  # of a body, behind its three displacements
+    turns = motion.coordinates[:, model.bodies + 3]  # of a body, behind its three displacements
     roll, pitch, yaw = turns[:, 0].T
     open_at = [
         (float(support), *interval)

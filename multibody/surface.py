@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from multibody.engine import reset_with
-from multibody.integrate import silence
-from multibody.plate import LOADINGS
-from multibody.refine import refine
-from multibody.spatial import spatial
-from multibody.system import EngineModel
-from multibody.translational import translational
+from multibody.integration.constant_step import silence
+from multibody.integration.level import Level
+from multibody.integration.refine import Refinement, refine
+from multibody.models.assembly import assemble
+from multibody.models.system import EngineModel
 from reference.problem import (
     Amplification,
     Outcome,
@@ -25,34 +25,9 @@ from reference.problem import (
     planar_chain,
     untilted,
 )
-from reference.problem.ranges import LEAST_ACCELERATION, REGULARIZATION, TOLERANCE, checked_choice, checked_number
+from reference.problem.ranges import LEAST_ACCELERATION, TOLERANCE, checked_number
 
-BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": translational, "spatial": spatial}
-
-
-def assembled(
-    scene: Scene,
-    model: str,
-    regularization: float | None,
-    *,
-    loading: str = "inertial",
-    contact_force: bool = False,
-    **more: int,
-) -> EngineModel:
-    """
-    The engine's system of `scene`; more: what its builder takes besides.
-
-    Raises ValueError for an unknown model or loading, a wrong or missing v_reg.
-    """
-    checked_choice("loading", loading, LOADINGS)
-    checked_choice("model", model, sorted(BUILDERS))
-    if regularization is not None:
-        regularization = checked_number("regularization", regularization, REGULARIZATION)
-    elif not scene.lubricated and scene.friction_coefficient > 0.0:
-        raise ValueError("regularization: None: the engine's dry friction needs v_reg in m/s, greater than 0")
-    built = BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **more)
-    reset_with(built.recorders, built.container)  # which a copy of the model with other settings shares
-    return built
+Array = NDArray[np.float64]
 
 
 def amplification(
@@ -63,17 +38,54 @@ def amplification(
     tolerance: float = 1e-3,
     loading: str = "inertial",
     full: bool = False,
+    levels: Sequence[Level] | None = None,
 ) -> Amplification:
     """
-    Dynamic amplification factors mu_i of (5.1) for each phase pair, from the engine.
+    Compute the dynamic amplification factors mu_i of (5.1) with the engine.
 
-    phases: (M, 2), rad. regularization: v_reg in m/s, below which dry friction is linear in the slip velocity; may be
-    None where the contact is lubricated or frictionless. tolerance: relative error asked of every mu. loading:
-    "inertial" forces in the plate's frame, or motion of the "plate", which carries the supports. full: the model asked
-    for, even where the scene does not require it (reference.problem.reductions).
+    Parameters
+    ----------
+    scene : Scene
+    phases : array_like, shape (M, 2)
+        Initial phases of the two harmonics, rad.
+    model : {"translational", "spatial"}
+        The paper's degrees of freedom, or bodies that turn on supports that may open.
+    regularization : float or None
+        v_reg, m/s, below which dry friction is linear in the slip velocity. None only where the contact is lubricated
+        or frictionless.
+    tolerance : float
+        Relative error that is asked of every mu.
+    loading : {"inertial", "plate"}
+        Inertial forces in the plate's frame, or the motion of a plate that carries the supports.
+    full : bool
+        Compute the model that is asked for, even where the scene does not require it (reference.problem.reductions).
+    levels : sequence of Level, optional
+        Levels of accuracy to go through, the coarsest first, in place of those of `multibody.levels`.
 
-    A point without an answer is NaN, with status "rim reached", "contact lost", "solver failed", "step limit" or "no
-    ground motion"; "tolerance not met" keeps its mu with the error reached. Raises ValueError for wrong arguments.
+    Returns
+    -------
+    Amplification
+        `mu` and its estimated absolute error `error`, both (M, N); `status` (M,); `instant` (M,), s, at which a status
+        other than "ok" arose; `cost`, s; `cap_share` (M,). A point without an answer is NaN, with status "rim reached",
+        "contact lost", "solver failed", "step limit", "no ground motion" or "non-finite load". "tolerance not met"
+        keeps its mu with the error that was reached.
+
+    Raises
+    ------
+    ValueError
+        For wrong arguments.
+
+    Notes
+    -----
+    The error is estimated from runs at two or more levels. It covers step, contact stiffness, iteration, reading of the
+    peaks and rounding, and not what the model itself leaves out.
+
+    Examples
+    --------
+    >>> import multibody, reference
+    >>> scene = reference.load_scene("fig3-I").with_values({"duration": 1.0})
+    >>> multibody.amplification(scene, [(0.3, 1.1)]).status.tolist()
+    ['ok']
     """
     pairs = checked_phases(phases)
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
@@ -83,25 +95,45 @@ def amplification(
     status, instant = np.full(len(pairs), Outcome.OK.value, dtype="U32"), np.full(len(pairs), np.nan)
     cap_share = np.full(len(pairs), np.nan)
     ground = ground_peak(scene, pairs)
-    level = model == "spatial" and not full and untilted(scene).allowed
-    chosen = "translational" if level else model
-    flat = chosen == "translational" and not full and planar_chain(scene).allowed
-    moving = in_plane(scene) if flat else scene
     with silence():
-        more = {"axes": 1} if flat else {}
-        built = assembled(moving, chosen, regularization, loading=loading, contact_force=False, **more)
+        reduced = _reduced(scene, model, regularization, loading, full)
         for m, phase in enumerate(pairs):
             if ground[m] < LEAST_ACCELERATION:
                 status[m], instant[m] = Outcome.NO_GROUND_MOTION, 0.0
             elif not np.isfinite(ground[m]):
                 status[m], instant[m] = Outcome.NON_FINITE_LOAD, 0.0
             else:
-                point = refine(moving, built, phase, tolerance)
-                if level and np.isnan(point.peaks).any():  # off its supports the model asked for goes on
-                    whole = assembled(scene, model, regularization, loading=loading)
-                    point = refine(scene, whole, phase, tolerance)
+                point = reduced.refined(phase, tolerance, levels)
                 status[m], instant[m] = point.outcome, point.instant
                 mu[m], error[m] = point.peaks / ground[m], point.errors / ground[m]
                 if np.isfinite(point.peaks).all():
-                    cap_share[m] = point.finest.reach
+                    cap_share[m] = point.finest.max_displacement
     return Amplification(mu, error, status, instant, time.process_time() - clock, cap_share)
+
+
+@dataclass(frozen=True)
+class _Reduced:
+    """The smallest model that answers for the one that is asked for."""
+
+    scene: Scene
+    built: EngineModel
+    asked: tuple[Scene, str, float | None, str] | None  # what to assemble where the reduced model has no answer
+
+    def refined(self, phase: Array, tolerance: float, levels: Sequence[Level] | None) -> Refinement:
+        point = refine(self.scene, self.built, phase, tolerance, levels=levels)
+        if self.asked and np.isnan(point.peaks).any():  # off its supports the model that is asked for goes on
+            scene, model, regularization, loading = self.asked
+            whole = assemble(scene, model, regularization, loading=loading)
+            point = refine(scene, whole, phase, tolerance, levels=levels)
+        return point
+
+
+def _reduced(scene: Scene, model: str, regularization: float | None, loading: str, full: bool) -> _Reduced:
+    """A platform that does not tilt needs no rotations, and a motion in a plane no coordinates across it."""
+    level = model == "spatial" and not full and untilted(scene).allowed
+    chosen = "translational" if level else model
+    planar = chosen == "translational" and not full and planar_chain(scene).allowed
+    moving = in_plane(scene) if planar else scene
+    axes: dict[str, Any] = {"axes": 1} if planar else {}
+    built = assemble(moving, chosen, regularization, loading=loading, **axes)
+    return _Reduced(moving, built, (scene, model, regularization, loading) if level else None)

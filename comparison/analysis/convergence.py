@@ -27,11 +27,9 @@ from comparison.execution.sweep import sweep
 from comparison.study.models import has_spatial_data
 from comparison.study.study import Study
 from multibody import amplification as engine_amplification
-from multibody.integrate import Engine, silence
-from multibody.peak import Peaks
-from multibody.surface import assembled
+from multibody import single_run
 from reference import amplification
-from reference.problem import Outcome, Scene, exponents, ground_acceleration, ground_peak, loading_period
+from reference.problem import Outcome, Scene, exponents, ground_peak, loading_period
 
 Array = NDArray[np.float64]
 Values = tuple[Array, Array]  # relative sizes and their errors, (P, S, N)
@@ -126,20 +124,14 @@ def _stiffened(scene: Scene) -> Values:
 def _at_constant_step(scene: Scene, v_reg: float | None, penetration: float, factor: int) -> Array:
     """mu of the translational model at FEW, (P, N), with `factor` times the steps; NaN where the engine gives up."""
     mu = np.full((len(FEW), len(scene.bodies)), np.nan)
-    with silence():
-        model = assembled(scene, "translational", v_reg)
-        model.stiffen(penetration)
-        count = factor * min(MOST_STEPS, math.ceil(scene.duration / loading_period(scene) * STEPS_PER_PERIOD))
-        for row, phase in enumerate(FEW):
-            model.ground.set_phase(phase)
-            start = model.start(None, ground_acceleration(scene, phase, [0.0])[0], penetration)
-            motion = Engine(model, NEWTON, RESIDUAL).run(start, 0.0, scene.duration / model.units.time / count, count)
-            if motion is None or (motion.gap >= 0.0).any():
-                continue
-            ground = ground_acceleration(scene, phase, motion.time * model.units.time) / model.units.acceleration
-            peaks = Peaks(len(scene.bodies), model.corner)
-            peaks.add(motion.time, motion.accelerations[:, model.bodies] + ground[:, None, :], motion.slip)
-            mu[row] = peaks.value * model.units.acceleration / ground_peak(scene, [phase])[0]
+    count = factor * min(MOST_STEPS, math.ceil(scene.duration / loading_period(scene) * STEPS_PER_PERIOD))
+    step = scene.duration / count
+    for row, phase in enumerate(FEW):
+        run = single_run(
+            scene, phase, regularization=v_reg, step=step, penetration=penetration, newton=NEWTON, residual=RESIDUAL
+        )
+        if run.status == Outcome.OK:
+            mu[row] = run.peak / ground_peak(scene, [phase])[0]
     return mu
 
 

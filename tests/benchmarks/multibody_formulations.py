@@ -10,9 +10,10 @@ Every candidate runs one phase pair at constant step. The table gives its proces
 from __future__ import annotations
 
 import numpy as np
+from formulations import FORMULATIONS, PENETRATION, V_REG, run
 
 import reference
-from comparison.analysis.tradeoff.constant_step import FORMULATIONS, PENETRATION, SOLVERS, V_REG, run
+from multibody.integration.constant_step import INTEGRATORS
 from reference.problem import load_scene
 
 
@@ -21,13 +22,13 @@ def main() -> None:
     exact = reference.amplification(scene, [phase], equations="exact", regularization=V_REG).mu[0]
     candidates = {name: build(scene, PENETRATION) for name, build in FORMULATIONS.items()}
     plain = min(
-        run(scene, candidates["rigid body"], phase, "generalised alpha", 1e-3, modified=False)[1] for _ in range(3)
+        run(scene, candidates["rigid body"], phase, "generalized alpha", 1e-3, modified=False)[1] for _ in range(3)
     )
     print(f"plain run: {plain:.3f} s of processor time")
     print(f"{'formulation':16s} {'solver':18s} {'step [s]':>9s} {'cost/plain':>10s}   relative error of mu_i")
     for name, candidate in candidates.items():
-        for solver in SOLVERS:
-            for step in (2e-3, 1e-3) if solver in SOLVERS[:2] else (4e-4, 2e-4):
+        for solver in INTEGRATORS:
+            for step in (2e-3, 1e-3) if solver in INTEGRATORS[:2] else (4e-4, 2e-4):
                 peaks, cost = run(scene, candidate, phase, solver, step)
                 errors = "  ".join(f"{value:+.1e}" for value in peaks / exact - 1.0)
                 print(f"{name:16s} {solver:18s} {step:9.1e} {cost / plain:10.2f}   {errors}", flush=True)

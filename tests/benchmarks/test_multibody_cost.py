@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from formulations import FORMULATIONS, PENETRATION, run
 
 import multibody
-from comparison.analysis.tradeoff.constant_step import FORMULATIONS, PENETRATION, SOLVERS, run
-from multibody import level
-from multibody.integrate import Engine
+from multibody.integration import level
+from multibody.integration.constant_step import INTEGRATORS, Engine
 from reference.problem import load_scene
 
 PHASE = np.array([0.3, 1.1])
@@ -24,12 +24,12 @@ def short(duration: float) -> Any:
     return load_scene("fig3-I").with_values({"duration": duration})
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("solver", INTEGRATORS)
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_formulation_and_solver(benchmark: Any, formulation: str, solver: str) -> None:
     scene = short(2.0)
     candidate = FORMULATIONS[formulation](scene, PENETRATION)
-    peaks, _ = benchmark(run, scene, candidate, PHASE, solver, 1e-3 if solver in SOLVERS[:2] else 2e-4)
+    peaks, _ = benchmark(run, scene, candidate, PHASE, solver, 1e-3 if solver in INTEGRATORS[:2] else 2e-4)
     assert np.isfinite(peaks).all()
 
 
@@ -41,7 +41,7 @@ def test_one_point(benchmark: Any) -> None:
 def test_both_formulations_are_the_same_system() -> None:
     scene = short(2.0)
     peaks = [
-        run(scene, build(scene, PENETRATION), PHASE, "generalised alpha", 1e-3)[0] for build in FORMULATIONS.values()
+        run(scene, build(scene, PENETRATION), PHASE, "generalized alpha", 1e-3)[0] for build in FORMULATIONS.values()
     ]
     # the same equations and steps; Newton's tolerance of 1e-5 on the forces is left
     np.testing.assert_allclose(peaks[0], peaks[1], rtol=1e-4)
@@ -55,7 +55,7 @@ def test_a_point_costs_at_most_two_plain_runs_in_the_median() -> None:
     multibody.amplification(scene, phases[:1])  # compiles the loading's peak
     ratios = []
     for phase in phases:
-        _, cost = run(scene, plain, phase, "generalised alpha", 1e-3, modified=False)
+        _, cost = run(scene, plain, phase, "generalized alpha", 1e-3, modified=False)
         ratios.append(multibody.amplification(scene, [phase]).cost / cost)
     assert np.median(ratios) <= 2.0
 
@@ -76,7 +76,7 @@ def test_building_and_reading_back_take_at_most_a_tenth_of_the_solve(monkeypatch
 
     from multibody import surface
 
-    monkeypatch.setattr(surface, "assembled", clocked("build", surface.assembled))
+    monkeypatch.setattr(surface, "assemble", clocked("build", surface.assemble))
     monkeypatch.setattr(Engine, "_read", clocked("read", Engine._read))
     monkeypatch.setattr(Engine, "run", clocked("run", Engine.run))
     multibody.amplification(load_scene("fig3-I"), np.random.default_rng(5).uniform(0.0, 6.0, (8, 2)))
@@ -85,7 +85,7 @@ def test_building_and_reading_back_take_at_most_a_tenth_of_the_solve(monkeypatch
 
 @pytest.mark.long
 def test_ten_thousand_short_runs_leave_no_memory_behind(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(level, "LEVELS", 2)
+    monkeypatch.setattr(level, "MAX_LEVELS", 2)
     scene = short(0.02)
     phases = np.random.default_rng(5).uniform(0.0, 2.0 * np.pi, (10_000, 2))
 

@@ -21,9 +21,7 @@ from numpy.typing import NDArray
 
 import multibody
 import reference
-from multibody.integrate import Engine, silence
-from multibody.surface import assembled
-from reference.problem import Amplification, Scene, ground_acceleration, ground_peak
+from reference.problem import Amplification, Scene, ground_peak
 
 NEWTON = 1e-5  # tolerance of the coarse engine's iteration
 PENETRATION = 1e-6  # of rho, of its contact
@@ -92,19 +90,13 @@ def coarse(
     scene: Scene, phases: NDArray[np.float64], tolerance: float, step: float, model: str, regularization: float
 ) -> Amplification:
     """The engine once at a constant step, s, its peaks read at the steps; the errors claimed are what was asked for."""
-    peaks = []
-    with silence():
-        built = assembled(scene, model, regularization)
-        engine = Engine(built, NEWTON, NEWTON)
-        for phase in phases:
-            built.ground.set_phase(phase)
-            built.stiffen(PENETRATION)
-            start = built.start(None, ground_acceleration(scene, phase, [0.0])[0], PENETRATION)
-            count = round(scene.duration / step)
-            motion = engine.run(start, 0.0, step / built.units.time, count)
-            assert motion is not None
-            relative = motion.accelerations[:, built.bodies] * built.units.acceleration
-            ground = ground_acceleration(scene, phase, motion.time * built.units.time)
-            peaks.append(np.linalg.norm(relative + ground[:, None, :], axis=2).max(axis=0))
+    runs = [
+        multibody.single_run(
+            scene, phase, model, regularization, step=step, penetration=PENETRATION, newton=NEWTON, residual=NEWTON
+        )
+        for phase in phases
+    ]
+    assert all(run.status == "ok" for run in runs)
+    peaks = [np.linalg.norm(run.absolute_acceleration, axis=2).max(axis=0) for run in runs]
     mu = np.array(peaks) / ground_peak(scene, phases)[:, None]
     return Amplification(mu, tolerance * mu, np.full(len(mu), "ok"), np.full(len(mu), np.nan), 0.0)

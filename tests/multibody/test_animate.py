@@ -86,9 +86,9 @@ class Screen:
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.calls: list[str] = []
         self.end: float | None = None
-        built = animate.assembled
+        built = animate.assemble
 
-        def assembled(*arguments: Any) -> Any:
+        def assemble(*arguments: Any) -> Any:
             model = built(*arguments)
             self.model = model
             self.renderer = SimpleNamespace(
@@ -98,9 +98,9 @@ class Screen:
             )
             system = SimpleNamespace(SolveDynamic=self.solve, systemData=model.mbs.systemData)
             system.SetObjectParameter = model.mbs.SetObjectParameter
-            return dataclasses.replace(model, mbs=system, keep_alive=(self,))
+            return dataclasses.replace(model, mbs=system, references=(self,))
 
-        monkeypatch.setattr(animate, "assembled", assembled)
+        monkeypatch.setattr(animate, "assemble", assemble)
 
     def solve(self, settings: Any) -> None:
         self.calls.append("solve")
@@ -114,7 +114,7 @@ def test_the_viewer_shows_the_whole_run_of_the_model_asked_for(model: str, monke
     assert main(["fig3-I", "--phases", "0.3", "1.1", "--model", model, "--view"]) == 0
     assert screen.calls == ["start", "idle", "solve", "idle", "stop"]
     assert screen.end == pytest.approx(20.0 / screen.model.units.time)
-    assert screen.model.liftoff == (model == "spatial")
+    assert screen.model.allows_liftoff == (model == "spatial")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the screen is not named by a variable")
@@ -138,14 +138,14 @@ def test_frames_follow_the_motion() -> None:
 
 
 def test_the_drawn_corners_turn_with_the_body() -> None:
-    centre, size = np.array([1.0, 2.0, 3.0]), np.array([4.0, 2.0, 1.0])
-    quarter = box_corners(centre, size, np.array([0.0, 0.0, np.pi / 2.0])) - centre
+    center, size = np.array([1.0, 2.0, 3.0]), np.array([4.0, 2.0, 1.0])
+    quarter = box_corners(center, size, np.array([0.0, 0.0, np.pi / 2.0])) - center
     # a quarter about z swaps length and width; the corner at (+, +) goes to (-, +)
     np.testing.assert_allclose(np.abs(quarter), np.tile([1.0, 2.0, 0.5], (8, 1)), atol=1e-15)
     np.testing.assert_allclose(quarter[-1], [-1.0, 2.0, 0.5], atol=1e-15)
     angles = np.array([0.3, -0.2, 0.5])
-    turned = box_corners(centre, size, angles) - centre
-    straight = box_corners(centre, size, np.zeros(3)) - centre
+    turned = box_corners(center, size, angles) - center
+    straight = box_corners(center, size, np.zeros(3)) - center
     # the engine's own matrix of its angles
     np.testing.assert_allclose(turned, straight @ RotXYZ2RotationMatrix(angles).T, atol=1e-14)
 

@@ -9,9 +9,9 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 import multibody
-from multibody.integrate import Engine, silence
-from multibody.surface import assembled
-from multibody.system import EngineState
+from multibody.integration.constant_step import Engine, silence
+from multibody.models.assembly import assemble
+from multibody.models.system import EngineState
 from reference.problem import GRAVITY, Scene, State, Trajectory
 
 
@@ -22,9 +22,9 @@ def started(scene: Scene, position: tuple[float, float], velocity: tuple[float, 
 
 
 def test_the_weight_presses_the_contact_in_by_the_static_penetration() -> None:
-    model = assembled(one_body(), "translational", 1e-3)
+    model = assemble(one_body(), "translational", 1e-3)
     penetration = 1e-4
-    model.stiffen(penetration)
+    model.set_contact(penetration)
     begin = model.start(None, np.zeros(3), penetration)
     raised = begin.coordinates + np.array([0.0, 0.0, penetration, 0.0, 0.0, 0.0])  # touching, not yet pressed in
     with silence():

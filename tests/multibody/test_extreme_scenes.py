@@ -10,9 +10,9 @@ from scenes_at_hand import changed
 
 import multibody
 import reference
-from multibody import refine
-from multibody.integrate import Engine
-from multibody.march import March, march
+from multibody.integration import one_run, refine
+from multibody.integration.adaptive import EngineRun, run_adaptively
+from multibody.integration.constant_step import Engine
 from reference.problem import Outcome, Scene, load_scene
 
 PHASE = [(0.3, 1.1)]
@@ -29,15 +29,15 @@ def linked(period: float, **tables: Any) -> Scene:
     return strong(bodies=[{"mass": 1.0}, {"mass": 1.0, "period": [period, 0.8 * period]}], **tables)
 
 
-def marches(monkeypatch: pytest.MonkeyPatch) -> list[March]:
-    """The marches of the calls that follow."""
-    done: list[March] = []
+def adaptive_runs(monkeypatch: pytest.MonkeyPatch) -> list[EngineRun]:
+    """The runs of the calls that follow."""
+    done: list[EngineRun] = []
 
-    def kept(*given: Any, **more: Any) -> March:
-        done.append(march(*given, **more))
+    def kept(*given: Any, **more: Any) -> EngineRun:
+        done.append(run_adaptively(*given, **more))
         return done[-1]
 
-    monkeypatch.setattr(refine, "march", kept)
+    monkeypatch.setattr(one_run, "run_adaptively", kept)
     return done
 
 
@@ -85,7 +85,7 @@ def test_a_motion_that_was_never_begun_has_no_instants_and_says_why() -> None:
 
 def test_levels_that_cannot_round_less_are_not_spent(monkeypatch: pytest.MonkeyPatch) -> None:
     # 1e-9 m/s^2 is a tenth of what a contact force rounds to
-    done = marches(monkeypatch)
+    done = adaptive_runs(monkeypatch)
     weak = strong(duration=0.5, excitation={"amplitudes": [[1e-9, 0.0], [0.0, 1e-9]]})
     result = multibody.amplification(weak, PHASE)
     assert result.status[0] == Outcome.TOLERANCE_NOT_MET
@@ -109,7 +109,7 @@ def test_iterations_in_vain_are_work_as_well(monkeypatch: pytest.MonkeyPatch) ->
 def test_what_the_compliance_leaves_is_part_of_an_error_that_misses_the_tolerance(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    done = marches(monkeypatch)
+    done = adaptive_runs(monkeypatch)
     scene = strong(duration=0.3)
     result = multibody.amplification(scene, PHASE, tolerance=1e-9)
     assert result.status[0] == Outcome.TOLERANCE_NOT_MET

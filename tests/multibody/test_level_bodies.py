@@ -54,13 +54,13 @@ def test_it_is_answered_by_the_model_without_rotations(monkeypatch: pytest.Monke
     scene = level("fig3-I", 0.5)
     moving = multibody.amplification(scene, PHASES, "translational")
     built: list[str] = []
-    assembled = surface.assembled
+    assemble = surface.assemble
 
     def noted(scene: Scene, model: str, *rest: Any, **more: Any) -> Any:
         built.append(model)
-        return assembled(scene, model, *rest, **more)
+        return assemble(scene, model, *rest, **more)
 
-    monkeypatch.setattr(surface, "assembled", noted)
+    monkeypatch.setattr(surface, "assemble", noted)
     np.testing.assert_array_equal(multibody.amplification(scene, PHASES, "spatial").mu, moving.mu)
     multibody.amplification(scene, PHASES[:1], "spatial", full=True)
     multibody.amplification(level("fig3-I", 0.5, 1e-12), PHASES[:1], "spatial")

@@ -129,7 +129,7 @@ def test_a_million_times_the_mass_gives_the_same_factors() -> None:
     np.testing.assert_allclose(factors(1e6), light, rtol=1e-7)
 
 
-def test_phases_do_not_depend_on_their_neighbours_in_one_call() -> None:
+def test_phases_do_not_depend_on_their_neighbors_in_one_call() -> None:
     scene = changed(load_scene("fig3-I"), duration=2.0)
     together = multibody.amplification(scene, PHASES[:2]).mu
     alone = np.vstack([multibody.amplification(scene, [phase]).mu for phase in PHASES[1::-1]])[::-1]

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import pytest
 
-from multibody.surface import assembled
+from multibody.models.assembly import assemble
 from reference.problem import load_scene
 
 CALLS = 60
@@ -56,6 +56,6 @@ def test_calls_of_the_engine_do_not_grow_the_memory(scene: str, function: str, p
 
 def test_a_copy_of_a_model_outlives_the_model() -> None:
     scene = load_scene("fig3-I")
-    copied = replace(assembled(scene, "translational", 1e-3), liftoff=True)
+    copied = replace(assemble(scene, "translational", 1e-3), allows_liftoff=True)
     gc.collect()
     assert copied.coordinates == 8, "three displacements and rotations of the platform, two of the second body"

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from multibody.peak import Peaks
+from multibody.integration.peak import Peaks
 
 Signal = Callable[[np.ndarray], np.ndarray]
 

@@ -49,9 +49,9 @@ def test_only_what_moves_in_a_plane_is_computed_in_it(monkeypatch: pytest.Monkey
     coordinates = []
     refine = surface.refine
 
-    def noted(scene: Scene, model: Any, *rest: Any) -> Any:
+    def noted(scene: Scene, model: Any, *rest: Any, **more: Any) -> Any:
         coordinates.append(model.coordinates)
-        return refine(scene, model, *rest)
+        return refine(scene, model, *rest, **more)
 
     monkeypatch.setattr(surface, "refine", noted)
     almost = scene_of(amplitudes=[[1.0, 0.5], [-0.8, -0.4 - 1e-9]], duration=0.05)

@@ -7,8 +7,8 @@ import pytest
 
 import multibody
 import reference
-from multibody.peak import Peaks
-from multibody.recorded import aligned
+from multibody.integration.peak import Peaks
+from multibody.models.recorded import align_steps
 from reference.problem import Scene, ground_velocity
 
 ANY = (0.0, 0.0)  # a record has no phases
@@ -75,7 +75,7 @@ KNOTS = np.array([0.0, 0.1, 0.2, 0.3, 0.45, 0.6])
     ],
 )
 def test_steps_end_at_every_knot_passed(time, step, count, expected):
-    found = aligned(KNOTS, 1e-7, time, step, count)
+    found = align_steps(KNOTS, 1e-7, time, step, count)
     assert found == (pytest.approx(expected[0]), expected[1])
 
 

@@ -10,8 +10,8 @@ from rigid_chain import spatial_motion
 from scenes_at_hand import CONSTANT, changed, one_body
 
 import multibody
-from multibody.engine import exudyn, items
-from multibody.spatial import link_between, stiffen_link
+from multibody.models.engine import exudyn, items
+from multibody.models.spatial import add_link, set_link_stiffness
 from reference.problem import GRAVITY, Outcome, Scene, ground_acceleration, load_scene
 
 LOST = (Outcome.CONTACT_LOST, Outcome.RIM_REACHED, Outcome.SOLVER_FAILED)
@@ -106,8 +106,8 @@ def test_a_free_chain_keeps_momentum_and_energy() -> None:
         box = items.ObjectRigidBody(nodeNumber=nodes[-1], mass=mass, inertia=[*inertia, 0.0, 0.0, 0.0])
         bodies.append(mbs.AddObject(box))
     shear, twist, stiff = np.array([3.0, 5.0]), 0.8, 300.0
-    link = link_between(mbs, bodies, heights)
-    stiffen_link(mbs, link, 0.0, shear, twist, stiff)
+    link = add_link(mbs, bodies, heights)
+    set_link_stiffness(mbs, link, 0.0, shear, twist, stiff)
     kind = exudyn.OutputVariableType
     mbs.Assemble()
     settings = exudyn.SimulationSettings()
@@ -233,7 +233,7 @@ def test_supports_share_the_load_as_the_overturning_moment_demands() -> None:
     forces = motion.extra["support_force"][-1]
     places = ring * np.cos(2.0 * np.pi * (np.arange(4) + 0.5) / 4.0)
     assert forces.sum() == pytest.approx(GRAVITY, rel=1e-4)
-    # about the plane in which the spheres touch, a radius R = rho + r above the depressions' centres
+    # about the plane in which the spheres touch, a radius R = rho + r above the depressions' centers
     assert forces @ places == pytest.approx(push * (height - lever), rel=1e-2)
 
 

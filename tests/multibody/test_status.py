@@ -8,9 +8,9 @@ from scenes_at_hand import CONSTANT, changed, one_body
 from scipy.integrate import solve_ivp
 
 import multibody
-from multibody import refine
-from multibody.level import levels
-from multibody.surface import assembled
+from multibody.integration import refine
+from multibody.integration.level import levels_of
+from multibody.models.assembly import assemble
 from reference.problem import GRAVITY, Outcome, load_scene
 
 
@@ -61,7 +61,7 @@ def test_a_plate_at_rest_has_no_amplification() -> None:
 
 
 def test_a_run_that_asks_for_too_many_steps_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(refine, "WORK", 200.0)
+    monkeypatch.setattr(refine, "MAX_WORK", 200.0)
     result = multibody.amplification(one_body(amplitudes=[[1.0, 0.0], [0.0, 1.0]]), [(0.0, 0.0)])
     assert result.status[0] == Outcome.STEP_LIMIT
     assert np.isnan(result.mu).all()
@@ -101,7 +101,7 @@ def test_wrong_arguments_are_refused_by_name(options: dict[str, object], message
 def test_a_point_whose_budget_ends_after_one_level_is_refused() -> None:
     """One answer alone says nothing about its error."""
     scene = load_scene("fig3-I").with_values({"duration": 0.5})
-    model = assembled(scene, "translational", 1e-3)
-    one = refine.refine(scene, model, np.array([0.3, 1.1]), 1e-3, plan=levels(scene, model, 1e-3)[:1])
+    model = assemble(scene, "translational", 1e-3)
+    one = refine.refine(scene, model, np.array([0.3, 1.1]), 1e-3, levels=levels_of(scene, model, 1e-3)[:1])
     assert one.outcome == Outcome.STEP_LIMIT
     assert np.isnan(one.peaks).all()

@@ -1,27 +1,22 @@
 """
-The engine at a contact stiffness or a step that is given, as nobody would choose it.
+The engine at a contact stiffness or a first step that the caller states.
 
-The engine of the study chooses both by itself. Here the levels of refinement start at the step given, or keep the
-stiffness given, so that it shows whether the error estimate knows what a bad choice costs.
+The engine of the study chooses both by itself. Here its levels of accuracy start at the given step or keep the given
+stiffness, which shows whether the error estimate covers a bad choice.
 """
 
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import replace
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from multibody.integrate import silence
-from multibody.level import RATIO, Level, levels
-from multibody.refine import refine
-from multibody.surface import assembled
-from multibody.system import EngineModel
-from reference.problem import GRAVITY, Amplification, Outcome, Scene, checked_phases, ground_peak
+import multibody
+from reference.problem import GRAVITY, Amplification, Scene
 
-LEVELS = 4  # few: what is wanted is the answer at this choice, not the way from it to a good one
+MAX_LEVELS = 4  # few: the answer at this choice matters, not the way from it to a good one
+STEP_RATIO = 4  # by which the engine divides its largest step
 
 
 def amplification(
@@ -34,43 +29,22 @@ def amplification(
     step: float | None = None,
 ) -> Amplification:
     """
-    As `multibody.amplification`. contact_stiffness: N/m, the same at all levels. step: s,
-    the largest at the first level, halved from level to level.
+    As `multibody.amplification`, without reductions.
+
+    contact_stiffness: N/m, the same at all levels. step: s, the largest at the first level, halved from level to level.
     """
-    pairs = checked_phases(phases)
-    clock = time.process_time()
-    shape = len(pairs), len(scene.bodies)
-    mu, error = np.full(shape, np.nan), np.full(shape, np.nan)
-    status, instant = np.full(len(pairs), Outcome.OK.value, dtype="U32"), np.full(len(pairs), np.nan)
-    ground = ground_peak(scene, pairs)
-    with silence():
-        built = assembled(scene, model, regularization)
-        plan = _levels(scene, built, tolerance, contact_stiffness, step)
-        for m, phase in enumerate(pairs):
-            point = refine(scene, built, phase, tolerance, plan=plan)
-            status[m], instant[m] = point.outcome, point.instant
-            mu[m], error[m] = point.peaks / ground[m], point.errors / ground[m]
-    return Amplification(mu, error, status, instant, time.process_time() - clock)
-
-
-def _levels(
-    scene: Scene, model: EngineModel, tolerance: float, contact_stiffness: float | None, step: float | None
-) -> list[Level]:
-    plan = levels(scene, model, tolerance)[:LEVELS]
+    levels = multibody.levels(scene, model, tolerance, regularization)[:MAX_LEVELS]
     if contact_stiffness is not None:
-        penetration = scene.total_mass * GRAVITY / (contact_stiffness * model.units.length)
-        rounding = model.rounding / penetration
-        plan = [replace(level, penetration=penetration, rounding=rounding) for level in plan]
+        penetration = scene.total_mass * GRAVITY / (contact_stiffness * scene.radius)
+        levels = [replace(level, penetration=penetration) for level in levels]
     if step is not None:
-        longer = step / model.units.time / plan[0].step
-        deeper = math.ceil(math.log(longer, RATIO))  # the smallest step stays what it is
-        plan = [
-            replace(
-                level,
-                step=level.step * longer,
-                deepest=max(level.deepest + deeper, 0),
-                chance=level.chance * max(longer, 1.0) ** 2,  # the method is of second order
-            )
-            for level in plan
-        ]
-    return plan
+        factor = step / math.sqrt(scene.radius / GRAVITY) / levels[0].step
+        levels = [_with_longer_step(level, factor) for level in levels]
+    return multibody.amplification(scene, phases, model, regularization, tolerance, full=True, levels=levels)
+
+
+def _with_longer_step(level: multibody.Level, factor: float) -> multibody.Level:
+    """`level` with the largest step `factor` times as long; the smallest step stays what it is."""
+    divisions = level.max_divisions + math.ceil(math.log(factor, STEP_RATIO))
+    error_floor = level.error_floor * max(factor, 1.0) ** 2  # the method is of second order
+    return replace(level, step=level.step * factor, max_divisions=max(divisions, 0), error_floor=error_floor)

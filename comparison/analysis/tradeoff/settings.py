@@ -24,7 +24,7 @@ SCIPY = "comparison.analysis.tradeoff.outside:factors_by_scipy"
 TIGHT = 1e-10  # the tightest the reference takes
 SPATIAL_TIGHT = 1e-5
 STEPS = {
-    "generalised alpha": (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4),
+    "generalized alpha": (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4),
     "trapezoidal": (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4),
     "RK44": (4e-4, 2e-4, 1e-4),
     "velocity Verlet": (4e-4, 2e-4, 1e-4, 5e-5),
@@ -193,10 +193,8 @@ def _levels(quick: bool) -> list[Setting]:
 
 
 def _constant(quick: bool) -> list[Setting]:
-    """The engine at constant step, by its solvers and formulations."""
+    """The engine at constant step, by its integrators."""
     curves = [(f"Exudyn, {solver}", {"solver": solver}, steps, 0.25e-3) for solver, steps in STEPS.items()]
-    tree = {"solver": "trapezoidal", "formulation": "prismatic tree"}
-    curves.append(("Exudyn, trapezoidal, kinematic tree", tree, (2e-3, 1e-3), 0.75e-3))
     return [
         Setting("regularised", method, "constant step", "s", step, CONSTANT,
                 {**given, "step": step, "v_reg": V_REG}, cost / step)

@@ -7,21 +7,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from multibody.balance import balanced
-from multibody.integrate import Engine, silence
-from multibody.level import Level, levels
-from multibody.march import Budget, march
-from multibody.refine import WORK
-from multibody.surface import assembled
-from multibody.system import EngineModel
-from reference.problem import Outcome, Scene, checked_phases, ground_acceleration, ground_peak
+import multibody
+from reference.problem import Outcome, Scene, checked_phases, ground_peak
 from reference.solver.error_estimate import peaks_at
 from reference.solver.system import SOLVED
 from reference.surface import checked_demand
 
 Array = NDArray[np.float64]
 
-USUAL = 1  # level of the engine that answers at a tolerance of 1e-3
+USUAL_LEVEL = 1  # of the engine: it usually answers at a tolerance of 1e-3
 
 
 def reference_run(
@@ -53,44 +47,20 @@ def engine_run(
     newton: float | None = None,
 ) -> Array:
     """
-    mu (M, N) of one run of the engine each at its USUAL level, but for what is given; NaN without an answer.
+    mu (M, N) of one run of the engine each at its USUAL_LEVEL, but for the arguments; NaN without an answer.
 
     step: factor on the largest step and on the turn allowed in one. penetration: of the contact under the weight,
     in rho: the inverse of its stiffness. newton: relative tolerance of Newton's iteration.
     """
-    pairs, mu = checked_phases(phases), []
-    with silence():
-        built = assembled(scene, model, regularization)
-        usual = levels(scene, built, 1e-3)[USUAL]
-        softness = usual.penetration if penetration is None else penetration
-        level = replace(
-            usual,
-            step=usual.step * step,
-            turn=usual.turn * step,
-            penetration=softness,
-            newton=usual.newton if newton is None else newton,
-            rounding=built.rounding / softness,
-        )
-        for phase in pairs:
-            mu.append(_peaks(scene, built, level, phase))
-    return np.array(mu) / ground_peak(scene, pairs)[:, None]
-
-
-def _peaks(scene: Scene, model: EngineModel, level: Level, phase: Array) -> Array:
-    """Peaks (N,), m/s^2, of one march; NaN if it does not reach the end."""
-    units = model.units
-    model.ground.set_phase(phase)
-
-    def ground(time: Array) -> Array:
-        return ground_acceleration(scene, phase, time * units.time) / units.acceleration
-
-    model.stiffen(level.penetration)
-    engine = Engine(model, level.newton, level.absolute)
-    begin = model.start(None, ground_acceleration(scene, phase, [0.0])[0], level.penetration)
-    begin = balanced(engine, begin, level)
-    budget = Budget.of(10.0 * WORK, model.coordinates)  # one run in place of all that refine a point
-    found = march(engine, begin, scene.duration / units.time, ground, level, budget)
-    if found.outcome != Outcome.OK:
-        return np.full(len(scene.bodies), np.nan)
-    peaks: Array = found.peaks.value * units.acceleration
-    return peaks
+    pairs = checked_phases(phases)
+    usual = multibody.levels(scene, model, 1e-3, regularization)[USUAL_LEVEL]
+    level = replace(
+        usual,
+        step=usual.step * step,
+        slip_change=usual.slip_change * step,
+        penetration=usual.penetration if penetration is None else penetration,
+        newton=usual.newton if newton is None else newton,
+    )
+    runs = [multibody.single_run(scene, phase, model, regularization, level=level) for phase in pairs]
+    peaks = [run.peak if run.status == Outcome.OK else np.full(len(scene.bodies), np.nan) for run in runs]
+    return np.array(peaks) / ground_peak(scene, pairs)[:, None]

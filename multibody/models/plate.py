@@ -1,8 +1,8 @@
 """
 Where the loading acts: as inertial forces in the plate's frame, or as the motion of a plate that carries the supports.
 
-The moving plate is a rigid body far heavier than all others together, pushed by its own mass times the loading's
-acceleration; its coordinates are the system's last. Whoever reads the engine gets motion relative to it.
+The moving plate is a rigid body far heavier than all others together. Its own mass times the loading's acceleration
+pushes it. Its coordinates are the system's last. `Engine` returns motion relative to it.
 """
 
 from __future__ import annotations
@@ -12,23 +12,23 @@ from typing import Any
 
 import numpy as np
 
-from multibody.engine import items
-from multibody.loading import Ground, symbolic_load
+from multibody.models.engine import items
+from multibody.models.loading import Ground, symbolic_load
 
 LOADINGS = ("inertial", "plate")
-HEAVY = 1e6  # mass of the plate over that of all bodies: what they do to it is a millionth of what it does to them
-LOCKED = 1e15  # moment of inertia, in units of mass * length^2: turns by 1e-11 rad in 20 s under the largest torque
+PLATE_MASS_RATIO = 1e6  # mass of the plate over that of all bodies: they move it by a millionth of what it moves them
+LOCKED_INERTIA = 1e15  # in units of mass * length^2: turns by 1e-11 rad in 20 s under the largest torque
 COORDINATES = 6  # of a rigid body: x, y, z and three rotations
 
 
 @dataclass(frozen=True)
 class Plate:
-    """What carries the supports. body: the engine's. moves: whether it does. node: its node, if it moves."""
+    """The body that carries the supports."""
 
-    body: Any
+    body: Any  # the engine's
     moves: bool
-    node: Any = None
-    expressions: tuple[Any, ...] = ()
+    node: Any = None  # if it moves
+    expressions: tuple[Any, ...] = ()  # of its load, which the engine does not own
 
 
 def plate_for(mbs: Any, loading: str, ground: Ground) -> Plate:
@@ -36,13 +36,15 @@ def plate_for(mbs: Any, loading: str, ground: Ground) -> Plate:
     if loading == "inertial":
         return Plate(mbs.AddObject(items.ObjectGround()), moves=False)
     node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * COORDINATES))
-    body = mbs.AddObject(items.ObjectRigidBody(nodeNumber=node, mass=HEAVY, inertia=[LOCKED] * 3 + [0.0] * 3))
+    body = mbs.AddObject(
+        items.ObjectRigidBody(nodeNumber=node, mass=PLATE_MASS_RATIO, inertia=[LOCKED_INERTIA] * 3 + [0.0] * 3)
+    )
 
     def drive(mbs: Any, t: Any, loadVector: Any) -> list[Any]:
-        return [HEAVY * ground.along(axis, t) for axis in range(3)]
+        return [PLATE_MASS_RATIO * ground.along(axis, t) for axis in range(3)]
 
-    centre = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body))
-    load = mbs.AddLoad(items.LoadForceVector(markerNumber=centre, loadVector=[0.0, 0.0, 0.0]))
+    center = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body))
+    load = mbs.AddLoad(items.LoadForceVector(markerNumber=center, loadVector=[0.0, 0.0, 0.0]))
     return Plate(body, True, node, (symbolic_load(mbs, load, "loadVectorUserFunction", drive),))
 
 

@@ -1,4 +1,4 @@
-"""One run of the engine between two instants at constant step, from a stored state, without a word on the terminal."""
+"""One run of the engine between two instants at constant step, from a stored state, silent on the terminal."""
 
 from __future__ import annotations
 
@@ -10,17 +10,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.engine import exudyn
-from multibody.plate import COORDINATES, HEAVY, carried_along
-from multibody.system import EngineModel, EngineState
+from multibody.models.engine import exudyn
+from multibody.models.plate import COORDINATES, PLATE_MASS_RATIO, carried_along
+from multibody.models.system import EngineModel, EngineState
 
 Array = NDArray[np.float64]
 
-SPECTRAL_RADIUS = 0.8  # of generalised alpha: the contact must not ring, the rest must not be damped
+SPECTRAL_RADIUS = 0.8  # of generalized alpha: the contact must not ring, the rest must not be damped
+MAX_STEP_REDUCTION = 1e4  # of a step that the engine cannot solve: contacts touch, friction turns
+EXPLICIT = {"RK44": "RK44", "velocity Verlet": "VelocityVerlet"}  # integrators, and their names in the engine
+INTEGRATORS = ("generalized alpha", "trapezoidal", *EXPLICIT)
 
-HALVED = 1e4  # a step over the shortest in its place where the engine cannot solve it: contacts touch, friction turns
-
-CONTRACTIVITY = 0.05  # of modified Newton, above which the Jacobian is renewed: fewest iterations (measured)
+MAX_CONTRACTIVITY = 0.05  # of modified Newton, above which the Jacobian is renewed: fewest iterations (measured)
 
 
 @dataclass(frozen=True)
@@ -45,12 +46,12 @@ class Motion:
         """Slip speed of each contact, (T, K)."""
         return self.contact[:, 1::4]
 
-    def upto(self, row: int) -> Motion:
+    def until(self, row: int) -> Motion:
         """The rows up to and including `row`."""
         return Motion(*(getattr(self, column.name)[: row + 1] for column in fields(self)))
 
     @staticmethod
-    def joined(chunks: list[Motion]) -> Motion:
+    def concatenated(chunks: list[Motion]) -> Motion:
         """One motion from chunks, each of which starts with the last row of the one before."""
         return Motion(
             *(
@@ -60,7 +61,7 @@ class Motion:
         )
 
     @staticmethod
-    def none(model: EngineModel) -> Motion:
+    def empty(model: EngineModel) -> Motion:
         """No rows at all, of a model whose contact forces are recorded."""
         size, contacts = model.coordinates, len(model.recorders.contact)
         widths = [(size,), (size,), (size,), (4 * contacts,), (6 * contacts,), (3, 3)]
@@ -81,7 +82,7 @@ def silence() -> Iterator[None]:
         exudyn.config.printToConsole = before
 
 
-def place(model: EngineModel, state: EngineState) -> None:
+def set_initial_state(model: EngineModel, state: EngineState) -> None:
     """Make `state` the one that the engine's next run starts from."""
     coordinates, velocities = state.coordinates, state.velocities
     if model.moving_plate:
@@ -100,25 +101,40 @@ class Engine:
     """
     Runs one model.
 
-    newton: tolerance of a step's equations, relative to their first residual. absolute: smallest residual asked for,
-    in units of force.
+    newton: tolerance of a step's equations, relative to their first residual. residual: smallest residual asked for,
+    in units of force. integrator: one of INTEGRATORS. discontinuous: tolerance of the iteration over contacts that open
+    or turn within a step; that of Newton's iteration without.
     """
 
-    def __init__(self, model: EngineModel, newton: float, absolute: float) -> None:
+    def __init__(
+        self,
+        model: EngineModel,
+        newton: float,
+        residual: float,
+        integrator: str = "generalized alpha",
+        discontinuous: float | None = None,
+    ) -> None:
         self.model = model
-        # over a moving plate the first residual is the heavy plate's: only the absolute tolerance says something
-        self.settings = _settings(newton / HEAVY if model.moving_plate else newton, absolute)
+        # over a moving plate the first residual is the heavy plate's: only the absolute tolerance has an effect
+        self.settings = _settings(newton / PLATE_MASS_RATIO if model.moving_plate else newton, residual)
+        if discontinuous is not None:
+            self.settings.timeIntegration.discontinuous.iterationTolerance = discontinuous
+        self.settings.timeIntegration.generalizedAlpha.useNewmark = integrator == "trapezoidal"
+        self.explicit = EXPLICIT.get(integrator)
+        if self.explicit:
+            kind = getattr(exudyn.DynamicSolverType, self.explicit)
+            self.settings.timeIntegration.solverType = kind
         self.iterations = 0  # of Newton's method in the last run, with those of steps that were tried again
 
     def run(self, state: EngineState, begin: float, step: float, count: int) -> Motion | None:
         """`count` steps from `state` at time `begin`; None if the engine could not solve one of them."""
-        place(self.model, state)
+        set_initial_state(self.model, state)
         self.model.ground.begin(begin)
         self.settings.timeIntegration.startTime = begin
         self.settings.timeIntegration.endTime = begin + count * step
         self.settings.timeIntegration.numberOfSteps = count
-        self.settings.timeIntegration.minimumStepSize = step / HALVED
-        solver = exudyn.MainSolverImplicitSecondOrder()
+        self.settings.timeIntegration.minimumStepSize = step / MAX_STEP_REDUCTION
+        solver = exudyn.MainSolverExplicit() if self.explicit else exudyn.MainSolverImplicitSecondOrder()
         try:
             if not solver.SolveSystem(self.model.mbs, self.settings):
                 return None
@@ -151,16 +167,16 @@ class Engine:
         return Motion(time, coordinates, velocities, accelerations, contact, force, plate)
 
 
-def _settings(newton: float, absolute: float) -> Any:
+def _settings(newton: float, residual: float) -> Any:
     settings = exudyn.SimulationSettings()
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = 0.0  # every step
     integration = settings.timeIntegration
     integration.verboseMode = 0
     integration.newton.relativeTolerance = newton
-    integration.newton.absoluteTolerance = absolute
+    integration.newton.absoluteTolerance = residual
     integration.newton.useModifiedNewton = True
-    integration.newton.modifiedNewtonContractivity = CONTRACTIVITY
+    integration.newton.modifiedNewtonContractivity = MAX_CONTRACTIVITY
     integration.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
     integration.discontinuous.iterationTolerance = newton
     integration.discontinuous.ignoreMaxIterations = False

@@ -1,7 +1,7 @@
 """
 Largest absolute acceleration of each body between recorded instants, with the error of reading it.
 
-The regularised law has a corner where the slip speed passes v_reg: accelerations are continuous there and their slopes
+The regularized law has a corner where the slip speed passes v_reg: accelerations are continuous there and their slopes
 jump. The largest acceleration of a platform that comes to a stop is often that corner, between two samples, so it is
 read from each side by itself, at the instant at which the slip speed passes v_reg. Recorded loading has kinks, too, but
 at samples: nothing is read across them.
@@ -18,9 +18,9 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 NO_KNOTS, NO_ROWS = np.empty(0), np.empty(0, np.intp)
-KEPT = 6  # samples carried over to the next chunk: what the readings from both sides of an instant need
-AFTER = 3  # samples behind a corner, from which it is read
-NEAR = 0.97  # of the peak: samples below it cannot be raised above it by interpolation at a resolved step
+CARRIED_SAMPLES = 6  # samples carried over to the next chunk: what the readings from both sides of an instant need
+SAMPLES_BEHIND_CORNER = 3  # samples behind a corner, from which it is read
+CANDIDATE_FRACTION = 0.97  # of the peak: samples below it cannot be raised above it by interpolation at a resolved step
 
 
 class Peaks:
@@ -52,24 +52,24 @@ class Peaks:
         beyond = slip > self._threshold
         corners = np.flatnonzero((beyond[1:] != beyond[:-1]).any(axis=1))
         # each corner is read once, as soon as there are samples behind it
-        ready = [int(left) for left in corners if left + AFTER < len(time) and time[left] > self._read]
+        ready = [int(left) for left in corners if left + SAMPLES_BEHIND_CORNER < len(time) and time[left] > self._read]
         bends = kinks(time, self._knots, self._near)
         for body in range(size.shape[1]):
             self._scan(body, time, size[:, body], slip, corners, bends, ready)
         if ready:
             self._read = float(time[ready[-1]])
-        self._time, self._size, self._slip = time[-KEPT:], size[-KEPT:], slip[-KEPT:]
+        self._time, self._size, self._slip = time[-CARRIED_SAMPLES:], size[-CARRIED_SAMPLES:], slip[-CARRIED_SAMPLES:]
 
     def _scan(
         self, body: int, time: Array, size: Array, slip: Array, corners: Rows, bends: Rows, ready: list[int]
     ) -> None:
         row = int(size.argmax())
-        if size[row] <= NEAR * self.value[body]:
+        if size[row] <= CANDIDATE_FRACTION * self.value[body]:
             return
-        for stretch in _neighbours(row, len(size), corners, bends):
+        for stretch in _neighbors(row, len(size), corners, bends):
             self._offer(body, *_smooth(time, size, row, *stretch))
         for left in ready:
-            if max(size[left], size[left + 1]) > NEAR * self.value[body]:
+            if max(size[left], size[left + 1]) > CANDIDATE_FRACTION * self.value[body]:
                 self._offer(body, *_corner(time, size, slip, left, self._threshold, corners))
 
     def _offer(self, body: int, value: float, error: float, instant: float) -> None:
@@ -147,7 +147,7 @@ def _corner(
     return 0.5 * (readings[0] + readings[1]), error, instant
 
 
-def _neighbours(row: int, count: int, corners: Rows, bends: Rows) -> Iterator[tuple[int, int, tuple[int, int]]]:
+def _neighbors(row: int, count: int, corners: Rows, bends: Rows) -> Iterator[tuple[int, int, tuple[int, int]]]:
     """First and last row of every smooth stretch that `row` belongs to, and the two rows nearest to it there."""
     first, last = _side(row, count, corners)
     place = int(np.searchsorted(bends, row))

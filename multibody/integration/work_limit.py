@@ -1,14 +1,14 @@
-"""Why a model is refused for a scene before any step is taken, and what would help: told from the scene alone."""
+"""Why a model is refused for a scene before any step is taken, and what would help: from the scene alone."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 
-from multibody.integrate import silence
-from multibody.level import STEPS_PER_PERIOD, levels
-from multibody.refine import GROWTH, PREDICTED, work_needed
-from multibody.surface import assembled
+from multibody.integration.constant_step import silence
+from multibody.integration.level import STEPS_PER_PERIOD, levels_of
+from multibody.integration.refine import FIRST_LEVELS_STEPS, MAX_WORK_GROWTH, work_share
+from multibody.models.assembly import assemble
 from reference.problem import Scene, untilted
 
 
@@ -20,7 +20,7 @@ def refusal(
     full: bool = False,
 ) -> str:
     """
-    Tell whether `amplification` refuses every phase pair of a scene because of its work.
+    Predict whether `amplification` refuses every phase pair of a scene because of its work.
 
     Parameters
     ----------
@@ -37,18 +37,25 @@ def refusal(
     ------
     ValueError
         For wrong arguments, as in `amplification`.
+
+    Examples
+    --------
+    >>> import multibody, reference
+    >>> multibody.refusal(reference.load_scene("fig3-I"))
+    ''
     """
     chosen = "translational" if model == "spatial" and not full and untilted(scene).allowed else model
     with silence():
-        built = assembled(scene, chosen, regularization)
-    largest = levels(scene, built, tolerance)[0].step
+        built = assemble(scene, chosen, regularization)
+    largest = levels_of(scene, built, tolerance)[0].step
     end = scene.duration / built.units.time
-    needed = work_needed(built, end, largest)
+    needed = work_share(built, end, largest)
     if needed <= 1.0:
         return ""
     step = largest * built.units.time
     tried = scene.duration / needed
-    enough = tried * PREDICTED / (1.0 + 2.0 * GROWTH)  # for two levels and the compliance of the second
+    # for two levels and the compliance of the second
+    enough = tried * FIRST_LEVELS_STEPS / (1.0 + 2.0 * MAX_WORK_GROWTH)
     return (
         f"refused before any step: it needs {needed:.2g} times the work that a phase pair may take "
         f"({built.coordinates} coordinates in steps of {step:.2g} s over {scene.duration:g} s; the fastest period is "

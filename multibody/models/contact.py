@@ -1,4 +1,4 @@
-"""What the contact of every model has in common: the friction law's corner, first penetration, a settled restart."""
+"""What the contact of every model has in common: the corner of the friction law, the start, a settled restart."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.system import EngineState
-from multibody.units import Units
+from multibody.models.system import EngineState
+from multibody.models.units import Units
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
 
-DAMPING = 1.0  # ratio of the contact: its own motion dies out within a few of its periods and is not seen
-ROUNDING = 1e-15  # of a position about rho away, in units of rho; over the penetration: of the force, in weights
-ALWAYS_LINEAR = 1e6  # v_reg of the lubricated contact in units of velocity, above any speed: mu = f_c |v| throughout
+DAMPING_RATIO = 1.0  # of the contact: its own motion dies out within a few of its periods and is not seen
+FORCE_ROUNDING = 1e-15  # of a position about rho away, in units of rho; over the penetration: of the force, in weights
+MAX_LINEAR_SPEED = 1e6  # v_reg of the lubricated contact in units of velocity, above any speed: mu = f_c |v| throughout
 
 
 def contact_law(scene: Scene, regularization: float | None, units: Units) -> tuple[float, float]:
     """Friction coefficient of the contact, and the speed in units of velocity under which it is reduced linearly."""
     if scene.lubricated:
-        return scene.friction_coefficient * units.velocity * ALWAYS_LINEAR, ALWAYS_LINEAR
+        return scene.friction_coefficient * units.velocity * MAX_LINEAR_SPEED, MAX_LINEAR_SPEED
     if regularization is None:
         return scene.friction_coefficient, 1.0
     return scene.friction_coefficient, regularization / units.velocity
@@ -44,7 +44,9 @@ def viscous_relaxation(scene: Scene, units: Units) -> float:
     return float(scene.masses[0]) / scene.total_mass / friction if friction > 0.0 else math.inf
 
 
-def pressed_in(offset: Array, speed: Array, ground: Array, penetration: float) -> tuple[Array, Array, float, float]:
+def platform_on_sphere(
+    offset: Array, speed: Array, ground: Array, penetration: float
+) -> tuple[Array, Array, float, float]:
     """
     Platform on the sphere, moving along it, pressed in by as much as a single body would be; in units of the model.
 
@@ -61,7 +63,7 @@ def pressed_in(offset: Array, speed: Array, ground: Array, penetration: float) -
     return place, np.array([*speed, vertical]), -pressed, slip
 
 
-def settled(state: EngineState, gap_rate: float, penetration: float) -> EngineState:
+def settled_contact(state: EngineState, gap_rate: float, penetration: float) -> EngineState:
     """
     The same state with the same contact force, carried by the gap alone and not by a leftover of normal velocity.
 
@@ -71,10 +73,10 @@ def settled(state: EngineState, gap_rate: float, penetration: float) -> EngineSt
     coordinates, velocities, contact = state.coordinates.copy(), state.velocities.copy(), state.contact.copy()
     normal = np.array([0.0, 0.0, 1.0]) - coordinates[:3]
     normal /= np.linalg.norm(normal)
-    damping = 2.0 * DAMPING / np.sqrt(penetration)
-    excess = float(normal @ velocities[:3]) - gap_rate
-    lift = -penetration * damping * excess
-    velocities[:3] -= normal * excess
-    coordinates[:3] -= normal * lift
-    contact[0] -= lift
+    damping = 2.0 * DAMPING_RATIO / np.sqrt(penetration)
+    excess_speed = float(normal @ velocities[:3]) - gap_rate
+    rise = -penetration * damping * excess_speed
+    velocities[:3] -= normal * excess_speed
+    coordinates[:3] -= normal * rise
+    contact[0] -= rise
     return EngineState(coordinates, velocities, contact, state.plate)

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from multibody.engine import exudyn, symbolic_function
-from multibody.recorded import RecordedGround
-from multibody.units import Units
+from multibody.models.engine import exudyn, symbolic_function
+from multibody.models.recorded import RecordedGround
+from multibody.models.units import Units
 from reference.problem import Scene, exponents
 
 

@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.engine import exudyn
-from multibody.units import Units
+from multibody.models.engine import exudyn
+from multibody.models.units import Units
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
 
-AT = 1e-6  # of the shortest interval: this close to a knot is on it
+KNOT_TOLERANCE = 1e-6  # of the shortest interval: this close to a knot is on it
 
 
 class RecordedGround:
@@ -28,7 +28,7 @@ class RecordedGround:
     def __init__(self, mbs: Any, scene: Scene, units: Units) -> None:
         time, samples = scene.record[:, 0] / units.time, scene.record[:, 1:] / units.acceleration
         self.knots: Array = time[time < scene.duration / units.time]
-        self.near = AT * float(np.diff(time).min())
+        self.near = KNOT_TOLERANCE * float(np.diff(time).min())
         self._time, self._samples = time, samples
         self._rates = np.vstack([np.zeros(3), np.diff(samples, axis=0) / np.diff(time)[:, None], np.zeros(3)])
         self._shift, self._interval = 0.0, -1
@@ -67,9 +67,9 @@ class RecordedGround:
             self._rate[axis].SetValue(float(self._rates[interval, axis]))
 
 
-def aligned(knots: Array, near: float, time: float, step: float, count: int) -> tuple[float, int]:
+def align_steps(knots: Array, near: float, time: float, step: float, count: int) -> tuple[float, int]:
     """
-    Step and number of steps from `time` on, neither larger than those given, such that steps end at every knot passed.
+    Step and number of steps from `time` on, at most `step` and `count`, such that steps end at every knot passed.
 
     From a knot on over as many intervals of the same length as `count` reaches; from elsewhere to the next knot.
     """

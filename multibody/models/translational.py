@@ -14,18 +14,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.contact import DAMPING, ROUNDING, contact_law, corner_and_relaxation, pressed_in, settled
-from multibody.engine import exudyn, items
-from multibody.loading import Ground, ground_of, symbolic_load
-from multibody.plate import COORDINATES, LOCKED, Plate, plate_for
-from multibody.recorders import recorded
-from multibody.system import EngineModel, EngineState
-from multibody.units import link_stiffness, units_of
+from multibody.models.contact import (
+    DAMPING_RATIO,
+    FORCE_ROUNDING,
+    contact_law,
+    corner_and_relaxation,
+    platform_on_sphere,
+    settled_contact,
+)
+from multibody.models.engine import exudyn, items
+from multibody.models.loading import Ground, ground_of, symbolic_load
+from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate, plate_for
+from multibody.models.recorders import add_recorders
+from multibody.models.system import EngineModel, EngineState
+from multibody.models.units import link_stiffness, units_of
 from reference.problem import Scene, State
 
 Array = NDArray[np.float64]
 
-HOLLOW = 2.0  # R in units of rho; in translation only R - r matters
+HOLLOW_RADIUS = 2.0  # R in units of rho; in translation only R - r matters
 
 
 def translational(
@@ -49,7 +56,7 @@ def translational(
     mbs = container.AddSystem()
     platform_node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * COORDINATES))
     platform = mbs.AddObject(
-        items.ObjectRigidBody(nodeNumber=platform_node, mass=masses[0], inertia=[LOCKED] * 3 + [0.0] * 3)
+        items.ObjectRigidBody(nodeNumber=platform_node, mass=masses[0], inertia=[LOCKED_INERTIA] * 3 + [0.0] * 3)
     )
     depression = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=platform))
     nodes = [platform_node]
@@ -59,46 +66,33 @@ def translational(
     ground = ground_of(mbs, scene, units)
     plate = plate_for(mbs, loading, ground)
     friction, threshold = contact_law(scene, regularization, units)
-    contact_node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
-    contact = mbs.AddObject(
-        items.ObjectContactSphereSphere(
-            markerNumbers=[
-                mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body, localPosition=[0.0, 0.0, 1.0])),
-                depression,
-            ],
-            nodeNumber=contact_node,
-            spheresRadii=[HOLLOW - 1.0, HOLLOW],
-            isHollowSphere1=True,
-            dynamicFriction=friction,
-            frictionProportionalZone=threshold,
-        )
-    )
+    contact, contact_node = _contact(mbs, plate, depression, friction, threshold)
     expressions = _inertial_loads(mbs, ground, plate, masses, depression, nodes, axes)
-    recorders = recorded(mbs, nodes, [contact_node], [contact] if contact_force else [], plate.node)
+    recorders = add_recorders(mbs, nodes, [contact_node], [contact] if contact_force else [], plate.node)
     mbs.Assemble()
 
     count = COORDINATES + axes * (len(masses) - 1)
     bodies = np.tile(np.arange(3), (len(masses), 1))
     bodies[1:, :axes] = np.arange(COORDINATES, count).reshape(-1, axes)
 
-    def stiffen(penetration: float, gives_way: float = 0.0) -> None:
+    def set_contact(penetration: float, warping_compliance: float = 0.0) -> None:
         # closer by the static penetration, so that the pendulum at rest has length rho whatever the stiffness
-        mbs.SetObjectParameter(contact, "spheresRadii", [HOLLOW - (1.0 - penetration), HOLLOW])
+        mbs.SetObjectParameter(contact, "spheresRadii", [HOLLOW_RADIUS - (1.0 - penetration), HOLLOW_RADIUS])
         mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / penetration)
-        mbs.SetObjectParameter(contact, "contactDamping", 2.0 * DAMPING / np.sqrt(penetration))
+        mbs.SetObjectParameter(contact, "contactDamping", 2.0 * DAMPING_RATIO / np.sqrt(penetration))
 
     def start(initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
         coordinates, velocities = np.zeros(count), np.zeros(count)
         if initial is not None:
             coordinates[bodies[:, :2]] = np.asarray(initial.position, float) / units.length
             velocities[bodies[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
-        coordinates[:3], velocities[:3], gap, slip = pressed_in(
+        coordinates[:3], velocities[:3], gap, slip = platform_on_sphere(
             coordinates[:2], velocities[:2], ground_acceleration / units.acceleration, penetration
         )
         return EngineState(coordinates, velocities, np.array([gap, slip, 0.0, 0.0]))
 
     def settle(state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
-        return settled(state, float(gap_rate[0]), penetration)
+        return settled_contact(state, float(gap_rate[0]), penetration)
 
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     return EngineModel(
@@ -107,17 +101,32 @@ def translational(
         ground=ground,
         recorders=recorders,
         bodies=bodies,
-        stiffen=stiffen,
+        set_contact=set_contact,
         start=start,
         settle=settle,
         rim=1.0,
         corner=corner,
         relaxation=relaxation,
-        rounding=ROUNDING,
+        rounding=FORCE_ROUNDING,
         moving_plate=plate.moves,
         carried=bodies,
-        keep_alive=(container, expressions),
+        references=(container, expressions),
     )
+
+
+def _contact(mbs: Any, plate: Plate, depression: Any, friction: float, threshold: float) -> tuple[Any, Any]:
+    """A sphere on the plate inside the platform's hollow sphere, and its data node; `set_contact` completes it."""
+    node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
+    sphere = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body, localPosition=[0.0, 0.0, 1.0]))
+    contact = items.ObjectContactSphereSphere(
+        markerNumbers=[sphere, depression],
+        nodeNumber=node,
+        spheresRadii=[HOLLOW_RADIUS - 1.0, HOLLOW_RADIUS],
+        isHollowSphere1=True,
+        dynamicFriction=friction,
+        frictionProportionalZone=threshold,
+    )
+    return mbs.AddObject(contact), node
 
 
 def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array) -> Any:

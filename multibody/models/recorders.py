@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from multibody.engine import exudyn, items
-from multibody.system import Recorders
+from multibody.models.engine import exudyn, items
+from multibody.models.system import Recorders
 
 
-def recorded(mbs: Any, nodes: list[Any], contact_nodes: list[Any], contacts: list[Any], plate: Any = None) -> Recorders:
+def add_recorders(
+    mbs: Any, nodes: list[Any], contact_nodes: list[Any], contacts: list[Any], plate: Any = None
+) -> Recorders:
     """Motion of `nodes`, gap and slip at `contact_nodes`, force and normal of `contacts`, motion of node `plate`."""
     kind = exudyn.OutputVariableType
 

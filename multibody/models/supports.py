@@ -19,36 +19,30 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.engine import items
-from multibody.plate import COORDINATES, LOCKED, Plate
+from multibody.models.engine import items
+from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate
 
 Array = NDArray[np.float64]
 
 DETERMINATE = 3  # supports whose forces follow from statics
-STIFFER = 10.0  # what holds the spheres against heave and tilt, over the contacts
-GIVES_WAY = 2e-5  # of rho under the weight, against warping, where no level of accuracy says more
-MASS = 1e-2  # of all spheres together: much less than that of the bodies
+SPHERE_STIFFNESS_RATIO = 10.0  # of the springs against heave and tilt over the contacts
+MIN_WARPING_COMPLIANCE = 2e-5  # of rho under the weight, against warping, where no level of accuracy says more
+SPHERES_MASS = 1e-2  # of all spheres together: much less than that of the bodies
 UPRIGHT = [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]  # turns the axis of a 1-D mass, x, upwards
 
 
 @dataclass(frozen=True)
 class Supports:
-    """
-    Spheres under the platform.
+    """Spheres under the platform."""
 
-    markers: of the spheres' centers. nodes: of the spheres' own coordinates, empty where the spheres are fixed.
-    coordinates: how many these are. vertical: (K,) or (0,), index of each sphere's vertical one. carried: (K, 3) or
-    (0, 3), index of the coordinates that a moving plate carries along. warping: (K, K), see `warping`. hold: sets what
-    holds the spheres, for the penetration of the contacts and the share of rho by which warping gives way.
-    """
-
-    markers: list[Any]
-    nodes: list[Any]
-    coordinates: int
-    vertical: NDArray[np.int_]
-    carried: NDArray[np.int_]
-    warping: Array
-    hold: Callable[[float, float], None]
+    markers: list[Any]  # of the spheres' centers
+    nodes: list[Any]  # of the spheres' own coordinates; empty where the spheres are fixed
+    coordinates: int  # how many these are
+    vertical: NDArray[np.int_]  # (K,) or (0,), index of each sphere's vertical coordinate
+    carried: NDArray[np.int_]  # (K, 3) or (0, 3), index of the coordinates that a moving plate carries along
+    warping: Array  # (K, K), see `warping`
+    # sets the springs under the spheres, for the contacts' penetration and the share of rho by which warping gives way
+    set_stiffness: Callable[[float, float], None]
 
 
 def warping(ring: Array) -> Array:
@@ -85,14 +79,14 @@ def sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) -> S
     count = len(ring)
     warped = warping(ring)
     if plate.moves:
-        inertia = [LOCKED] * 3 + [0.0] * 3
-        spheres = [items.ObjectRigidBody(nodeNumber=node, mass=MASS / count, inertia=inertia) for node in nodes]
+        inertia = [LOCKED_INERTIA] * 3 + [0.0] * 3
+        spheres = [items.ObjectRigidBody(nodeNumber=node, mass=SPHERES_MASS / count, inertia=inertia) for node in nodes]
         springs = _springs_on_plate(mbs, plate, nodes, warped)
         each, upright = COORDINATES, 2
     else:
         spheres = [
             items.ObjectMass1D(
-                mass=MASS / count, nodeNumber=node, referencePosition=[*place, 1.0], referenceRotation=UPRIGHT
+                mass=SPHERES_MASS / count, nodeNumber=node, referencePosition=[*place, 1.0], referenceRotation=UPRIGHT
             )
             for node, place in zip(nodes, ring)
         ]
@@ -102,12 +96,12 @@ def sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) -> S
     first = each * np.arange(count)
     carried = first[:, None] + np.arange(3) if plate.moves else np.empty((0, 3), np.int_)
 
-    def hold(penetration: float, share: float) -> None:
-        stiff, soft = STIFFER / (count * penetration), 1.0 / (count * share)
+    def set_stiffness(penetration: float, share: float) -> None:
+        stiff, soft = SPHERE_STIFFNESS_RATIO / (count * penetration), 1.0 / (count * share)
         # damped critically, as the platform's share of the mass on the same springs
         springs(stiff, soft, 2.0 * np.sqrt(stiff / count), 2.0 * np.sqrt(soft / count))
 
-    return Supports(markers, nodes, each * count, first + upright, carried, warped, hold)
+    return Supports(markers, nodes, each * count, first + upright, carried, warped, set_stiffness)
 
 
 Springs = Callable[[float, float, float, float], None]  # stiffness against heave and tilt, warping; damping likewise

@@ -1,4 +1,4 @@
-"""The march: smaller steps at stops and nowhere else, and restarts that the contact does not notice."""
+"""The run_adaptively: smaller steps at stops and nowhere else, and restarts that the contact does not notice."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import numpy as np
 from scenes_at_hand import changed, one_body
 
 import multibody
-from multibody.integrate import Engine, silence
-from multibody.surface import assembled
+from multibody.integration.constant_step import Engine, silence
+from multibody.models.assembly import assemble
 from reference.problem import State, load_scene
 
 
@@ -25,8 +25,8 @@ def test_steps_are_small_at_stops_and_large_elsewhere() -> None:
 
 def test_a_settled_restart_with_a_smaller_step_does_not_ring() -> None:
     scene, penetration, coarse = one_body(duration=1.0), 1e-6, 0.0123
-    model = assembled(scene, "translational", 1e-3)
-    model.stiffen(penetration)
+    model = assemble(scene, "translational", 1e-3)
+    model.set_contact(penetration)
     state = model.start(State(np.array([[0.05, 0.0]]), np.array([[0.3, 0.4]])), np.zeros(3), penetration)
     engine = Engine(model, 1e-8, 1e-9)
     jitter = []

@@ -1,0 +1,266 @@
+"""
+Adaptive integration: one run of the engine in chunks, each with the step that the motion needs there.
+
+The engine's own control of the step answers to failed Newton iterations, not to wrong results. What a constant step
+gets wrong here is the stop. While the slip speed is small, the slip direction turns and the regularized friction
+relaxes within milliseconds. So the velocity of the platform may change in one step by no more than a fraction of the
+slip speed (of v_reg, where the slip is slower than that). A chunk is accepted up to the first step that breaks this.
+The run starts again from the stored state there with a smaller step. The step grows again once the motion allows it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.integration.constant_step import Engine, Motion
+from multibody.integration.level import STEP_RATIO, Level
+from multibody.integration.peak import CANDIDATE_FRACTION, Peaks, kinks
+from multibody.models.recorded import align_steps
+from multibody.models.system import EngineModel, EngineState
+from reference.problem import Outcome
+
+Array = NDArray[np.float64]
+
+FIRST_DIVISIONS = 2  # of the largest step in the first chunk: the contact settles
+MAX_CHUNK_STEPS, DIVIDED_CHUNK_STEPS = 256, 32  # steps in a chunk at the largest step, at smaller ones
+FREE_ITERATIONS = 2  # of Newton's method in a step that costs what `Budget` says
+GAP_RATE_STEPS = 4  # over which the rate of a gap is taken
+KINK_STEP_RATIO = 4.0  # first step behind a kink of the loading over slip_change times the relaxation of friction
+RECENT_ROWS = 8  # at the end of a chunk: they decide whether the step may grow
+WARPING_RELAXATION = 20.0  # time until warping has relaxed, in square roots of the warping compliance
+
+
+@dataclass
+class Budget:
+    """
+    Work left to all runs of one point: nominal microseconds, so that the answer does not depend on the machine.
+    """
+
+    left: float  # nominal microseconds
+    step: float  # cost of a step
+    run: float  # cost of a run before its first step
+
+    @staticmethod
+    def of(work: float, coordinates: int) -> Budget:
+        """`work` for a model with so many coordinates, whose matrices are dense; coefficients measured."""
+        return Budget(work, 8.0 + 0.6 * coordinates + 0.02 * coordinates**2, 2e-3 * coordinates**3)
+
+    def cost(self, steps: float, runs: float) -> float:
+        """Of so many steps in so many runs."""
+        return self.step * steps + self.run * runs
+
+    def allows(self, span: float, level: Level) -> bool:
+        """Whether what is left is enough for `span` at the largest step of a level."""
+        return self.cost(span / level.step, span / level.step / MAX_CHUNK_STEPS) <= self.left
+
+
+@dataclass
+class EngineRun:
+    """The result of one run from the start of the loading to its end, or to where the run terminates."""
+
+    peaks: Peaks  # of each body
+    outcome: Outcome = Outcome.OK
+    instant: float = math.nan  # of a termination, in units of time
+    steps: int = 0
+    runs: int = 0  # of the engine
+    warping_load: float = 0.0  # largest load that warping of the supports takes, in shares of the weight
+    last_open: float = -math.inf  # the latest instant at which a support carried no load, in units of time
+    max_displacement: float = 0.0  # horizontal, of the platform, in units of length
+    chunks: list[Motion] = field(default_factory=list)  # the motion, if it is kept
+
+    def terminated(self, outcome: Outcome, instant: float) -> EngineRun:
+        """This run, which ends with `outcome` at `instant`."""
+        self.outcome, self.instant = outcome, instant
+        return self
+
+
+def run_adaptively(
+    engine: Engine,
+    start: EngineState,
+    end: float,
+    ground: Callable[[Array], Array],
+    level: Level,
+    budget: Budget,
+    *,
+    keep: bool = False,
+) -> EngineRun:
+    """Run from `start` at time 0 to `end`; ground: plate's acceleration (T, 3) at times (T,), in units of the model."""
+    model = engine.model
+    result = EngineRun(Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near))
+    if not budget.allows(end, level):
+        return result.terminated(Outcome.STEP_LIMIT, 0.0)
+    state, time, divisions, next_count = start, 0.0, FIRST_DIVISIONS, MAX_CHUNK_STEPS
+    while time < end * (1.0 - 1e-12):
+        divisions = max(divisions, level.min_divisions(time))
+        step = level.step / STEP_RATIO**divisions
+        count = next_count if divisions == 0 else DIVIDED_CHUNK_STEPS
+        count = min(count, math.ceil((end - time) / step * (1.0 - 1e-12)))
+        step, count = align_steps(model.ground.knots, model.ground.near, time, min(step, (end - time) / count), count)
+        motion = engine.run(state, time, step, count)
+        result.runs += 1
+        result.steps += count if motion is None else len(motion.time) - 1
+        budget.left -= budget.cost(max(count, engine.iterations / FREE_ITERATIONS), 1)
+        if budget.left < 0.0:
+            return result.terminated(Outcome.STEP_LIMIT, time)
+        if motion is None or not np.isfinite(motion.accelerations).all():
+            if divisions == level.max_divisions:
+                return result.terminated(Outcome.SOLVER_FAILED, time)
+            divisions += 1
+            continue
+        absolute = absolute_accelerations(model, motion, ground)
+        step_ratio = _step_ratio(motion, engine, absolute, float(result.peaks.value[0]), step / level.slip_change)
+        last = len(motion.time) - 1
+        failing = np.flatnonzero(step_ratio > 1.0)
+        rejected = divisions < level.max_divisions and len(failing) > 0
+        if rejected:
+            last = max(int(failing[0]) - 1, 0)
+        if last > 0:
+            accepted = motion.until(last)
+            if not _record(result, accepted, absolute[: last + 1], model, level, keep):
+                return result
+            state, time = accepted.state(last), float(accepted.time[last])
+            next_count = _steps_ahead(accepted, engine, level)
+            if rejected:
+                state = model.settle(state, _gap_rate(accepted), level.penetration)
+        if rejected:
+            divisions += 1 if step_ratio[failing[0]] < STEP_RATIO else 2
+            divisions = min(divisions, level.max_divisions)
+        elif divisions > 0 and step_ratio[-RECENT_ROWS:].max() * STEP_RATIO < 1.0:
+            divisions -= 1
+    return result
+
+
+def absolute_accelerations(model: EngineModel, motion: Motion, ground: Callable[[Array], Array]) -> Array:
+    """Accelerations of the bodies with that of the plate, (T, N, 3), in units of the model."""
+    plate = motion.plate[:, 2] if model.moving_plate else ground(motion.time)
+    absolute: Array = motion.accelerations[:, model.bodies] + plate[:, None, :]
+    return absolute
+
+
+def _record(result: EngineRun, motion: Motion, absolute: Array, model: EngineModel, level: Level, keep: bool) -> bool:
+    """Add an accepted chunk to the result, up to where the model's validity ends; whether it goes on."""
+    outcome, row = termination(motion, model)
+    if keep:
+        result.chunks.append(motion.until(row))
+    if outcome != Outcome.OK:
+        result.terminated(outcome, float(motion.time[row]))
+        return False
+    _record_warping(result, motion, model, level)
+    result.max_displacement = max(result.max_displacement, _max_displacement(motion, model.bodies[0, :2]))
+    result.peaks.add(motion.time, absolute, motion.slip)
+    return True
+
+
+def _max_displacement(motion: Motion, axes: NDArray[np.int_]) -> float:
+    """Largest displacement along two coordinates: where its rate changes sign, that is linear in between."""
+    place = motion.coordinates[:, axes]
+    square, rate = (place**2).sum(axis=1), (place * motion.velocities[:, axes]).sum(axis=1)
+    before, behind = rate[:-1], rate[1:]
+    turns = (before > 0.0) & (behind < 0.0)
+    summits = square[:-1] + np.divide(before**2, before - behind, where=turns, out=np.zeros_like(before)) * np.diff(
+        motion.time
+    )
+    return float(np.sqrt(max(square.max(), summits.max(initial=0.0, where=turns))))
+
+
+def _step_ratio(motion: Motion, engine: Engine, absolute: Array, peak: float, per_change: float) -> Array:
+    """Each step over what is allowed there, (T,). per_change: step over the allowed change of the slip velocity."""
+    return np.maximum(
+        _slip_change(motion, engine, per_change), _behind_kinks(motion, absolute[:, 0], engine, peak, per_change)
+    )
+
+
+def _slip_change(motion: Motion, engine: Engine, per_change: float) -> Array:
+    """Change of the slip velocity in one step over what is allowed, (T,)."""
+    corner = engine.model.corner
+    if not np.isfinite(corner):
+        return np.zeros(len(motion.time))
+    acceleration = motion.accelerations[:, engine.model.bodies[0]]
+    size = np.linalg.norm(acceleration, axis=-1)
+    # an acceleration that changes within a step counts twice: it says more about the steps that follow
+    size[1:] = np.maximum(size[1:], 2.0 * np.linalg.norm(np.diff(acceleration, axis=0), axis=-1))
+    step_ratio: Array = per_change * size / np.maximum(motion.slip.min(axis=1), corner)
+    return step_ratio
+
+
+def _behind_kinks(motion: Motion, platform: Array, engine: Engine, peak: float, per_change: float) -> Array:
+    """
+    First step behind a kink of the loading over what is allowed, (T,), where the peak may be: zero elsewhere.
+
+    While the platform creeps, its acceleration follows the ground's with the relaxation of regularized friction. Behind
+    a kink its slope changes, which longer steps would take for a swing.
+    """
+    step_ratio, model = np.zeros(len(motion.time)), engine.model
+    rows = kinks(motion.time, model.ground.knots, model.ground.near)
+    if len(rows) and np.isfinite(model.corner):
+        size = np.linalg.norm(platform, axis=-1)
+        rows = rows[
+            (size[rows] > CANDIDATE_FRACTION * max(peak, float(size.max())))
+            & (motion.slip[rows].min(axis=1) < model.corner)
+        ]
+        step_ratio[np.minimum(rows + 1, len(step_ratio) - 1)] = per_change / (KINK_STEP_RATIO * model.relaxation)
+    return step_ratio
+
+
+def _record_warping(result: EngineRun, motion: Motion, model: EngineModel, level: Level) -> None:
+    """
+    Record the largest load that warping takes while all contacts are closed: elastic supports would take none.
+
+    While a support is open the others do warp the ring, and for some time after it has closed. That load is no error.
+    """
+    if model.warping_displacement is None:
+        return
+    is_open = (motion.gap >= 0.0).any(axis=1)
+    last_open = np.maximum.accumulate(np.where(is_open, motion.time, result.last_open))
+    settled = motion.time - last_open > WARPING_RELAXATION * math.sqrt(level.warping_compliance)
+    displacement = model.warping_displacement(motion.coordinates)[settled]
+    result.warping_load = max(result.warping_load, float(displacement.max(initial=0.0)) / level.warping_compliance)
+    result.last_open = float(last_open[-1])
+
+
+def _gap_rate(motion: Motion) -> Array:
+    """Rate of each gap at the end of a chunk, (K,), over an even number of steps: the contact may alternate."""
+    rows = min(GAP_RATE_STEPS, (len(motion.time) - 1) // 2 * 2)
+    if rows == 0:
+        return np.zeros(motion.gap.shape[1])
+    rate: Array = (motion.gap[-1] - motion.gap[-1 - rows]) / (motion.time[-1] - motion.time[-1 - rows])
+    return rate
+
+
+def _steps_ahead(motion: Motion, engine: Engine, level: Level) -> int:
+    """How many of the largest steps to try: up to where the slip speed, going on as now, asks for smaller ones."""
+    corner = engine.model.corner
+    if len(motion.time) < 2 or not np.isfinite(corner):
+        return MAX_CHUNK_STEPS
+    slip = motion.slip[-2:].min(axis=1)
+    rate = (slip[1] - slip[0]) / (motion.time[-1] - motion.time[-2])
+    target = corner
+    if slip[1] > corner:
+        size = float(np.linalg.norm(motion.accelerations[-1, engine.model.bodies[0]]))
+        target = max(corner, size * level.step / level.slip_change)
+    if (target - slip[1]) * rate <= 0.0:
+        return MAX_CHUNK_STEPS
+    return int(np.clip((target - slip[1]) / rate / level.step, DIVIDED_CHUNK_STEPS, MAX_CHUNK_STEPS))
+
+
+def termination(motion: Motion, model: EngineModel) -> tuple[Outcome, int]:
+    """The first event that ends the model's validity and its row; OK and the last row if there is none."""
+    # by height: the horizontal offset only touches rho at the rim and falls again beyond
+    rise = motion.coordinates[:, model.bodies[0, 2]]
+    count = len(motion.time)
+    rim = _first(rise >= model.rim)
+    contact_lost = count if model.allows_liftoff else _first((motion.gap >= 0.0).all(axis=1))
+    if min(rim, contact_lost) == count:
+        return Outcome.OK, count - 1
+    return (Outcome.RIM_REACHED, rim) if rim <= contact_lost else (Outcome.CONTACT_LOST, contact_lost)
+
+
+def _first(holds: Any) -> int:
+    """The first row of (T,) in which something holds; T if there is none."""
+    return int(next(iter(np.flatnonzero(holds)), len(holds)))

@@ -1,0 +1,68 @@
+"""
+Error of a run's peaks, from the same run at coarser levels.
+
+Peaks in smooth motion converge by a factor of four from level to level. Those at stops converge by two to four. Where
+the contact is slower than friction relaxes (see `level`) a level removes at most 1 / (2 + x) of the error, x being that
+of the coarser level. A difference that is smaller than convergence by four explains is accidental: errors cancel. It
+does not count.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.integration.adaptive import EngineRun
+from multibody.integration.level import Level
+from multibody.integration.peak import Peaks
+from multibody.models.system import EngineModel
+from reference.problem import Outcome
+
+Array = NDArray[np.float64]
+
+SAFETY_TWO_LEVELS, SAFETY_THREE_LEVELS = 1.5, 1.25  # on the error that so many levels, or more, show (Roache)
+MIN_RATE, MAX_RATE = 2.0, 4.0  # factor by which a level reduces the error: at stops, in smooth motion
+MAX_CREDIBLE_RATE = 5.0  # a larger factor is accidental
+ERROR_PER_WARPING_LOAD = 0.05  # relative change of a peak over the largest warping load (measured: up to 0.02)
+MIN_RELATIVE_ERROR = 1e-6  # of a peak: smaller errors are not measured
+SMALLEST_CHANGE = 1e-290  # keeps a rate finite
+
+
+def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> Array:
+    """Error (N,) of the last of `peaks`, two or three of the last of consecutive levels, in units of the model."""
+    last, before = peaks[-1].value, peaks[-2].value
+    change = np.abs(last - before)
+    safety, rate = SAFETY_TWO_LEVELS, np.full_like(change, MIN_RATE)
+    if len(peaks) > 2:
+        safety, earlier = SAFETY_THREE_LEVELS, np.abs(before - peaks[-3].value)
+        rate = earlier / np.maximum(change, SMALLEST_CHANGE)
+        change = np.where(rate > MAX_CREDIBLE_RATE, earlier / MIN_RATE, change)
+        rate = np.where(rate > MAX_CREDIBLE_RATE, MIN_RATE, np.clip(rate, MIN_RATE, MAX_RATE))
+    change = safety * change * (1.0 + lag(levels[-2], model)) / (rate - 1.0)
+    level_error: Array = np.maximum(change, levels[-1].error_floor * last)
+    return level_error + peaks[-1].sampling + levels[-1].rounding + MIN_RELATIVE_ERROR * last
+
+
+def from_sharing(run: EngineRun) -> Array:
+    """Error (N,) of a run whose supports do not quite share the load as elastic ones do."""
+    error: Array = ERROR_PER_WARPING_LOAD * run.warping_load * run.peaks.value
+    return error
+
+
+def from_compliance(stiff: Peaks, soft: EngineRun, level: Level, model: EngineModel) -> Array:
+    """
+    Error (N,) that the contact's compliance leaves in `stiff`, from a run with the softer contact of `level`.
+
+    Never less than its share of rho: the geometry of the contact is not known better.
+    """
+    if soft.outcome != Outcome.OK:
+        return np.full_like(stiff.value, np.inf)
+    change: Array = SAFETY_TWO_LEVELS * np.abs(stiff.value - soft.peaks.value) * (1.0 + lag(level, model))
+    return change + level.penetration * stiff.value
+
+
+def lag(level: Level, model: EngineModel) -> float:
+    """How slow the contact is beside the relaxation of friction, x."""
+    return math.sqrt(level.penetration) / model.relaxation

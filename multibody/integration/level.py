@@ -1,0 +1,184 @@
+"""
+Levels of accuracy: from one level to the next everything that the answer depends on becomes more accurate at once.
+
+The step and the change of the slip velocity in one step fall by two. The compliance of the contact and the tolerance
+of Newton's iteration fall by four. The contact follows a change of the force that it must carry within
+sqrt(penetration) units of time. At a stop that force changes within the time in which regularized friction relaxes,
+share * v_reg / mu. A slower contact would give the friction limit of a moment ago. Then its error at the corner of the
+law is in proportion to x / (1 + x), x = sqrt(penetration) / relaxation: the answer of a first-order lag to an
+exponential.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from multibody.integration.constant_step import silence
+from multibody.models.assembly import assemble
+from multibody.models.contact import viscous_relaxation
+from multibody.models.supports import MIN_WARPING_COMPLIANCE
+from multibody.models.system import EngineModel
+from multibody.models.units import link_stiffness
+from reference.problem import Scene, exponents
+from reference.problem.ranges import TOLERANCE, checked_number
+
+MAX_LEVELS = 8
+STEPS_PER_PERIOD = 150  # of the fastest motion that matters, at level 0
+STEPS_PER_DECAY = 24  # of the time in which a harmonic falls by e, at level 0, while it lasts
+DECAY_TIMES = 28.0  # after which a harmonic has fallen by 1e12
+MIN_RELATIVE_ERROR = 6e-4  # of a peak, at level 0: closer agreement of two levels is treated as accidental
+MAX_SLIP_CHANGE = 0.14  # of the slip velocity in one step, as its fraction, at level 0
+MAX_PENETRATION = 1e-6  # of rho, at level 0
+MAX_CONTACT_LAG = 0.3  # x at level 0 where rounding allows: from there on a level halves the contact's error (measured)
+NEWTON_TOLERANCE = 1e-5  # relative, of the forces, at level 0
+MAX_ROUNDING_SHARE = 0.25  # of the tolerance, that rounding of the forces may take at a peak of MIN_PEAK
+MIN_PEAK = 0.2  # of g
+MAX_WARPING_COMPLIANCE = 4e-4  # of rho under the weight, as of real bearings
+COMPLIANCE_RATIO = 4.0  # of the penetrations of two successive levels
+STEP_RATIO = 4  # between neighboring step sizes
+MIN_DIVISIONS = 7  # least number of step sizes below the largest step
+MIN_STEP_AT_STOP = 0.05  # smallest step over the step that is allowed at a stop
+
+
+@dataclass(frozen=True)
+class Level:
+    """
+    One level of accuracy, in the units of the engine's model: total mass, rho and sqrt(rho / g).
+
+    A level with another step or contact is made by `dataclasses.replace`.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import multibody, reference
+    >>> level = multibody.levels(reference.load_scene("fig3-I"))[1]
+    >>> coarse = replace(level, step=4.0 * level.step)
+    """
+
+    step: float  # the largest, in units of time
+    slip_change: float  # allowed change of the slip velocity in one step, as its fraction
+    penetration: float  # of the contact under the weight, of rho: the inverse of its stiffness
+    newton: float  # relative tolerance of the forces in Newton's iteration
+    rounding_moment: float  # rounding of a contact force times the penetration, in weights times rho
+    max_divisions: int  # how often the largest step may be divided by `STEP_RATIO`
+    error_floor: float  # relative error that the level typically has: closer agreement is treated as accidental
+    warping_compliance: float  # of supports against warping under the weight, of rho
+    # for everything that dies faster than the largest step resolves: the instant until which it lasts, and its step
+    decays: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def rounding(self) -> float:
+        """Rounding of a contact force, in weights."""
+        return self.rounding_moment / self.penetration
+
+    @property
+    def residual(self) -> float:
+        """Smallest residual that Newton's iteration is asked for, in weights."""
+        return max(1e-3 * self.newton, self.rounding)
+
+    def min_divisions(self, time: float) -> int:
+        """How often the largest step must be divided at `time` for the decay of the loading."""
+        allowed = min((step for until, step in self.decays if time < until), default=self.step)
+        return min(math.ceil(math.log(self.step / allowed, STEP_RATIO) - 1e-9), self.max_divisions)
+
+
+def levels(
+    scene: Scene, model: str = "translational", tolerance: float = 1e-3, regularization: float | None = 1e-3
+) -> list[Level]:
+    """
+    List the levels of accuracy that `amplification` goes through for a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    model : {"translational", "spatial"}
+    tolerance : float
+        Relative error of mu that is asked for. A looser one permits a softer contact at the first levels.
+    regularization : float or None
+        v_reg, m/s, as in `amplification`.
+
+    Returns
+    -------
+    list of Level
+        The coarsest first. The answer at a tolerance of 1e-3 usually is that of the second.
+
+    Raises
+    ------
+    ValueError
+        For wrong arguments, as in `amplification`.
+
+    Examples
+    --------
+    >>> import multibody, reference
+    >>> len(multibody.levels(reference.load_scene("fig3-I")))
+    8
+    """
+    tolerance = checked_number("tolerance", tolerance, TOLERANCE)
+    with silence():
+        return levels_of(scene, assemble(scene, model, regularization), tolerance)
+
+
+def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
+    """All levels for a relative error of `tolerance`; the penetration stays where rounding would take over."""
+    step = largest_step(scene, model)
+    stiffest = min(model.rounding / (MAX_ROUNDING_SHARE * MIN_PEAK * tolerance), MAX_PENETRATION / COMPLIANCE_RATIO)
+    softest = float(np.clip(min(MAX_CONTACT_LAG * model.relaxation, 1.0) ** 2, stiffest, MAX_PENETRATION))
+    stiffenings = math.floor(math.log(softest / stiffest, COMPLIANCE_RATIO) + 1e-9)
+    penetrations = [softest / COMPLIANCE_RATIO ** min(level, stiffenings) for level in range(MAX_LEVELS)]
+    brief = brief_motions(scene, model, step)
+    smallest = min([MIN_STEP_AT_STOP * MAX_SLIP_CHANGE * model.relaxation, *(needed for _, needed in brief)])
+    max_divisions = MIN_DIVISIONS
+    if smallest < step:
+        max_divisions = max(MIN_DIVISIONS, math.ceil(math.log(step / smallest, STEP_RATIO)))
+    return [
+        Level(
+            step=step / 2.0**level,
+            slip_change=MAX_SLIP_CHANGE / 2.0**level,
+            penetration=penetration,
+            newton=NEWTON_TOLERANCE / 4.0**level,
+            rounding_moment=model.rounding,
+            max_divisions=max_divisions,
+            error_floor=MIN_RELATIVE_ERROR / 4.0**level,
+            warping_compliance=MIN_WARPING_COMPLIANCE,
+            decays=tuple((until, needed / 2.0**level) for until, needed in brief),
+        )
+        for level, penetration in enumerate(penetrations)
+    ]
+
+
+def largest_step(scene: Scene, model: EngineModel) -> float:
+    """
+    Step of level 0 in units of the model, from the shortest period of the loading, the pendulum and the chain.
+
+    The chain's periods count however short they are: the loading begins at once and sets every mode swinging, and no
+    mode is damped.
+    """
+    periods = [2.0 * math.pi]
+    if not scene.recorded:  # a record is linear within every step
+        periods += [2.0 * math.pi / (pace * model.units.time) for pace in exponents(scene).imag]
+    masses = scene.masses / model.units.mass
+    fastest = math.inf
+    for axis in range(2):
+        stiffness = np.zeros((len(masses), len(masses)))
+        stiffness[0, 0] = 1.0  # the pendulum carries all bodies
+        for link, k in enumerate(link_stiffness(scene, model.units)[:, axis]):
+            stiffness[link : link + 2, link : link + 2] += k * np.array([[1.0, -1.0], [-1.0, 1.0]])
+        scaled = stiffness / np.sqrt(np.outer(masses, masses))
+        fastest = min(fastest, 2.0 * math.pi / math.sqrt(float(np.linalg.eigvalsh(scaled)[-1])))
+    return min(fastest, *periods) / STEPS_PER_PERIOD
+
+
+def brief_motions(scene: Scene, model: EngineModel, step: float) -> list[tuple[float, float]]:
+    """
+    Until when the harmonics last that `step` does not resolve, and the step that they need, at level 0.
+
+    The start of a lubricated platform is such a motion, too. From rest it takes on the speed that balances the loading
+    within its relaxation time. Over much longer steps the integrator's acceleration would overshoot by as much again.
+    """
+    rates: list[float] = [] if scene.recorded else list(-exponents(scene).real * model.units.time)
+    rates.append(1.0 / viscous_relaxation(scene, model.units))
+    times = [1.0 / rate for rate in rates if rate > 0.0]
+    return [(DECAY_TIMES * time, time / STEPS_PER_DECAY) for time in times if time / STEPS_PER_DECAY < step]

@@ -1,0 +1,74 @@
+"""One run of an assembled model for one phase pair: at a level of accuracy, or at a constant step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.integration.adaptive import Budget, EngineRun, absolute_accelerations, run_adaptively, termination
+from multibody.integration.balance import balanced_start
+from multibody.integration.constant_step import Engine
+from multibody.integration.level import Level
+from multibody.integration.peak import Peaks
+from multibody.models.system import EngineModel, EngineState
+from reference.problem import Outcome, Scene, State, ground_acceleration
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PhasePair:
+    """One phase pair of a scene on an assembled model."""
+
+    scene: Scene
+    model: EngineModel
+    phase: Array  # (2,), rad
+    initial: State | None = None  # at rest without
+
+    @property
+    def end(self) -> float:
+        """Duration, in units of time."""
+        return self.scene.duration / self.model.units.time
+
+    def ground(self, time: Array) -> Array:
+        """The plate's acceleration (T, 3) at times (T,), in units of the model."""
+        units = self.model.units
+        return ground_acceleration(self.scene, self.phase, time * units.time) / units.acceleration
+
+    def at_level(self, level: Level, budget: Budget, *, keep: bool = False, residual: float | None = None) -> EngineRun:
+        """Run with the steps that `level` allows. residual: of Newton's iteration, if not that of the level."""
+        engine = Engine(self.model, level.newton, level.residual if residual is None else residual)
+        self.model.set_contact(level.penetration, level.warping_compliance)
+        start = self._start(engine, level.penetration)
+        return run_adaptively(engine, start, self.end, self.ground, level, budget, keep=keep)
+
+    def at_constant_step(
+        self,
+        count: int,
+        penetration: float,
+        newton: float,
+        residual: float,
+        integrator: str,
+        discontinuous: float | None,
+    ) -> EngineRun:
+        """Run in `count` equal steps, without control of their error; the motion is kept."""
+        model, engine = self.model, Engine(self.model, newton, residual, integrator, discontinuous)
+        model.set_contact(penetration)
+        start = self._start(engine, penetration)
+        motion = engine.run(start, 0.0, self.end / count, count)
+        result = EngineRun(Peaks(len(model.bodies), model.corner), steps=count, runs=1)
+        if motion is None or not np.isfinite(motion.accelerations).all():
+            return result.terminated(Outcome.SOLVER_FAILED, 0.0)
+        outcome, row = termination(motion, model)
+        motion = motion.until(row)
+        result.chunks.append(motion)
+        result.peaks.add(motion.time, absolute_accelerations(model, motion, self.ground), motion.slip)
+        return result if outcome == Outcome.OK else result.terminated(outcome, float(motion.time[-1]))
+
+    def _start(self, engine: Engine, penetration: float) -> EngineState:
+        """The state at time zero, in balance where the motion starts at rest."""
+        self.model.ground.set_phase(self.phase)
+        start = self.model.start(self.initial, ground_acceleration(self.scene, self.phase, [0.0])[0], penetration)
+        return balanced_start(engine, start, penetration) if self.initial is None else start

@@ -1,0 +1,170 @@
+"""
+One phase pair to a tolerance: the whole run at successive levels of accuracy, and an error from their differences.
+
+The difference of two levels, at the rate that is seen or at two, is the error of the finer one from step, contact and
+Newton's iteration together. Where rounding forbids a stiffer contact the levels share one. One more run with a softer
+contact then shows the error that its compliance leaves.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.integration.adaptive import MAX_CHUNK_STEPS, Budget, EngineRun
+from multibody.integration.estimate import ERROR_PER_WARPING_LOAD, from_compliance, from_levels, from_sharing
+from multibody.integration.level import COMPLIANCE_RATIO, MAX_WARPING_COMPLIANCE, Level, levels_of
+from multibody.integration.one_run import PhasePair
+from multibody.integration.peak import Peaks
+from multibody.models.system import EngineModel
+from reference.problem import Outcome, Scene, State
+
+Array = NDArray[np.float64]
+
+MAX_WORK = 8e6  # nominal microseconds (see `Budget`) of all runs of one point
+UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
+FIRST_LEVELS_STEPS = 3.0  # steps of the first two levels over those of the first: without both there is no answer
+MAX_WARPING_ERROR_SHARE = 0.2  # of the tolerance, that the load of warped supports may take as an error
+MAX_WORK_GROWTH = 2.0  # steps of a level over those of the level before
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """The result of refinement for one phase pair."""
+
+    peaks: Array  # (N,), m/s^2, NaN without an answer
+    errors: Array  # (N,), m/s^2, NaN without an answer
+    outcome: Outcome
+    instant: float  # s, when an outcome other than ok arose
+    finest: EngineRun  # the last run
+
+
+def work_share(model: EngineModel, end: float, largest: float) -> float:
+    """
+    Least work of a point, two levels without a shorter step, as a share of what it may spend.
+
+    end, largest: duration and largest step of the first level, in units of the model.
+    """
+    steps = FIRST_LEVELS_STEPS * end / largest
+    return Budget.of(MAX_WORK, model.coordinates).cost(steps, steps / MAX_CHUNK_STEPS) / MAX_WORK
+
+
+def refine(
+    scene: Scene,
+    model: EngineModel,
+    phase: Array,
+    tolerance: float,
+    *,
+    initial: State | None = None,
+    keep: bool = False,
+    levels: Sequence[Level] | None = None,
+) -> Refinement:
+    """
+    Peaks of the absolute accelerations for one phase pair (2,), rad, with a relative error below `tolerance`.
+
+    levels: those of `levels_of` if None. keep: the motion of the last run.
+    """
+    pair = PhasePair(scene, model, phase, initial)
+    budget = Budget.of(MAX_WORK, model.coordinates)
+    remaining = levels_of(scene, model, tolerance) if levels is None else list(levels)
+    if work_share(model, pair.end, remaining[0].step) > 1.0:
+        no_run = EngineRun(Peaks(len(model.bodies), model.corner), Outcome.STEP_LIMIT, 0.0)
+        return _no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
+    runs: list[EngineRun] = []
+    candidate: _Candidate | None = None
+    complete: _Candidate | None = None  # the last candidate whose error lacks nothing
+    for number, level in enumerate(remaining):
+        shared = number > 0 and level.penetration == remaining[number - 1].penetration
+        if runs and budget.left < MAX_WORK_GROWTH * budget.cost(runs[-1].steps, runs[-1].runs) * (1.0 + shared):
+            break
+        run = pair.at_level(level, budget, keep=keep)
+        runs.append(run)
+        if run.outcome in UNFINISHED:
+            if candidate is not None or sum(other.outcome in UNFINISHED for other in runs) > 1:
+                break
+            continue
+        candidate = None
+        too_stiff = run.warping_load * ERROR_PER_WARPING_LOAD > MAX_WARPING_ERROR_SHARE * tolerance
+        if too_stiff and run.last_open == -math.inf:  # a support that closes again would hit a softer platform
+            rest = slice(number + 1, len(remaining))
+            remaining[rest] = [_softer(later, run.warping_load, tolerance) for later in remaining[rest]]
+        if number == 0 or runs[-2].outcome != run.outcome:
+            continue
+        runs[-2].chunks.clear()
+        if run.outcome != Outcome.OK:
+            break
+        finished = [other.peaks for other in runs[-3:] if other.outcome == Outcome.OK]
+        errors = from_levels(finished, remaining[: number + 1], model) + from_sharing(run)
+        candidate = _Candidate(run, errors, level if shared else None)
+        if candidate.meets(tolerance):
+            candidate = candidate.completed(pair, budget, keep)
+        complete = complete if candidate.without_compliance else candidate
+        if candidate.meets(tolerance):
+            return _answer(model, candidate, Outcome.OK)
+        if (level.rounding > np.maximum(tolerance * run.peaks.value, candidate.errors / COMPLIANCE_RATIO)).any():
+            break  # hardly more than rounding is left, and no further level rounds less
+    if candidate is not None:
+        return _beyond_tolerance(pair, candidate.completed(pair, budget, keep), complete)
+    return _unfinished(pair, runs)
+
+
+@dataclass(frozen=True)
+class _Candidate:
+    """The answer of one level."""
+
+    run: EngineRun
+    errors: Array  # (N,), in units of the model
+    without_compliance: Level | None  # the level, if the error that its contact's compliance leaves is still missing
+
+    def meets(self, tolerance: float) -> bool:
+        return bool((self.errors <= tolerance * self.run.peaks.value).all())
+
+    def completed(self, pair: PhasePair, budget: Budget, keep: bool) -> _Candidate:
+        """With the error that the compliance leaves, from a run with a softer contact."""
+        level = self.without_compliance
+        if level is None:
+            return self
+        softer = replace(level, penetration=COMPLIANCE_RATIO * level.penetration)
+        run = pair.at_level(softer, budget, keep=keep, residual=level.residual)  # nothing but the contact changes
+        return _Candidate(self.run, self.errors + from_compliance(self.run.peaks, run, softer, pair.model), None)
+
+
+def _beyond_tolerance(pair: PhasePair, finest: _Candidate, complete: _Candidate | None) -> Refinement:
+    """The finest answer, whose error misses the tolerance, or the last one whose error is known."""
+    if np.isfinite(finest.errors).all():
+        return _answer(pair.model, finest, Outcome.TOLERANCE_NOT_MET)
+    # the run that shows what the compliance leaves has no answer
+    if complete is not None:
+        return replace(_answer(pair.model, complete, Outcome.TOLERANCE_NOT_MET), finest=finest.run)
+    return _no_answer(pair.model, finest.run, Outcome.SOLVER_FAILED, pair.scene.duration)
+
+
+def _unfinished(pair: PhasePair, runs: list[EngineRun]) -> Refinement:
+    """No two levels agree, or both end alike: by how the first of the last two that has no answer ends."""
+    failed = next((run for run in runs[:-3:-1] if run.outcome != Outcome.OK), None)
+    if failed is None:  # one level has an answer, and no steps are left for another that shows its error
+        return _no_answer(pair.model, runs[-1], Outcome.STEP_LIMIT, pair.scene.duration)
+    return _no_answer(pair.model, failed, failed.outcome, failed.instant * pair.model.units.time)
+
+
+def _softer(level: Level, load: float, tolerance: float) -> Level:
+    """A level whose supports give way enough against warping, which took `load` of the weight in a run before."""
+    wanted = level.warping_compliance * load * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * tolerance)
+    return replace(level, warping_compliance=min(wanted, MAX_WARPING_COMPLIANCE))
+
+
+def _answer(model: EngineModel, candidate: _Candidate, outcome: Outcome) -> Refinement:
+    """Peaks with their errors, and where the largest of them is if they miss the tolerance."""
+    peaks, errors, unit = candidate.run.peaks, candidate.errors, model.units.acceleration
+    worst = float(peaks.instant[(errors / peaks.value).argmax()]) * model.units.time
+    instant = math.nan if outcome == Outcome.OK else worst
+    return Refinement(peaks.value * unit, errors * unit, outcome, instant, candidate.run)
+
+
+def _no_answer(model: EngineModel, run: EngineRun, outcome: Outcome, instant: float) -> Refinement:
+    nothing = np.full(len(model.bodies), np.nan)
+    return Refinement(nothing, nothing, outcome, instant, run)

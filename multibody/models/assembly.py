@@ -1,0 +1,40 @@
+"""The engine's system of a scene: the model by its name, with its arguments checked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from multibody.models.engine import reset_with
+from multibody.models.plate import LOADINGS
+from multibody.models.spatial import spatial
+from multibody.models.system import EngineModel
+from multibody.models.translational import translational
+from reference.problem import Scene
+from reference.problem.ranges import REGULARIZATION, checked_choice, checked_number
+
+BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": translational, "spatial": spatial}
+
+
+def assemble(
+    scene: Scene,
+    model: str,
+    regularization: float | None,
+    *,
+    loading: str = "inertial",
+    contact_force: bool = False,
+    **options: int,
+) -> EngineModel:
+    """
+    Assemble the engine's system of `scene`; options: further arguments of the model's builder.
+
+    Raises ValueError for an unknown model or loading, a wrong or missing v_reg.
+    """
+    checked_choice("loading", loading, LOADINGS)
+    checked_choice("model", model, sorted(BUILDERS))
+    if regularization is not None:
+        regularization = checked_number("regularization", regularization, REGULARIZATION)
+    elif not scene.lubricated and scene.friction_coefficient > 0.0:
+        raise ValueError("regularization: None: the engine's dry friction needs v_reg in m/s, greater than 0")
+    built = BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **options)
+    reset_with(built.recorders, built.container)  # a copy of the model with other settings shares them
+    return built

@@ -1,0 +1,251 @@
+"""
+The spatial model: rigid bodies free to turn, supports on a ring, contacts that open and close.
+
+Platform and bodies are boxes with six degrees of freedom at their heights. The platform's underside has one depression
+per support. Each has its own unilateral contact, so supports share the load as overturning demands. A link is a
+set of upright bars clamped at both ends. It is stiff in tension and in bending about the horizontal axes. The scene's
+shear stiffness acts half-way up. Against twist it has the stiffness of bars that stand on the ring,
+ring^2 (kx + ky) / 2. Its forces act on both bodies at the same point, the middle between the two ends.
+
+More than three supports share the load as elastic bearings do (`supports`), or give way by the scene's
+`support_stiffness`. Then the stiffness of the contacts is that of the bearings, and part of the model.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.models.contact import (
+    DAMPING_RATIO,
+    FORCE_ROUNDING,
+    contact_law,
+    corner_and_relaxation,
+    platform_on_sphere,
+)
+from multibody.models.engine import exudyn, items
+from multibody.models.loading import Ground, ground_of, symbolic_load
+from multibody.models.plate import plate_for
+from multibody.models.recorders import add_recorders
+from multibody.models.supports import (
+    DETERMINATE,
+    MIN_WARPING_COMPLIANCE,
+    fixed_supports,
+    sharing_supports,
+    sphere_nodes,
+)
+from multibody.models.system import EngineModel, EngineState
+from multibody.models.units import Units, link_stiffness, units_of
+from reference.problem import Scene, State
+
+Array = NDArray[np.float64]
+
+PER_BODY = 6  # coordinates: x, y, z of the center of mass and three rotations
+LINK_COMPLIANCE_RATIO = 10.0  # of a bar in tension (and, times rho^2, in bending) over the contact, under one force
+
+
+def spatial(
+    scene: Scene, regularization: float | None, *, loading: str = "inertial", contact_force: bool = False
+) -> EngineModel:
+    """
+    Assemble the spatial model; arguments as in `translational`.
+
+    Raises ValueError if the scene lacks supports, ring, sphere_radius, or the height or size of a body.
+    """
+    units = units_of(scene)
+    ring, radius, heights, sizes = _geometry(scene, units)
+    masses = scene.masses / units.mass
+    container = exudyn.SystemContainer()
+    mbs = container.AddSystem()
+    nodes, bodies = _boxes(mbs, masses, heights, sizes)
+    links = _links(mbs, bodies, masses, heights, link_stiffness(scene, units), float(np.hypot(*ring[0])))
+    ground = ground_of(mbs, scene, units)
+    bearings = scene.isolator.support_stiffness
+    bearing_penetration = 0.0 if bearings is None else units.force / (len(ring) * bearings * units.length)
+    shared = not bearing_penetration and len(ring) > DETERMINATE
+    spheres = sphere_nodes(mbs, ring, loading == "plate") if shared else []
+    plate = plate_for(mbs, loading, ground)
+    supports = sharing_supports(mbs, plate, ring, spheres) if shared else fixed_supports(mbs, plate, ring)
+    friction, threshold = contact_law(scene, regularization, units)
+    depressions = np.column_stack([ring, np.full(len(ring), -heights[0])])
+    contacts, contact_nodes = _contacts(mbs, supports.markers, bodies[0], depressions, radius, friction, threshold)
+    expressions = [*plate.expressions, *_loads(mbs, bodies, masses, None if plate.moves else ground)]
+    forces = contacts if contact_force else []
+    recorders = add_recorders(mbs, [*nodes, *supports.nodes], contact_nodes, forces, plate.node)
+    mbs.Assemble()
+
+    count = len(contacts)
+    index = PER_BODY * np.arange(len(masses))[:, None] + np.arange(3)
+    body_coordinates = PER_BODY * len(masses)  # before those of the spheres
+    vertical = body_coordinates + supports.vertical
+
+    def set_contact(penetration: float, warping_compliance: float = MIN_WARPING_COMPLIANCE) -> None:
+        pressed = bearing_penetration or penetration
+        for contact in contacts:
+            mbs.SetObjectParameter(contact, "spheresRadii", [radius + pressed, radius + 1.0])
+            mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / (count * pressed))
+            mbs.SetObjectParameter(contact, "contactDamping", 2.0 * DAMPING_RATIO / (count * np.sqrt(pressed)))
+        supports.set_stiffness(penetration, warping_compliance)
+        for link in links:
+            set_link_stiffness(mbs, *link, 1.0 / (LINK_COMPLIANCE_RATIO * penetration))
+
+    def start(initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
+        coordinates, velocities = np.zeros((2, body_coordinates + supports.coordinates))
+        if initial is not None:
+            coordinates[index[:, :2]] = np.asarray(initial.position, float) / units.length
+            velocities[index[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
+        plate_acceleration = ground_acceleration / units.acceleration
+        pressed = bearing_penetration or penetration
+        place, velocity, gap, slip = platform_on_sphere(coordinates[:2], velocities[:2], plate_acceleration, pressed)
+        coordinates[:3], velocities[:3] = place, velocity
+        coordinates[index[1:, 2]], velocities[index[1:, 2]] = place[2], velocity[2]
+        return EngineState(coordinates, velocities, np.tile([gap, slip, 0.0, 0.0], count))
+
+    def set_frictionless(frictionless: bool) -> None:
+        for contact in contacts:
+            mbs.SetObjectParameter(contact, "dynamicFriction", 0.0 if frictionless else friction)
+
+    def settle(state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
+        return state
+
+    def warping_displacement(coordinates: Array) -> Array:
+        largest: Array = np.abs(coordinates[:, vertical] @ supports.warping).max(axis=1, initial=0.0)
+        return largest
+
+    corner, relaxation = corner_and_relaxation(scene, regularization, units)
+    return EngineModel(
+        mbs=mbs,
+        units=units,
+        ground=ground,
+        recorders=recorders,
+        bodies=index,
+        set_contact=set_contact,
+        start=start,
+        settle=settle,
+        rim=1.0,
+        corner=corner,
+        relaxation=relaxation,
+        # of places, and of their moments
+        rounding=FORCE_ROUNDING * max(1.0, float(np.hypot(*ring[0])), float(heights.max())) ** 2,
+        moving_plate=plate.moves,
+        carried=np.vstack([index, body_coordinates + supports.carried]),
+        references=(container, expressions),
+        allows_liftoff=True,
+        set_frictionless=set_frictionless,
+        warping_displacement=warping_displacement,
+        bearing_penetration=bearing_penetration,
+    )
+
+
+def _boxes(mbs: Any, masses: Array, heights: Array, sizes: Array) -> tuple[list[Any], list[Any]]:
+    """Nodes and bodies of homogeneous boxes."""
+    nodes, bodies = [], []
+    for mass, height, size in zip(masses, heights, sizes):
+        nodes.append(mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0, 0.0, height, 0.0, 0.0, 0.0])))
+        inertia = mass / 12.0 * (size @ size - size**2)
+        box = items.ObjectRigidBody(nodeNumber=nodes[-1], mass=mass, inertia=[*inertia, 0.0, 0.0, 0.0])
+        bodies.append(mbs.AddObject(box))
+    return nodes, bodies
+
+
+Link = tuple[Any, float, Array, float]  # connector, mass above it, stiffness in shear (2,) and against twist
+
+
+def _links(mbs: Any, bodies: list[Any], masses: Array, heights: Array, stiffness: Array, ring: float) -> list[Link]:
+    """Links between neighbors, with what `set_link_stiffness` needs of them."""
+    links = []
+    for link, shear in enumerate(stiffness):
+        carried = float(masses[link + 1 :].sum())
+        bars = add_link(mbs, bodies[link : link + 2], heights[link : link + 2])
+        links.append((bars, carried, shear, ring**2 * shear.mean()))
+    return links
+
+
+def _contacts(
+    mbs: Any,
+    supports: list[Any],
+    platform: Any,
+    depressions: Array,
+    radius: float,
+    friction: float,
+    threshold: float,
+) -> tuple[list[Any], list[Any]]:
+    """Contacts of the spheres in the platform's depressions (K, 3), and their data nodes."""
+    contacts, nodes = [], []
+    for place, support in zip(depressions, supports):
+        nodes.append(mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4)))
+        depression = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=platform, localPosition=[*place]))
+        contact = items.ObjectContactSphereSphere(
+            markerNumbers=[support, depression],
+            nodeNumber=nodes[-1],
+            spheresRadii=[radius, radius + 1.0],
+            isHollowSphere1=True,
+            dynamicFriction=friction,
+            frictionProportionalZone=threshold,
+        )
+        contacts.append(mbs.AddObject(contact))
+    return contacts, nodes
+
+
+def _loads(mbs: Any, bodies: list[Any], masses: Array, ground: Ground | None) -> list[Any]:
+    """Weight and, if the ground acts as inertial forces, -m times its acceleration. Returns the expressions."""
+    expressions = []
+    for mass, body in zip(masses, bodies):
+        center = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body))
+        load = mbs.AddLoad(items.LoadForceVector(markerNumber=center, loadVector=[0.0, 0.0, -mass]))
+        if ground is not None:
+            force = _inertial(ground, float(mass))
+            expressions.append(symbolic_load(mbs, load, "loadVectorUserFunction", force))
+    return expressions
+
+
+def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:
+    """Supports (K, 2), sphere radius, heights (N,), sizes (N, 3), all in units of length. Raises ValueError."""
+    isolator = scene.isolator
+    required = {f"isolator.{key}": getattr(isolator, key) for key in ("supports", "ring", "sphere_radius")}
+    for number, body in enumerate(scene.bodies):
+        required |= {f"bodies.{number}.{key}": getattr(body, key) for key in ("height", "size")}
+    missing = [key for key, value in required.items() if value is None]
+    if missing:
+        raise ValueError(f"model: 'spatial': {scene.name} needs {', '.join(missing)}")
+    assert isolator.supports is not None
+    assert isolator.ring is not None
+    assert isolator.sphere_radius is not None
+    angles = 2.0 * np.pi * (np.arange(isolator.supports) + 0.5) / isolator.supports
+    ring = isolator.ring / units.length * np.column_stack([np.cos(angles), np.sin(angles)])
+    heights = np.array([body.height for body in scene.bodies]) / units.length
+    sizes = np.array([body.size for body in scene.bodies]) / units.length
+    return ring, isolator.sphere_radius / units.length, heights, sizes
+
+
+def add_link(mbs: Any, bodies: list[Any], heights: Array) -> Any:
+    """The link between two neighbors, acting half-way between their centers; `set_link_stiffness` completes it."""
+    middle = 0.5 * (heights[1] - heights[0])
+    markers = [
+        mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[0.0, 0.0, sign * middle]))
+        for body, sign in zip(bodies, (1.0, -1.0))
+    ]
+    return mbs.AddObject(
+        items.ObjectConnectorRigidBodySpringDamper(markerNumbers=markers, useIntrinsicFormulation=True)
+    )
+
+
+def set_link_stiffness(mbs: Any, bars: Any, carried: float, shear: Array, twist: float, stiff: float) -> None:
+    """Give bars the scene's stiffness in shear and twist and `stiff` otherwise; carried: mass above them."""
+    stiffness = np.array([0.0, 0.0, stiff, stiff, stiff, 0.0])
+    mbs.SetObjectParameter(bars, "stiffness", np.diag([*shear, *stiffness[2:5], twist]))
+    # the stiff directions are damped critically, the others not at all
+    mbs.SetObjectParameter(bars, "damping", np.diag(2.0 * np.sqrt(stiffness * carried)))
+    # at rest the bars carry what stands on them without giving way
+    mbs.SetObjectParameter(bars, "offset", [0.0, 0.0, carried / stiff, 0.0, 0.0, 0.0])
+
+
+def _inertial(ground: Ground, mass: float) -> Any:
+    """Weight and -m times the plate's acceleration."""
+
+    def force(mbs: Any, t: Any, loadVector: Any) -> list[Any]:
+        return [-mass * ground.along(0, t), -mass * ground.along(1, t), -mass - mass * ground.along(2, t)]
+
+    return force

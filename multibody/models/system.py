@@ -1,0 +1,79 @@
+"""What every model of the engine has in common: coordinates, contacts, recorders, a way to start."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.models.loading import Ground
+from multibody.models.units import Units
+from reference.problem import State
+
+Array = NDArray[np.float64]
+
+AT_REST = np.zeros((3, 3))
+
+
+@dataclass(frozen=True)
+class EngineState:
+    """One state of the engine in its own units, relative to the plate."""
+
+    coordinates: Array  # (n,)
+    velocities: Array  # (n,)
+    contact: Array  # (c,), contact data
+    plate: Array = field(default_factory=AT_REST.copy)  # (3, 3), its own displacement, velocity, acceleration
+
+
+@dataclass(frozen=True)
+class Recorders:
+    """Sensors that are read after a run."""
+
+    coordinates: list[Any]  # per node
+    velocities: list[Any]  # per node
+    accelerations: list[Any]  # per node
+    contact: list[Any]  # gap, slip speed, and two unused entries, per contact
+    contact_force: list[Any]  # force vector and normal, per contact; empty unless asked for
+    plate: list[Any]  # displacement, velocity, acceleration of a plate that moves; else empty
+
+
+@dataclass(frozen=True)
+class EngineModel:
+    """An assembled engine system that can be run again and again, in units of `units`."""
+
+    mbs: Any  # the engine's system
+    units: Units
+    ground: Ground  # the loading
+    recorders: Recorders
+    bodies: NDArray[np.int_]  # (N, 3), index of the coordinate that moves body i along x, y, z
+    # sets the contact's penetration under the weight, of rho, and by how much of rho warping of the supports gives way
+    set_contact: Callable[..., None]
+    # state from an initial state (None: at rest), the plate's acceleration then, m/s^2, and the penetration
+    start: Callable[[State | None, Array, float], EngineState]
+    # state to go on from with a smaller step, from the last one, the rate of each gap (K,) and the penetration
+    settle: Callable[[EngineState, Array, float], EngineState]
+    rim: float  # largest rise of the platform, in units of length
+    corner: float  # slip speed under which the friction law is linear; inf if it has no such corner
+    relaxation: float  # time in which a slip below the corner dies out; inf likewise
+    rounding: float  # of a contact force times its penetration, in units of weight times length
+    moving_plate: bool  # whether the loading moves the plate, whose coordinates are then the system's last
+    carried: NDArray[np.int_]  # (C, 3), index of the coordinates that the plate carries along x, y, z
+    references: tuple[Any, ...]  # the engine's container of the system, and what the engine only points to
+    allows_liftoff: bool = False  # whether the model goes on when every contact is open
+    set_frictionless: Callable[[bool], None] | None = None  # removes or restores friction; None: starts in balance
+    # distance of the supports from a plane, (T,), for coordinates (T, n); None if the supports do not share the load
+    warping_displacement: Callable[[Array], Array] | None = None
+    bearing_penetration: float = 0.0  # by the weight, as the scene's bearings state it, or 0
+
+    @property
+    def container(self) -> Any:
+        """The engine's container of the system."""
+        return self.references[0]
+
+    @property
+    def coordinates(self) -> int:
+        """Number of the system's coordinates."""
+        return int(self.mbs.systemData.ODE2Size())
