@@ -30,11 +30,11 @@ from comparison.analysis.surfaces import labeled_surfaces, wide_swings
 from comparison.analysis.targets import targets_met
 from comparison.analysis.tradeoff.trade import load as stored_trades
 from comparison.analysis.unanswered import with_silent_models
-from comparison.cli.options import Options, UsageError, parsed
+from comparison.cli.arguments import command, writing
+from comparison.cli.options import Options, parsed
 from comparison.cli.terminal import print_differences, print_plan, print_study_plan, print_targets_met, print_unanswered
 from comparison.execution.cache import Cache, StoreError, store_beside
-from comparison.execution.dask import cluster
-from comparison.execution.executors import ExecutorLostError, Pool, factory, process_pool
+from comparison.execution.executors import ExecutorLostError, Pool, process_pool
 from comparison.execution.keys import batch_key
 from comparison.execution.output import atomic_replace, clear_dead, on_stderr
 from comparison.execution.progress import wide_console
@@ -42,6 +42,7 @@ from comparison.execution.provenance import provenance
 from comparison.execution.resume import command_line, resume_hint, without_scheduler
 from comparison.execution.runner import Computed, Runner
 from comparison.execution.task_results import TaskResults
+from comparison.execution.workers import workers
 from comparison.registry import analysis_cost, chosen_analyses, first_tasks
 from comparison.report.findings import Findings, collect_findings
 from comparison.study.models import MODEL_HIERARCHY, Model
@@ -51,35 +52,35 @@ from reference.problem import SceneError
 from reference.problem.command import stoppable
 
 
-def main(
-    argv: Sequence[str] | None = None,
-    hierarchy: Sequence[Model] = MODEL_HIERARCHY,
-    executor: Pool = process_pool,
-) -> int:
+@command
+def main(argv: Sequence[str], hierarchy: Sequence[Model] = MODEL_HIERARCHY, executor: Pool = process_pool) -> int:
     """
-    Run the study the command line asks for, with the models of `hierarchy`; the exit code.
+    Run the study the command line asks for.
 
-    executor: what makes an executor for a number of workers, or any Executor, which is left open.
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        Words of the command line; those of this process if none are given.
+    hierarchy : sequence of Model
+        The models, each adding one effect to the one before.
+    executor : Executor or callable
+        What makes an executor for a number of workers, or any executor, which is left open.
+
+    Returns
+    -------
+    int
+        Exit code.
     """
-    words = sys.argv[1:] if argv is None else list(argv)
     with stoppable():
         try:
             options = parsed(argv)
             console = wide_console()
             plan = _chosen(options, hierarchy)
-            study = plan.study
             if options.plan:
-                print_plan(console, study, options, plan.with_analyses)
-                if options.by_trade:
-                    print_study_plan(console, plan, options)
-                return 0
+                print_plan(console, plan.study, options, plan.with_analyses)
             if options.by_trade:
                 print_study_plan(console, plan, options)
-            store = Cache(store_beside(options.out))
-            return _ended(plan, options, console, words, executor, store)
-        except (SceneError, UsageError) as error:
-            print(error, file=sys.stderr)
-            return 2
+            return 0 if options.plan else _ended(plan, options, console, argv, executor)
         except KeyboardInterrupt:
             print("interrupted before anything was computed", file=sys.stderr)
             return 130
@@ -94,20 +95,13 @@ def _chosen(options: Options, hierarchy: Sequence[Model]) -> StudyPlan:
         raise SceneError("command line", "--budget", options.budget, str(error)) from None
 
 
-def _ended(
-    plan: StudyPlan, options: Options, console: Console, words: Sequence[str], executor: Pool, store: Cache
-) -> int:
+def _ended(plan: StudyPlan, options: Options, console: Console, words: Sequence[str], executor: Pool) -> int:
     """The exit code; whatever ends the run early, what is finished is kept, and the line printed says how to go on."""
-    study = plan.study
+    study, store = plan.study, Cache(store_beside(options.out))
+    models = {model.amplification for model in study.hierarchy}
     try:
-        if options.scheduler is None:
-            if executor is not process_pool:
-                return _run(plan, options, console, command_line(words), factory(executor), store)
-            with process_pool(options.jobs) as workers:  # started once, for all that the study computes
-                return _run(plan, options, console, command_line(words), factory(workers), store)
-        with cluster(options.scheduler, {model.amplification for model in study.hierarchy}) as there:
-            options = replace(options, jobs=there.width)
-            return _run(plan, options, console, command_line(words), factory(there), store)
+        with workers(options.jobs, options.scheduler, models, executor) as (width, make):
+            return _run(plan, replace(options, jobs=width), console, command_line(words), make, store)
     except KeyboardInterrupt as stop:
         print(f"interrupted: {resume_hint(store, study, words)}", file=sys.stderr)
         return 128 + getattr(stop, "number", signal.SIGINT)
@@ -118,16 +112,13 @@ def _ended(
     except StoreError as error:
         print(f"{error}; {resume_hint(store, study, words)}", file=sys.stderr)
         return 3
-    except OSError as error:
-        print(f"command line: --out = {str(options.out)!r}: the report could not be written: {error}", file=sys.stderr)
-        return 3
 
 
 def _run(
     plan: StudyPlan,
     options: Options,
     console: Console,
-    command: str,
+    command_words: str,
     executor: Callable[[int], Executor],
     store: Cache,
 ) -> int:
@@ -152,7 +143,7 @@ def _run(
 
     faults = _faults(study, computed)
     run: dict[str, Any] = {
-        "command": command,
+        "command": command_words,
         "began": began.isoformat(timespec="seconds"),
         "seconds": round(seconds, 1),
         "compute_seconds": round(float(surfaces["cost"].sum()), 1),
@@ -179,7 +170,7 @@ def _run(
     )
 
     console.print("Writing the report.")
-    with atomic_replace(options.out) as report:
+    with writing(options.out), atomic_replace(options.out) as report:
         write_report(report.folder, found)
     for line in faults:
         print(f"solver: {line}", file=sys.stderr)

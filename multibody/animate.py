@@ -41,7 +41,7 @@ from reference.problem import (
     load_scene,
     verbatim,
 )
-from reference.problem.command import run_command
+from reference.problem.command import OneLineParser, run_command
 from reference.problem.files import write_new
 
 Array = NDArray[np.float64]
@@ -249,7 +249,7 @@ def _boxes(scene: Scene) -> tuple[Array, Array]:
 
 
 def _arguments(words: list[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="python -m multibody.animate", description=__doc__.splitlines()[1])
+    parser = OneLineParser("python -m multibody.animate", __doc__.splitlines()[1])
     parser.add_argument("scene", help="name of a built-in scene, or a TOML file")
     parser.add_argument("--phases", nargs=2, type=float, required=True, metavar=("A1", "A2"), help="rad")
     parser.add_argument("--model", default="translational")
@@ -264,9 +264,9 @@ def _arguments(words: list[str] | None) -> argparse.Namespace:
 
 def main(words: list[str] | None = None) -> int:
     """Exit code 0, or 2 and one line for a wrong scene or option."""
-    options = _arguments(words)
-    phase = np.array(options.phases)
     try:
+        options = _arguments(words)
+        phase = np.array(options.phases)
         scene = load_scene(options.scene, options.amplitude)
         if options.view:
             view(scene, phase, options.model, options.regularization)

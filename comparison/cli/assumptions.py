@@ -8,8 +8,6 @@ stopped. Exit codes: 0 done; 2 a wrong scene or option; others as in `run_comman
 
 from __future__ import annotations
 
-import argparse
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -19,56 +17,51 @@ from rich.table import Table
 
 from comparison.analysis.assumptions.validity import Assumptions, describe
 from comparison.analysis.assumptions.variations import DURATION, MANY, PHASES, Cell, ranges
+from comparison.cli.arguments import CommandParser, command, jobs, writing
 from comparison.cli.stored import OUT_HELP, results_beside
-from comparison.execution.executors import process_pool
+from comparison.execution.executors import Pool, process_pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
 from comparison.execution.progress import wide_console
 from comparison.execution.runner import Runner
+from comparison.execution.workers import workers
 from comparison.report.figures.file_names import figure_file
 from comparison.study.models import has_spatial_data
 from comparison.study.study import Study, refuse_same_names
 from reference.problem import Scene, SceneError, builtin_scenes, load_scene
 
+ENGINE = "multibody:amplification"  # what the workers ask
 TOLERANCE = 1e-3
 
 
-def main(argv: Sequence[str] | None = None) -> int:
+@command
+def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     """Vary the scenes the command line names and print what that does; the exit code."""
-    parser = argparse.ArgumentParser(
-        prog="python -m comparison.assumptions",
-        description="How far mu_i of the spatial model is from the translational one, over the ring and the heights.",
+    parser = CommandParser(
+        "assumptions", "How far mu_i of the spatial model is from the translational one, over the ring and the heights."
     )
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="TOML file or built-in name (default: the paper's)")
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="worker processes (default %(default)s)")
+    parser.add_scenes("the paper's")
+    parser.add_jobs(cluster=True)
     parser.add_argument("--figures", type=Path, metavar="DIR", help="write one picture per scene into this directory")
     parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help=OUT_HELP)
-    given = parser.parse_args(argv)
-    if given.jobs < 1:
-        parser.error(f"--jobs {given.jobs}: must be a whole number from 1")
-    try:
-        names = given.scenes or builtin_scenes()
-        scenes = [_spatial(name) for name in names]
-        refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
-        results = results_beside(given.out)
-        if given.figures:
-            given.figures = destination(given.figures, "--figures")
-            pictures = [figure_file(s.name, "assumptions", ending=end) for s in scenes for end in (".png", ".pdf")]
-            refuse_foreign_files(given.figures, pictures, "--figures")
-    except SceneError as error:
-        print(error, file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"command line: --figures = {str(given.figures)!r}: cannot be made: {error.strerror}", file=sys.stderr)
-        return 2
-    console = wide_console()
-    console.print(
-        f"{len(MANY)} variations at {len(PHASES)} phase pairs over {DURATION:g} s of motion: minutes for each scene."
-    )
-    for scene in scenes:
-        cells = _computed(Runner(results, console, given.jobs, process_pool), scene)
-        _print(console, scene, cells)
-        if given.figures:
-            _draw(given.figures, scene, cells)
+    options = parser.parse_args(argv)
+    names = options.scenes or builtin_scenes()
+    scenes = [_spatial(name) for name in names]
+    refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
+    results = results_beside(options.out)
+    figures = destination(options.figures, "--figures") if options.figures else None
+    if figures:
+        pictures = [figure_file(s.name, "assumptions", ending=end) for s in scenes for end in (".png", ".pdf")]
+        refuse_foreign_files(figures, pictures, "--figures")
+    with workers(jobs(options), options.scheduler, {ENGINE}, executor) as (width, make):
+        console = wide_console()
+        about = f"{len(MANY)} variations at {len(PHASES)} phase pairs over {DURATION:g} s of motion"
+        console.print(f"{about}: minutes for each scene.")
+        for scene in scenes:
+            cells = _computed(Runner(results, console, width, make), scene)
+            _print(console, scene, cells)
+            if figures:
+                with writing(figures, "--figures"):
+                    _draw(figures, scene, cells)
     return 0
 
 

@@ -1,14 +1,12 @@
 """
-The claims of section 5 against readings of the paper: `python -m comparison.claims [--grid N] [--jobs J] [--all]`.
+The claims of section 5 against readings of the paper: `python -m comparison.claims [--grid N] [--jobs N] [--all]`.
 
 Every case is stored as it is finished: the same command goes on where it stopped.
 """
 
 from __future__ import annotations
 
-import argparse
-import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -16,38 +14,38 @@ from rich.table import Table
 
 from comparison.analysis.claims.readings import EVERY_READING, READINGS
 from comparison.analysis.claims.table import GRID, SIGNS, Claims, ClaimTable
+from comparison.cli.arguments import CommandParser, command, jobs, whole_number
 from comparison.cli.stored import OUT_HELP, results_beside
-from comparison.execution.executors import Pool, cores, process_pool
+from comparison.execution.executors import Pool, process_pool
 from comparison.execution.progress import wide_console
 from comparison.execution.runner import Runner
+from comparison.execution.workers import workers
 from comparison.study.study import Study
-from reference.problem import SceneError, builtin_scenes, load_scene
+from reference.problem import builtin_scenes, load_scene
 
 TOLERANCE = 1e-3  # of a study; the surfaces of the claims have one of their own
+SURFACES = "reference:amplification"  # what the workers ask
 
 
-def main(argv: Sequence[str] | None = None, executor: Pool = process_pool) -> int:
-    """Print the table of claims against readings; the exit code: 0, or 2 for a wrong option."""
-    parser = argparse.ArgumentParser(
-        prog="python -m comparison.claims", description="The claims of section 5 of the paper against readings of it."
-    )
-    parser.add_argument("--grid", type=_at_least(8), default=GRID, metavar="N", help="phases per axis (%(default)s)")
-    parser.add_argument("--jobs", type=_at_least(1), default=cores(), metavar="J", help="worker processes")
+@command
+def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
+    """Print the table of claims against readings; the exit code."""
+    parser = CommandParser("claims", "The claims of section 5 of the paper against readings of it.")
+    parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {GRID})")
+    parser.add_jobs(cluster=True)
     parser.add_argument("--all", action="store_true", help="every reading: more amplitudes, durations and f_c")
     parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help=OUT_HELP)
     parser.add_argument("--words", action="store_true", help="print what every check found, too")
-    given = parser.parse_args(argv)
-    claims, console = Claims(given.grid, EVERY_READING if given.all else READINGS), wide_console()
-    try:
-        results = results_beside(given.out)
-    except SceneError as error:
-        print(error, file=sys.stderr)
-        return 2
-    study = Study(tuple(map(load_scene, builtin_scenes())), given.grid, TOLERANCE)
-    Runner(results, console, given.jobs, executor).run_tasks(claims.tasks(study), compile_first=True)
+    options = parser.parse_args(argv)
+    grid = GRID if options.grid is None else whole_number("--grid", options.grid, 8, 512)
+    claims, results = Claims(grid, EVERY_READING if options.all else READINGS), results_beside(options.out)
+    study = Study(tuple(map(load_scene, builtin_scenes())), grid, TOLERANCE)
+    console = wide_console()
+    with workers(jobs(options), options.scheduler, {SURFACES}, executor) as (width, make):
+        Runner(results, console, width, make).run_tasks(claims.tasks(study), compile_first=True)
     table = claims.collect(study, None, results)
     assert table is not None, "the study has every scene of the paper"
-    print_claims(console, table, given.words)
+    print_claims(console, table, options.words)
     return 0
 
 
@@ -68,12 +66,3 @@ def print_claims(console: Console, table: ClaimTable, words: bool = False) -> No
     console.print(f"Most claims are reproduced under: {'; '.join(reading.name for reading in table.best)}.")
     never = [f"{claim.figure}: {claim.says}" for claim in table.never]
     console.print(f"Under no reading: {'; '.join(never) or 'none'}.")
-
-
-def _at_least(least: int) -> Callable[[str], int]:
-    def number(text: str) -> int:
-        if not text.isdecimal() or int(text) < least:
-            raise argparse.ArgumentTypeError(f"{text!r}: must be a whole number, {least} or more")
-        return int(text)
-
-    return number

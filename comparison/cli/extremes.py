@@ -8,13 +8,9 @@ run. Writes extremes.json and extremes.png. Exit codes: 0 no cell failed; 1 some
 
 from __future__ import annotations
 
-import argparse
-import shlex
-import sys
 import time
 from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
-from pathlib import Path
 from typing import Any
 
 from rich.console import Console
@@ -25,47 +21,38 @@ from comparison.analysis.extremes.matrix import FILE, PICTURE, Matrix, as_entry,
 from comparison.analysis.extremes.rows import COLUMNS, EQUATIONS, REFERENCE, Column, Row, rows
 from comparison.analysis.extremes.verdicts import Verdict
 from comparison.analysis.extremes.worker import answers
-from comparison.execution.executors import cores
+from comparison.cli.arguments import CommandParser, command, jobs, number, writing
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
 from comparison.execution.progress import description, wide_console
 from comparison.execution.provenance import provenance
+from comparison.execution.resume import command_line
 from reference.problem import SceneError
 
 BRIEF = {"lubrication, s/m", "start at the friction limit", "outside the rules"}  # for the engine's models, too
 LIMIT = 180.0  # s of processor time for one cell with its finer runs: four times what the dearest takes
 
 
-def main(argv: Sequence[str] | None = None) -> int:
+@command
+def main(argv: Sequence[str]) -> int:
     """Run what the command line asks for; the exit code."""
-    given = _parser().parse_args(argv)
-    if not given.limit > 0.0 or given.jobs < 1:
-        print("command line: --limit and --jobs must be greater than 0", file=sys.stderr)
-        return 2
-    console = wide_console()
-    chosen = reduced(list(rows())) if given.reduced else list(rows())
-    if given.only:
-        chosen = [row for row in chosen if given.only in f"{row.group} {row.title}"]
-    columns = [column for column in COLUMNS if not given.models or column.key in given.models]
+    options = _parser().parse_args(argv)
+    limit = LIMIT if options.limit is None else number("--limit", options.limit, 0.1, 1e6, "s of processor time")
+    width = jobs(options)
+    chosen = reduced(list(rows())) if options.reduced else list(rows())
+    if options.only:
+        chosen = [row for row in chosen if options.only in f"{row.group} {row.title}"]
+    columns = [column for column in COLUMNS if not options.models or column.key in options.models]
     if not cells(chosen, columns):
-        print(f"command line: --only = {given.only!r}: no cell is left: take part of a row's name", file=sys.stderr)
-        return 2
-    try:
-        out = destination(given.out)
-        refuse_foreign_files(out, [FILE, PICTURE])
-    except SceneError as error:
-        print(error, file=sys.stderr)
-        return 2
-    words = sys.argv[1:] if argv is None else argv
-    command = shlex.join(["python", "-m", "comparison.extremes", *words])
-    found = run(chosen, given.jobs, given.limit, console, command, columns)
+        raise SceneError("command line", "--only", options.only, "no cell is left: take part of a row's name")
+    out = destination(options.out)
+    refuse_foreign_files(out, [FILE, PICTURE])
+    console = wide_console()
+    found = run(chosen, width, limit, console, command_line(argv, "extremes"), columns)
     from comparison.report.figures.extremes import draw_extremes  # matplotlib: not needed to refuse a command
 
     picture = made_by(lambda folder: draw_extremes(folder / PICTURE, found))
-    try:
+    with writing(out):
         files = publish(out, {FILE: as_json(found), **picture}, "comparison.extremes")
-    except OSError as error:
-        print(f"command line: --out = {str(out)!r}: could not be written: {error}", file=sys.stderr)
-        return 3
     _tell(console, found)
     console.print(f"Matrix: {', '.join(map(str, files))}", soft_wrap=True)
     console.print("A report written into the same directory by comparison.run shows it.")
@@ -139,21 +126,13 @@ def _tell(console: Console, found: Matrix) -> None:
     console.print(f"{sum(found.counts().values())} cells in {spent}: {counts}.", soft_wrap=True)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="python -m comparison.extremes",
-        description="Every model at the extremes of every quantity, judged by finer runs, as a matrix.",
-        allow_abbrev=False,
+def _parser() -> CommandParser:
+    parser = CommandParser(
+        "extremes", "Every model at the extremes of every quantity, judged by finer runs, as a matrix."
     )
-    parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help=f"where {FILE} goes")
-    parser.add_argument("--jobs", default=cores(), type=int, metavar="N", help="worker processes (default %(default)s)")
-    parser.add_argument(
-        "--limit",
-        default=LIMIT,
-        type=float,
-        metavar="SECONDS",
-        help="most processor time of one cell (default %(default)s)",
-    )
+    parser.add_out(f"where {FILE} goes")
+    parser.add_jobs()
+    parser.add_argument("--limit", metavar="SECONDS", help=f"most processor time of one cell (default {LIMIT:g})")
     parser.add_argument("--only", default="", metavar="TEXT", help="the extremes whose name contains this")
     keys = [column.key for column in COLUMNS]
     parser.add_argument("--models", nargs="+", choices=keys, metavar="KEY", help=f"some of {', '.join(keys)}")

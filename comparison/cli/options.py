@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import argparse
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NoReturn
 
 from comparison.analysis.extremes.matrix import load as stored_extremes
 from comparison.analysis.tradeoff.trade import load as stored_trades
+from comparison.cli.arguments import CommandParser, jobs, number, whole_number
 from comparison.execution.cache import refuse_foreign_store
-from comparison.execution.executors import cores
 from comparison.execution.output import destination, refuse_foreign_report
 from comparison.study.planning import DEFAULT_PRESET, DEFAULT_TOLERANCE, STUDY_PRESETS, tightest
 from comparison.study.study import refuse_same_names
@@ -46,27 +43,18 @@ class Options:
         return tuple(scene for family in self.families for scene in family.scenes)
 
 
-class UsageError(ValueError):
-    """A command line that cannot be parsed. `str(error)` is one line."""
-
-
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
-        raise UsageError(f"command line: {message} (--help lists the options)")
-
-
-def parsed(argv: Sequence[str] | None) -> Options:
+def parsed(argv: Sequence[str]) -> Options:
     """Options of `python -m comparison.run`. Raises SceneError or UsageError: one line, file, key, value, rule."""
     given = _parser().parse_args(argv)
     names: list[str] = given.scenes or builtin_scenes()
-    amplitude = None if given.amplitude is None else _number("--amplitude", given.amplitude, 1e-12, 1e6, "m/s^2")
+    amplitude = None if given.amplitude is None else number("--amplitude", given.amplitude, 1e-12, 1e6, "m/s^2")
     options = Options(
         families=tuple(load_family(name, amplitude) for name in names),
-        grid=None if given.grid is None else _whole("--grid", given.grid, 2, 512),
+        grid=None if given.grid is None else whole_number("--grid", given.grid, 2, 512),
         out=destination(given.out),
-        jobs=cores() if given.jobs is None else _whole("--jobs", given.jobs, 1, 1024),
-        tolerance=_given("--tolerance", given.tolerance, tightest(), 0.1, "relative error of mu"),
-        budget=_given("--budget", given.budget, 1.0, 1e7, "s of the whole run"),
+        jobs=jobs(given),
+        tolerance=_optional("--tolerance", given.tolerance, tightest(), 0.1, "relative error of mu"),
+        budget=_optional("--budget", given.budget, 1.0, 1e7, "s of the whole run"),
         check=given.check,
         plan=given.plan,
         fresh=given.fresh,
@@ -76,9 +64,6 @@ def parsed(argv: Sequence[str] | None) -> Options:
     sources = list(zip(names, options.families))
     refuse_same_names((source, family.name) for source, family in sources)
     refuse_same_names((source, scene.name) for source, family in sources for scene in family.scenes)
-    if given.scheduler is not None and given.jobs is not None:
-        rule = "counts processes of this machine, --scheduler takes all workers of a cluster: give one of the two"
-        raise SceneError("command line", "--jobs", given.jobs, rule)
     if given.scheduler is not None and options.budget is not None:
         rule = "is kept by what this machine is measured to do, --scheduler computes on others: give one of the two"
         raise SceneError("command line", "--budget", given.budget, rule)
@@ -94,23 +79,16 @@ def parsed(argv: Sequence[str] | None) -> Options:
     return options
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
-        prog="python -m comparison.run",
-        description="The paper's equations against a multibody engine over a grid of initial phases, as a report.",
-        allow_abbrev=False,
-    )
-    parser.add_argument(
-        "scenes",
-        nargs="*",
-        metavar="SCENE",
-        help=f"TOML files, in which one key may run over a range, or built-in names "
-        f"(default: {', '.join(builtin_scenes())}; with a recorded motion: {', '.join(example_scenes())})",
+def _parser() -> CommandParser:
+    description = "The paper's equations against a multibody engine over a grid of initial phases, as a report."
+    parser = CommandParser("run", description)
+    parser.add_scenes(
+        f"{', '.join(builtin_scenes())}; with a recorded motion: {', '.join(example_scenes())}; in a file one key may "
+        "run over a range"
     )
     parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {STUDY_PRESETS[DEFAULT_PRESET].grid})")
-    parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help="report (default %(default)s)")
-    parser.add_argument("--jobs", metavar="N", help=f"worker processes of this machine (default {cores()})")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="compute on the Dask cluster with this scheduler")
+    parser.add_out("report")
+    parser.add_jobs(cluster=True)
     parser.add_argument(
         "--fresh",
         action="store_true",
@@ -139,27 +117,5 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _whole(key: str, text: str, least: int, most: int) -> int:
-    rule = f"must be a whole number from {least} to {most}"
-    try:
-        value = int(text)
-    except ValueError:
-        raise SceneError("command line", key, text, rule) from None
-    if not least <= value <= most:
-        raise SceneError("command line", key, value, rule)
-    return value
-
-
-def _given(key: str, text: str | None, least: float, most: float, unit: str) -> float | None:
-    return None if text is None else _number(key, text, least, most, unit)
-
-
-def _number(key: str, text: str, least: float, most: float, unit: str) -> float:
-    rule = f"must be a number from {least:g} to {most:g}, {unit}"
-    try:
-        value = float(text)
-    except ValueError:
-        raise SceneError("command line", key, text, rule) from None
-    if not (math.isfinite(value) and least <= value <= most):
-        raise SceneError("command line", key, value, rule)
-    return value
+def _optional(option: str, text: str | None, least: float, most: float, unit: str) -> float | None:
+    return None if text is None else number(option, text, least, most, unit)

@@ -8,6 +8,7 @@ share of the points the accuracy was met, on the paper's scenes. Writes comparis
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 
 from comparison.analysis.tradeoff.measure import Found, Task, sample, solve
 from comparison.analysis.tradeoff.settings import SPATIAL_TIGHT, TIGHT
+from comparison.cli.arguments import CommandParser, command
 from comparison.execution.provenance import provenance
 from comparison.study.accuracy_record import FILE
 from comparison.study.batches import imported
@@ -30,8 +32,10 @@ ENGINE_TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5)
 POINTS = {"reference": 64, "translational": 8, "spatial": 4}
 
 
-def main() -> int:
-    """Record, print a line for every model, and write the file."""
+@command
+def main(argv: Sequence[str]) -> int:
+    """Record, print a line for every model, and write the file; the exit code."""
+    CommandParser("tradeoff.record", "Cost and accuracy of every model, recorded on this machine.").parse_args(argv)
     scenes = [load_scene(name) for name in builtin_scenes()]
     record: dict[str, Any] = {"machine": provenance()["processor"], "models": {}}
     took = [machine_benchmark()]  # again after every model: what else the machine does falls on both alike

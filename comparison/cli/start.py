@@ -1,14 +1,28 @@
 """
-How `python -m comparison.NAME` starts: Ctrl-C ends the command without a traceback, also while modules load.
+How every command starts: Ctrl-C ends it without a traceback, also while modules load.
 
+`python -m comparison.NAME` and the console script `phase-resonance NAME` start the same functions. The script does not
+look for modules in the working directory, where a file `reference.py` of the user would be taken for this project.
 This module imports nothing of the project, so that loading it takes no time.
 """
 
 from __future__ import annotations
 
 import signal
+import sys
+from difflib import get_close_matches
 from importlib import import_module
 from typing import NoReturn
+
+SCRIPT = "phase-resonance"
+COMMANDS = {  # module whose `main` is the command, and what it does
+    "run": ("comparison.run", "compare the equations with the engine and write the report"),
+    "claims": ("comparison.cli.claims", "the paper's claims against readings of what it leaves open"),
+    "assumptions": ("comparison.cli.assumptions", "how far the paper's assumptions carry"),
+    "extremes": ("comparison.cli.extremes", "every model at the extremes of every quantity"),
+    "tradeoff": ("comparison.cli.tradeoff", "error against compute time"),
+    "animate": ("multibody.animate", "a film of the motion"),
+}
 
 
 def start(module: str) -> NoReturn:
@@ -25,3 +39,19 @@ def start(module: str) -> NoReturn:
     main = import_module(module).main
     import_module("reference.problem.command").run_command(main)
     raise AssertionError("run_command ends the process")
+
+
+def main() -> NoReturn:
+    """Run the console script: its first word is the command, the others are for the command."""
+    name = sys.argv[1] if len(sys.argv) > 1 else "--help"
+    if name in ("-h", "--help"):
+        print(f"usage: {SCRIPT} COMMAND [options]; {SCRIPT} COMMAND --help lists the options\n")
+        print("\n".join(f"  {command:12s} {purpose}" for command, (_, purpose) in COMMANDS.items()))
+        raise SystemExit(0)
+    if name not in COMMANDS:
+        nearest = get_close_matches(name, COMMANDS, n=1)
+        rule = f"did you mean {nearest[0]}?" if nearest else f"must be one of {', '.join(COMMANDS)}"
+        print(f"command line: COMMAND = {name!r}: {rule}", file=sys.stderr)
+        raise SystemExit(2)
+    sys.argv = [f"{SCRIPT} {name}", *sys.argv[2:]]
+    start(COMMANDS[name][0])

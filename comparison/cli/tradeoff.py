@@ -8,9 +8,6 @@ or option; 3 the files could not be written; others as in `run_command`.
 
 from __future__ import annotations
 
-import argparse
-import shlex
-import sys
 import time
 from collections.abc import Sequence
 from datetime import UTC, datetime
@@ -24,13 +21,16 @@ from rich.table import Table
 
 from comparison.analysis.tradeoff.measure import Task, measured, tasks
 from comparison.analysis.tradeoff.trade import FILE, Trade, as_json, load
-from comparison.execution.executors import Pool, cores, process_pool
+from comparison.cli.arguments import CommandParser, command, jobs, writing
+from comparison.execution.executors import Pool, process_pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
 from comparison.execution.progress import Stage, progress, wide_console
 from comparison.execution.provenance import provenance
+from comparison.execution.resume import command_line
 from comparison.report.figures.file_names import figure_file, with_ending
 from comparison.study.study import refuse_same_names
 from reference.problem import Scene, SceneError, load_scene
+from reference.problem.command import UsageError
 
 DEFAULT = "fig3-I"
 COMMAND = "comparison.tradeoff"
@@ -38,45 +38,48 @@ ENDINGS = "png", "pdf", "nc"  # of the files of a scene
 STARTING = 8.0  # s of a worker before its first task: imports, compiled code loaded
 
 
-def main(argv: Sequence[str] | None = None, executor: Pool = process_pool) -> int:
+@command
+def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     """Measure the scenes of the command line; the exit code."""
-    given = _parser().parse_args(argv)
-    if given.jobs < 1:
-        print(f"command line: --jobs = {given.jobs}: must be a whole number from 1", file=sys.stderr)
-        return 2
+    options = _parser().parse_args(argv)
+    width = jobs(options)
+    scenes = [_phased(name) for name in options.scenes or [DEFAULT]]
+    refuse_same_names((scene.name, scene.name) for scene in scenes)
+    out = destination(options.out)
+    _stored(out)  # a file that is no trade is refused before anything is measured
+    pictures = [figure_file(scene.name, "tradeoff", ending=f".{end}") for scene in scenes for end in ENDINGS]
+    refuse_foreign_files(out, [FILE, *pictures])
     console = wide_console()
-    words = list(sys.argv[1:] if argv is None else argv)
-    try:
-        scenes = [load_scene(name) for name in given.scenes or [DEFAULT]]
-        for scene in scenes:
-            if scene.recorded:
-                rule = (
-                    "reference solutions need phases, which a recorded motion has not: give a scene of two frequencies"
-                )
-                raise SceneError(scene.name, "excitation.record", scene.name, rule)
-        refuse_same_names((scene.name, scene.name) for scene in scenes)
-        out = destination(given.out)
-        load(out)  # a file that is no trade is refused before anything is measured
-        pictures = [figure_file(scene.name, "tradeoff", ending=f".{end}") for scene in scenes for end in ENDINGS]
-        refuse_foreign_files(out, [FILE, *pictures])
-        trades = []
-        for scene in scenes:
-            trade, data = watched(scene, given.quick, given.jobs, console, words, executor)
-            trades.append(trade)
+    trades = []
+    for scene in scenes:
+        trade, data = watched(scene, options.quick, width, console, argv, executor)
+        trades.append(trade)
+        with writing(out):
             publish(out, _files(trade, data), COMMAND)
-        before = {trade.scene: trade for trade in load(out) or []}
-        kept = list((before | {trade.scene: trade for trade in trades}).values())
+    before = {trade.scene: trade for trade in _stored(out)}
+    kept = list((before | {trade.scene: trade for trade in trades}).values())
+    with writing(out):
         (file,) = publish(out, {FILE: as_json(kept)}, COMMAND)
-    except (SceneError, ValueError) as error:
-        print(error, file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"command line: --out = {str(given.out)!r}: could not be written: {error}", file=sys.stderr)
-        return 3
     for trade in trades:
         print_trade(console, trade)
     console.print(f"Trade: {file}, and SCENE-tradeoff.png and .nc beside it.", soft_wrap=True)
     return 0
+
+
+def _phased(name: str) -> Scene:
+    scene = load_scene(name)
+    if scene.recorded:
+        rule = "reference solutions need phases, which a recorded motion has not: give a scene of two frequencies"
+        raise SceneError(name, "excitation.record", scene.name, rule)
+    return scene
+
+
+def _stored(out: Path) -> list[Trade]:
+    """The trades that are in the folder. Raises UsageError for a file that is none."""
+    try:
+        return load(out) or []
+    except (OSError, ValueError) as error:
+        raise UsageError(str(error)) from None
 
 
 def watched(
@@ -92,7 +95,7 @@ def watched(
     about = STARTING + sum(stage.seconds for stage in stages.values()) / jobs
     console.print(f"{scene.title} ({scene.name}): about {about:.0f} s with {jobs} workers.")
     run: dict[str, Any] = {
-        "command": shlex.join(["python", "-m", "comparison.tradeoff", *words]),
+        "command": command_line(words, "tradeoff"),
         "began": began.isoformat(timespec="seconds"),
         "jobs": jobs,
         "quick": quick,
@@ -145,14 +148,12 @@ def print_trade(console: Console, trade: Trade) -> None:
         console.print(table)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="python -m comparison.tradeoff",
-        description="Error of mu_i against compute time for every model and every numerical parameter.",
-        allow_abbrev=False,
+def _parser() -> CommandParser:
+    parser = CommandParser(
+        "tradeoff", "Error of mu_i against compute time for every model and every numerical parameter."
     )
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"TOML file or built-in name (default: {DEFAULT})")
-    parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help="where the files go")
-    parser.add_argument("--jobs", default=cores(), type=int, metavar="N", help="worker processes (default %(default)s)")
+    parser.add_scenes(DEFAULT)
+    parser.add_out("where the files go")
+    parser.add_jobs()
     parser.add_argument("--quick", action="store_true", help="fewer points and values: under a minute")
     return parser

@@ -21,7 +21,7 @@ def batch_key(batch: Batch) -> Key:
         "scene": batch.scene.digest(),
         "model": batch.amplification,
         "settings": dict(batch.settings),
-        "surroundings": environment_fingerprint(batch.amplification),
+        "environment": environment_fingerprint(batch.amplification),
     }
     phases = hashlib.sha256(np.ascontiguousarray(batch.phases).tobytes()).hexdigest()
     return Key(json.dumps(about, indent=1, sort_keys=True), phases, BATCH)
@@ -32,7 +32,7 @@ def task_key(task: Task) -> Key:
     about = {
         "answers of": named(task.function),
         "about": fingerprint(task.about),
-        "surroundings": task_environment_fingerprint(task.function.__module__),
+        "environment": task_environment_fingerprint(task.function.__module__),
     }
     return Key(json.dumps(about, indent=1, sort_keys=True), task.key, ANALYSIS)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+import sys
 from collections.abc import Sequence
 
 from comparison.execution.cache import Cache
@@ -10,9 +11,15 @@ from comparison.execution.keys import ANALYSIS, BATCH
 from comparison.study.study import Study
 
 
-def command_line(words: Sequence[str]) -> str:
+def invocation(command: str) -> list[str]:
+    """The words that start a command: those of the console script where it was started by that."""
+    script = ["phase-resonance", command]
+    return script if sys.argv[0] == " ".join(script) else ["python", "-m", f"comparison.{command}"]
+
+
+def command_line(words: Sequence[str], command: str = "run") -> str:
     """The command as it is typed."""
-    return shlex.join(["python", "-m", "comparison.run", *words])
+    return shlex.join([*invocation(command), *words])
 
 
 def resume_hint(cache: Cache, study: Study, words: Sequence[str]) -> str:

@@ -1,5 +1,5 @@
 """
-The models of the study in order, each adding one effect to the one before. Adding a model is one entry of LADDER.
+The models of the study in order, each adding one effect to the one before. A new model is one entry of MODEL_HIERARCHY.
 
 A model names the function that answers for it ("package:function", the contract of `reference.amplification` and
 `multibody.amplification`), so that a worker process can import it by itself.

@@ -1,4 +1,4 @@
-"""What a run takes beside what it computes, s, recorded on `hierarchy.RECORDED_ON`."""
+"""What a run takes beside what it computes, s, recorded on `models.RECORDED_ON`."""
 
 # said wherever a command may have to compile first
 COMPILED_ONCE = "On a new installation the reference is compiled first, once: about half a minute of one worker."

@@ -3,7 +3,7 @@ Which models, grids and tolerances a study takes: the one place where `--toleran
 
 A tolerance is met by the cheapest setting of every model that met it at 99 % of the recorded points, by its own error
 estimate and in truth; a tighter one that costs hardly more is taken instead. A model that cannot meet it is left out. A
-budget is spent along AMBITIONS: the last study that fits.
+budget is spent along STUDY_PRESETS: the last study that fits.
 """
 
 from __future__ import annotations

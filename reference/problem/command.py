@@ -8,6 +8,7 @@ output has closed it, as `head` does.
 
 from __future__ import annotations
 
+import argparse
 import io
 import os
 import signal
@@ -40,6 +41,20 @@ class OutputError(Exception):
     def __init__(self, error: OSError) -> None:
         super().__init__(error.strerror or str(error))
         self.closed = isinstance(error, BrokenPipeError)
+
+
+class UsageError(ValueError):
+    """A command line that cannot be parsed. `str(error)` is one line."""
+
+
+class OneLineParser(argparse.ArgumentParser):
+    """A parser that raises UsageError in place of printing how the command is used; options are not shortened."""
+
+    def __init__(self, prog: str, description: str) -> None:
+        super().__init__(prog=prog, description=description, allow_abbrev=False)
+
+    def error(self, message: str) -> NoReturn:
+        raise UsageError(f"command line: {message} (--help lists the options)")
 
 
 def run_command(main: Callable[[], int]) -> NoReturn:

@@ -95,7 +95,7 @@ def killed(*rest):
 if {late}:
     move = os.rename
     os.rename = lambda source, target: killed() if Path(source).name == "new" else move(source, target)
-with store.replaced_when_complete(Path("report")) as report:
+with store.atomic_replace(Path("report")) as report:
     (report.folder / "index.html").write_text("half")
     print("writing", flush=True)
     if not {late}:

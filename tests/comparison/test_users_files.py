@@ -155,14 +155,14 @@ DYING = """
 import os, signal, sys
 from pathlib import Path
 sys.path.insert(0, {root!r})
-from comparison.execution.output import replaced_when_complete
+from comparison.execution.output import atomic_replace
 move = os.rename
 def die_between(source, target):
     if Path(source).name == "new":
         os.kill(os.getpid(), signal.SIGKILL)
     move(source, target)
 os.rename = die_between
-with replaced_when_complete(Path({name!r})) as report:
+with atomic_replace(Path({name!r})) as report:
     (report.folder / "index.html").write_text("half")
 """
 

@@ -1,0 +1,136 @@
+"""
+What all commands share: the options with one meaning, the checks of their values, and the exit codes.
+
+A wrong option ends every command with exit code 2 and one line that names the option, its value and the rule.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import wraps
+from pathlib import Path
+from typing import Concatenate, ParamSpec
+
+from comparison.execution.executors import ExecutorLostError, cores
+from comparison.execution.resume import invocation
+from reference.problem import SceneError
+from reference.problem.command import OneLineParser, UsageError
+
+Rest = ParamSpec("Rest")
+
+
+class WriteError(RuntimeError):
+    """A file of the user that could not be written. `str(error)` is one line."""
+
+
+class CommandParser(OneLineParser):
+    """The parser of a command, with the options that commands share."""
+
+    def __init__(self, command: str, description: str) -> None:
+        super().__init__(" ".join(invocation(command)), description)
+
+    def add_scenes(self, default: str) -> None:
+        """Names of scenes; default: what is taken without any, in words."""
+        help_text = f"TOML files or built-in names (default: {default})"
+        self.add_argument("scenes", nargs="*", metavar="SCENE", help=help_text)
+
+    def add_out(self, content: str) -> None:
+        """The folder that the command writes into; content: what goes there, in words."""
+        self.add_argument(
+            "--out", default=Path("report"), type=Path, metavar="DIR", help=f"{content} (default %(default)s)"
+        )
+
+    def add_jobs(self, cluster: bool = False) -> None:
+        """The number of worker processes; cluster: whether a Dask cluster may take their place."""
+        self.add_argument("--jobs", metavar="N", help=f"worker processes of this machine (default {cores()})")
+        if cluster:
+            self.add_argument("--scheduler", metavar="ADDRESS", help="compute on the Dask cluster with this scheduler")
+        else:
+            self.set_defaults(scheduler=None)
+
+
+def jobs(options: argparse.Namespace) -> int:
+    """
+    Number of worker processes that `--jobs` asks for.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        Parsed by a `CommandParser` with `add_jobs`.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    SceneError
+        For a wrong number, and for `--jobs` together with `--scheduler`.
+    """
+    if options.scheduler is not None and options.jobs is not None:
+        rule = "counts processes of this machine, --scheduler takes all workers of a cluster: give one of the two"
+        raise SceneError("command line", "--jobs", options.jobs, rule)
+    return cores() if options.jobs is None else whole_number("--jobs", options.jobs, 1, 1024)
+
+
+def whole_number(option: str, text: str, least: int, most: int) -> int:
+    """The value of an option that takes a whole number from `least` to `most`. Raises SceneError."""
+    rule = f"must be a whole number from {least} to {most}"
+    try:
+        value = int(text)
+    except ValueError:
+        raise SceneError("command line", option, text, rule) from None
+    if not least <= value <= most:
+        raise SceneError("command line", option, value, rule)
+    return value
+
+
+def number(option: str, text: str, least: float, most: float, unit: str) -> float:
+    """The value of an option that takes a number from `least` to `most` in `unit`. Raises SceneError."""
+    rule = f"must be a number from {least:g} to {most:g}, {unit}"
+    try:
+        value = float(text)
+    except ValueError:
+        raise SceneError("command line", option, text, rule) from None
+    if not (math.isfinite(value) and least <= value <= most):
+        raise SceneError("command line", option, value, rule)
+    return value
+
+
+@contextmanager
+def writing(folder: Path, option: str = "--out") -> Iterator[None]:
+    """Raise WriteError, one line, where the block cannot write into the folder that `option` names."""
+    try:
+        yield
+    except OSError as error:
+        raise WriteError(f"command line: {option} = {str(folder)!r}: could not be written: {error}") from None
+
+
+def command(
+    main: Callable[Concatenate[Sequence[str], Rest], int],
+) -> Callable[..., int]:
+    """
+    Give a command its exit codes and take its words from the command line where a program gives none.
+
+    2: wrong input. 3: something could not be written. 4: the cluster was lost. Each is explained by one line.
+    """
+
+    @wraps(main)
+    def ended(argv: Sequence[str] | None = None, *args: Rest.args, **kwargs: Rest.kwargs) -> int:
+        try:
+            return main(sys.argv[1:] if argv is None else list(argv), *args, **kwargs)
+        except (SceneError, UsageError) as error:
+            print(error, file=sys.stderr)
+            return 2
+        except WriteError as error:
+            print(error, file=sys.stderr)
+            return 3
+        except ExecutorLostError as error:
+            print(error, file=sys.stderr)
+            return 4
+
+    return ended

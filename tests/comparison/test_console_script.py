@@ -1,0 +1,83 @@
+"""The console script does what the modules do, and a user's own reference.py beside it is never imported."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tomllib
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from comparison.cli.start import COMMANDS
+
+ROOT = Path(__file__).parents[2]
+SHADOW = "raise SystemExit('a module of the user was imported')\n"
+
+
+@pytest.fixture
+def script(tmp_path: Path) -> Path:
+    """The script as an installer writes it, for this copy of the project."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    module, function = project["scripts"]["phase-resonance"].split(":")
+    file = tmp_path / "bin" / "phase-resonance"
+    file.parent.mkdir()
+    lines = [
+        "import sys",
+        f"from {module} import {function}",
+        "if __name__ == '__main__':",
+        f"    sys.exit({function}())",
+    ]
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return file
+
+
+def called(script: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    """The script in a directory of the user whose modules have the names of this project's packages."""
+    place = script.parent.parent / "work"
+    place.mkdir()
+    for name in ("reference", "multibody", "comparison"):
+        (place / f"{name}.py").write_text(SHADOW, encoding="utf-8")
+    command = [sys.executable, str(script), *words]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    return subprocess.run(command, cwd=place, env=environment, capture_output=True, text=True, check=False)
+
+
+def test_the_modules_beside_a_user_are_not_imported_by_the_script_or_its_workers(script: Path) -> None:
+    run = called(script, "extremes", "--models", "small", "--only", "outside the rules", "--jobs", "2")
+    assert run.returncode == 0, run.stderr
+    matrix = json.loads((script.parent.parent / "work/report/extremes.json").read_text(encoding="utf-8"))
+    assert matrix["run"]["command"].startswith("phase-resonance extremes --models small")
+
+
+def test_the_script_plans_a_study(script: Path) -> None:
+    run = called(script, "run", "fig4-viscous", "--plan")
+    assert (run.returncode, run.stderr) == (0, "")
+    assert "Nothing was computed." in run.stdout
+
+
+def test_an_unknown_command_is_one_line_with_the_nearest(script: Path) -> None:
+    run = called(script, "extrems")
+    assert (run.returncode, run.stdout) == (2, "")
+    assert run.stderr == "command line: COMMAND = 'extrems': did you mean extremes?\n"
+
+
+def test_without_a_command_the_script_lists_them(script: Path) -> None:
+    run = called(script)
+    assert run.returncode == 0
+    assert all(f"  {name} " in run.stdout for name in COMMANDS)
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("words", [("--no-such-option",), ("--jobs", "0"), ("--out",)])
+def test_a_wrong_option_of_every_command_is_one_line_and_exit_code_2(
+    name: str, words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    main = import_module(COMMANDS[name][0]).main
+    assert main(list(words)) == 2
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n")) == ("", 1), err
+    assert err.startswith("command line: ")
