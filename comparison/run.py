@@ -27,10 +27,10 @@ import xarray as xr
 from rich.console import Console
 
 from comparison.analysis.assumptions.validity import ValidityRanges
+from comparison.analysis.claims_and_trends import claims_and_trends
 from comparison.analysis.effective import effective_values
 from comparison.analysis.errata import errata_effects
 from comparison.analysis.extremes.matrix import load as stored_extremes
-from comparison.analysis.further import further_findings
 from comparison.analysis.surfaces import labeled_surfaces, wide_swings
 from comparison.analysis.targets import targets_met
 from comparison.analysis.tasks import analysis_cost, analysis_tasks, motion_tasks
@@ -53,6 +53,7 @@ from comparison.execution.workers import workers
 from comparison.report.findings import Findings, findings
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.planning import BudgetError, StudyPlan, StudyRequest, plan_study
+from comparison.study.selection import Selection
 from comparison.study.study import Study
 from reference.problem import SceneError
 from reference.problem.command import stoppable
@@ -83,7 +84,7 @@ def main(argv: Sequence[str], hierarchy: Sequence[Model] = MODEL_HIERARCHY, exec
             console = wide_console()
             plan = _chosen(options, hierarchy)
             if options.plan:
-                print_plan(console, plan.study, options, plan.with_analyses)
+                print_plan(console, plan.study, options, options.selected(plan.with_analyses))
             if options.by_trade:
                 print_study_plan(console, plan, options)
             return 0 if options.plan else _ended(plan, options, console, argv, executor)
@@ -94,7 +95,11 @@ def main(argv: Sequence[str], hierarchy: Sequence[Model] = MODEL_HIERARCHY, exec
 
 def _chosen(options: Options, hierarchy: Sequence[Model]) -> StudyPlan:
     """What is computed. Raises SceneError where no study fits the budget."""
-    asked = options.tolerance, options.budget, options.grid, options.jobs, options.full, analysis_cost
+
+    def cost(study: Study, with_analyses: bool) -> float:
+        return analysis_cost(study, options.selected(with_analyses))
+
+    asked = options.tolerance, options.budget, options.grid, options.jobs, options.full, cost
     try:
         return plan_study(StudyRequest(options.scenes, hierarchy, *asked))
     except BudgetError as error:
@@ -134,26 +139,30 @@ def _run(
 
     begin, began = time.monotonic(), datetime.now(UTC)
     clear_dead(options.out)
-    study = plan.study
+    study, selection = plan.study, options.selected(plan.with_analyses)
     batches = study.batches()
     keys = [batch_key(batch) for batch in batches]
     store.trim(keys)
     if options.fresh:
         store.forget(keys)
     known = TaskCache(store, options.fresh)
-    done = computed(study, store, console, options.jobs, executor, analysis_tasks(study, plan.with_analyses), known)
+    done = computed(study, store, console, options.jobs, executor, analysis_tasks(study, selection), known)
     seconds, answers = time.monotonic() - begin, done.answers
     surfaces = labeled_surfaces(study, batches, answers)
     study = with_silent_models(study, surfaces)
-    console.print("Keeping a few motions of every scene for the report, and drawing the surfaces.")
-    motions = motion_tasks(study, surfaces) if plan.with_analyses else []
-    fetched([*motions, *drawing.picture_tasks(study, surfaces)], known, console, options.jobs, executor)
+    tasks = motion_tasks(selection.study(study, "trajectories"), surfaces)
+    tasks += drawing.picture_tasks(study, surfaces, selection)
+    if tasks:
+        console.print("Computing a few motions and drawing the figures of the report.")
+    fetched(tasks, known, console, options.jobs, executor)
     executor = known.on(executor)  # what the analyses ask has been fetched
-    pictures = drawing.all_drawn(study, surfaces, options.jobs, executor)
-    effective = effective_values(study, options.jobs, executor)
-    effects = errata_effects(study, options.jobs, executor)
-    more = _more(study, surfaces, options, executor) if plan.with_analyses else {}
-    beside = {"extremes": _taken_up(stored_extremes, options.out), "tradeoff": _taken_up(stored_trades, options.out)}
+    pictures = drawing.all_drawn(study, surfaces, options.jobs, executor, selection)
+    effective = effective_values(selection.study(study, "effective"), options.jobs, executor)
+    effects = errata_effects(selection.study(study, "errata"), options.jobs, executor)
+    more = _more(study, selection, surfaces, options, executor)
+    stored = {"extremes": stored_extremes, "tradeoff": stored_trades}
+    absent = selection.absent(study)
+    beside = {name: _taken_up(load, options.out) for name, load in stored.items() if name not in absent}
     families = [family for family in options.families if len(family.scenes) > 1] or None
     titles = {model.key: model.title for model in study.hierarchy}
     faults = sorted(
@@ -179,7 +188,7 @@ def _run(
         "choice": targets_met(plan, options.tolerance, options.budget, surfaces) if options.by_trade else None,
         "provenance": provenance(),
     }
-    of_run = {"families": families, "pictures": pictures}
+    of_run = {"families": families, "pictures": pictures, "selection": selection}
     found = findings(study, surfaces, effective, effects, faults, run, **of_run, **beside, **more)
     console.print("Writing the report.")
     with writing(options.out), atomic_replace(options.out) as report:
@@ -195,7 +204,7 @@ def _run(
     print_unanswered(console, found.unanswered)
     place = options.out if report.place == options.out.resolve() else report.place
     _print_closing(console, options, place, run, time.monotonic() - begin, bool(study.phased))
-    print_differences(console, found.rows)
+    print_differences(console, found.rows_of("differences", found.rows), bool(study.phased))
     return 1 if options.check and found.broken else 0
 
 
@@ -210,12 +219,15 @@ def _checked(found: Findings) -> list[str]:
     return lines
 
 
-def _more(study: Study, surfaces: xr.Dataset, options: Options, executor: Callable[[int], Executor]) -> dict[str, Any]:
+def _more(
+    study: Study, selection: Selection, surfaces: xr.Dataset, options: Options, executor: Callable[[int], Executor]
+) -> dict[str, Any]:
     """Fields of the findings that a report can do without."""
+    moved, varied = selection.study(study, "trajectories"), selection.study(study, "assumptions")
     return {
-        "motions": stored_motions(study, surfaces, options.jobs, executor),
-        "assumptions": ValidityRanges.of(study, options.jobs, executor),
-        **further_findings(study, options.jobs, executor),
+        "motions": stored_motions(moved, surfaces, options.jobs, executor) if moved.scenes else None,
+        "assumptions": ValidityRanges.of(varied, options.jobs, executor) if varied.scenes else None,
+        **claims_and_trends(study, options.jobs, executor, selection),
     }
 
 
@@ -238,4 +250,3 @@ def _print_closing(
     console.print(f"Report: {report / 'index.html'}", soft_wrap=True)  # a path is copied whole
     finer = "; a finer look: --grid N with a larger N; what that costs: --plan" if phased else ""
     console.print(f"Next: open it in a browser{finer}.")
-    console.print(f"Relative differences{' over the phases' if phased else ''}, per body:")

@@ -16,65 +16,72 @@ from comparison.analysis.scaling import scaling_arguments, scene_trends
 from comparison.analysis.trajectories import SPREAD, motion_arguments, moved, shown_models
 from comparison.execution.task import Task
 from comparison.study.models import Model, at_samples
+from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.study import Study
 from reference.problem import Scene, builtin_scenes
 
 # s of one task, recorded on `study.models.RECORDED_ON` for the built-in scenes
 EFFECTIVE = {"reference": 0.02, "engine": 0.2}
 ERRATUM, SCALING = 0.35, 0.12
-CONVERGENCE = dict(zip((limit.what for limit in LIMITS), (0.13, 0.14, 0.7, 4.0, 2.1)))
 VARIATION = {"translational": 0.5, "spatial": 1.1}
 MOTION = {"reference": 0.11, "engine": 0.55}
 PICTURE, PAPER = 0.5, 1.0  # of two models or a budget; in the manner of the paper
 
 
-def analysis_tasks(study: Study, with_analyses: bool = True) -> list[Task]:
-    """What can be computed without knowing the surfaces; not `with_analyses`: only what every report needs."""
-    found = [
+def analysis_tasks(study: Study, selection: Selection = EVERYTHING) -> list[Task]:
+    """What the selected analyses compute without knowing the surfaces."""
+    tasks = [
         Task("effective values", read_back, (scene, model), EFFECTIVE[model.side] * at_samples(scene), scene)
-        for scene, model in effective_arguments(study)
+        for scene, model in effective_arguments(selection.study(study, "effective"))
     ]
-    found += [Task("errata", measured, task, ERRATUM, task[0]) for task in errata_arguments(study)]
-    if not with_analyses:
-        return found
-    found += [Task("scaling test", scene_trends, task, SCALING, task[0]) for task in scaling_arguments(study)]
-    for scene, number in convergence_arguments(study):
-        found.append(Task("convergence", limit_trends, (scene, number), LIMITS[number].seconds, scene))
-    if paper_complete(study):
-        found += [Task("claims", gathered, question, SECONDS) for question in questions(READINGS, CLAIMS, GRID)]
-    for task in variation_arguments(study):
-        seconds = VARIATION["translational" if task[2] is None else "spatial"]
-        found.append(Task("assumptions", varied, task, seconds, task[0], compiled=False))
-    return found
+    tasks += [
+        Task("errata", measured, argument, ERRATUM, argument[0])
+        for argument in errata_arguments(selection.study(study, "errata"))
+    ]
+    tasks += [
+        Task("scaling test", scene_trends, argument, SCALING, argument[0])
+        for argument in scaling_arguments(selection.study(study, "scaling"))
+    ]
+    tasks += [
+        Task("convergence", limit_trends, (scene, number), LIMITS[number].seconds, scene)
+        for scene, number in convergence_arguments(selection.study(study, "convergence"))
+    ]
+    if paper_complete(selection.study(study, "claims")):
+        tasks += [Task("claims", gathered, question, SECONDS) for question in questions(READINGS, CLAIMS, GRID)]
+    for argument in variation_arguments(selection.study(study, "assumptions")):
+        seconds = VARIATION["translational" if argument[2] is None else "spatial"]
+        tasks.append(Task("assumptions", varied, argument, seconds, argument[0], compiled=False))
+    return tasks
 
 
-def predicted(study: Study, with_analyses: bool = True) -> dict[str, tuple[int, float]]:
+def predicted(study: Study, selection: Selection = EVERYTHING) -> dict[str, tuple[int, float]]:
     """
     Tasks and s on one core of all that is computed beside the surfaces, by stage.
 
     Motions and pictures are counted before the surfaces are known that choose them.
     """
-    known = analysis_tasks(study, with_analyses)
-    found = {}
-    for name in dict.fromkeys(task.stage for task in known):
-        own = [task.seconds for task in known if task.stage == name]
-        found[name] = len(own), sum(own)
+    tasks = analysis_tasks(study, selection)
+    costs = {}
+    for stage in dict.fromkeys(task.stage for task in tasks):
+        seconds = [task.seconds for task in tasks if task.stage == stage]
+        costs[stage] = len(seconds), sum(seconds)
     motions = [
         MOTION[model.side] * at_samples(scene)
-        for scene in study.scenes
-        for model in (_moving(study, scene) if with_analyses else ())
+        for scene in selection.study(study, "trajectories").scenes
+        for model in _moving(study, scene)
     ]
-    drawn = [
-        seconds
-        for scene in study.phased
-        for seconds in (PAPER, *(PICTURE,) * len(scene.bodies) * (1 + len(study.pairs(scene))))
-    ]
-    return found | {"motions": (len(motions), sum(motions)), "pictures": (len(drawn), sum(drawn))}
+    pictures = []
+    for scene in study.phased:
+        if selection.has("surfaces", scene.name):
+            pictures += [PAPER, *(PICTURE,) * len(scene.bodies) * len(study.pairs(scene))]
+        if selection.has("budget", scene.name):
+            pictures += [PICTURE] * len(scene.bodies)
+    return costs | {"motions": (len(motions), sum(motions)), "pictures": (len(pictures), sum(pictures))}
 
 
-def analysis_cost(study: Study, with_analyses: bool) -> float:
+def analysis_cost(study: Study, selection: Selection = EVERYTHING) -> float:
     """s on one core of all that is computed beside the surfaces."""
-    return sum(seconds for _, seconds in predicted(study, with_analyses).values())
+    return sum(seconds for _, seconds in predicted(study, selection).values())
 
 
 def _moving(study: Study, scene: Scene) -> list[Model]:

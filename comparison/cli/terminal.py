@@ -22,10 +22,11 @@ from comparison.study.models import RECORDED_ON
 from comparison.study.overhead import COMPILED_ONCE, START_UP, WRITING
 from comparison.study.planning import StudyPlan
 from comparison.study.reductions import reductions
+from comparison.study.selection import Selection
 from comparison.study.study import Study
 
 
-def print_plan(console: Console, study: Study, options: Options, with_analyses: bool = True) -> None:
+def print_plan(console: Console, study: Study, options: Options, selection: Selection) -> None:
     """What would be computed and its predicted cost."""
     table = _table("scene", "model", "points", "computed", "tolerance", "s on one core")
     total, refused = 0.0, []
@@ -42,9 +43,12 @@ def print_plan(console: Console, study: Study, options: Options, with_analyses: 
             table.add_row(scene.name, model.title, *cells)
     console.print(table)
     _print_reductions(console, study)
-    costs = predicted(study, with_analyses)
+    costs = predicted(study, selection)
     others = ", ".join(f"{name} {seconds:.0f} s ({tasks})" for name, (tasks, seconds) in costs.items() if tasks)
-    console.print(f"Beside the surfaces, s on one core and tasks: {others}.")
+    console.print(f"Beside the surfaces, s on one core and tasks: {others or 'nothing'}.")
+    if absent := selection.absent(study):
+        reasons = ", ".join(f"{analysis} ({reason})" for analysis, reason in absent.items())
+        console.print(f"Not in the report: {reasons}.", soft_wrap=True)
     total += sum(seconds for _, seconds in costs.values())
     wall = START_UP + total / options.jobs + WRITING
     if len(study.phased) < len(study.scenes):
@@ -55,7 +59,7 @@ def print_plan(console: Console, study: Study, options: Options, with_analyses: 
     console.print(f"{over}{options.jobs} worker processes: about {wall:.0f} s.")
     store, batches = Cache(store_beside(options.out)), study.batches()
     if not options.fresh and (stored := sum(store.holds(batch_key(batch)) for batch in batches)):
-        asked, known = analysis_tasks(study, with_analyses), TaskCache(store)
+        asked, known = analysis_tasks(study, selection), TaskCache(store)
         analyses = f"{sum(map(known.holds, asked))} of {len(asked)} analyses"
         console.print(
             f"{stored} of {len(batches)} batches are in {store.folder} already, {analyses}: "
@@ -134,8 +138,11 @@ def print_unanswered(console: Console, lacking: Sequence[Unanswered]) -> None:
         console.print(f"Without a value: {one.sentence}", soft_wrap=True)
 
 
-def print_differences(console: Console, rows: Sequence[Difference]) -> None:
+def print_differences(console: Console, rows: Sequence[Difference], phased: bool) -> None:
     """Median, 95 % and maximum relative difference, and the points not ok, for every scene, body and pair."""
+    if not rows:
+        return
+    console.print(f"Relative differences{' over the phases' if phased else ''}, per body:")
     table = _table("scene", "body", "difference", "median", "95 %", "maximum", "not ok")
     for row in rows:
         sizes = (f"{value:.1e}" for value in (row.median, row.percentile95, row.maximum))

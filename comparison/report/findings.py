@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from functools import cached_property
+from typing import Any, Protocol, TypeVar
 
 import xarray as xr
 
@@ -20,8 +21,19 @@ from comparison.analysis.tradeoff.trade import Trade
 from comparison.analysis.trajectories import StoredMotion
 from comparison.analysis.trends import Trend
 from comparison.analysis.unanswered import Unanswered, unanswered
+from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.study import Study
 from reference.problem import Family
+
+
+class OfScene(Protocol):
+    """What belongs to the scene of this name."""
+
+    @property
+    def scene(self) -> str: ...
+
+
+Row = TypeVar("Row", bound=OfScene)
 
 
 @dataclass(frozen=True)
@@ -31,10 +43,10 @@ class Findings:
     values read back from each model. effects: what errata of the print do to mu. unanswered: models without a value
     somewhere. limits: the acceptance limits that scenes state, held against the rest. faults: what solvers complained
     about. run: command, times, provenance. pictures: files of the surfaces' by name. Fields that may be None are what
-    only some commands compute. motions: see `stored_motions`. claims, scaling, convergence: see `further_findings`.
+    only some commands compute. motions: see `stored_motions`. claims, scaling, convergence: see `claims_and_trends`.
     assumptions: how far the paper's carry, see `ValidityRanges`. families: those of more than one scene. extremes: the
     matrix that `python -m comparison.extremes` left beside the report. tradeoff: what `python -m comparison.tradeoff`
-    left there.
+    left there. selection: the analyses that were asked for.
     """
 
     study: Study
@@ -56,6 +68,16 @@ class Findings:
     families: Sequence[Family] | None = None
     extremes: Matrix | None = None
     tradeoff: Sequence[Trade] | None = None
+    selection: Selection = EVERYTHING
+
+    @cached_property
+    def absent(self) -> dict[str, str]:
+        """The analyses that are made of no scene, with the reason."""
+        return self.selection.absent(self.study)
+
+    def rows_of(self, analysis: str, rows: Sequence[Row]) -> list[Row]:
+        """Those of the rows whose scene has the analysis."""
+        return [row for row in rows if self.selection.has(analysis, row.scene)]
 
     @property
     def broken(self) -> list[str]:

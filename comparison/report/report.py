@@ -67,8 +67,8 @@ class Section:
     title_recorded: str = ""
 
     def present(self, found: Findings) -> bool:
-        """Whether the findings hold what the section shows."""
-        return not self.finding or getattr(found, self.finding) is not None
+        """Whether the section was asked for and the findings hold what it shows."""
+        return self.name not in found.absent and (not self.finding or getattr(found, self.finding) is not None)
 
 
 def draw_all_assumptions(figures: Path, found: Findings) -> None:
@@ -171,7 +171,11 @@ def _page(figures: Path, found: Findings) -> str:
     hierarchy = [model for model in study.hierarchy if any(model.applies(scene) for scene in study.scenes)]
     return page.render(
         sections=[section for section in SECTIONS if section.present(found)],
-        absent=[section for section in SECTIONS if not section.present(found)],
+        absent=[
+            (section.title, found.absent.get(section.name, section.absent))
+            for section in SECTIONS
+            if not section.present(found)
+        ],
         found=found,
         figure_names={
             "assumptions": assumption_figure_name,
@@ -181,7 +185,7 @@ def _page(figures: Path, found: Findings) -> str:
         picture=lambda name: _inlined(smaller((figures / name).read_bytes())),
         study=study,
         run=found.run,
-        scenes=[_scene(found, scene) for scene in study.scenes],
+        scenes=[_scene(found, number, scene) for number, scene in enumerate(study.scenes)],
         question=_question(study),
         compared=_compared(study),
         section_titles={s.name: s.title if study.phased else s.title_recorded or s.title for s in SECTIONS},
@@ -190,8 +194,8 @@ def _page(figures: Path, found: Findings) -> str:
         step_numbers={model.key: number for number, model in enumerate(hierarchy)},
         titles={"scene": "as stated", **{model.key: model.title for model in study.hierarchy}},
         properties=_properties(hierarchy),
-        rows=found.rows,
-        budget=found.budget,
+        rows=found.rows_of("differences", found.rows),
+        budget=found.rows_of("budget", found.budget),
         effective=found.effective,
         phases=PHASES,
         errata=_errata(found),
@@ -228,11 +232,15 @@ def _compared(study: Study) -> str:
     return sentences.pop() if len(sentences) == 1 else "the first against the last model that has values, in each scene"
 
 
-def _scene(found: Findings, scene: Scene) -> dict[str, Any]:
+def _scene(found: Findings, number: int, scene: Scene) -> dict[str, Any]:
     pairs = found.study.pairs(scene)
+    with_surfaces, with_budget = (found.selection.has(section, scene.name) for section in ("surfaces", "budget"))
     own = [row for row in found.rows if row.scene == scene.name]
     return {
+        "number": number,
         "scene": scene,
+        "surfaces": with_surfaces,
+        "budget": with_budget,
         "digest": scene.digest(),
         "verdict": verdict(found.study, found.surfaces, scene),
         "verdicts": [_verdict(pair, [row for row in own if row.pair == pair.key], scene.recorded) for pair in pairs],
@@ -243,9 +251,9 @@ def _scene(found: Findings, scene: Scene) -> dict[str, Any]:
                 "record": record_rows(found, scene, body),
                 "pictures": [
                     {"pair": pair, "png": _inlined(found.pictures[for_page(figure_name(scene, body, pair))])}
-                    for pair in ([] if scene.recorded else pairs)
+                    for pair in (pairs if with_surfaces and not scene.recorded else [])
                 ],
-                "budget": _budget(found, scene, body),
+                "budget": _budget(found, scene, body) if with_budget else "",
             }
             for body in range(1, len(scene.bodies) + 1)
         ],

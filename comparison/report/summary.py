@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from comparison.analysis.claims_and_trends import claims_summary, trends_summary
 from comparison.analysis.errata import ERRATA
-from comparison.analysis.further import claims_summary, trends_summary
 from comparison.analysis.surfaces import largest_cap_share, outcome_counts
 from comparison.analysis.verdicts import verdict
 from comparison.report.findings import Findings
@@ -38,7 +38,9 @@ def summary(found: Findings) -> dict[str, Any]:
             for model in study.hierarchy
         ],
         "scenes": [_scene(found, scene) for scene in study.scenes],
-        "errata": [
+        "errata": None
+        if "errata" in found.absent
+        else [
             {
                 "where": erratum.where,
                 "printed": erratum.printed,

@@ -24,15 +24,26 @@ def summary_text(found: Findings) -> str:
     kinds += ["one value under each recorded motion"] if len(study.phased) < count else []
     heading = f"## Phase-resonance study: {count} scene{'' if count == 1 else 's'}, {', '.join(kinds)}"
     parts = [heading, _limits(found), *_unanswered(found), _verdicts(found)]
-    parts += [*_differences(found), *_budget(found), *_lost(found)]
-    shown = "Surfaces to turn, motions" if study.phased else "Motions"
+    parts += _differences(found) if "differences" not in found.absent else []
+    parts += _budget(found) if "budget" not in found.absent else []
+    parts += _lost(found)
+    sections = [
+        name
+        for analysis, name in (
+            ("surfaces", "surfaces to turn" if study.phased else ""),
+            ("trajectories", "motions"),
+            ("assumptions", "assumptions"),
+        )
+        if name and analysis not in found.absent
+    ]
+    shown = ", ".join([*sections, "tables"]) + " and provenance"
     made = ", ".join(
         f"{name} {run['provenance'][name]}" for name in ("commit", "exudyn", "numba") if name in run["provenance"]
     )
     parts.append(
         "The two codes are cross-verified, not validated: no measurement is involved.  \n"
         f"{_code(run['command'])}: {run['seconds']} s with {run['jobs']} workers, began {run['began']}; {made}. "
-        f"{shown}, assumptions and provenance: `index.html` of the report."
+        f"{shown[0].upper()}{shown[1:]}: `index.html` of the report."
     )
     return "\n\n".join(parts) + "\n"
 
@@ -72,7 +83,7 @@ def _differences(found: Findings) -> list[str]:
             percent(row.beyond_error),
             f"{row.unanswered} of {row.asked}",
         ]
-        for row in found.rows
+        for row in found.rows_of("differences", found.rows)
     ]
     names = ["scene", "body", "difference", "median", "95 %", "maximum", "at (α₁, α₂)", "beyond u_D", "no value"]
     return ["### Differences", _table(names, rows, left=3)]
@@ -82,7 +93,7 @@ def _budget(found: Findings) -> list[str]:
     study = found.study
     models = [model for model in study.hierarchy[1:] if any(model.applies(scene) for scene in study.scenes)]
     rows = []
-    for scene in study.scenes:
+    for scene in found.selection.study(study, "budget").scenes:
         for body in range(1, len(scene.bodies) + 1):
             one = bar(study, found.surfaces, scene, body)
             sizes = {segment.model: percent(segment.size) for segment in one.segments}

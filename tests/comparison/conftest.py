@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from fake_models import fake_hierarchy, known_motions
-from known_further import known_further
+from known_claims_and_trends import known_claims_and_trends
 from PIL import Image
 
 import comparison.run
@@ -50,7 +50,7 @@ def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pyte
         monkeypatch.setattr(pictures, name, quick_figure)
     monkeypatch.setattr(comparison.run, "errata_effects", lambda *rest: [])  # it asks no model of the hierarchy
     monkeypatch.setattr(comparison.run, "stored_motions", lambda *rest: [])
-    monkeypatch.setattr(comparison.run, "further_findings", lambda *rest: {})
+    monkeypatch.setattr(comparison.run, "claims_and_trends", lambda *rest: {})
     without_tasks(monkeypatch)
 
     def run(
@@ -77,6 +77,6 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
         without_tasks(patch)
         patch.setattr(comparison.run, "errata_effects", lambda *rest: effects)
         patch.setattr(comparison.run, "stored_motions", known_motions)
-        patch.setattr(comparison.run, "further_findings", known_further)
+        patch.setattr(comparison.run, "claims_and_trends", known_claims_and_trends)
         assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
     return place

@@ -184,7 +184,7 @@ def test_surfaces_without_any_value_are_said_to_have_none(
     without_tasks(monkeypatch)
     monkeypatch.setattr(comparison.run, "errata_effects", lambda *rest: [])
     monkeypatch.setattr(comparison.run, "stored_motions", lambda *rest: [])
-    monkeypatch.setattr(comparison.run, "further_findings", lambda *rest: {})
+    monkeypatch.setattr(comparison.run, "claims_and_trends", lambda *rest: {})
     hierarchy = silenced(*(model.key for model in fake_hierarchy()))
     words = ["fig3-I", "--grid", "2", "--jobs", "2", "--out", str(tmp_path / "report")]
     assert comparison.run.main(words, hierarchy, ThreadPoolExecutor) == 0

@@ -105,7 +105,7 @@ def test_the_page_shows_the_table_and_the_motions_of_a_record_without_a_click(tm
         without_tasks(patch)
         patch.setattr(comparison.run, "errata_effects", lambda *rest: [])
         patch.setattr(comparison.run, "stored_motions", known_motions)
-        patch.setattr(comparison.run, "further_findings", lambda *rest: {})
+        patch.setattr(comparison.run, "claims_and_trends", lambda *rest: {})
         words = [*example_scenes(), "--grid", "4", "--jobs", "1", "--out", str(place)]
         assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
     with sync_playwright() as driver:

@@ -20,6 +20,7 @@ from comparison.report.figures.file_names import with_ending
 from comparison.report.figures.pairs import draw_pair, figure_name
 from comparison.report.figures.paper import draw_paper_figure, paper_figure_name
 from comparison.study.models import Pair
+from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.study import Study
 from reference.problem import Outcome, Scene
 
@@ -50,26 +51,30 @@ class Picture:
 Files = tuple[tuple[str, bytes], ...]  # names and contents
 
 
-def pictures(study: Study, surfaces: xr.Dataset) -> list[Picture]:
-    """Every picture of the study: a scene without phases has no surfaces."""
+def pictures(study: Study, surfaces: xr.Dataset, selection: Selection = EVERYTHING) -> list[Picture]:
+    """Every picture of the selected sections: a scene without phases has no surfaces."""
     found = []
     for scene in study.phased:
         silent = {scene.name: (study.silent or {}).get(scene.name, ())}
-        own = replace(study, scenes=(scene,), costs=None, silent=silent)
+        alone = replace(study, scenes=(scene,), costs=None, silent=silent)
         shown = surfaces[SHOWN].sel(scene=[scene.name])
-        found.append(Picture("paper", own, shown))
+        with_surfaces, with_budget = (selection.has(section, scene.name) for section in ("surfaces", "budget"))
+        if with_surfaces:
+            found.append(Picture("paper", alone, shown))
         for body in range(1, len(scene.bodies) + 1):
-            found += [Picture("pair", own, shown, body, pair) for pair in study.pairs(scene)]
-            found.append(Picture("budget", own, shown, body))
+            if with_surfaces:
+                found += [Picture("pair", alone, shown, body, pair) for pair in study.pairs(scene)]
+            if with_budget:
+                found.append(Picture("budget", alone, shown, body))
     return found
 
 
-def picture_tasks(study: Study, surfaces: xr.Dataset) -> list[Task]:
+def picture_tasks(study: Study, surfaces: xr.Dataset, selection: Selection = EVERYTHING) -> list[Task]:
     """The same as tasks for the workers."""
     about = {scene.name: fingerprint(surfaces[SHOWN].sel(scene=[scene.name])) for scene in study.scenes}
     return [
         Task("pictures", drawn, picture, SECONDS[picture.kind], about[picture.scene.name], compiled=False)
-        for picture in pictures(study, surfaces)
+        for picture in pictures(study, surfaces, selection)
     ]
 
 
@@ -104,9 +109,15 @@ def smaller(png: bytes) -> bytes:
     return found.getvalue()
 
 
-def all_drawn(study: Study, surfaces: xr.Dataset, jobs: int, executor: Callable[[int], Executor]) -> dict[str, bytes]:
+def all_drawn(
+    study: Study,
+    surfaces: xr.Dataset,
+    jobs: int,
+    executor: Callable[[int], Executor],
+    selection: Selection = EVERYTHING,
+) -> dict[str, bytes]:
     """Every file of every picture by its name, drawn on `executor(jobs)`; what fails there is drawn here."""
-    asked = pictures(study, surfaces)
+    asked = pictures(study, surfaces, selection)
     found = sweep(asked, drawn, _lost, lambda picture, files: None, jobs, executor)
     return {name: content for picture, files in zip(asked, found) for name, content in files or drawn(picture)}
 

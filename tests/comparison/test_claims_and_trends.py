@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 
-from comparison.analysis import further
-from comparison.analysis.further import claims_summary, further_findings, trends_summary
+from comparison.analysis import claims_and_trends as module
+from comparison.analysis.claims_and_trends import claims_and_trends, claims_summary, trends_summary
 from comparison.study.study import Study
 from reference.problem import builtin_scenes, load_scene
 
@@ -60,13 +60,13 @@ def test_the_summary_has_them_without_nan(finished: Path) -> None:
 
 
 def test_claims_are_tested_only_where_every_scene_of_the_paper_is_studied(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(further, "claims_tested", lambda *rest: "claims")
+    monkeypatch.setattr(module, "claims_tested", lambda *rest: "claims")
     for name in ("scaling_trends", "convergence_trends"):
-        monkeypatch.setattr(further, name, lambda study, *rest: [scene.name for scene in study.scenes])
+        monkeypatch.setattr(module, name, lambda study, *rest: [scene.name for scene in study.scenes])
     every = Study(tuple(load_scene(name) for name in builtin_scenes()), 4, 1e-3)
-    assert further_findings(every, 1, ThreadPoolExecutor)["claims"] == "claims"
+    assert claims_and_trends(every, 1, ThreadPoolExecutor)["claims"] == "claims"
     one = Study((load_scene("fig3-I"),), 4, 1e-3)
-    found = further_findings(one, 1, ThreadPoolExecutor)
+    found = claims_and_trends(one, 1, ThreadPoolExecutor)
     assert found == {"claims": None, "scaling": ["fig3-I"], "convergence": ["fig3-I"]}
 
 

@@ -15,7 +15,7 @@ from comparison.analysis.trends import trend
 SCALES = (1.0, 0.5, 0.25)
 
 
-def known_further(*rest: object) -> dict[str, Any]:
+def known_claims_and_trends(*rest: object) -> dict[str, Any]:
     """Three claims under two readings; one trend that falls like s^2 and one that is nothing but noise."""
     held, drawn = Verdict(Finding.REPRODUCED, "periodic 4 and 3"), Verdict(Finding.AS_DRAWN, "drawn 4 and 3")
     no, unanswered = Verdict(Finding.NOT, "|x_2 - y_2| up to 0"), Verdict(Finding.OPEN, "fig3-I: rim reached")

@@ -11,14 +11,16 @@ from comparison.analysis.scaling import scaling_trends
 from comparison.analysis.tasks import paper_complete
 from comparison.analysis.trends import Trend
 from comparison.execution.executors import Pool
+from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.study import Study
 
 
-def further_findings(study: Study, jobs: int, executor: Pool) -> dict[str, Any]:
+def claims_and_trends(study: Study, jobs: int, executor: Pool, selection: Selection = EVERYTHING) -> dict[str, Any]:
     """Fields of `Findings`: claims (None unless the study has every scene of the paper), scaling, convergence."""
-    claims = claims_tested(jobs, executor) if paper_complete(study) else None
-    scaling = scaling_trends(study, jobs, executor) if study.phased else None
-    convergence = convergence_trends(study, jobs, executor) if study.phased else None
+    scaled, limited = selection.study(study, "scaling"), selection.study(study, "convergence")
+    claims = claims_tested(jobs, executor) if paper_complete(selection.study(study, "claims")) else None
+    scaling = scaling_trends(scaled, jobs, executor) if scaled.phased else None
+    convergence = convergence_trends(limited, jobs, executor) if limited.phased else None
     return {"claims": claims, "scaling": scaling, "convergence": convergence}
 
 
