@@ -91,7 +91,7 @@ def _beyond(values: Sequence[tuple[int, float]], allowed: float) -> Faults:
 
 def _same(study: Study, scene: Scene, pair: str) -> str:
     """The pair under which a study compares these models: the translational difference may be the total one."""
-    compared = {one.key: one for one in study.pairs(scene)}
+    compared = {pair.key: pair for pair in study.pairs(scene)}
     engines = [model.key for model in study.compared(scene) if model.side == "engine"]
     alone = pair == "translational" and pair not in compared and engines == [compared["total"].second.key]
     return "total" if alone else pair

@@ -53,16 +53,16 @@ def trends_summary(trends: Sequence[Trend] | None) -> list[dict[str, Any]] | Non
         return None
     return [
         {
-            "scene": one.scene,
-            "body": one.body,
-            "what": one.what,
-            "parameter": list(one.parameter),
-            "medians": one.medians,
-            "exponent": one.slope.exponent,
-            "uncertainty": one.slope.uncertainty,
-            "points": one.slope.points,
-            "expected": one.expected,
-            "verdict": one.verdict,
+            "scene": trend.scene,
+            "body": trend.body,
+            "what": trend.what,
+            "parameter": list(trend.parameter),
+            "medians": trend.medians,
+            "exponent": trend.slope.exponent,
+            "uncertainty": trend.slope.uncertainty,
+            "points": trend.slope.points,
+            "expected": trend.expected,
+            "verdict": trend.verdict,
         }
-        for one in trends
+        for trend in trends
     ]

@@ -180,7 +180,7 @@ def convergence_arguments(study: Study) -> list[Arguments]:
 def convergence_trends(study: Study, jobs: int, executor: Pool = process_pool) -> list[Trend]:
     """Every limit in every scene that has it, for each body, computed on `executor`; in the order of LIMITS."""
     found = sweep(convergence_arguments(study), limit_trends, _lost, lambda task, trends: None, jobs, executor)
-    return [one for trends in found for one in trends]
+    return [trend for trends in found for trend in trends]
 
 
 def limit_trends(task: Arguments) -> list[Trend]:

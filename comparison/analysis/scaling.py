@@ -49,7 +49,7 @@ def scaling_arguments(study: Study) -> list[Arguments]:
 def scaling_trends(study: Study, jobs: int, executor: Pool = process_pool) -> list[Trend]:
     """The trends of every scene and body, for the supremum and the resolved peak, computed on `executor`."""
     found = sweep(scaling_arguments(study), scene_trends, _lost, lambda task, trends: None, jobs, executor)
-    return [one for trends in found for one in trends]
+    return [trend for trends in found for trend in trends]
 
 
 def scene_trends(task: Arguments) -> list[Trend]:

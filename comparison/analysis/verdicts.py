@@ -97,7 +97,9 @@ def _cause(hierarchy: Sequence[Step], place: tuple[int, int]) -> tuple[str, floa
     sizes = [
         (step.second.title, float(step.size[place[0] // step.stride, place[1] // step.stride])) for step in hierarchy
     ]
-    return max((one for one in sizes if np.isfinite(one[1])), key=lambda one: abs(one[1]), default=("", float("nan")))
+    return max(
+        (size for size in sizes if np.isfinite(size[1])), key=lambda one: abs(one[1]), default=("", float("nan"))
+    )
 
 
 def _heights(surfaces: xr.Dataset, scene: str, total: Step, place: tuple[int, int]) -> tuple[float, float, float]:

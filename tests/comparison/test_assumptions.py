@@ -43,7 +43,7 @@ def _said(cells: Sequence[Cell], key: str, share: float = 0.01) -> tuple[float |
 
 
 def test_there_are_the_papers_six_assumptions_in_order() -> None:
-    assert [one.number for one in ASSUMPTIONS] == ["(i)", "(ii)", "(iii)", "(iv)", "(v)", "(vi)"]
+    assert [assumption.number for assumption in ASSUMPTIONS] == ["(i)", "(ii)", "(iii)", "(iv)", "(v)", "(vi)"]
 
 
 def test_a_variation_changes_ring_heights_and_supports_and_nothing_else() -> None:
@@ -58,8 +58,12 @@ def test_a_variation_changes_ring_heights_and_supports_and_nothing_else() -> Non
 @pytest.mark.parametrize("variations", [FEW, MANY])
 def test_ring_and_heights_are_both_varied_about_what_the_scene_states(variations: Sequence[Variation]) -> None:
     assert Variation() in variations
-    assert len({one.ring for one in variations if one.height == 1.0 and one.supports is None}) >= 4
-    assert len({one.height for one in variations if one.ring == 1.0 and one.supports is None}) >= 4
+    assert (
+        len({variation.ring for variation in variations if variation.height == 1.0 and variation.supports is None}) >= 4
+    )
+    assert (
+        len({variation.height for variation in variations if variation.ring == 1.0 and variation.supports is None}) >= 4
+    )
 
 
 def test_a_ring_holds_only_if_every_wider_one_tried_does() -> None:

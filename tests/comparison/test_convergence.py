@@ -64,9 +64,9 @@ def test_the_order_in_v_reg_is_that_of_the_law(monkeypatch: pytest.MonkeyPatch, 
     for number in (0, 2):  # the equations and the engine, against the resolved peak
         trends = list(limit_trends((load_scene("fig3-I"), number)))
         assert trends
-        for found in trends:
-            assert found.verdict == says
-            assert found.slope.exponent == pytest.approx(power, abs=1e-6)
+        for trend in trends:
+            assert trend.verdict == says
+            assert trend.slope.exponent == pytest.approx(power, abs=1e-6)
 
 
 def test_a_limit_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -74,7 +74,7 @@ def test_a_limit_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
         raise RuntimeError("no engine")
 
     monkeypatch.setattr(convergence, "LIMITS", [replace(LIMITS[4], measure=broken)])
-    assert [one.verdict for one in limit_trends((load_scene("fig3-I"), 0))] == [
+    assert [limit_trend.verdict for limit_trend in limit_trends((load_scene("fig3-I"), 0))] == [
         "solver failed: RuntimeError: no engine"
     ] * 2
 

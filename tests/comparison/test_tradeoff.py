@@ -33,11 +33,11 @@ def scene() -> Scene:
 def trade(scene: Scene) -> Trade:
     """The quick trade, without what is dear, in this process."""
     dear = "Exudyn", "Radau", "DOP853"
-    kept = [one for one in settings(scene, quick=True) if not any(name in one.method for name in dear)]
+    kept = [setting for setting in settings(scene, quick=True) if not any(name in setting.method for name in dear)]
     kept = [one for one in kept if one.question != "spatial"]
     patch = pytest.MonkeyPatch()
     patch.setattr(measure, "settings", lambda scene, quick: kept)
-    patch.setattr(measure, "asked", lambda scene: [one for one in QUESTIONS if one.key != "spatial"])
+    patch.setattr(measure, "asked", lambda scene: [question for question in QUESTIONS if question.key != "spatial"])
     patch.setattr(measure, "sweep", lambda work, solve, *rest: [solve(task) for task in work])
     found, _ = measured(scene, True, 1, {"command": "here", "provenance": {}})
     patch.undo()
@@ -70,7 +70,11 @@ def test_a_setting_that_leaves_points_without_a_value_or_solves_another_model_is
     other = replace(
         entry(setting, Found(reference_solution, reference_solution, 0.1, np.nan), reference_solution), model_error=True
     )
-    assert [one.pareto_front for one in with_pareto_fronts([good, lost, other], 1)] == [(True,), (False,), (False,)]
+    assert [with_pareto_front.pareto_front for with_pareto_front in with_pareto_fronts([good, lost, other], 1)] == [
+        (True,),
+        (False,),
+        (False,),
+    ]
     assert lost.answered == 2
 
 
@@ -83,7 +87,7 @@ def test_the_error_of_the_reference_falls_with_its_tolerance(trade: Trade, quest
 
 
 def test_every_error_estimate_of_the_reference_holds_at_95_percent_of_the_points(trade: Trade) -> None:
-    own = [one for one in trade.entries if one.controlled and one.method.startswith("reference")]
+    own = [entry for entry in trade.entries if entry.controlled and entry.method.startswith("reference")]
     assert own
     for one in own:
         for error, error_estimate in zip(one.most, one.error_estimate, strict=True):
@@ -96,7 +100,7 @@ def test_scipy_and_the_engine_tend_to_the_truth_of_the_reference(trade: Trade) -
         own = [one for one in trade.of("regularised") if one.method.startswith(method)]
         assert max(own[-1].most) < within
         assert max(own[-1].most) < 0.1 * max(own[0].most)
-    checks = next(one.checks for one in trade.questions if one.key == "regularised")
+    checks = next(question.checks for question in trade.questions if question.key == "regularised")
     assert any("SciPy LSODA" in line for line in checks)
     assert any("translational engine" in line for line in checks)
 

@@ -98,7 +98,7 @@ class ValidityRanges:
     def listed(self) -> dict[str, Any]:
         """For summary.json: assumptions, phase pairs, duration, every cell and every range."""
         return {
-            "assumptions": [asdict(one) for one in self.assumptions],
+            "assumptions": [asdict(assumption) for assumption in self.assumptions],
             "phases": [list(pair) for pair in self.phases],
             "duration": self.duration,
             "cells": [asdict(cell) for cell in self.cells],
