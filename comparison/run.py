@@ -145,8 +145,8 @@ def _run(
     store.trim(keys)
     if options.fresh:
         store.forget(keys)
-    known = TaskCache(store, options.fresh)
-    done = computed(study, store, console, options.jobs, executor, analysis_tasks(study, selection), known)
+    cached = TaskCache(store, options.fresh)
+    done = computed(study, store, console, options.jobs, executor, analysis_tasks(study, selection), cached)
     seconds, answers = time.monotonic() - begin, done.answers
     surfaces = labeled_surfaces(study, batches, answers)
     study = with_silent_models(study, surfaces)
@@ -154,18 +154,18 @@ def _run(
     tasks += drawing.picture_tasks(study, surfaces, selection)
     if tasks:
         console.print("Computing a few motions and drawing the figures of the report.")
-    fetched(tasks, known, console, options.jobs, executor)
-    executor = known.on(executor)  # what the analyses ask has been fetched
+    fetched(tasks, cached, console, options.jobs, executor)
+    executor = cached.on(executor)  # what the analyses ask has been fetched
     pictures = drawing.all_drawn(study, surfaces, options.jobs, executor, selection)
     effective = effective_values(selection.study(study, "effective"), options.jobs, executor)
     effects = errata_effects(selection.study(study, "errata"), options.jobs, executor)
-    more = _more(study, selection, surfaces, options, executor)
+    optional = _more(study, selection, surfaces, options, executor)
     stored = {"extremes": stored_extremes, "tradeoff": stored_trades}
     absent = selection.absent(study)
-    beside = {name: _taken_up(load, options.out) for name, load in stored.items() if name not in absent}
+    stored_tables = {name: _taken_up(load, options.out) for name, load in stored.items() if name not in absent}
     families = [family for family in options.families if len(family.scenes) > 1] or None
     titles = {model.key: model.title for model in study.hierarchy}
-    faults = sorted(
+    error_messages = sorted(
         {
             f"{batch.scene.name}, {titles[batch.model]}: {a.error_message}"
             for batch, a in zip(batches, answers)
@@ -182,37 +182,37 @@ def _run(
         "tiles_stored_before": done.stored,
         "parts": {
             stage: {"tasks": part.tasks, "stored_before": part.stored, "seconds": round(part.seconds, 2)}
-            for stage, part in known.parts.items()
+            for stage, part in cached.parts.items()
         },
         "jobs": options.jobs,
         "choice": targets_met(plan, options.tolerance, options.budget, surfaces) if options.by_trade else None,
         "provenance": provenance(),
     }
     of_run = {"families": families, "pictures": pictures, "selection": selection}
-    found = findings(study, surfaces, effective, effects, faults, run, **of_run, **beside, **more)
+    results = findings(study, surfaces, effective, effects, error_messages, run, **of_run, **stored_tables, **optional)
     console.print("Writing the report.")
     with writing(options.out), atomic_replace(options.out) as report:
-        write_report(report.folder, found)
-    for line in faults:
+        write_report(report.folder, results)
+    for line in error_messages:
         print(f"solver: {line}", file=sys.stderr)
     for line in wide_swings(study, surfaces):
         print(f"note: {line}", file=sys.stderr)
-    for line in _checked(found) if options.check else []:
+    for line in _checked(results) if options.check else []:
         print(line, file=sys.stderr)
     if options.by_trade:
         print_targets_met(console, run["choice"], time.monotonic() - begin)
-    print_unanswered(console, found.unanswered)
+    print_unanswered(console, results.unanswered)
     place = options.out if report.place == options.out.resolve() else report.place
     _print_closing(console, options, place, run, time.monotonic() - begin, bool(study.phased))
-    print_differences(console, found.rows_of("differences", found.rows), bool(study.phased))
-    return 1 if options.check and found.broken else 0
+    print_differences(console, results.rows_of("differences", results.rows), bool(study.phased))
+    return 1 if options.check and results.broken else 0
 
 
-def _checked(found: Findings) -> list[str]:
+def _checked(results: Findings) -> list[str]:
     """What `--check` says: every broken limit, and the scenes that state none."""
-    limited = {limit.scene for limit in found.limits}
-    unlimited = [scene.name for scene in found.study.scenes if scene.name not in limited]
-    lines = [f"limit broken: {line}" for line in found.broken]
+    limited = {limit.scene for limit in results.limits}
+    unlimited = [scene.name for scene in results.study.scenes if scene.name not in limited]
+    lines = [f"limit broken: {line}" for line in results.broken]
     if unlimited:
         which = "no scene states" if not limited else f"{', '.join(unlimited)}: no limits are stated under"
         lines.append(f"--check: {which} [acceptance]{' limits' if not limited else ''}: nothing was checked")

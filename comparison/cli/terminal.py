@@ -59,8 +59,8 @@ def print_plan(console: Console, study: Study, options: Options, selection: Sele
     console.print(f"{over}{options.jobs} worker processes: about {wall:.0f} s.")
     store, batches = Cache(store_beside(options.out)), study.batches()
     if not options.fresh and (stored := sum(store.holds(batch_key(batch)) for batch in batches)):
-        asked, known = analysis_tasks(study, selection), TaskCache(store)
-        analyses = f"{sum(map(known.holds, asked))} of {len(asked)} analyses"
+        asked, cached = analysis_tasks(study, selection), TaskCache(store)
+        analyses = f"{sum(map(cached.holds, asked))} of {len(asked)} analyses"
         console.print(
             f"{stored} of {len(batches)} batches are in {store.folder} already, {analyses}: "
             "they are not computed again."

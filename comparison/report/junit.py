@@ -12,22 +12,22 @@ from reference.problem import Scene
 FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # what XML 1.0 cannot hold
 
 
-def junit(found: Findings) -> str:
+def junit(findings: Findings) -> str:
     """The acceptance limits of every scene as JUnit XML; a broken limit is a failure with its line as the message."""
     suites = ElementTree.Element("testsuites", name="phase-resonance acceptance limits")
-    for scene in found.study.scenes:
-        suites.append(_suite(scene, found))
+    for scene in findings.study.scenes:
+        suites.append(_suite(scene, findings))
     for key in ("tests", "failures"):
         suites.set(key, str(sum(int(suite.get(key, "0")) for suite in suites)))
     ElementTree.indent(suites)
     return ElementTree.tostring(suites, encoding="unicode", xml_declaration=True) + "\n"
 
 
-def _suite(scene: Scene, found: Findings) -> ElementTree.Element:
-    seconds = float(found.surfaces["cost"].sel(scene=scene.name).sum())
-    name, began = _allowed(scene.name), str(found.run["began"])
+def _suite(scene: Scene, findings: Findings) -> ElementTree.Element:
+    seconds = float(findings.surfaces["cost"].sel(scene=scene.name).sum())
+    name, began = _allowed(scene.name), str(findings.run["began"])
     suite = ElementTree.Element("testsuite", name=name, time=f"{seconds:.1f}", timestamp=began)
-    limits = [limit for limit in found.limits if limit.scene == scene.name]
+    limits = [limit for limit in findings.limits if limit.scene == scene.name]
     suite.extend([_case(name, limit) for limit in limits])
     suite.set("tests", str(len(limits)))
     suite.set("failures", str(len(suite.findall("testcase/failure"))))

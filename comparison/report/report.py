@@ -66,21 +66,21 @@ class Section:
     draw: Callable[[Path, Findings], None] | None = None
     title_recorded: str = ""
 
-    def present(self, found: Findings) -> bool:
+    def present(self, findings: Findings) -> bool:
         """Whether the section was asked for and the findings hold what it shows."""
-        return self.name not in found.absent and (not self.finding or getattr(found, self.finding) is not None)
+        return self.name not in findings.absent and (not self.finding or getattr(findings, self.finding) is not None)
 
 
-def draw_all_assumptions(figures: Path, found: Findings) -> None:
+def draw_all_assumptions(figures: Path, findings: Findings) -> None:
     """The picture of every scene that has a spatial model."""
-    if found.assumptions:
-        for scene in found.assumptions.scenes:
-            draw_assumptions(figures / assumption_figure_name(scene), scene, found.assumptions.cells)
+    if findings.assumptions:
+        for scene in findings.assumptions.scenes:
+            draw_assumptions(figures / assumption_figure_name(scene), scene, findings.assumptions.cells)
 
 
-def draw_all_trades(figures: Path, found: Findings) -> None:
+def draw_all_trades(figures: Path, findings: Findings) -> None:
     """The diagrams of every scene that has them."""
-    for trade in found.tradeoff or ():
+    for trade in findings.tradeoff or ():
         draw_tradeoff(figures / tradeoff_figure_name(trade.scene), trade)
 
 
@@ -123,7 +123,7 @@ SECTIONS = (
         "Stability at the extremes",
         "extremes",
         "python -m comparison.extremes makes it, beside the report; the next run of the study shows it",
-        lambda figures, found: draw_extremes(figures / PICTURE, found.extremes) if found.extremes else None,
+        lambda figures, findings: draw_extremes(figures / PICTURE, findings.extremes) if findings.extremes else None,
     ),
     Section(
         "tradeoff",
@@ -139,28 +139,28 @@ SECTIONS = (
 SCRIPTS = ("motions.js", "surfaces.js", "report.js")
 
 
-def write_report(folder: Path, found: Findings) -> None:
+def write_report(folder: Path, findings: Findings) -> None:
     """Write every file of the report into `folder`, which exists and is empty."""
-    run = found.run
-    stamped = found.surfaces.assign_attrs(command=run["command"], **run["provenance"])
+    run = findings.run
+    stamped = findings.surfaces.assign_attrs(command=run["command"], **run["provenance"])
     stamped.to_netcdf(folder / "surfaces.nc", engine="h5netcdf")
-    text = json.dumps(summary(found), indent=1, ensure_ascii=False, allow_nan=False)
+    text = json.dumps(summary(findings), indent=1, ensure_ascii=False, allow_nan=False)
     (folder / "summary.json").write_text(text, encoding="utf-8")
-    (folder / "summary.md").write_text(summary_text(found), encoding="utf-8")
-    (folder / "junit.xml").write_text(junit(found), encoding="utf-8")
+    (folder / "summary.md").write_text(summary_text(findings), encoding="utf-8")
+    (folder / "junit.xml").write_text(junit(findings), encoding="utf-8")
     figures = folder / "figures"
     figures.mkdir()
-    for name, content in found.pictures.items():
+    for name, content in findings.pictures.items():
         if not name.endswith(PAGE):
             (figures / name).write_bytes(content)
     for section in SECTIONS:
-        if section.draw and section.present(found):
-            section.draw(figures, found)
-    (folder / "index.html").write_text(_page(figures, found), encoding="utf-8")
+        if section.draw and section.present(findings):
+            section.draw(figures, findings)
+    (folder / "index.html").write_text(_page(figures, findings), encoding="utf-8")
 
 
-def _page(figures: Path, found: Findings) -> str:
-    study = found.study
+def _page(figures: Path, findings: Findings) -> str:
+    study = findings.study
     templates = resources.files("comparison.report") / "templates"
     loader = jinja2.PackageLoader("comparison.report", "templates")
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
@@ -170,13 +170,13 @@ def _page(figures: Path, found: Findings) -> str:
     page = environment.get_template("report.html.j2")
     hierarchy = [model for model in study.hierarchy if any(model.applies(scene) for scene in study.scenes)]
     return page.render(
-        sections=[section for section in SECTIONS if section.present(found)],
+        sections=[section for section in SECTIONS if section.present(findings)],
         absent=[
-            (section.title, found.absent.get(section.name, section.absent))
+            (section.title, findings.absent.get(section.name, section.absent))
             for section in SECTIONS
-            if not section.present(found)
+            if not section.present(findings)
         ],
-        found=found,
+        findings=findings,
         figure_names={
             "assumptions": assumption_figure_name,
             "family": family_figure_name,
@@ -184,8 +184,8 @@ def _page(figures: Path, found: Findings) -> str:
         },
         picture=lambda name: _inlined(smaller((figures / name).read_bytes())),
         study=study,
-        run=found.run,
-        scenes=[_scene(found, number, scene) for number, scene in enumerate(study.scenes)],
+        run=findings.run,
+        scenes=[_scene(findings, number, scene) for number, scene in enumerate(study.scenes)],
         question=_question(study),
         compared=_compared(study),
         section_titles={s.name: s.title if study.phased else s.title_recorded or s.title for s in SECTIONS},
@@ -194,11 +194,11 @@ def _page(figures: Path, found: Findings) -> str:
         step_numbers={model.key: number for number, model in enumerate(hierarchy)},
         titles={"scene": "as stated", **{model.key: model.title for model in study.hierarchy}},
         properties=_properties(hierarchy),
-        rows=found.rows_of("differences", found.rows),
-        budget=found.rows_of("budget", found.budget),
-        effective=found.effective,
+        rows=findings.rows_of("differences", findings.rows),
+        budget=findings.rows_of("budget", findings.budget),
+        effective=findings.effective,
         phases=PHASES,
-        errata=_errata(found),
+        errata=_errata(findings),
         checks=CHECKS,
         claim_signs=SIGNS,
         verdicts=[(verdict.value, COLORS[verdict], MEANING[verdict]) for verdict in Verdict],
@@ -206,15 +206,15 @@ def _page(figures: Path, found: Findings) -> str:
         digests={scene.digest() for scene in study.scenes},
         peak_share=SHARE,
         peak_shares=(LEAST_SHARE, MOST_SHARE),
-        outcomes=_outcomes(study, found.surfaces),
-        broken=found.broken,
-        faults=found.faults,
-        wide_swings=wide_swings(study, found.surfaces),
+        outcomes=_outcomes(study, findings.surfaces),
+        broken=findings.broken,
+        faults=findings.faults,
+        wide_swings=wide_swings(study, findings.surfaces),
         style=(templates / "report.css").read_text(encoding="utf-8"),
         scripts=[(templates / name).read_text(encoding="utf-8") for name in SCRIPTS],
         plotly=packed(get_plotlyjs().encode()),
-        motions=packed_motions(found),
-        data=page_data(found),
+        motions=packed_motions(findings),
+        data=page_data(findings),
     )
 
 
@@ -232,28 +232,28 @@ def _compared(study: Study) -> str:
     return sentences.pop() if len(sentences) == 1 else "the first against the last model that has values, in each scene"
 
 
-def _scene(found: Findings, number: int, scene: Scene) -> dict[str, Any]:
-    pairs = found.study.pairs(scene)
-    with_surfaces, with_budget = (found.selection.has(section, scene.name) for section in ("surfaces", "budget"))
-    own = [row for row in found.rows if row.scene == scene.name]
+def _scene(findings: Findings, number: int, scene: Scene) -> dict[str, Any]:
+    pairs = findings.study.pairs(scene)
+    with_surfaces, with_budget = (findings.selection.has(section, scene.name) for section in ("surfaces", "budget"))
+    own = [row for row in findings.rows if row.scene == scene.name]
     return {
         "number": number,
         "scene": scene,
         "surfaces": with_surfaces,
         "budget": with_budget,
         "digest": scene.digest(),
-        "verdict": verdict(found.study, found.surfaces, scene),
+        "verdict": verdict(findings.study, findings.surfaces, scene),
         "verdicts": [_verdict(pair, [row for row in own if row.pair == pair.key], scene.recorded) for pair in pairs],
         "bodies": [
             {
                 "number": body,
-                "bar": bar(found.study, found.surfaces, scene, body),
-                "record": record_rows(found, scene, body),
+                "bar": bar(findings.study, findings.surfaces, scene, body),
+                "record": record_rows(findings, scene, body),
                 "pictures": [
-                    {"pair": pair, "png": _inlined(found.pictures[for_page(figure_name(scene, body, pair))])}
+                    {"pair": pair, "png": _inlined(findings.pictures[for_page(figure_name(scene, body, pair))])}
                     for pair in (pairs if with_surfaces and not scene.recorded else [])
                 ],
-                "budget": _budget(found, scene, body) if with_budget else "",
+                "budget": _budget(findings, scene, body) if with_budget else "",
             }
             for body in range(1, len(scene.bodies) + 1)
         ],
@@ -277,9 +277,9 @@ def _verdict(pair: Pair, rows: Sequence[Difference], recorded: bool) -> str:
     )
 
 
-def _budget(found: Findings, scene: Scene, body: int) -> str:
+def _budget(findings: Findings, scene: Scene, body: int) -> str:
     """The picture of the budget over the phases, of which a recorded motion has none."""
-    return "" if scene.recorded else _inlined(found.pictures[for_page(budget_figure_name(scene, body))])
+    return "" if scene.recorded else _inlined(findings.pictures[for_page(budget_figure_name(scene, body))])
 
 
 def _inlined(webp: bytes) -> str:
@@ -298,12 +298,14 @@ def _properties(hierarchy: Sequence[Any]) -> list[dict[str, Any]]:
     return table
 
 
-def _errata(found: Findings) -> list[dict[str, Any]]:
+def _errata(findings: Findings) -> list[dict[str, Any]]:
     """The errata with one sentence each about their largest effect in every scene they touch."""
     rows = []
     for number, erratum in enumerate(ERRATA):
         effects = [
-            effect for effect in found.effects if effect.erratum == number and (effect.change or effect.error_message)
+            effect
+            for effect in findings.effects
+            if effect.erratum == number and (effect.change or effect.error_message)
         ]
         rows.append(
             {

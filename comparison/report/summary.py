@@ -20,26 +20,26 @@ SCHEMA = "phase-resonance/summary"
 VERSION = 3
 
 
-def summary(found: Findings) -> dict[str, Any]:
+def summary(findings: Findings) -> dict[str, Any]:
     """
     Everything a program needs to judge a run without the report. NaN is written as null.
 
     Every key stands with its meaning in summary.schema.json.
     """
-    study = found.study
+    study = findings.study
     return {
         "schema": SCHEMA,
         "version": VERSION,
-        "run": dict(found.run),
+        "run": dict(findings.run),
         "grid": study.grid,
         "tolerance": study.tolerance,
         "models": [
             {"key": model.key, "title": model.title, "adds": model.adds, "settings": dict(model.settings)}
             for model in study.hierarchy
         ],
-        "scenes": [_scene(found, scene) for scene in study.scenes],
+        "scenes": [_scene(findings, scene) for scene in study.scenes],
         "errata": None
-        if "errata" in found.absent
+        if "errata" in findings.absent
         else [
             {
                 "where": erratum.where,
@@ -47,17 +47,17 @@ def summary(found: Findings) -> dict[str, Any]:
                 "corrected": erratum.corrected,
                 "why": erratum.why,
                 "none": erratum.none,
-                "effects": [_finite(asdict(effect)) for effect in found.effects if effect.erratum == number],
+                "effects": [_finite(asdict(effect)) for effect in findings.effects if effect.erratum == number],
             }
             for number, erratum in enumerate(ERRATA)
         ],
-        "assumptions": found.assumptions and _finite(found.assumptions.listed()),
-        "claims": claims_summary(found.claims),
-        "scaling": _finite(trends_summary(found.scaling)),
-        "convergence": _finite(trends_summary(found.convergence)),
-        "extremes": found.extremes and _finite(asdict(found.extremes)),
-        "tradeoff": found.tradeoff and [_finite(asdict(trade)) for trade in found.tradeoff],
-        "families": found.families
+        "assumptions": findings.assumptions and _finite(findings.assumptions.listed()),
+        "claims": claims_summary(findings.claims),
+        "scaling": _finite(trends_summary(findings.scaling)),
+        "convergence": _finite(trends_summary(findings.convergence)),
+        "extremes": findings.extremes and _finite(asdict(findings.extremes)),
+        "tradeoff": findings.tradeoff and [_finite(asdict(trade)) for trade in findings.tradeoff],
+        "families": findings.families
         and [
             {
                 "name": family.name,
@@ -65,15 +65,15 @@ def summary(found: Findings) -> dict[str, Any]:
                 "values": list(family.values),
                 "scenes": [scene.name for scene in family.scenes],
             }
-            for family in found.families
+            for family in findings.families
         ],
-        "unanswered": [asdict(one) for one in found.unanswered],
-        "broken": list(found.broken),
-        "faults": list(found.faults),
+        "unanswered": [asdict(one) for one in findings.unanswered],
+        "broken": list(findings.broken),
+        "faults": list(findings.faults),
     }
 
 
-def _scene(found: Findings, scene: Scene) -> dict[str, Any]:
+def _scene(findings: Findings, scene: Scene) -> dict[str, Any]:
     def own(rows: Sequence[Any]) -> list[dict[str, Any]]:
         return [_finite(asdict(row)) for row in rows if row.scene == scene.name]
 
@@ -86,17 +86,17 @@ def _scene(found: Findings, scene: Scene) -> dict[str, Any]:
         "acceptance": scene.acceptance.model_dump(),
         "models": {
             model.key: {
-                "phases_per_axis": len(found.study.axis(model, scene)),
-                "outcomes": outcome_counts(found.surfaces, scene.name, model.key),
-                "cap_share": _finite(largest_cap_share(found.surfaces, scene.name, model.key)),
-                "cost": float(found.surfaces["cost"].sel(scene=scene.name, model=model.key)),
+                "phases_per_axis": len(findings.study.axis(model, scene)),
+                "outcomes": outcome_counts(findings.surfaces, scene.name, model.key),
+                "cap_share": _finite(largest_cap_share(findings.surfaces, scene.name, model.key)),
+                "cost": float(findings.surfaces["cost"].sel(scene=scene.name, model=model.key)),
             }
-            for model in models_of(scene, found.study.hierarchy)
+            for model in models_of(scene, findings.study.hierarchy)
         },
-        "verdict": _finite(asdict(verdict(found.study, found.surfaces, scene))),
-        "differences": own(found.rows),
-        "budget": own(found.budget),
-        "effective": own(found.effective),
+        "verdict": _finite(asdict(verdict(findings.study, findings.surfaces, scene))),
+        "differences": own(findings.rows),
+        "budget": own(findings.budget),
+        "effective": own(findings.effective),
     }
 
 

@@ -16,17 +16,17 @@ from reference.problem import Outcome
 MARKS = re.compile(r"[\\|<>*_`\[\]#~$&!]")
 
 
-def summary_text(found: Findings) -> str:
+def summary_text(findings: Findings) -> str:
     """GitHub's Markdown."""
-    study, run = found.study, found.run
+    study, run = findings.study, findings.run
     count = len(study.scenes)
     kinds = [f"{study.grid} × {study.grid} phases"] if study.phased else []
     kinds += ["one value under each recorded motion"] if len(study.phased) < count else []
     heading = f"## Phase-resonance study: {count} scene{'' if count == 1 else 's'}, {', '.join(kinds)}"
-    parts = [heading, _limits(found), *_unanswered(found), _verdicts(found)]
-    parts += _differences(found) if "differences" not in found.absent else []
-    parts += _budget(found) if "budget" not in found.absent else []
-    parts += _lost(found)
+    parts = [heading, _limits(findings), *_unanswered(findings), _verdicts(findings)]
+    parts += _differences(findings) if "differences" not in findings.absent else []
+    parts += _budget(findings) if "budget" not in findings.absent else []
+    parts += _lost(findings)
     sections = [
         name
         for analysis, name in (
@@ -34,7 +34,7 @@ def summary_text(found: Findings) -> str:
             ("trajectories", "motions"),
             ("assumptions", "assumptions"),
         )
-        if name and analysis not in found.absent
+        if name and analysis not in findings.absent
     ]
     shown = ", ".join([*sections, "tables"]) + " and provenance"
     made = ", ".join(
@@ -48,14 +48,14 @@ def summary_text(found: Findings) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _unanswered(found: Findings) -> list[str]:
+def _unanswered(findings: Findings) -> list[str]:
     """Models without a value somewhere."""
-    return ["\n".join(f"- {_plain(one.sentence)}" for one in found.unanswered)] if found.unanswered else []
+    return ["\n".join(f"- {_plain(one.sentence)}" for one in findings.unanswered)] if findings.unanswered else []
 
 
-def _limits(found: Findings) -> str:
-    broken = found.broken
-    if not found.limits:
+def _limits(findings: Findings) -> str:
+    broken = findings.broken
+    if not findings.limits:
         return "No scene states acceptance limits: nothing was checked."
     if not broken:
         return "**Every acceptance limit holds.**"
@@ -63,16 +63,16 @@ def _limits(found: Findings) -> str:
     return f"**{len(broken)} acceptance limit{'' if len(broken) == 1 else 's'} broken:**\n\n{lines}"
 
 
-def _verdicts(found: Findings) -> str:
-    study = found.study
-    said = [(scene, verdict(study, found.surfaces, scene)) for scene in study.scenes]
+def _verdicts(findings: Findings) -> str:
+    study = findings.study
+    said = [(scene, verdict(study, findings.surfaces, scene)) for scene in study.scenes]
     return "\n".join(
         f"- **{_plain(scene.name)}** ({_plain(scene.title)}): {_plain(one.sentence.replace('mu_', 'μ_'))}"
         for scene, one in said
     )
 
 
-def _differences(found: Findings) -> list[str]:
+def _differences(findings: Findings) -> list[str]:
     rows = [
         [
             row.scene,
@@ -83,19 +83,19 @@ def _differences(found: Findings) -> list[str]:
             percent(row.beyond_error),
             f"{row.unanswered} of {row.asked}",
         ]
-        for row in found.rows_of("differences", found.rows)
+        for row in findings.rows_of("differences", findings.rows)
     ]
     names = ["scene", "body", "difference", "median", "95 %", "maximum", "at (α₁, α₂)", "beyond u_D", "no value"]
     return ["### Differences", _table(names, rows, left=3)]
 
 
-def _budget(found: Findings) -> list[str]:
-    study = found.study
+def _budget(findings: Findings) -> list[str]:
+    study = findings.study
     models = [model for model in study.hierarchy[1:] if any(model.applies(scene) for scene in study.scenes)]
     rows = []
-    for scene in found.selection.study(study, "budget").scenes:
+    for scene in findings.selection.study(study, "budget").scenes:
         for body in range(1, len(scene.bodies) + 1):
-            one = bar(study, found.surfaces, scene, body)
+            one = bar(study, findings.surfaces, scene, body)
             sizes = {segment.model: percent(segment.size) for segment in one.segments}
             rows.append([scene.name, str(body), *(sizes.get(model.key, "") for model in models), percent(one.total)])
     names = ["scene", "body", *(model.title for model in models), "total"]
@@ -106,15 +106,15 @@ def _budget(found: Findings) -> list[str]:
     ]
 
 
-def _lost(found: Findings) -> list[str]:
+def _lost(findings: Findings) -> list[str]:
     lines = [
         f"- {_plain(scene.name)}, {_plain(model.title)}: {count} × {outcome}"
-        for scene in found.study.scenes
-        for model in models_of(scene, found.study.hierarchy)
-        for outcome, count in outcome_counts(found.surfaces, scene.name, model.key).items()
+        for scene in findings.study.scenes
+        for model in models_of(scene, findings.study.hierarchy)
+        for outcome, count in outcome_counts(findings.surfaces, scene.name, model.key).items()
         if outcome != Outcome.OK
     ]
-    lines += [f"- {_plain(line)}" for line in found.faults]
+    lines += [f"- {_plain(line)}" for line in findings.faults]
     return ["### Points that are not ok", "\n".join(lines)] if lines else []
 
 
