@@ -23,19 +23,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-import xarray as xr
 from rich.console import Console
 
-from comparison.analysis.assumptions.validity import ValidityRanges
-from comparison.analysis.claims_and_trends import claims_and_trends
-from comparison.analysis.effective import effective_values
-from comparison.analysis.errata import errata_effects
 from comparison.analysis.extremes.matrix import load as stored_extremes
 from comparison.analysis.surfaces import labeled_surfaces, wide_swings
 from comparison.analysis.targets import targets_met
-from comparison.analysis.tasks import analysis_cost, analysis_tasks, motion_tasks
 from comparison.analysis.tradeoff.trade import load as stored_trades
-from comparison.analysis.trajectories import stored_motions
 from comparison.analysis.unanswered import with_silent_models
 from comparison.cli.arguments import command, writing
 from comparison.cli.options import Options, parsed
@@ -47,13 +40,13 @@ from comparison.execution.output import atomic_replace, clear_dead, on_stderr
 from comparison.execution.progress import wide_console
 from comparison.execution.provenance import provenance
 from comparison.execution.resume import command_line, resume_hint, without_scheduler
-from comparison.execution.runner import computed, fetched
-from comparison.execution.task_cache import TaskCache
+from comparison.execution.runner import Computed, Runner
+from comparison.execution.task_results import TaskResults
 from comparison.execution.workers import workers
-from comparison.report.findings import Findings, findings
+from comparison.registry import analysis_cost, chosen_analyses, first_tasks
+from comparison.report.findings import Findings, collect_findings
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.planning import BudgetError, StudyPlan, StudyRequest, plan_study
-from comparison.study.selection import Selection
 from comparison.study.study import Study
 from reference.problem import SceneError
 from reference.problem.command import stoppable
@@ -84,7 +77,7 @@ def main(argv: Sequence[str], hierarchy: Sequence[Model] = MODEL_HIERARCHY, exec
             console = wide_console()
             plan = _chosen(options, hierarchy)
             if options.plan:
-                print_plan(console, plan.study, options, options.selected(plan.with_analyses))
+                print_plan(console, plan.study, options, plan.with_analyses)
             if options.by_trade:
                 print_study_plan(console, plan, options)
             return 0 if options.plan else _ended(plan, options, console, argv, executor)
@@ -95,11 +88,7 @@ def main(argv: Sequence[str], hierarchy: Sequence[Model] = MODEL_HIERARCHY, exec
 
 def _chosen(options: Options, hierarchy: Sequence[Model]) -> StudyPlan:
     """What is computed. Raises SceneError where no study fits the budget."""
-
-    def cost(study: Study, with_analyses: bool) -> float:
-        return analysis_cost(study, options.selected(with_analyses))
-
-    asked = options.tolerance, options.budget, options.grid, options.jobs, options.full, cost
+    asked = options.tolerance, options.budget, options.grid, options.jobs, options.full, analysis_cost
     try:
         return plan_study(StudyRequest(options.scenes, hierarchy, *asked))
     except BudgetError as error:
@@ -133,102 +122,92 @@ def _run(
     executor: Callable[[int], Executor],
     store: Cache,
 ) -> int:
-    # plotting libraries: not needed to refuse a command or to plan
-    from comparison.report.figures import pictures as drawing
-    from comparison.report.report import write_report
+    from comparison.report.report import write_report  # plotting: not needed to refuse a command or to plan
 
     begin, began = time.monotonic(), datetime.now(UTC)
     clear_dead(options.out)
-    study, selection = plan.study, options.selected(plan.with_analyses)
-    batches = study.batches()
-    keys = [batch_key(batch) for batch in batches]
+    study, analyses = plan.study, chosen_analyses(plan.with_analyses)
+    keys = [batch_key(batch) for batch in study.batches()]
     store.trim(keys)
     if options.fresh:
         store.forget(keys)
-    cached = TaskCache(store, options.fresh)
-    done = computed(study, store, console, options.jobs, executor, analysis_tasks(study, selection), cached)
-    seconds, answers = time.monotonic() - begin, done.answers
-    surfaces = labeled_surfaces(study, batches, answers)
+
+    runner = Runner(TaskResults(store, options.fresh), console, options.jobs, executor)
+    computed = runner.run_study(study, first_tasks(study, analyses))
+    seconds = time.monotonic() - begin
+    surfaces = labeled_surfaces(study, computed.batches, computed.answers)
     study = with_silent_models(study, surfaces)
-    tasks = motion_tasks(selection.study(study, "trajectories"), surfaces)
-    tasks += drawing.picture_tasks(study, surfaces, selection)
-    if tasks:
-        console.print("Computing a few motions and drawing the figures of the report.")
-    fetched(tasks, cached, console, options.jobs, executor)
-    executor = cached.on(executor)  # what the analyses ask has been fetched
-    pictures = drawing.all_drawn(study, surfaces, options.jobs, executor, selection)
-    effective = effective_values(selection.study(study, "effective"), options.jobs, executor)
-    effects = errata_effects(selection.study(study, "errata"), options.jobs, executor)
-    optional = _more(study, selection, surfaces, options, executor)
-    stored = {"extremes": stored_extremes, "tradeoff": stored_trades}
-    absent = selection.absent(study)
-    stored_tables = {name: _taken_up(load, options.out) for name, load in stored.items() if name not in absent}
-    families = [family for family in options.families if len(family.scenes) > 1] or None
-    titles = {model.key: model.title for model in study.hierarchy}
-    error_messages = sorted(
-        {
-            f"{batch.scene.name}, {titles[batch.model]}: {a.error_message}"
-            for batch, a in zip(batches, answers)
-            if a.error_message
-        }
-    )
+    console.print("Keeping a few motions of every scene for the report, and drawing the surfaces.")
+    later = [analysis for analysis in analyses if analysis.needs_surfaces]
+    runner.run_tasks([task for analysis in later for task in analysis.tasks(study, surfaces)])
+
+    faults = _faults(study, computed)
     run: dict[str, Any] = {
         "command": command_words,
         "began": began.isoformat(timespec="seconds"),
         "seconds": round(seconds, 1),
         "compute_seconds": round(float(surfaces["cost"].sum()), 1),
         "predicted_compute_seconds": round(sum(study.seconds(model) for model in study.hierarchy), 1),
-        "tiles": len(batches),
-        "tiles_stored_before": done.stored,
+        "tiles": len(computed.batches),
+        "tiles_stored_before": computed.stored,
         "parts": {
             stage: {"tasks": part.tasks, "stored_before": part.stored, "seconds": round(part.seconds, 2)}
-            for stage, part in cached.parts.items()
+            for stage, part in runner.results.parts.items()
         },
         "jobs": options.jobs,
         "choice": targets_met(plan, options.tolerance, options.budget, surfaces) if options.by_trade else None,
         "provenance": provenance(),
     }
-    of_run = {"families": families, "pictures": pictures, "selection": selection}
-    results = findings(study, surfaces, effective, effects, error_messages, run, **of_run, **stored_tables, **optional)
+    found = collect_findings(
+        study,
+        surfaces,
+        {analysis.key: analysis.collect(study, surfaces, runner.results) for analysis in analyses},
+        faults,
+        run,
+        families=[family for family in options.families if len(family.scenes) > 1] or None,
+        extremes=_taken_up(stored_extremes, options.out),
+        tradeoff=_taken_up(stored_trades, options.out),
+    )
+
     console.print("Writing the report.")
     with writing(options.out), atomic_replace(options.out) as report:
-        write_report(report.folder, results)
-    for line in error_messages:
+        write_report(report.folder, found)
+    for line in faults:
         print(f"solver: {line}", file=sys.stderr)
     for line in wide_swings(study, surfaces):
         print(f"note: {line}", file=sys.stderr)
-    for line in _checked(results) if options.check else []:
+    for line in _checked(found) if options.check else []:
         print(line, file=sys.stderr)
     if options.by_trade:
         print_targets_met(console, run["choice"], time.monotonic() - begin)
-    print_unanswered(console, results.unanswered)
+    print_unanswered(console, found.unanswered)
     place = options.out if report.place == options.out.resolve() else report.place
     _print_closing(console, options, place, run, time.monotonic() - begin, bool(study.phased))
-    print_differences(console, results.rows_of("differences", results.rows), bool(study.phased))
-    return 1 if options.check and results.broken else 0
+    print_differences(console, found.rows)
+    return 1 if options.check and found.broken else 0
 
 
-def _checked(results: Findings) -> list[str]:
+def _faults(study: Study, computed: Computed) -> list[str]:
+    """What solvers reported, one line for each scene and model."""
+    titles = {model.key: model.title for model in study.hierarchy}
+    return sorted(
+        {
+            f"{batch.scene.name}, {titles[batch.model]}: {answer.error_message}"
+            for batch, answer in zip(computed.batches, computed.answers)
+            if answer.error_message
+        }
+    )
+
+
+def _checked(found: Findings) -> list[str]:
     """What `--check` says: every broken limit, and the scenes that state none."""
-    limited = {limit.scene for limit in results.limits}
-    unlimited = [scene.name for scene in results.study.scenes if scene.name not in limited]
-    lines = [f"limit broken: {line}" for line in results.broken]
+    limited = {limit.scene for limit in found.limits}
+    unlimited = [scene.name for scene in found.study.scenes if scene.name not in limited]
+    lines = [f"limit broken: {line}" for line in found.broken]
     if unlimited:
         which = "no scene states" if not limited else f"{', '.join(unlimited)}: no limits are stated under"
         lines.append(f"--check: {which} [acceptance]{' limits' if not limited else ''}: nothing was checked")
     return lines
-
-
-def _more(
-    study: Study, selection: Selection, surfaces: xr.Dataset, options: Options, executor: Callable[[int], Executor]
-) -> dict[str, Any]:
-    """Fields of the findings that a report can do without."""
-    moved, varied = selection.study(study, "trajectories"), selection.study(study, "assumptions")
-    return {
-        "motions": stored_motions(moved, surfaces, options.jobs, executor) if moved.scenes else None,
-        "assumptions": ValidityRanges.of(varied, options.jobs, executor) if varied.scenes else None,
-        **claims_and_trends(study, options.jobs, executor, selection),
-    }
 
 
 def _taken_up(load: Callable[[Path], Any], out: Path) -> Any:
@@ -250,3 +229,4 @@ def _print_closing(
     console.print(f"Report: {report / 'index.html'}", soft_wrap=True)  # a path is copied whole
     finer = "; a finer look: --grid N with a larger N; what that costs: --plan" if phased else ""
     console.print(f"Next: open it in a browser{finer}.")
+    console.print(f"Relative differences{' over the phases' if phased else ''}, per body:")

@@ -17,13 +17,31 @@ from reference.problem import Scene
 
 
 @dataclass(frozen=True)
+class Breach:
+    """Where a limit is broken."""
+
+    body: int  # 0 where the limit is of the scene
+    found: float  # value beyond the limit, NaN without one
+    reason: str = ""  # why there is no value, or what was counted
+
+
+@dataclass(frozen=True)
 class Limit:
-    """A limit of a scene. key: as written below `acceptance`. broken: lines that say where it is, none if it holds."""
+    """A limit of a scene, held against what was found."""
 
     scene: str
-    key: str
+    key: str  # as written below `acceptance`
     allowed: float
-    broken: tuple[str, ...]
+    breaches: tuple[Breach, ...]  # none if it holds
+
+    @property
+    def broken(self) -> list[str]:
+        """One line for each breach."""
+        return [
+            f"{self.scene}: {f'body {breach.body}: ' if breach.body else ''}acceptance.{self.key}: "
+            f"{breach.reason or f'{breach.found:.3g} found'}, {self.allowed:g} allowed"
+            for breach in self.breaches
+        ]
 
 
 def checked_limits(
@@ -48,19 +66,14 @@ def checked_limits(
     for scene in study.scenes:
         silent = [one for one in lacking if one.scene == scene.name]
         own = [row for row in rows if row.scene == scene.name]
-        for key, allowed, faults in _faults(study, surfaces, scene, own, silent):
-            start = f"acceptance.{key}: "
-            broken = tuple(f"{scene.name}: {where}{start}{excess}, {allowed:g} allowed" for where, excess in faults)
-            found.append(Limit(scene.name, key, allowed, broken))
+        checked = _breaches(study, surfaces, scene, own, silent)
+        found += [Limit(scene.name, key, allowed, tuple(breaches)) for key, allowed, breaches in checked]
     return found
 
 
-Faults = list[tuple[str, str]]  # of a body, and what is wrong
-
-
-def _faults(
+def _breaches(
     study: Study, surfaces: xr.Dataset, scene: Scene, rows: Sequence[Difference], silent: Sequence[Unanswered]
-) -> Iterator[tuple[str, float, Faults]]:
+) -> Iterator[tuple[str, float, list[Breach]]]:
     """Key, limit and what breaks it, of every limit that the scene states."""
     stated = scene.acceptance
     for key, pair, measure, allowed in stated.differences():
@@ -68,7 +81,8 @@ def _faults(
         if any(row.asked > row.unanswered for row in compared):
             yield key, allowed, _beyond([(row.body, getattr(row, measure)) for row in compared], allowed)
         else:
-            yield key, allowed, [("", f"nothing to compare ({_why_not(study, scene, pair, silent)})")]
+            reason = f"nothing to compare ({_why_not(study, scene, pair, silent)})"
+            yield key, allowed, [Breach(0, float("nan"), reason)]
     if stated.closure is not None:
         bodies = range(1, len(scene.bodies) + 1)
         gaps = [(body, closure(steps(study, surfaces, scene.name, body))) for body in bodies]
@@ -77,13 +91,13 @@ def _faults(
         count = sum(one.points for one in silent)
         models = ", ".join(f"{one.title} {one.points} of {one.asked}" for one in silent)
         excess = f"{count} points without an answer ({models})"
-        yield "failed", allowed_points, [("", excess)] if count > allowed_points else []
+        yield "failed", allowed_points, [Breach(0, count, excess)] if count > allowed_points else []
 
 
-def _beyond(values: Sequence[tuple[int, float]], allowed: float) -> Faults:
+def _beyond(values: Sequence[tuple[int, float]], allowed: float) -> list[Breach]:
     """The bodies whose value is not within the limit; no value is not within any."""
     return [
-        (f"body {body}: ", "no phase pair to compare" if isnan(value) else f"{value:.3g} found")
+        Breach(body, value, "no phase pair to compare" if isnan(value) else "")
         for body, value in values
         if not value <= allowed
     ]
@@ -91,7 +105,7 @@ def _beyond(values: Sequence[tuple[int, float]], allowed: float) -> Faults:
 
 def _same(study: Study, scene: Scene, pair: str) -> str:
     """The pair under which a study compares these models: the translational difference may be the total one."""
-    compared = {pair.key: pair for pair in study.pairs(scene)}
+    compared = {one.key: one for one in study.pairs(scene)}
     engines = [model.key for model in study.compared(scene) if model.side == "engine"]
     alone = pair == "translational" and pair not in compared and engines == [compared["total"].second.key]
     return "total" if alone else pair
@@ -102,5 +116,5 @@ def _why_not(study: Study, scene: Scene, pair: str, silent: Sequence[Unanswered]
     wanted = next((one for one in pairs_of(scene, study.hierarchy) if one.key == pair), None)
     if wanted is None:
         return "no engine in this study"
-    mute = [one.sentence for one in silent if one.model in (wanted.first.key, wanted.second.key)]
-    return mute[0].removeprefix(f"{scene.name}: ").removesuffix(".") if mute else "no phase pair in common"
+    mute = [one.description for one in silent if one.model in (wanted.first.key, wanted.second.key)]
+    return mute[0] if mute else "no phase pair in common"

@@ -19,11 +19,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
+from comparison.analysis.protocol import Analysis
 from comparison.analysis.trends import Trend, trend
-from comparison.execution.executors import Pool, process_pool
-from comparison.execution.sweep import sweep
+from comparison.execution.task import Task
+from comparison.execution.task_results import TaskResults
 from comparison.study.models import has_spatial_data
 from comparison.study.study import Study
 from multibody import amplification as engine_amplification
@@ -172,15 +174,25 @@ LIMITS = (
 Arguments = tuple[Scene, int]  # and the number of the limit
 
 
-def convergence_arguments(study: Study) -> list[Arguments]:
-    """Every limit with every scene that has it, in the order of LIMITS."""
-    return [(scene, number) for number, limit in enumerate(LIMITS) for scene in study.phased if limit.applies(scene)]
+class Convergence(Analysis[list[Trend]]):
+    """Every limit in every scene that has it, for each body, in the order of LIMITS."""
 
+    key, stage = "convergence", "convergence"
 
-def convergence_trends(study: Study, jobs: int, executor: Pool = process_pool) -> list[Trend]:
-    """Every limit in every scene that has it, for each body, computed on `executor`; in the order of LIMITS."""
-    found = sweep(convergence_arguments(study), limit_trends, _lost, lambda task, trends: None, jobs, executor)
-    return [trend for trends in found for trend in trends]
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """One task for each limit and scene."""
+        return [
+            Task(limit_trends, (scene, number), self.stage, limit.seconds, scene)
+            for number, limit in enumerate(LIMITS)
+            for scene in study.phased
+            if limit.applies(scene)
+        ]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Trend] | None:
+        """The trends, in the order of the tasks; None for a study without phases."""
+        if not study.phased:
+            return None
+        return [one for task in self.tasks(study) for one in results.value(task, _lost)]
 
 
 def limit_trends(task: Arguments) -> list[Trend]:

@@ -7,17 +7,18 @@ ways, and an elastic contact moves on another sphere. Here the motion itself is 
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.execution.sweep import sweep
+from comparison.analysis.protocol import Analysis
+from comparison.execution.task import Task
+from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
-from comparison.study.models import Model, models_of
+from comparison.study.models import Model, at_samples, models_of
 from comparison.study.study import Study
 from reference.problem import GRAVITY, Outcome, Scene, Trajectory, ground_acceleration
 
@@ -25,6 +26,7 @@ Array = NDArray[np.float64]
 
 PHASES = (0.3, 1.1)  # rad, of the motion that is measured
 DURATION = 6.0  # s: two frequencies are strongest in their first seconds; a record is followed to its end
+SECONDS = {"reference": 0.02, "engine": 0.2}  # predicted cost of one motion, s on `study.models.RECORDED_ON`
 FASTEST = 0.9  # friction is measured where the platform slides faster than this part of its largest speed
 
 
@@ -64,17 +66,28 @@ def stated(scene: Scene) -> Effective:
     )
 
 
-def effective_arguments(study: Study) -> list[tuple[Scene, Model]]:
-    """Every model of every scene."""
-    return [(scene, model) for scene in study.scenes for model in models_of(scene, study.hierarchy)]
+class EffectiveValues(Analysis[list[Effective]]):
+    """For every scene what it states, then what the motion of each model shows."""
 
+    key, stage, essential = "effective", "effective values", True
 
-def effective_values(study: Study, jobs: int, executor: Callable[[int], Executor]) -> list[Effective]:
-    """For every scene what it states, then what the motion of every model shows, computed on `executor(jobs)`."""
-    found = sweep(effective_arguments(study), read_back, _lost, lambda task, value: None, jobs, executor)
-    return [
-        value for scene in study.scenes for value in (stated(scene), *(one for one in found if one.scene == scene.name))
-    ]
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """Every model of every scene."""
+        return [task for scene in study.scenes for task in self._of(study, scene)]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Effective]:
+        """In the order scene, model; what the scene states comes first."""
+        return [
+            value
+            for scene in study.scenes
+            for value in (stated(scene), *(results.value(task, _lost) for task in self._of(study, scene)))
+        ]
+
+    def _of(self, study: Study, scene: Scene) -> list[Task]:
+        return [
+            Task(read_back, (scene, model), self.stage, SECONDS[model.side] * at_samples(scene), scene)
+            for model in models_of(scene, study.hierarchy)
+        ]
 
 
 def read_back(task: tuple[Scene, Model]) -> Effective:

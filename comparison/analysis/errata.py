@@ -7,16 +7,18 @@ in which the loading is strongest: mu_i with the erratum over mu_i without it, m
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from comparison.analysis.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
-from comparison.execution.sweep import sweep
+from comparison.analysis.protocol import Analysis
+from comparison.execution.task import Task
+from comparison.execution.task_results import TaskResults
 from comparison.study.study import Study
 from reference import amplification
 from reference.problem import Outcome, Scene
@@ -25,6 +27,7 @@ Array = NDArray[np.float64]
 
 PHASES = np.array([(0.3, 1.1), (4.0, 5.5)])  # rad
 DURATION = 6.0  # s
+SECONDS = 0.35  # predicted cost of one erratum in one scene, s on `study.models.RECORDED_ON`
 
 Measure = Callable[[Scene], Array | None]  # relative change of mu (M, N), NaN where the printed form has no answer
 
@@ -161,16 +164,23 @@ class Effect:
     error_message: str = ""
 
 
-def errata_arguments(study: Study, errata: Sequence[Erratum] = ERRATA) -> list[tuple[Scene, int]]:
+class Errata(Analysis[list[Effect]]):
     """Every measurable erratum in every scene, in the order scene, erratum."""
-    return [(scene, number) for scene in study.phased for number, erratum in enumerate(errata) if erratum.measure]
 
+    key, stage, essential = "errata", "errata", True
 
-def errata_effects(
-    study: Study, jobs: int, executor: Callable[[int], Executor], errata: Sequence[Erratum] = ERRATA
-) -> list[Effect]:
-    """Every measurable erratum in every scene, computed on `executor(jobs)`, in the order scene, erratum."""
-    return sweep(errata_arguments(study, errata), measured, _lost, lambda task, effect: None, jobs, executor)
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """One task for each effect."""
+        return [
+            Task(measured, (scene, number), self.stage, SECONDS, scene)
+            for scene in study.phased
+            for number, erratum in enumerate(ERRATA)
+            if erratum.measure
+        ]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Effect]:
+        """The effects, in the order of the tasks."""
+        return [results.value(task, _lost) for task in self.tasks(study)]
 
 
 def measured(task: tuple[Scene, int]) -> Effect:

@@ -12,11 +12,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
+from comparison.analysis.protocol import Analysis
 from comparison.analysis.trends import Trend, trend
-from comparison.execution.executors import Pool, process_pool
-from comparison.execution.sweep import sweep
+from comparison.execution.task import Task
+from comparison.execution.task_results import TaskResults
 from comparison.study.study import Study
 from reference import amplification
 from reference.problem import Outcome, Scene
@@ -26,6 +28,7 @@ Array = NDArray[np.float64]
 SCALES = (1.0, 0.5, 0.25, 0.125)
 PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad
 TOLERANCE = 1e-8  # relative: the step at the smallest scale is 1e-5
+SECONDS = 0.12  # predicted cost of one task, s on `study.models.RECORDED_ON`
 CUTOFF = 1e-3  # m/s at s = 1, of the resolved peak; it scales with the motion
 STEP = "exact minus small"
 PRINTED = "small, s minus s/2"
@@ -41,15 +44,25 @@ def scaled(scene: Scene, s: float) -> Scene:
     return scene.with_values(values)
 
 
-def scaling_arguments(study: Study) -> list[Arguments]:
-    """Every scene with its supremum and, where that differs, its resolved peak."""
-    return [(scene, peak) for scene in study.phased for peak in (True, False) if peak or _dry(scene)]
+class Scaling(Analysis[list[Trend]]):
+    """The trends of every scene and body, for the supremum and, where that differs, the resolved peak."""
 
+    key, stage = "scaling", "scaling test"
 
-def scaling_trends(study: Study, jobs: int, executor: Pool = process_pool) -> list[Trend]:
-    """The trends of every scene and body, for the supremum and the resolved peak, computed on `executor`."""
-    found = sweep(scaling_arguments(study), scene_trends, _lost, lambda task, trends: None, jobs, executor)
-    return [trend for trends in found for trend in trends]
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """One task for each scene and reading of the peak."""
+        return [
+            Task(scene_trends, (scene, supremum), self.stage, SECONDS, scene)
+            for scene in study.phased
+            for supremum in (True, False)
+            if supremum or _dry(scene)
+        ]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Trend] | None:
+        """The trends, in the order of the tasks; None for a study without phases."""
+        if not study.phased:
+            return None
+        return [one for task in self.tasks(study) for one in results.value(task, _lost)]
 
 
 def scene_trends(task: Arguments) -> list[Trend]:

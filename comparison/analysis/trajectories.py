@@ -6,8 +6,6 @@ A motion is thinned only as far as straight lines between the instants left repr
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,15 +13,18 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from comparison.analysis.differences import pair_step
-from comparison.execution.sweep import sweep
+from comparison.analysis.protocol import Analysis
+from comparison.execution.task import Task
+from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
-from comparison.study.models import Model
+from comparison.study.models import Model, at_samples
 from comparison.study.study import Study
 from reference.problem import Outcome, Scene, Trajectory
 
 Array = NDArray[np.float64]
 
 SPREAD = 5  # phase pairs (k, 2k) 2 pi/5: evenly over the square, and no two of them mirror images of each other
+SECONDS = {"reference": 0.11, "engine": 0.55}  # predicted cost of one motion, s on `study.models.RECORDED_ON`
 SHARE = 0.003  # of the largest value of a component: what a thinned motion may be off by
 STEP = 1e-3  # s, between the instants asked of the reference
 
@@ -95,11 +96,37 @@ def motion_arguments(study: Study, surfaces: xr.Dataset) -> list[Arguments]:
     ]
 
 
-def stored_motions(
-    study: Study, surfaces: xr.Dataset, jobs: int, executor: Callable[[int], Executor]
-) -> list[StoredMotion]:
-    """The motions of every scene, computed on `executor(jobs)`, in the order of `motion_arguments`."""
-    return sweep(motion_arguments(study, surfaces), moved, _lost, lambda task, motion: None, jobs, executor)
+class Motions(Analysis[list[StoredMotion]]):
+    """Motions kept for the report, at phases that the surfaces choose."""
+
+    key, stage, needs_surfaces = "motions", "motions", True
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """One task for each motion, in the order of `motion_arguments`."""
+        assert surfaces is not None, "the places are chosen by the surfaces"
+        return [
+            Task(moved, arguments, self.stage, SECONDS[arguments[1].side] * at_samples(arguments[0]), arguments[0])
+            for arguments in motion_arguments(study, surfaces)
+        ]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[StoredMotion]:
+        """The motions, in the order of the tasks."""
+        return [results.value(task, _lost) for task in self.tasks(study, surfaces)]
+
+    def predicted_seconds(self, study: Study) -> list[float]:
+        """Before the surfaces are known that choose the places."""
+        return [SECONDS[model.side] * at_samples(scene) for scene in study.scenes for model in _moving(study, scene)]
+
+
+def _moving(study: Study, scene: Scene) -> list[Model]:
+    """The models of the motions: all where a difference is largest; at evenly spread phases those that have all."""
+    shown = shown_models(study, scene)
+    if scene.recorded:
+        return shown
+    return [
+        *(model for model in shown for _ in scene.bodies),
+        *(model for model in shown for _ in range(SPREAD) if study.strides[model.key] == 1),
+    ]
 
 
 def shown_models(study: Study, scene: Scene) -> list[Model]:

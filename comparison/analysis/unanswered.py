@@ -17,25 +17,40 @@ from reference.problem import ADVICE, Outcome, Scene
 
 
 @dataclass(frozen=True)
-class Unanswered:
-    """
-    A model without a value at some phase pairs of a scene.
+class OutcomeNote:
+    """An outcome that is not ok, how many phase pairs ended so, what it means and what helps."""
 
-    points: phase pairs without a value, of the `asked`. used: whether comparisons use the values that it has. why: the
-    outcomes with their counts, what they mean, and what helps, in one line.
-    """
+    outcome: str
+    count: int
+    advice: str
+
+
+@dataclass(frozen=True)
+class Unanswered:
+    """A model without a value at some phase pairs of a scene."""
 
     scene: str
     model: str
     title: str
-    points: int
-    asked: int
-    used: bool
-    why: str
+    points: int  # phase pairs without a value
+    asked: int  # phase pairs that the model was asked for
+    used: bool  # whether comparisons use the values that it has
+    outcomes: tuple[OutcomeNote, ...]  # those that are not ok
+
+    @property
+    def why(self) -> str:
+        """The outcomes with their counts, what they mean, and what helps, in one line."""
+        alone = len(self.outcomes) == 1 and self.outcomes[0].count == self.asked
+        return "; ".join(f"{'' if alone else f'{o.count} × '}{o.outcome}: {o.advice}" for o in self.outcomes)
 
     @property
     def sentence(self) -> str:
         """The whole in one line."""
+        return f"{self.scene}: {self.description}."
+
+    @property
+    def description(self) -> str:
+        """The same without the scene."""
         if self.asked == 1:
             where = "no value"
         elif self.points == self.asked:
@@ -43,7 +58,7 @@ class Unanswered:
         else:
             where = f"no value at {self.points} of {self.asked} phase pairs"
         rest = "" if self.used else ". Comparisons leave this model out"
-        return f"{self.scene}: {self.title}: {where}: {self.why}{rest}."
+        return f"{self.title}: {where}: {self.why}{rest}"
 
 
 def with_silent_models(study: Study, surfaces: xr.Dataset) -> Study:
@@ -69,9 +84,10 @@ def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
         for model in models_of(scene, study.hierarchy):
             lacking = int((~_answered(surfaces, scene, model)).sum())
             if lacking or model.key not in compared:
-                asked, why = study.points(model, scene), _why(study, surfaces, scene, model)
+                asked = study.points(model, scene)
                 used = model.key in compared and lacking < asked
-                found.append(Unanswered(scene.name, model.key, model.title, lacking, asked, used, why))
+                notes = _notes(study, surfaces, scene, model)
+                found.append(Unanswered(scene.name, model.key, model.title, lacking, asked, used, notes))
     return found
 
 
@@ -83,12 +99,12 @@ def advice(study: Study, scene: Scene, model: Model, outcome: str) -> str:
     return refused or ADVICE[Outcome(outcome)]
 
 
-def _why(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> str:
+def _notes(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> tuple[OutcomeNote, ...]:
     counts = outcome_counts(surfaces, scene.name, model.key)
-    bad = {outcome: count for outcome, count in counts.items() if outcome != Outcome.OK}
-    return "; ".join(
-        f"{f'{count} × ' if len(counts) > 1 else ''}{outcome}: {advice(study, scene, model, outcome)}"
-        for outcome, count in bad.items()
+    return tuple(
+        OutcomeNote(outcome, count, advice(study, scene, model, outcome))
+        for outcome, count in counts.items()
+        if outcome != Outcome.OK
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -20,21 +21,41 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Verdict:
-    """
-    The largest real total difference of a scene: signed `size` relative to mu of the first model, in `body`, at
-    `phases` (alpha1, alpha2), rad; `cause`: the model whose step is largest there, `part`: its signed size. NaN, body 0
-    and no cause where no difference is real. real: share of the phase pairs with a real difference, of that body.
-    sentence: all that in one line.
-    """
+    """The largest real total difference of a scene; NaN, body 0 and no cause where no difference is real."""
 
     scene: str
-    size: float
-    body: int
-    phases: tuple[float, float]
-    cause: str
-    part: float
-    real: float
-    sentence: str
+    first: str  # title of the first model
+    second: str  # title of the last model
+    recorded: bool  # whether the scene has no phases
+    compared: int  # values compared: of `body`, or of all bodies where no difference is real
+    real: float  # fraction of the phase pairs with a real difference, of `body`
+    size: float = float("nan")  # signed, relative to mu of the first model
+    body: int = 0  # from 1
+    phases: tuple[float, float] = (float("nan"), float("nan"))  # (alpha1, alpha2), rad
+    cause: str = ""  # title of the model whose step is largest there
+    part: float = float("nan")  # signed size of that step
+    mu: float = float("nan")  # of the first model there
+    lowest: float = float("nan")  # mu of the first model over the surface
+    highest: float = float("nan")  # likewise
+
+    @property
+    def sentence(self) -> str:
+        """All that in one line."""
+        between = f"{self.first} and {self.second}"
+        if not self.body and self.compared:
+            where = f"at all {self.compared} values compared"
+            return f"no real difference: {between} agree within the error estimates {where}."
+        if not self.body:
+            apart = "not both a value" if self.recorded else "no phase pair in common where both have a value"
+            return f"{between} have {apart}."
+        largest = f"; largest step there: {signed(self.part)}, to the {self.cause}" if self.cause else ""
+        if self.recorded:
+            where, share = f" from mu_{self.body} = {self.mu:.3g} under the record", "."
+        else:
+            where = f" at ({degrees(self.phases[0])}, {degrees(self.phases[1])}), where mu_{self.body} is {self.mu:.3g}"
+            where += f" on a surface from {self.lowest:.3g} to {self.highest:.3g}"
+            share = f". Real at {percent(self.real)} of {self.compared} phase pairs."
+        return f"body {self.body} differs by {signed(self.size)}{where}{largest}{share}"
 
 
 @dataclass(frozen=True)
@@ -69,27 +90,28 @@ def verdict(study: Study, surfaces: xr.Dataset, scene: Scene) -> Verdict:
     compared = sum(int(hierarchy[-1].known.sum()) for hierarchy in ladders)
     body, size = max(enumerate(sizes, start=1), key=lambda pair: pair[1].max())
     total = ladders[body - 1][-1]
-    between = f"{total.first.title} and {total.second.title}"
+    titles = {"first": total.first.title, "second": total.second.title}
+    facts: dict[str, Any] = {"scene": scene.name, **titles, "recorded": scene.recorded}
+    nan = float("nan")
     if size.max() < 0.0:
-        nan = float("nan")
-        said = f"no real difference: {between} agree within the error estimates at all {compared} values compared"
-        apart = "not both a value" if scene.recorded else "no phase pair in common where both have a value"
-        sentence = said + "." if compared else f"{between} have {apart}."
-        return Verdict(scene.name, nan, 0, (nan, nan), "", nan, 0.0 if compared else nan, sentence)
+        return Verdict(**facts, compared=compared, real=0.0 if compared else nan)
     row, column = (int(index) for index in np.unravel_index(np.argmax(size), size.shape))
-    found, real = float(total.size[row, column]), float(total.real[total.known].mean())
-    phases = float(total.alpha1[row]), float(total.alpha2[column])
     place = row * total.stride, column * total.stride
     cause, part = _cause(ladders[body - 1][:-1], place)
-    low, here, high = _heights(surfaces, scene.name, total, place)
-    where = f" at ({degrees(phases[0])}, {degrees(phases[1])}), where mu_{body} is {here:.3g}"
-    where += f" on a surface from {low:.3g} to {high:.3g}"
-    share = f". Real at {percent(real)} of {int(total.known.sum())} phase pairs."
-    if scene.recorded:
-        phases, where, share = (float("nan"), float("nan")), f" from mu_{body} = {here:.3g} under the record", "."
-    largest = f"; largest step there: {signed(part)}, to the {cause}" if cause else ""
-    sentence = f"body {body} differs by {signed(found)}{where}{largest}{share}"
-    return Verdict(scene.name, found, body, phases, cause, part, real, sentence)
+    lowest, mu, highest = _heights(surfaces, scene.name, total, place)
+    return Verdict(
+        **facts,
+        compared=int(total.known.sum()),
+        real=float(total.real[total.known].mean()),
+        size=float(total.size[row, column]),
+        body=body,
+        phases=(nan, nan) if scene.recorded else (float(total.alpha1[row]), float(total.alpha2[column])),
+        cause=cause,
+        part=part,
+        mu=mu,
+        lowest=lowest,
+        highest=highest,
+    )
 
 
 def _cause(hierarchy: Sequence[Step], place: tuple[int, int]) -> tuple[str, float]:
@@ -97,9 +119,7 @@ def _cause(hierarchy: Sequence[Step], place: tuple[int, int]) -> tuple[str, floa
     sizes = [
         (step.second.title, float(step.size[place[0] // step.stride, place[1] // step.stride])) for step in hierarchy
     ]
-    return max(
-        (size for size in sizes if np.isfinite(size[1])), key=lambda one: abs(one[1]), default=("", float("nan"))
-    )
+    return max((one for one in sizes if np.isfinite(one[1])), key=lambda one: abs(one[1]), default=("", float("nan")))
 
 
 def _heights(surfaces: xr.Dataset, scene: str, total: Step, place: tuple[int, int]) -> tuple[float, float, float]:

@@ -2,26 +2,27 @@
 How far the paper's assumptions carry: `python -m comparison.assumptions [SCENE ...]`.
 
 Varies the ring of supports and the heights of the bodies and prints how far mu_i then is from the translational result,
-and where it stays within 1 % and 5 %. Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
+and where it stays within 1 % and 5 %. Every variation is stored as it is finished: the same command goes on where it
+stopped. Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TimeRemainingColumn
 from rich.table import Table
 
-from comparison.analysis.assumptions.validity import describe
-from comparison.analysis.assumptions.variations import DURATION, MANY, PHASES, Cell, assumption_cells, ranges
+from comparison.analysis.assumptions.validity import Assumptions, describe
+from comparison.analysis.assumptions.variations import DURATION, MANY, PHASES, Cell, ranges
 from comparison.cli.arguments import CommandParser, command, jobs, writing
+from comparison.cli.stored import OUT_HELP, results_beside
 from comparison.execution.executors import Pool, process_pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
-from comparison.execution.progress import description, wide_console
+from comparison.execution.progress import wide_console
+from comparison.execution.runner import Runner
 from comparison.execution.workers import workers
 from comparison.report.figures.file_names import figure_file
 from comparison.study.models import has_spatial_data
@@ -41,10 +42,12 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     parser.add_scenes("the paper's")
     parser.add_jobs(cluster=True)
     parser.add_argument("--figures", type=Path, metavar="DIR", help="write one picture per scene into this directory")
+    parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help=OUT_HELP)
     options = parser.parse_args(argv)
     names = options.scenes or builtin_scenes()
     scenes = [_spatial(name) for name in names]
     refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
+    results = results_beside(options.out)
     figures = destination(options.figures, "--figures") if options.figures else None
     if figures:
         pictures = [figure_file(s.name, "assumptions", ending=end) for s in scenes for end in (".png", ".pdf")]
@@ -54,7 +57,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         about = f"{len(MANY)} variations at {len(PHASES)} phase pairs over {DURATION:g} s of motion"
         console.print(f"{about}: minutes for each scene.")
         for scene in scenes:
-            cells = _watched(console, scene, width, make)
+            cells = _computed(Runner(results, console, width, make), scene)
             _print(console, scene, cells)
             if figures:
                 with writing(figures, "--figures"):
@@ -86,11 +89,13 @@ def _spatial(name: str) -> Scene:
     return scene
 
 
-def _watched(console: Console, scene: Scene, width: int, make: Callable[[int], Executor]) -> list[Cell]:
-    with Progress(description(), BarColumn(), TimeRemainingColumn(), console=console, transient=True) as progress:
-        bar = progress.add_task(scene.name, total=1 + len(MANY))
-        study = Study((scene,), 1, TOLERANCE)
-        return assumption_cells(study, width, make, MANY, lambda: progress.advance(bar))
+def _computed(runner: Runner, scene: Scene) -> Sequence[Cell]:
+    """Every variation of a scene."""
+    study, assumptions = Study((scene,), 1, TOLERANCE), Assumptions(MANY)
+    runner.run_tasks(assumptions.tasks(study))
+    found = assumptions.collect(study, None, runner.results)
+    assert found is not None, "the scene has both models of the engine"
+    return found.cells
 
 
 def _print(console: Console, scene: Scene, cells: Sequence[Cell]) -> None:

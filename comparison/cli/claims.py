@@ -1,22 +1,29 @@
 """
 The claims of section 5 against readings of the paper: `python -m comparison.claims [--grid N] [--jobs N] [--all]`.
+
+Every case is stored as it is finished: the same command goes on where it stopped.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 
-from comparison.analysis.claims.claims import CLAIMS
 from comparison.analysis.claims.readings import EVERY_READING, READINGS
-from comparison.analysis.claims.table import GRID, SECONDS, SIGNS, ClaimTable, claims_tested, questions
+from comparison.analysis.claims.table import GRID, SIGNS, Claims, ClaimTable
 from comparison.cli.arguments import CommandParser, command, jobs, whole_number
+from comparison.cli.stored import OUT_HELP, results_beside
 from comparison.execution.executors import Pool, process_pool
-from comparison.execution.progress import Stage, progress, wide_console
+from comparison.execution.progress import wide_console
+from comparison.execution.runner import Runner
 from comparison.execution.workers import workers
+from comparison.study.study import Study
+from reference.problem import builtin_scenes, load_scene
 
+TOLERANCE = 1e-3  # of a study; the surfaces of the claims have one of their own
 SURFACES = "reference:amplification"  # what the workers ask
 
 
@@ -27,16 +34,17 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {GRID})")
     parser.add_jobs(cluster=True)
     parser.add_argument("--all", action="store_true", help="every reading: more amplitudes, durations and f_c")
+    parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help=OUT_HELP)
     parser.add_argument("--words", action="store_true", help="print what every check found, too")
     options = parser.parse_args(argv)
     grid = GRID if options.grid is None else whole_number("--grid", options.grid, 8, 512)
-    readings = EVERY_READING if options.all else READINGS
+    claims, results = Claims(grid, EVERY_READING if options.all else READINGS), results_beside(options.out)
+    study = Study(tuple(map(load_scene, builtin_scenes())), grid, TOLERANCE)
+    console = wide_console()
     with workers(jobs(options), options.scheduler, {SURFACES}, executor) as (width, make):
-        console = wide_console()
-        count = len(questions(readings, CLAIMS, grid))
-        stage = Stage(count, count * SECONDS * (grid / GRID) ** 2)
-        with progress(console, {"claims": stage}, width) as display:
-            table = claims_tested(width, make, grid, readings, done=lambda question: display.advance("claims", 1))
+        Runner(results, console, width, make).run_tasks(claims.tasks(study), compile_first=True)
+    table = claims.collect(study, None, results)
+    assert table is not None, "the study has every scene of the paper"
     print_claims(console, table, options.words)
     return 0
 

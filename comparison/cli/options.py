@@ -12,10 +12,8 @@ from comparison.cli.arguments import CommandParser, jobs, number, whole_number
 from comparison.execution.cache import refuse_foreign_store
 from comparison.execution.output import destination, refuse_foreign_report
 from comparison.study.planning import DEFAULT_PRESET, DEFAULT_TOLERANCE, STUDY_PRESETS, tightest
-from comparison.study.selection import EVERYTHING, EXPENSIVE, Selection
 from comparison.study.study import refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
-from reference.problem.analyses import ANALYSES, known_analyses
 
 
 @dataclass(frozen=True)
@@ -33,11 +31,6 @@ class Options:
     fresh: bool = False
     scheduler: str | None = None
     full: bool = False
-    selection: Selection = EVERYTHING
-
-    def selected(self, with_analyses: bool) -> Selection:
-        """The analyses that are made, with or without those that do not fit a small budget."""
-        return self.selection if with_analyses else self.selection.without(EXPENSIVE)
 
     @property
     def by_trade(self) -> bool:
@@ -52,35 +45,28 @@ class Options:
 
 def parsed(argv: Sequence[str]) -> Options:
     """Options of `python -m comparison.run`. Raises SceneError or UsageError: one line, file, key, value, rule."""
-    arguments = _parser().parse_args(argv)
-    names: list[str] = arguments.scenes or builtin_scenes()
-    amplitude = None if arguments.amplitude is None else number("--amplitude", arguments.amplitude, 1e-12, 1e6, "m/s^2")
-    families = tuple(load_family(name, amplitude) for name in names)
-    only, skip = _analyses("--only", arguments.only), _analyses("--skip", arguments.skip)
-    if only is not None and skip is not None:
-        raise SceneError(
-            "command line", "--skip", arguments.skip, "names what --only leaves out anyway: give one of them"
-        )
+    given = _parser().parse_args(argv)
+    names: list[str] = given.scenes or builtin_scenes()
+    amplitude = None if given.amplitude is None else number("--amplitude", given.amplitude, 1e-12, 1e6, "m/s^2")
     options = Options(
-        families=families,
-        grid=None if arguments.grid is None else whole_number("--grid", arguments.grid, 2, 512),
-        out=destination(arguments.out),
-        jobs=jobs(arguments),
-        tolerance=_optional("--tolerance", arguments.tolerance, tightest(), 0.1, "relative error of mu"),
-        budget=_optional("--budget", arguments.budget, 1.0, 1e7, "s of the whole run"),
-        check=arguments.check,
-        plan=arguments.plan,
-        fresh=arguments.fresh,
-        full=arguments.full,
-        scheduler=arguments.scheduler,
-        selection=Selection.of((scene for family in families for scene in family.scenes), only, skip),
+        families=tuple(load_family(name, amplitude) for name in names),
+        grid=None if given.grid is None else whole_number("--grid", given.grid, 2, 512),
+        out=destination(given.out),
+        jobs=jobs(given),
+        tolerance=_optional("--tolerance", given.tolerance, tightest(), 0.1, "relative error of mu"),
+        budget=_optional("--budget", given.budget, 1.0, 1e7, "s of the whole run"),
+        check=given.check,
+        plan=given.plan,
+        fresh=given.fresh,
+        full=given.full,
+        scheduler=given.scheduler,
     )
     sources = list(zip(names, options.families))
     refuse_same_names((source, family.name) for source, family in sources)
     refuse_same_names((source, scene.name) for source, family in sources for scene in family.scenes)
-    if arguments.scheduler is not None and options.budget is not None:
+    if given.scheduler is not None and options.budget is not None:
         rule = "is kept by what this machine is measured to do, --scheduler computes on others: give one of the two"
-        raise SceneError("command line", "--budget", arguments.budget, rule)
+        raise SceneError("command line", "--budget", given.budget, rule)
     if not options.plan:
         try:
             stored_extremes(options.out)
@@ -126,22 +112,9 @@ def _parser() -> CommandParser:
         action="store_true",
         help="compute every phase pair and model in full, even what the scene does not require; --plan lists that",
     )
-    names = ", ".join(ANALYSES)
-    parser.add_argument("--only", metavar="LIST", help=f"make these analyses only, separated by commas: {names}")
-    parser.add_argument("--skip", metavar="LIST", help="make all analyses but these")
     parser.add_argument("--check", action="store_true", help="exit 1 if a scene's acceptance limits are broken")
     parser.add_argument("--plan", action="store_true", help="print what would be computed and its cost; run nothing")
     return parser
-
-
-def _analyses(option: str, text: str | None) -> list[str] | None:
-    """The analyses that an option lists, separated by commas."""
-    if text is None:
-        return None
-    try:
-        return known_analyses([name.strip() for name in text.split(",")])
-    except ValueError as error:
-        raise SceneError("command line", option, text, str(error)) from None
 
 
 def _optional(option: str, text: str | None, least: float, most: float, unit: str) -> float | None:

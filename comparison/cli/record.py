@@ -70,13 +70,13 @@ def _rows(model: Model, scenes: list[Scene]) -> tuple[list[dict[str, Any]], list
     for tolerance, answers in found.items():
         errors = np.concatenate(
             [
-                np.abs(answer.mu / reference_solution - 1.0).max(axis=1)
-                for answer, reference_solution in zip(answers, reference_solutions)
+                np.abs(one.mu / reference_solution - 1.0).max(axis=1)
+                for one, reference_solution in zip(answers, reference_solutions)
                 if reference_solution is not None
             ]
         )
-        claims = np.concatenate([(answer.error_estimate / answer.mu).max(axis=1) for answer in answers])
-        cost = sum(answer.seconds for answer in answers) / sum(one.seconds for one in usual)
+        claims = np.concatenate([(one.error_estimate / one.mu).max(axis=1) for one in answers])
+        cost = sum(one.seconds for one in answers) / sum(one.seconds for one in usual)
         rows.append(
             {
                 "tolerance": tolerance,

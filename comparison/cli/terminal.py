@@ -10,23 +10,22 @@ from rich.console import Console
 from rich.table import Table
 
 from comparison.analysis.differences import Difference
-from comparison.analysis.tasks import analysis_tasks, predicted
 from comparison.analysis.unanswered import Unanswered
 from comparison.cli.options import Options
 from comparison.execution.cache import Cache, store_beside
 from comparison.execution.keys import batch_key
-from comparison.execution.task_cache import TaskCache
+from comparison.execution.task_results import TaskResults
+from comparison.registry import chosen_analyses, first_tasks, predicted_costs
 from comparison.study.accuracy_record import recorded
 from comparison.study.batches import refusal_of
 from comparison.study.models import RECORDED_ON
 from comparison.study.overhead import COMPILED_ONCE, START_UP, WRITING
 from comparison.study.planning import StudyPlan
 from comparison.study.reductions import reductions
-from comparison.study.selection import Selection
 from comparison.study.study import Study
 
 
-def print_plan(console: Console, study: Study, options: Options, selection: Selection) -> None:
+def print_plan(console: Console, study: Study, options: Options, with_analyses: bool = True) -> None:
     """What would be computed and its predicted cost."""
     table = _table("scene", "model", "points", "computed", "tolerance", "s on one core")
     total, refused = 0.0, []
@@ -43,12 +42,10 @@ def print_plan(console: Console, study: Study, options: Options, selection: Sele
             table.add_row(scene.name, model.title, *cells)
     console.print(table)
     _print_reductions(console, study)
-    costs = predicted(study, selection)
+    analyses = chosen_analyses(with_analyses)
+    costs = predicted_costs(study, analyses)
     others = ", ".join(f"{name} {seconds:.0f} s ({tasks})" for name, (tasks, seconds) in costs.items() if tasks)
-    console.print(f"Beside the surfaces, s on one core and tasks: {others or 'nothing'}.")
-    if absent := selection.absent(study):
-        reasons = ", ".join(f"{analysis} ({reason})" for analysis, reason in absent.items())
-        console.print(f"Not in the report: {reasons}.", soft_wrap=True)
+    console.print(f"Beside the surfaces, s on one core and tasks: {others}.")
     total += sum(seconds for _, seconds in costs.values())
     wall = START_UP + total / options.jobs + WRITING
     if len(study.phased) < len(study.scenes):
@@ -59,11 +56,10 @@ def print_plan(console: Console, study: Study, options: Options, selection: Sele
     console.print(f"{over}{options.jobs} worker processes: about {wall:.0f} s.")
     store, batches = Cache(store_beside(options.out)), study.batches()
     if not options.fresh and (stored := sum(store.holds(batch_key(batch)) for batch in batches)):
-        asked, cached = analysis_tasks(study, selection), TaskCache(store)
-        analyses = f"{sum(map(cached.holds, asked))} of {len(asked)} analyses"
+        asked, known = first_tasks(study, analyses), TaskResults(store)
+        others = f"{sum(map(known.holds, asked))} of {len(asked)} analyses"
         console.print(
-            f"{stored} of {len(batches)} batches are in {store.folder} already, {analyses}: "
-            "they are not computed again."
+            f"{stored} of {len(batches)} batches are in {store.folder} already, {others}: they are not computed again."
         )
     if not options.by_trade:
         console.print(f"Costs were recorded on {RECORDED_ON}; another machine scales them all alike.")
@@ -138,11 +134,8 @@ def print_unanswered(console: Console, lacking: Sequence[Unanswered]) -> None:
         console.print(f"Without a value: {one.sentence}", soft_wrap=True)
 
 
-def print_differences(console: Console, rows: Sequence[Difference], phased: bool) -> None:
+def print_differences(console: Console, rows: Sequence[Difference]) -> None:
     """Median, 95 % and maximum relative difference, and the points not ok, for every scene, body and pair."""
-    if not rows:
-        return
-    console.print(f"Relative differences{' over the phases' if phased else ''}, per body:")
     table = _table("scene", "body", "difference", "median", "95 %", "maximum", "not ok")
     for row in rows:
         sizes = (f"{value:.1e}" for value in (row.median, row.percentile95, row.maximum))

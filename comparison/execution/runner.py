@@ -1,29 +1,33 @@
 """
-The batches and tasks of a study, each from the cache if it is there, else computed, stored at once, shown as progress.
+The one way in which anything is computed: batches and tasks, each from the cache if it is there, else executed.
+
+Everything that is missing goes through the workers in one sweep, is stored as soon as it arrives, and is shown as
+progress.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rich.console import Console
 
-from comparison.execution.cache import Cache
 from comparison.execution.executors import Pool
 from comparison.execution.keys import batch_key, cached_batch
 from comparison.execution.progress import Stage, progress
 from comparison.execution.splitting import merge, split_batch
 from comparison.execution.sweep import sweep
-from comparison.execution.task import Task, TaskResult, execute
-from comparison.execution.task_cache import TaskCache
-from comparison.execution.warm_up import WARM_UP, warm_up
+from comparison.execution.task import Task, TaskResult, execute, unfinished
+from comparison.execution.task_results import TaskResults
+from comparison.execution.warm_up import WARM_UP, compiling_task, warm_up
 from comparison.study.batches import Batch, BatchResult, execute_batch, unanswered
 from comparison.study.overhead import COMPILED_ONCE, START_UP
 from comparison.study.study import Study
 from reference.problem import Outcome
 
 COMPILING = "compiling the reference"
+
+Piece = Batch | Task
 
 
 @dataclass(frozen=True)
@@ -35,131 +39,149 @@ class Computed:
     stored: int
 
 
-def computed(
-    study: Study,
-    cache: Cache,
-    console: Console,
-    jobs: int,
-    executor: Pool,
-    tasks: Sequence[Task] = (),
-    answers: TaskCache | None = None,
-) -> Computed:
-    """
-    Every batch of the study and every task, the missing ones computed on `executor` in one sweep.
+@dataclass(frozen=True)
+class Runner:
+    """Runs batches and tasks on `executor`, or on what it makes for `jobs` workers, and keeps what they return."""
 
-    What tasks gave is in `answers`. Raises StoreError and ExecutorLostError.
-    """
-    answers = TaskCache(cache) if answers is None else answers
-    batches = study.batches()
-    found = {place: answer for place, batch in enumerate(batches) if (answer := cached_batch(cache, batch)) is not None}
-    missing = [place for place in range(len(batches)) if place not in found]
-    open_ = answers.missing(tasks)
-    stages = _stages(study, batches, missing, tasks, open_)
-    if found:
-        others = f", {len(tasks) - len(open_)} of {len(tasks)} analyses" if tasks else ""
-        stored = f"{len(found)} of {len(batches)} batches{others} are in {cache.folder}: only the others are computed."
-        console.print(stored, soft_wrap=True)  # a path is copied whole
-    if missing or open_:
-        rest = [batches[place] for place in missing]
-        found |= zip(missing, _solved(study, rest, open_, cache, answers, console, stages, jobs, executor))
-    return Computed(batches, [found[place] for place in range(len(batches))], len(batches) - len(missing))
+    results: TaskResults  # of all tasks, with the cache of both
+    console: Console
+    jobs: int
+    executor: Pool
+
+    def run_study(self, study: Study, tasks: Sequence[Task] = ()) -> Computed:
+        """
+        Every batch of the study and every task, in one sweep.
+
+        Parameters
+        ----------
+        study : Study
+            What the surfaces are made of.
+        tasks : sequence of Task
+            What is computed beside them; `results` has what they return.
+
+        Returns
+        -------
+        Computed
+            The batches and their answers.
+
+        Raises
+        ------
+        StoreError, ExecutorLostError
+            If the cache cannot be written, or the executor cannot go on.
+        """
+        cache, batches = self.results.cache, study.batches()
+        stored = {} if cache is None else {place: cached_batch(cache, batch) for place, batch in enumerate(batches)}
+        found = {place: answer for place, answer in stored.items() if answer is not None}
+        missing = [place for place in range(len(batches)) if place not in found]
+        left = self.results.missing(tasks)
+        if found and cache is not None:
+            others = f", {len(tasks) - len(left)} of {len(tasks)} analyses" if tasks else ""
+            there = (
+                f"{len(found)} of {len(batches)} batches{others} are in {cache.folder}: only the others are computed."
+            )
+            self.console.print(there, soft_wrap=True)  # a path is copied whole
+        if missing or left:
+            stages = (
+                {COMPILING: Stage(1, START_UP)} | _batch_stages(study, batches, missing) | _task_stages(tasks, left)
+            )
+            titles = {WARM_UP: COMPILING, **{model.key: model.title for model in study.hierarchy}}
+            compiled = {model.key for model in study.hierarchy if model.side == "reference"}
+            self.console.print(COMPILED_ONCE)
+            rest = [batches[place] for place in missing]
+            pieces: list[Piece] = [warm_up(study), *rest, *_longest_first(left)]
+            answers = self._sweep(pieces, stages, titles, compiled, pending=True)
+            found |= zip(missing, [answer for answer in answers if isinstance(answer, BatchResult)][1:])  # not warm-up
+        return Computed(batches, [found[place] for place in range(len(batches))], len(batches) - len(missing))
+
+    def run_tasks(self, tasks: Sequence[Task], compile_first: bool = False) -> None:
+        """
+        Every task; `results` has what they return. Raises as `run_study`.
+
+        compile_first: nothing has compiled the reference yet, so one worker does before the tasks that need it.
+        """
+        left = _longest_first(self.results.missing(tasks))
+        if not left:
+            return
+        stages, pieces = _task_stages(tasks, left), list[Piece](left)
+        pending = compile_first and any(task.needs_compiled_reference for task in left)
+        if pending:
+            stages = {COMPILING: Stage(1, START_UP)} | stages
+            pieces.insert(0, compiling_task(COMPILING))
+        self._sweep(pieces, stages, {}, set(), pending)
+
+    def _sweep(
+        self,
+        pieces: Sequence[Piece],
+        stages: Mapping[str, Stage],
+        titles: Mapping[str, str],
+        compiled: set[str],
+        pending: bool,
+    ) -> list[BatchResult | TaskResult]:
+        """
+        Run the pieces in one sweep; the first of them compiles the reference if that is `pending`.
+
+        titles: stages by the models of batches. compiled: the models that wait for the compiled reference.
+        """
+        first = pieces[0] if pending else None
+        waiting = {id(first)} if pending else set()
+        with progress(self.console, stages, self.jobs) as display:
+
+            def done(piece: Piece, answer: BatchResult | TaskResult) -> None:
+                waiting.discard(id(piece))
+                if isinstance(piece, Task):
+                    assert isinstance(answer, TaskResult)
+                    if piece is not first:
+                        self.results.put(piece, answer)
+                    display.advance(piece.stage, 1)
+                    return
+                if self.results.cache is not None and piece is not first:
+                    self.results.cache.put(batch_key(piece), answer)
+                display.advance(titles[piece.model], len(piece.phases))
+
+            def ready(piece: Piece) -> bool:
+                needs = piece.needs_compiled_reference if isinstance(piece, Task) else piece.model in compiled
+                return not (waiting and needs)
+
+            return sweep(pieces, _execute, _unfinished, done, self.jobs, self.executor, ready, _split, _merge)
 
 
-def fetched(tasks: Sequence[Task], answers: TaskCache, console: Console, jobs: int, executor: Pool) -> None:
-    """Every task, the missing ones computed on `executor`; what they gave is in `answers`. Raises as `computed`."""
-    open_ = sorted(answers.missing(tasks), key=lambda task: -task.seconds)
-    if not open_:
-        return
-    with progress(console, _task_stages(tasks, open_), jobs) as display:
-
-        def done(task: Task, found: TaskResult | None) -> None:
-            answers.put(task, found)
-            display.advance(task.stage, 1)
-
-        sweep(open_, execute, _nothing, done, jobs, executor)
+def _longest_first(tasks: Sequence[Task]) -> list[Task]:
+    """No worker is left with a long task when the others are done."""
+    return sorted(tasks, key=lambda task: -task.seconds)
 
 
-def _stages(
-    study: Study, batches: Sequence[Batch], missing: Sequence[int], tasks: Sequence[Task], open_: Sequence[Task]
-) -> dict[str, Stage]:
-    stages = {COMPILING: Stage(1, START_UP)} if missing or open_ else {}
+def _batch_stages(study: Study, batches: Sequence[Batch], missing: Sequence[int]) -> dict[str, Stage]:
+    stages = {}
     for model in study.hierarchy:
         own = {place: len(batch.phases) for place, batch in enumerate(batches) if batch.model == model.key}
         if own:
             points = sum(own.values())
             left = sum(own[place] for place in missing if place in own)
             stages[model.title] = Stage(points, study.seconds(model), points - left)
-    return stages | _task_stages(tasks, open_)
-
-
-def _task_stages(tasks: Sequence[Task], open_: Sequence[Task]) -> dict[str, Stage]:
-    stages = {}
-    for name in dict.fromkeys(task.stage for task in tasks):
-        own = [task.seconds for task in tasks if task.stage == name]
-        left = sum(task.stage == name for task in open_)
-        stages[name] = Stage(len(own), sum(own), len(own) - left)
     return stages
 
 
-def _solved(
-    study: Study,
-    batches: Sequence[Batch],
-    tasks: Sequence[Task],
-    cache: Cache,
-    answers: TaskCache,
-    console: Console,
-    stages: dict[str, Stage],
-    jobs: int,
-    executor: Pool,
-) -> list[BatchResult]:
-    titles = {WARM_UP: COMPILING, **{model.key: model.title for model in study.hierarchy}}
-    compiled = {model.key for model in study.hierarchy if model.side == "reference"}
-    pending = {WARM_UP}
-    console.print(COMPILED_ONCE)
-    with progress(console, stages, jobs) as display:
-
-        def done(piece: Piece, answer: BatchResult | TaskResult | None) -> None:
-            if isinstance(piece, Task):
-                assert not isinstance(answer, BatchResult)
-                answers.put(piece, answer)
-                display.advance(piece.stage, 1)
-                return
-            assert isinstance(answer, BatchResult)
-            if piece.model != WARM_UP:
-                cache.put(batch_key(piece), answer)
-            pending.discard(piece.model)
-            display.advance(titles[piece.model], len(piece.phases))
-
-        def ready(piece: Piece) -> bool:
-            needs = piece.compiled if isinstance(piece, Task) else piece.model in compiled
-            return not (pending and needs)
-
-        # the longest tasks first: no worker is left with one when the others are done
-        asked: list[Piece] = [warm_up(study), *batches, *sorted(tasks, key=lambda task: -task.seconds)]
-        found = sweep(asked, _run, _lost, done, jobs, executor, ready, _split, _join)
-        return [answer for answer in found if isinstance(answer, BatchResult)][1:]  # without the warm-up
+def _task_stages(tasks: Sequence[Task], left: Sequence[Task]) -> dict[str, Stage]:
+    stages = {}
+    for name in dict.fromkeys(task.stage for task in tasks):
+        own = [task.seconds for task in tasks if task.stage == name]
+        stages[name] = Stage(len(own), sum(own), len(own) - sum(task.stage == name for task in left))
+    return stages
 
 
-Piece = Batch | Task
-
-
-def _run(piece: Piece) -> BatchResult | TaskResult | None:
+def _execute(piece: Piece) -> BatchResult | TaskResult:
     return execute(piece) if isinstance(piece, Task) else execute_batch(piece)
 
 
-def _lost(piece: Piece, outcome: Outcome, error_message: str) -> BatchResult | TaskResult | None:
-    return None if isinstance(piece, Task) else unanswered(piece, outcome, error_message)
-
-
-def _nothing(task: Task, outcome: Outcome, error_message: str) -> TaskResult | None:
-    """The analysis asks again by itself and says in its own way that there is no answer."""
-    return None
+def _unfinished(piece: Piece, outcome: Outcome, error_message: str) -> BatchResult | TaskResult:
+    failed = unfinished if isinstance(piece, Task) else unanswered
+    return failed(piece, outcome, error_message)  # type: ignore[arg-type]
 
 
 def _split(piece: Piece) -> Sequence[Piece]:
     return () if isinstance(piece, Task) else split_batch(piece)
 
 
-def _join(piece: Piece, answers: Sequence[BatchResult | TaskResult | None]) -> BatchResult | TaskResult | None:
+def _merge(piece: Piece, answers: Sequence[BatchResult | TaskResult]) -> BatchResult:
     assert isinstance(piece, Batch), "tasks are not split"
     return merge(piece, [answer for answer in answers if isinstance(answer, BatchResult)])

@@ -16,46 +16,51 @@ import xarray as xr
 
 from comparison.execution.environment import environment_fingerprint
 from comparison.study.models import Model
-from reference.problem import Scene
+from reference.problem import Outcome, Scene
 
 
 @dataclass(frozen=True)
 class Task:
     """
-    `function(argument)`, in a worker process.
+    `function(argument)`, in a worker process. Pure and picklable; cached by `key`.
 
-    stage: its name on the terminal and in the table of costs. seconds: predicted cost, as `Model.seconds_per_point`.
-    about: what its directory in the cache belongs to. compiled: whether it calls the reference, which is compiled
-    first on a new installation.
+    function: importable by its name; the type that it declares to return is what the cache reads back.
     """
 
-    stage: str
     function: Callable[[Any], Any]
     argument: Any
-    seconds: float
-    about: Any = None
-    compiled: bool = True
+    stage: str  # its name on the terminal and in the table of costs
+    seconds: float  # predicted cost, as `Model.seconds_per_point`
+    about: Any = None  # what its directory in the cache belongs to
+    needs_compiled_reference: bool = True  # on a new installation it waits until one worker has compiled the reference
 
     @cached_property
     def key(self) -> str:
-        """Hash of the function and all that its task holds."""
+        """Hash of the function and all that its argument holds."""
         text = json.dumps([named(self.function), fingerprint(self.argument)])
         return hashlib.sha256(text.encode()).hexdigest()
 
 
 @dataclass(frozen=True)
 class TaskResult:
-    """What an task gave, and what it cost: s of processor time."""
+    """What a task returned, or why it returned nothing."""
 
-    result: Any
-    cost: float
+    value: Any  # None unless `outcome` is OK
+    cost: float  # s of processor time
+    outcome: Outcome = Outcome.OK
+    error_message: str = ""
 
 
 def execute(task: Task) -> TaskResult:
     """Runs inside a worker process."""
     clock = time.process_time()
-    result = task.function(task.argument)
-    return TaskResult(result, time.process_time() - clock)
+    value = task.function(task.argument)
+    return TaskResult(value, time.process_time() - clock)
+
+
+def unfinished(task: Task, outcome: Outcome, error_message: str) -> TaskResult:
+    """The result of a task that raised or whose worker died."""
+    return TaskResult(None, 0.0, outcome, error_message)
 
 
 def named(function: Callable[..., Any]) -> str:

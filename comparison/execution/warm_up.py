@@ -9,8 +9,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
+from comparison.execution.task import Task
 from comparison.study.batches import Batch
 from comparison.study.study import Study
+from reference import amplification
+from reference.problem import Scene, load_scene
 
 DURATION = 0.5  # s of motion: enough to reach every function, and over in milliseconds
 WARM_UP = "warm-up"  # model of the batch, which belongs to no surface
@@ -25,3 +30,12 @@ def warm_up(study: Study) -> Batch:
     batch = next((batch for batch in batches if batch.model == "exact"), batches[0])
     scene = batch.scene.with_values({"duration": DURATION})
     return replace(batch, model=WARM_UP, scene=scene, phases=batch.phases[:1])
+
+
+def compiling_task(stage: str) -> Task:
+    """The same for tasks without a study: one phase pair of a built-in scene."""
+    return Task(_first_call, load_scene("fig3-I").with_values({"duration": DURATION}), stage, 0.0, None, False)
+
+
+def _first_call(scene: Scene) -> None:
+    amplification(scene, np.zeros((1, 2)), equations="exact")

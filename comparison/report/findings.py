@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import Any, Protocol, TypeVar
+from typing import Any
 
 import xarray as xr
 
@@ -21,19 +20,8 @@ from comparison.analysis.tradeoff.trade import Trade
 from comparison.analysis.trajectories import StoredMotion
 from comparison.analysis.trends import Trend
 from comparison.analysis.unanswered import Unanswered, unanswered
-from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.study import Study
 from reference.problem import Family
-
-
-class OfScene(Protocol):
-    """What belongs to the scene of this name."""
-
-    @property
-    def scene(self) -> str: ...
-
-
-Row = TypeVar("Row", bound=OfScene)
 
 
 @dataclass(frozen=True)
@@ -43,10 +31,10 @@ class Findings:
     values read back from each model. effects: what errata of the print do to mu. unanswered: models without a value
     somewhere. limits: the acceptance limits that scenes state, held against the rest. faults: what solvers complained
     about. run: command, times, provenance. pictures: files of the surfaces' by name. Fields that may be None are what
-    only some commands compute. motions: see `stored_motions`. claims, scaling, convergence: see `claims_and_trends`.
-    assumptions: how far the paper's carry, see `ValidityRanges`. families: those of more than one scene. extremes: the
+    only some commands compute. motions, claims, scaling, convergence, assumptions: what the analyses of these keys
+    collect. families: those of more than one scene. extremes: the
     matrix that `python -m comparison.extremes` left beside the report. tradeoff: what `python -m comparison.tradeoff`
-    left there. selection: the analyses that were asked for.
+    left there.
     """
 
     study: Study
@@ -68,16 +56,6 @@ class Findings:
     families: Sequence[Family] | None = None
     extremes: Matrix | None = None
     tradeoff: Sequence[Trade] | None = None
-    selection: Selection = EVERYTHING
-
-    @cached_property
-    def absent(self) -> dict[str, str]:
-        """The analyses that are made of no scene, with the reason."""
-        return self.selection.absent(self.study)
-
-    def rows_of(self, analysis: str, rows: Sequence[Row]) -> list[Row]:
-        """Those of the rows whose scene has the analysis."""
-        return [row for row in rows if self.selection.has(analysis, row.scene)]
 
     @property
     def broken(self) -> list[str]:
@@ -85,27 +63,49 @@ class Findings:
         return [line for limit in self.limits for line in limit.broken]
 
 
-def findings(
+def collect_findings(
     study: Study,
     surfaces: xr.Dataset,
-    effective: Sequence[Effective],
-    effects: Sequence[Effect],
+    collected: Mapping[str, Any],
     faults: Sequence[str],
     run: Mapping[str, Any],
     **more: Any,
 ) -> Findings:
-    """What the surfaces say once they are complete; `more`: the fields that may be None."""
+    """
+    What a run found.
+
+    Parameters
+    ----------
+    study, surfaces : Study, xr.Dataset
+        What was computed.
+    collected : mapping of str to object
+        What each analysis of the run collected, by its key.
+    faults : sequence of str
+        What solvers reported.
+    run : mapping
+        Command, times, provenance.
+    **more
+        Other fields of `Findings` that may be None.
+
+    Returns
+    -------
+    Findings
+        All of it, with differences, budget, gaps and limits.
+    """
     rows, lacking = differences(study, surfaces), unanswered(study, surfaces)
+    optional = {key: collected.get(key) for key in ("motions", "claims", "scaling", "convergence", "assumptions")}
     return Findings(
-        study,
-        surfaces,
-        rows,
-        budget(study, surfaces),
-        effective,
-        effects,
-        lacking,
-        checked_limits(study, surfaces, rows, lacking),
-        faults,
-        run,
+        study=study,
+        surfaces=surfaces,
+        rows=rows,
+        budget=budget(study, surfaces),
+        effective=collected.get("effective") or [],
+        effects=collected.get("errata") or [],
+        unanswered=lacking,
+        limits=checked_limits(study, surfaces, rows, lacking),
+        faults=faults,
+        run=run,
+        pictures=collected.get("pictures") or {},
+        **optional,
         **more,
     )

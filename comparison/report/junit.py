@@ -5,31 +5,28 @@ from __future__ import annotations
 import re
 from xml.etree import ElementTree
 
-from comparison.analysis.acceptance import Limit
-from comparison.report.findings import Findings
-from reference.problem import Scene
+from comparison.report.results import Limit, Results, SceneResult
 
 FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # what XML 1.0 cannot hold
 
 
-def junit(findings: Findings) -> str:
+def junit(results: Results) -> str:
     """The acceptance limits of every scene as JUnit XML; a broken limit is a failure with its line as the message."""
     suites = ElementTree.Element("testsuites", name="phase-resonance acceptance limits")
-    for scene in findings.study.scenes:
-        suites.append(_suite(scene, findings))
+    for scene in results.scenes:
+        suites.append(_suite(scene, results.run.began))
     for key in ("tests", "failures"):
         suites.set(key, str(sum(int(suite.get(key, "0")) for suite in suites)))
     ElementTree.indent(suites)
     return ElementTree.tostring(suites, encoding="unicode", xml_declaration=True) + "\n"
 
 
-def _suite(scene: Scene, findings: Findings) -> ElementTree.Element:
-    seconds = float(findings.surfaces["cost"].sel(scene=scene.name).sum())
-    name, began = _allowed(scene.name), str(findings.run["began"])
+def _suite(scene: SceneResult, began: str) -> ElementTree.Element:
+    seconds = sum(model.cost for model in scene.models.values())
+    name = _allowed(scene.name)
     suite = ElementTree.Element("testsuite", name=name, time=f"{seconds:.1f}", timestamp=began)
-    limits = [limit for limit in findings.limits if limit.scene == scene.name]
-    suite.extend([_case(name, limit) for limit in limits])
-    suite.set("tests", str(len(limits)))
+    suite.extend([_case(name, limit) for limit in scene.limits])
+    suite.set("tests", str(len(scene.limits)))
     suite.set("failures", str(len(suite.findall("testcase/failure"))))
     suite.set("errors", "0")
     return suite

@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 Starts = dict[tuple[Place, str], int]
 
 
-def page_data(findings: Findings) -> str:
+def page_data(found: Findings) -> str:
     """
     JSON that is safe inside a script element; NaN is null.
 
@@ -35,20 +35,20 @@ def page_data(findings: Findings) -> str:
     which |D| = u_D); places (row, column, phases or null under a record, why, and motions: model, status, fault, stick,
     start and count of its instants in the packed numbers).
     """
-    study, surfaces = findings.study, findings.surfaces
-    starts = _starts(findings.motions or [])
+    study, surfaces = found.study, found.surfaces
+    starts = _starts(found.motions or [])
     data = {
         "grid": study.grid,
         "strides": study.strides,
         "titles": {model.key: model.title for model in study.hierarchy},
-        "scenes": [_scene(findings, scene, surfaces, starts) for scene in study.scenes],
+        "scenes": [_scene(found, scene, surfaces, starts) for scene in study.scenes],
     }
     return json.dumps(data, allow_nan=False).replace("<", "\\u003c")
 
 
-def packed_motions(findings: Findings) -> str:
+def packed_motions(found: Findings) -> str:
     """Every motion in order, 32-bit numbers: time (T,), position (T, N, 2), acceleration (T, N, 2)."""
-    return packed(b"".join(_numbers(motion).tobytes() for motion in findings.motions or []))
+    return packed(b"".join(_numbers(motion).tobytes() for motion in found.motions or []))
 
 
 def packed(content: bytes) -> str:
@@ -64,8 +64,8 @@ def crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[f
     return [np.round(np.asarray(line), 4).tolist() for line in lines]
 
 
-def _scene(findings: Findings, scene: Scene, surfaces: xr.Dataset, starts: Starts) -> dict[str, Any]:
-    study: Study = findings.study
+def _scene(found: Findings, scene: Scene, surfaces: xr.Dataset, starts: Starts) -> dict[str, Any]:
+    study: Study = found.study
     bodies = range(1, len(scene.bodies) + 1)
 
     def contours(pair: Pair, body: int) -> list[list[list[float]]]:
@@ -84,13 +84,13 @@ def _scene(findings: Findings, scene: Scene, surfaces: xr.Dataset, starts: Start
         "pairs": {pair.key: [pair.first.key, pair.second.key] for pair in pairs},
         "mu": {model.key: [listed(model.key, body) for body in bodies] for model in models_of(scene, study.hierarchy)},
         "contours": {pair.key: [contours(pair, body) for body in bodies] for pair in pairs},
-        "places": list(_places(findings, scene, starts)),
+        "places": list(_places(found, scene, starts)),
     }
 
 
-def _places(findings: Findings, scene: Scene, starts: Starts) -> Iterator[dict[str, Any]]:
-    own = [motion for motion in findings.motions or [] if motion.place.scene == scene.name]
-    alpha1, alpha2 = (np.asarray(findings.surfaces[name]) for name in ("alpha1", "alpha2"))
+def _places(found: Findings, scene: Scene, starts: Starts) -> Iterator[dict[str, Any]]:
+    own = [motion for motion in found.motions or [] if motion.place.scene == scene.name]
+    alpha1, alpha2 = (np.asarray(found.surfaces[name]) for name in ("alpha1", "alpha2"))
     for place, motions in groupby(own, key=lambda motion: motion.place):
         yield {
             "row": place.row,

@@ -1,12 +1,11 @@
 """
-Writes the report: index.html, which needs none of the others; surfaces.nc; summary.json and summary.md; junit.xml;
-figures/.
+Writes the report: index.html, which needs none of the others; surfaces.nc; summary.json with its schema and summary.md;
+junit.xml; figures/.
 """
 
 from __future__ import annotations
 
 import base64
-import json
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -16,19 +15,15 @@ from typing import Any
 
 import jinja2
 import numpy as np
-import xarray as xr
 from plotly.offline import get_plotlyjs
 
 from comparison.analysis.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE
 from comparison.analysis.claims.table import SIGNS
-from comparison.analysis.differences import Difference
 from comparison.analysis.effective import PHASES
-from comparison.analysis.errata import ERRATA, Effect
 from comparison.analysis.extremes.matrix import PICTURE
 from comparison.analysis.extremes.verdicts import Verdict
-from comparison.analysis.surfaces import outcome_counts, wide_swings
-from comparison.analysis.unanswered import advice
-from comparison.analysis.verdicts import bar, verdict
+from comparison.analysis.surfaces import wide_swings
+from comparison.report.assemble import assemble
 from comparison.report.figures.assumptions import assumption_figure_name, draw_assumptions
 from comparison.report.figures.budget import budget_figure_name
 from comparison.report.figures.extremes import COLORS, MEANING, describe, draw_extremes
@@ -40,10 +35,10 @@ from comparison.report.findings import Findings
 from comparison.report.junit import junit
 from comparison.report.page_data import packed, packed_motions, page_data
 from comparison.report.record_rows import record_rows
-from comparison.report.summary import summary
+from comparison.report.results import Difference, Effect, Erratum, Results, SceneResult, schema_json
 from comparison.report.summary_text import summary_text
 from comparison.report.verification import CHECKS
-from comparison.study.models import Pair, models_of
+from comparison.study.models import Pair
 from comparison.study.study import Study
 from comparison.wording import degrees, percent, scientific, significant, symbols
 from reference.problem import Outcome, Scene
@@ -66,21 +61,21 @@ class Section:
     draw: Callable[[Path, Findings], None] | None = None
     title_recorded: str = ""
 
-    def present(self, findings: Findings) -> bool:
-        """Whether the section was asked for and the findings hold what it shows."""
-        return self.name not in findings.absent and (not self.finding or getattr(findings, self.finding) is not None)
+    def present(self, found: Findings) -> bool:
+        """Whether the findings hold what the section shows."""
+        return not self.finding or getattr(found, self.finding) is not None
 
 
-def draw_all_assumptions(figures: Path, findings: Findings) -> None:
+def draw_all_assumptions(figures: Path, found: Findings) -> None:
     """The picture of every scene that has a spatial model."""
-    if findings.assumptions:
-        for scene in findings.assumptions.scenes:
-            draw_assumptions(figures / assumption_figure_name(scene), scene, findings.assumptions.cells)
+    if found.assumptions:
+        for scene in found.assumptions.scenes:
+            draw_assumptions(figures / assumption_figure_name(scene), scene, found.assumptions.cells)
 
 
-def draw_all_trades(figures: Path, findings: Findings) -> None:
+def draw_all_trades(figures: Path, found: Findings) -> None:
     """The diagrams of every scene that has them."""
-    for trade in findings.tradeoff or ():
+    for trade in found.tradeoff or ():
         draw_tradeoff(figures / tradeoff_figure_name(trade.scene), trade)
 
 
@@ -123,7 +118,7 @@ SECTIONS = (
         "Stability at the extremes",
         "extremes",
         "python -m comparison.extremes makes it, beside the report; the next run of the study shows it",
-        lambda figures, findings: draw_extremes(figures / PICTURE, findings.extremes) if findings.extremes else None,
+        lambda figures, found: draw_extremes(figures / PICTURE, found.extremes) if found.extremes else None,
     ),
     Section(
         "tradeoff",
@@ -139,28 +134,33 @@ SECTIONS = (
 SCRIPTS = ("motions.js", "surfaces.js", "report.js")
 
 
-def write_report(folder: Path, findings: Findings) -> None:
+def write_report(folder: Path, found: Findings) -> None:
     """Write every file of the report into `folder`, which exists and is empty."""
-    run = findings.run
-    stamped = findings.surfaces.assign_attrs(command=run["command"], **run["provenance"])
+    run = found.run
+    stamped = found.surfaces.assign_attrs(command=run["command"], **run["provenance"])
     stamped.to_netcdf(folder / "surfaces.nc", engine="h5netcdf")
-    text = json.dumps(summary(findings), indent=1, ensure_ascii=False, allow_nan=False)
-    (folder / "summary.json").write_text(text, encoding="utf-8")
-    (folder / "summary.md").write_text(summary_text(findings), encoding="utf-8")
-    (folder / "junit.xml").write_text(junit(findings), encoding="utf-8")
+    results = assemble(found)
+    texts = {
+        "summary.json": results.as_json(),
+        "summary.schema.json": schema_json(),
+        "summary.md": summary_text(results),
+        "junit.xml": junit(results),
+    }
+    for name, text in texts.items():
+        (folder / name).write_text(text, encoding="utf-8")
     figures = folder / "figures"
     figures.mkdir()
-    for name, content in findings.pictures.items():
+    for name, content in found.pictures.items():
         if not name.endswith(PAGE):
             (figures / name).write_bytes(content)
     for section in SECTIONS:
-        if section.draw and section.present(findings):
-            section.draw(figures, findings)
-    (folder / "index.html").write_text(_page(figures, findings), encoding="utf-8")
+        if section.draw and section.present(found):
+            section.draw(figures, found)
+    (folder / "index.html").write_text(_page(figures, found, results), encoding="utf-8")
 
 
-def _page(figures: Path, findings: Findings) -> str:
-    study = findings.study
+def _page(figures: Path, found: Findings, results: Results) -> str:
+    study = found.study
     templates = resources.files("comparison.report") / "templates"
     loader = jinja2.PackageLoader("comparison.report", "templates")
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
@@ -170,13 +170,10 @@ def _page(figures: Path, findings: Findings) -> str:
     page = environment.get_template("report.html.j2")
     hierarchy = [model for model in study.hierarchy if any(model.applies(scene) for scene in study.scenes)]
     return page.render(
-        sections=[section for section in SECTIONS if section.present(findings)],
-        absent=[
-            (section.title, findings.absent.get(section.name, section.absent))
-            for section in SECTIONS
-            if not section.present(findings)
-        ],
-        findings=findings,
+        sections=[section for section in SECTIONS if section.present(found)],
+        absent=[section for section in SECTIONS if not section.present(found)],
+        found=found,
+        results=results,
         figure_names={
             "assumptions": assumption_figure_name,
             "family": family_figure_name,
@@ -184,8 +181,8 @@ def _page(figures: Path, findings: Findings) -> str:
         },
         picture=lambda name: _inlined(smaller((figures / name).read_bytes())),
         study=study,
-        run=findings.run,
-        scenes=[_scene(findings, number, scene) for number, scene in enumerate(study.scenes)],
+        run=results.run,
+        scenes=[_scene(found, scene, result) for scene, result in zip(study.scenes, results.scenes)],
         question=_question(study),
         compared=_compared(study),
         section_titles={s.name: s.title if study.phased else s.title_recorded or s.title for s in SECTIONS},
@@ -194,11 +191,11 @@ def _page(figures: Path, findings: Findings) -> str:
         step_numbers={model.key: number for number, model in enumerate(hierarchy)},
         titles={"scene": "as stated", **{model.key: model.title for model in study.hierarchy}},
         properties=_properties(hierarchy),
-        rows=findings.rows_of("differences", findings.rows),
-        budget=findings.rows_of("budget", findings.budget),
-        effective=findings.effective,
+        rows=[row for scene in results.scenes for row in scene.differences],
+        budget=[entry for scene in results.scenes for entry in scene.budget],
+        effective=[values for scene in results.scenes for values in scene.effective],
         phases=PHASES,
-        errata=_errata(findings),
+        errata=[{"erratum": erratum, "effects": _effects(erratum)} for erratum in results.errata],
         checks=CHECKS,
         claim_signs=SIGNS,
         verdicts=[(verdict.value, COLORS[verdict], MEANING[verdict]) for verdict in Verdict],
@@ -206,15 +203,15 @@ def _page(figures: Path, findings: Findings) -> str:
         digests={scene.digest() for scene in study.scenes},
         peak_share=SHARE,
         peak_shares=(LEAST_SHARE, MOST_SHARE),
-        outcomes=_outcomes(study, findings.surfaces),
-        broken=findings.broken,
-        faults=findings.faults,
-        wide_swings=wide_swings(study, findings.surfaces),
+        outcomes=_outcomes(results),
+        broken=results.broken,
+        faults=results.faults,
+        wide_swings=wide_swings(study, found.surfaces),
         style=(templates / "report.css").read_text(encoding="utf-8"),
         scripts=[(templates / name).read_text(encoding="utf-8") for name in SCRIPTS],
         plotly=packed(get_plotlyjs().encode()),
-        motions=packed_motions(findings),
-        data=page_data(findings),
+        motions=packed_motions(found),
+        data=page_data(found),
     )
 
 
@@ -232,30 +229,26 @@ def _compared(study: Study) -> str:
     return sentences.pop() if len(sentences) == 1 else "the first against the last model that has values, in each scene"
 
 
-def _scene(findings: Findings, number: int, scene: Scene) -> dict[str, Any]:
-    pairs = findings.study.pairs(scene)
-    with_surfaces, with_budget = (findings.selection.has(section, scene.name) for section in ("surfaces", "budget"))
-    own = [row for row in findings.rows if row.scene == scene.name]
+def _scene(found: Findings, scene: Scene, result: SceneResult) -> dict[str, Any]:
+    pairs = found.study.pairs(scene)
+    rows = {pair.key: [row for row in result.differences if row.pair == pair.key] for pair in pairs}
     return {
-        "number": number,
         "scene": scene,
-        "surfaces": with_surfaces,
-        "budget": with_budget,
-        "digest": scene.digest(),
-        "verdict": verdict(findings.study, findings.surfaces, scene),
-        "verdicts": [_verdict(pair, [row for row in own if row.pair == pair.key], scene.recorded) for pair in pairs],
+        "digest": result.digest,
+        "verdict": result.verdict,
+        "verdicts": [_verdict(pair, rows[pair.key], scene.recorded) for pair in pairs],
         "bodies": [
             {
-                "number": body,
-                "bar": bar(findings.study, findings.surfaces, scene, body),
-                "record": record_rows(findings, scene, body),
+                "number": bar.body,
+                "bar": bar,
+                "record": record_rows(found, scene, bar.body),
                 "pictures": [
-                    {"pair": pair, "png": _inlined(findings.pictures[for_page(figure_name(scene, body, pair))])}
-                    for pair in (pairs if with_surfaces and not scene.recorded else [])
+                    {"pair": pair, "png": _inlined(found.pictures[for_page(figure_name(scene, bar.body, pair))])}
+                    for pair in ([] if scene.recorded else pairs)
                 ],
-                "budget": _budget(findings, scene, body) if with_budget else "",
+                "budget": _budget(found, scene, bar.body),
             }
-            for body in range(1, len(scene.bodies) + 1)
+            for bar in result.bars
         ],
     }
 
@@ -277,9 +270,9 @@ def _verdict(pair: Pair, rows: Sequence[Difference], recorded: bool) -> str:
     )
 
 
-def _budget(findings: Findings, scene: Scene, body: int) -> str:
+def _budget(found: Findings, scene: Scene, body: int) -> str:
     """The picture of the budget over the phases, of which a recorded motion has none."""
-    return "" if scene.recorded else _inlined(findings.pictures[for_page(budget_figure_name(scene, body))])
+    return "" if scene.recorded else _inlined(found.pictures[for_page(budget_figure_name(scene, body))])
 
 
 def _inlined(webp: bytes) -> str:
@@ -298,22 +291,10 @@ def _properties(hierarchy: Sequence[Any]) -> list[dict[str, Any]]:
     return table
 
 
-def _errata(findings: Findings) -> list[dict[str, Any]]:
-    """The errata with one sentence each about their largest effect in every scene they touch."""
-    rows = []
-    for number, erratum in enumerate(ERRATA):
-        effects = [
-            effect
-            for effect in findings.effects
-            if effect.erratum == number and (effect.change or effect.error_message)
-        ]
-        rows.append(
-            {
-                "erratum": erratum,
-                "effects": [_effect(effect) for effect in effects] or [erratum.none or "no scene here"],
-            }
-        )
-    return rows
+def _effects(erratum: Erratum) -> list[str]:
+    """One sentence about the largest effect of an erratum in every scene that it touches."""
+    touched = [effect for effect in erratum.effects if effect.change or effect.error_message]
+    return [_effect(effect) for effect in touched] or [erratum.none or "no scene here"]
 
 
 def _effect(effect: Effect) -> str:
@@ -328,21 +309,17 @@ def _effect(effect: Effect) -> str:
     return f"{effect.scene}: {lost}{', '.join(sizes)}"
 
 
-def _outcomes(study: Study, surfaces: xr.Dataset) -> list[dict[str, Any]]:
+def _outcomes(results: Results) -> list[dict[str, Any]]:
+    titles = {model.key: model.title for model in results.models}
     return [
         {
             "scene": scene.name,
-            "model": model.title,
-            "counts": outcome_counts(surfaces, scene.name, model.key),
-            "points": study.points(model, scene),
-            "cost": float(surfaces["cost"].sel(scene=scene.name, model=model.key)),
-            "others": [
-                f"{count} × {outcome}: {advice(study, scene, model, outcome)}"
-                for outcome, count in outcome_counts(surfaces, scene.name, model.key).items()
-                if outcome != Outcome.OK
-            ],
-            "ok": outcome_counts(surfaces, scene.name, model.key).get(Outcome.OK.value, 0),
+            "model": titles[key],
+            "points": model.points,
+            "cost": model.cost,
+            "others": [f"{model.outcomes[outcome]} × {outcome}: {text}" for outcome, text in model.advice.items()],
+            "ok": model.outcomes.get(Outcome.OK.value, 0),
         }
-        for scene in study.scenes
-        for model in models_of(scene, study.hierarchy)
+        for scene in results.scenes
+        for key, model in scene.models.items()
     ]

@@ -6,56 +6,43 @@ import re
 from collections.abc import Sequence
 from math import isnan
 
-from comparison.analysis.surfaces import outcome_counts
-from comparison.analysis.verdicts import bar, verdict
-from comparison.report.findings import Findings
-from comparison.study.models import models_of
+from comparison.report.results import Results
 from comparison.wording import degrees, percent
 from reference.problem import Outcome
 
 MARKS = re.compile(r"[\\|<>*_`\[\]#~$&!]")
 
 
-def summary_text(findings: Findings) -> str:
+def summary_text(results: Results) -> str:
     """GitHub's Markdown."""
-    study, run = findings.study, findings.run
-    count = len(study.scenes)
-    kinds = [f"{study.grid} × {study.grid} phases"] if study.phased else []
-    kinds += ["one value under each recorded motion"] if len(study.phased) < count else []
+    run, phased = results.run, results.phased
+    count = len(results.scenes)
+    kinds = [f"{results.grid} × {results.grid} phases"] if phased else []
+    kinds += ["one value under each recorded motion"] if len(phased) < count else []
     heading = f"## Phase-resonance study: {count} scene{'' if count == 1 else 's'}, {', '.join(kinds)}"
-    parts = [heading, _limits(findings), *_unanswered(findings), _verdicts(findings)]
-    parts += _differences(findings) if "differences" not in findings.absent else []
-    parts += _budget(findings) if "budget" not in findings.absent else []
-    parts += _lost(findings)
-    sections = [
-        name
-        for analysis, name in (
-            ("surfaces", "surfaces to turn" if study.phased else ""),
-            ("trajectories", "motions"),
-            ("assumptions", "assumptions"),
-        )
-        if name and analysis not in findings.absent
-    ]
-    shown = ", ".join([*sections, "tables"]) + " and provenance"
+    parts = [heading, _limits(results), *_unanswered(results), _verdicts(results)]
+    parts += [*_differences(results), *_budget(results), *_lost(results)]
+    shown = "Surfaces to turn, motions" if phased else "Motions"
     made = ", ".join(
-        f"{name} {run['provenance'][name]}" for name in ("commit", "exudyn", "numba") if name in run["provenance"]
+        f"{name} {run.provenance[name]}" for name in ("commit", "exudyn", "numba") if name in run.provenance
     )
     parts.append(
         "The two codes are cross-verified, not validated: no measurement is involved.  \n"
-        f"{_code(run['command'])}: {run['seconds']} s with {run['jobs']} workers, began {run['began']}; {made}. "
-        f"{shown[0].upper()}{shown[1:]}: `index.html` of the report."
+        f"{_code(run.command)}: {run.seconds} s with {run.jobs} workers, began {run.began}; {made}. "
+        f"{shown}, assumptions and provenance: `index.html` of the report."
     )
     return "\n\n".join(parts) + "\n"
 
 
-def _unanswered(findings: Findings) -> list[str]:
+def _unanswered(results: Results) -> list[str]:
     """Models without a value somewhere."""
-    return ["\n".join(f"- {_plain(one.sentence)}" for one in findings.unanswered)] if findings.unanswered else []
+    lines = [f"- {_plain(lacking.sentence)}" for lacking in results.unanswered]
+    return ["\n".join(lines)] if lines else []
 
 
-def _limits(findings: Findings) -> str:
-    broken = findings.broken
-    if not findings.limits:
+def _limits(results: Results) -> str:
+    broken = results.broken
+    if not results.limits:
         return "No scene states acceptance limits: nothing was checked."
     if not broken:
         return "**Every acceptance limit holds.**"
@@ -63,16 +50,14 @@ def _limits(findings: Findings) -> str:
     return f"**{len(broken)} acceptance limit{'' if len(broken) == 1 else 's'} broken:**\n\n{lines}"
 
 
-def _verdicts(findings: Findings) -> str:
-    study = findings.study
-    said = [(scene, verdict(study, findings.surfaces, scene)) for scene in study.scenes]
+def _verdicts(results: Results) -> str:
     return "\n".join(
-        f"- **{_plain(scene.name)}** ({_plain(scene.title)}): {_plain(one.sentence.replace('mu_', 'μ_'))}"
-        for scene, one in said
+        f"- **{_plain(scene.name)}** ({_plain(scene.title)}): {_plain(scene.verdict.sentence.replace('mu_', 'μ_'))}"
+        for scene in results.scenes
     )
 
 
-def _differences(findings: Findings) -> list[str]:
+def _differences(results: Results) -> list[str]:
     rows = [
         [
             row.scene,
@@ -83,21 +68,22 @@ def _differences(findings: Findings) -> list[str]:
             percent(row.beyond_error),
             f"{row.unanswered} of {row.asked}",
         ]
-        for row in findings.rows_of("differences", findings.rows)
+        for scene in results.scenes
+        for row in scene.differences
     ]
     names = ["scene", "body", "difference", "median", "95 %", "maximum", "at (α₁, α₂)", "beyond u_D", "no value"]
     return ["### Differences", _table(names, rows, left=3)]
 
 
-def _budget(findings: Findings) -> list[str]:
-    study = findings.study
-    models = [model for model in study.hierarchy[1:] if any(model.applies(scene) for scene in study.scenes)]
+def _budget(results: Results) -> list[str]:
+    models = [model for model in results.models[1:] if any(model.key in scene.models for scene in results.scenes)]
     rows = []
-    for scene in findings.selection.study(study, "budget").scenes:
-        for body in range(1, len(scene.bodies) + 1):
-            one = bar(study, findings.surfaces, scene, body)
-            sizes = {segment.model: percent(segment.size) for segment in one.segments}
-            rows.append([scene.name, str(body), *(sizes.get(model.key, "") for model in models), percent(one.total)])
+    for scene in results.scenes:
+        for bar in scene.bars:
+            sizes = {segment.model: percent(segment.size) for segment in bar.segments}
+            rows.append(
+                [scene.name, str(bar.body), *(sizes.get(model.key, "") for model in models), percent(bar.total)]
+            )
     names = ["scene", "body", *(model.title for model in models), "total"]
     return [
         "### What makes the difference",
@@ -106,15 +92,16 @@ def _budget(findings: Findings) -> list[str]:
     ]
 
 
-def _lost(findings: Findings) -> list[str]:
+def _lost(results: Results) -> list[str]:
+    titles = {model.key: model.title for model in results.models}
     lines = [
-        f"- {_plain(scene.name)}, {_plain(model.title)}: {count} × {outcome}"
-        for scene in findings.study.scenes
-        for model in models_of(scene, findings.study.hierarchy)
-        for outcome, count in outcome_counts(findings.surfaces, scene.name, model.key).items()
+        f"- {_plain(scene.name)}, {_plain(titles[key])}: {count} × {outcome}"
+        for scene in results.scenes
+        for key, model in scene.models.items()
+        for outcome, count in model.outcomes.items()
         if outcome != Outcome.OK
     ]
-    lines += [f"- {_plain(line)}" for line in findings.faults]
+    lines += [f"- {_plain(line)}" for line in results.faults]
     return ["### Points that are not ok", "\n".join(lines)] if lines else []
 
 

@@ -106,7 +106,7 @@ def _uncalibrated(
 
 def _typical(model: Model) -> float:
     """Mean over the recorded scenes."""
-    return float(np.mean([value[model.key] for value in recorded().seconds.values() if model.key in value]))
+    return float(np.mean([own[model.key] for own in recorded().seconds.values() if model.key in own]))
 
 
 def _trial_run(scene: Scene, model: Model, points: int, full: bool) -> float:

@@ -107,11 +107,7 @@ def plan_study(request: StudyRequest) -> StudyPlan:
     measured = costs(request.scenes, request.hierarchy, request.measures_machine, request.full)
     if request.budget is None:
         return _plan(STUDY_PRESETS[DEFAULT_PRESET], request, measured)
-    allowed = [
-        study_preset
-        for study_preset in STUDY_PRESETS
-        if request.tolerance is None or study_preset.tolerance == DEFAULT_TOLERANCE
-    ]
+    allowed = [one for one in STUDY_PRESETS if request.tolerance is None or one.tolerance == DEFAULT_TOLERANCE]
     spent = time.monotonic() - begin
     made = [_plan(one, request, measured) for one in allowed]
     fitting = [one for one in made if one.wall + spent <= request.budget]

@@ -27,6 +27,7 @@ MIN_RATE, MAX_RATE = 2.0, 4.0  # factor by which a level reduces the error: at s
 MAX_CREDIBLE_RATE = 5.0  # a larger factor is accidental
 ERROR_PER_WARPING_LOAD = 0.05  # relative change of a peak over the largest warping load (measured: up to 0.02)
 MIN_RELATIVE_ERROR = 1e-6  # of a peak: smaller errors are not measured
+MAX_CONVERGED_ERROR = 0.3  # relative: beyond it successive levels are different motions
 SMALLEST_CHANGE = 1e-290  # keeps a rate finite
 
 
@@ -43,6 +44,18 @@ def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> 
     change = safety * change * (1.0 + lag(levels[-2], model)) / (rate - 1.0)
     level_error: Array = np.maximum(change, levels[-1].error_floor * last)
     return level_error + peaks[-1].sampling + levels[-1].rounding + MIN_RELATIVE_ERROR * last
+
+
+def widened_without_convergence(errors: Array, run: EngineRun) -> Array:
+    """
+    Errors (N,) of a run, none of them less than the peak itself where the error of any body shows no convergence.
+
+    Supports that hit again make every level another motion. Two of them then agree by chance, for one body or another.
+    """
+    peaks = run.peaks.value
+    if (errors <= MAX_CONVERGED_ERROR * peaks).all():
+        return errors
+    return np.maximum(errors, peaks)
 
 
 def from_sharing(run: EngineRun) -> Array:

@@ -16,7 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.integration.adaptive import MAX_CHUNK_STEPS, Budget, EngineRun
-from multibody.integration.estimate import ERROR_PER_WARPING_LOAD, from_compliance, from_levels, from_sharing
+from multibody.integration.estimate import (
+    ERROR_PER_WARPING_LOAD,
+    from_compliance,
+    from_levels,
+    from_sharing,
+    widened_without_convergence,
+)
 from multibody.integration.level import COMPLIANCE_RATIO, MAX_WARPING_COMPLIANCE, Level, levels_of
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import Peaks
@@ -25,7 +31,7 @@ from reference.problem import Outcome, Scene, State
 
 Array = NDArray[np.float64]
 
-MAX_WORK = 8e6  # nominal microseconds (see `Budget`) of all runs of one point
+MAX_WORK = 14e6  # nominal microseconds (see `Budget`) of all runs of one point
 UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
 FIRST_LEVELS_STEPS = 3.0  # steps of the first two levels over those of the first: without both there is no answer
 MAX_WARPING_ERROR_SHARE = 0.2  # of the tolerance, that the load of warped supports may take as an error
@@ -99,6 +105,7 @@ def refine(
             break
         finished = [other.peaks for other in runs[-3:] if other.outcome == Outcome.OK]
         errors = from_levels(finished, remaining[: number + 1], model) + from_sharing(run)
+        errors = widened_without_convergence(errors, run)
         candidate = _Candidate(run, errors, level if shared else None)
         if candidate.meets(tolerance):
             candidate = candidate.completed(pair, budget, keep)

@@ -27,7 +27,8 @@ from local_cluster import LocalCluster
 from comparison.execution.cache import Cache
 from comparison.execution.dask import cluster
 from comparison.execution.executors import Pool, process_pool
-from comparison.execution.runner import computed
+from comparison.execution.runner import Runner
+from comparison.execution.task_results import TaskResults
 from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
 
@@ -62,7 +63,7 @@ def measured(folder: Path, executor: Pool) -> Measured:
     model = replace(fake_hierarchy(batch=1)[0], amplification="test_sweep_overhead:timed")
     study = Study((load_scene("fig3-I"),), 4, 1e-3, [model])
     begin = time.process_time()
-    found = computed(study, Cache(folder), Console(quiet=True), WORKERS, executor)
+    found = Runner(TaskResults(Cache(folder)), Console(quiet=True), WORKERS, executor).run_study(study)
     spent = time.process_time() - begin
     assert len(list(folder.glob("*/*.tile"))) == len(found.answers) == TILES
     waits = []

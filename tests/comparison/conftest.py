@@ -9,13 +9,12 @@ from pathlib import Path
 
 import pytest
 from fake_models import fake_hierarchy, known_motions
-from known_claims_and_trends import known_claims_and_trends
+from known_analyses import analyses_are, known_others
 from PIL import Image
 
-import comparison.run
 from comparison.analysis.errata import Effect
 from comparison.report import report
-from comparison.report.figures import pictures
+from comparison.report.figures import budget, pairs, paper
 from comparison.run import main
 from comparison.study.models import Model
 
@@ -35,23 +34,19 @@ def quick_figure(path: Path, *rest: object) -> None:
     Image.new("RGB", (1, 1)).save(path, "PNG")
 
 
-def without_tasks(patch: pytest.MonkeyPatch) -> None:
-    """Nothing beside the surfaces is computed ahead or kept: what the analyses need they ask for themselves."""
-    patch.setattr(comparison.run, "analysis_tasks", lambda *rest: [])
-    patch.setattr(comparison.run, "motion_tasks", lambda *rest: [])
-    patch.setattr(pictures, "picture_tasks", lambda *rest: [])
+def quick_figures(patch: pytest.MonkeyPatch) -> None:
+    """Every picture of the surfaces is one dot."""
+    patch.setattr(pairs, "draw_pair", quick_figure)
+    patch.setattr(budget, "draw_budget", quick_figure)
+    patch.setattr(paper, "draw_paper_figure", quick_figure)
 
 
 @pytest.fixture
 def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Run]:
     """The command line with fake models in threads of this process and quick figures; --out in an empty directory."""
     monkeypatch.setattr(report, "draw_assumptions", quick_figure)
-    for name in ("draw_pair", "draw_budget", "draw_paper_figure"):
-        monkeypatch.setattr(pictures, name, quick_figure)
-    monkeypatch.setattr(comparison.run, "errata_effects", lambda *rest: [])  # it asks no model of the hierarchy
-    monkeypatch.setattr(comparison.run, "stored_motions", lambda *rest: [])
-    monkeypatch.setattr(comparison.run, "claims_and_trends", lambda *rest: {})
-    without_tasks(monkeypatch)
+    quick_figures(monkeypatch)
+    analyses_are(monkeypatch, motions=[])
 
     def run(
         *words: str, hierarchy: Sequence[Model] | None = None, executor: Callable[[int], Executor] = ThreadPoolExecutor
@@ -74,9 +69,6 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ]
     words = ["fig3-I", "fig4-viscous", "--grid", "4", "--jobs", "2", "--out", str(place)]
     with pytest.MonkeyPatch.context() as patch:
-        without_tasks(patch)
-        patch.setattr(comparison.run, "errata_effects", lambda *rest: effects)
-        patch.setattr(comparison.run, "stored_motions", known_motions)
-        patch.setattr(comparison.run, "claims_and_trends", known_claims_and_trends)
+        analyses_are(patch, errata=effects, motions=known_motions, **known_others())
         assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
     return place

@@ -4,16 +4,16 @@ first variation that fails, and the real models show that turning fades with the
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fake_models import fake_hierarchy
+from known_analyses import collected
 from matplotlib.image import imread
 
-from comparison.analysis.assumptions.validity import ASSUMPTIONS, ValidityRanges, describe
-from comparison.analysis.assumptions.variations import FEW, MANY, PHASES, Cell, Variation, assumption_cells, ranges
+from comparison.analysis.assumptions.validity import ASSUMPTIONS, Assumptions, describe
+from comparison.analysis.assumptions.variations import FEW, MANY, PHASES, Cell, Variation, ranges
 from comparison.cli.assumptions import main
 from comparison.report.figures.assumptions import assumption_figure_name, draw_assumptions
 from comparison.study.models import MODEL_HIERARCHY
@@ -43,7 +43,7 @@ def _said(cells: Sequence[Cell], key: str, share: float = 0.01) -> tuple[float |
 
 
 def test_there_are_the_papers_six_assumptions_in_order() -> None:
-    assert [assumption.number for assumption in ASSUMPTIONS] == ["(i)", "(ii)", "(iii)", "(iv)", "(v)", "(vi)"]
+    assert [one.number for one in ASSUMPTIONS] == ["(i)", "(ii)", "(iii)", "(iv)", "(v)", "(vi)"]
 
 
 def test_a_variation_changes_ring_heights_and_supports_and_nothing_else() -> None:
@@ -58,12 +58,8 @@ def test_a_variation_changes_ring_heights_and_supports_and_nothing_else() -> Non
 @pytest.mark.parametrize("variations", [FEW, MANY])
 def test_ring_and_heights_are_both_varied_about_what_the_scene_states(variations: Sequence[Variation]) -> None:
     assert Variation() in variations
-    assert (
-        len({variation.ring for variation in variations if variation.height == 1.0 and variation.supports is None}) >= 4
-    )
-    assert (
-        len({variation.height for variation in variations if variation.ring == 1.0 and variation.supports is None}) >= 4
-    )
+    assert len({one.ring for one in variations if one.height == 1.0 and one.supports is None}) >= 4
+    assert len({one.height for one in variations if one.ring == 1.0 and one.supports is None}) >= 4
 
 
 def test_a_ring_holds_only_if_every_wider_one_tried_does() -> None:
@@ -98,18 +94,18 @@ def test_the_sentences_name_what_holds_and_what_was_tried_next() -> None:
 
 def test_cells_compare_the_two_engine_models_of_the_ladder_in_every_scene_that_has_both() -> None:
     study = Study((STATED, BARE), 2, 1e-3, fake_hierarchy(gap=0.0))
-    cells = assumption_cells(study, 2, ThreadPoolExecutor)
+    cells = collected(Assumptions(), study).cells
     assert [cell.variation for cell in cells] == list(FEW)
     for cell in cells:
         assert (np.array(cell.change) == 0.0).all(), "both fake models answer alike"
         assert np.array(cell.change).shape == (len(PHASES), 2)
         np.testing.assert_allclose(cell.uncertainty, 1e-3 * np.sqrt(2.0))  # both claim the 1e-3 asked
-    assert ValidityRanges.of(Study((BARE,), 2, 1e-3, fake_hierarchy()), 2, ThreadPoolExecutor) is None
+    assert collected(Assumptions(), Study((BARE,), 2, 1e-3, fake_hierarchy())) is None
 
 
 def test_a_model_that_raises_leaves_no_value_and_says_why() -> None:
     study = Study((STATED,), 2, 1e-3, fake_hierarchy("always_raising"))
-    cells = assumption_cells(study, 2, ThreadPoolExecutor)
+    cells = collected(Assumptions(), study).cells
     assert [cell.variation for cell in cells] == list(FEW)
     for cell in cells:
         assert np.isnan(cell.change).all()
@@ -138,7 +134,7 @@ def test_a_scene_without_supports_is_refused_in_one_line(tmp_path: Path, capsys:
 
 def _turning(scene: Scene, variations: Sequence[Variation]) -> list[Cell]:
     study = Study((scene.with_values({"duration": 2.0}),), 1, 1e-3, MODEL_HIERARCHY)
-    return assumption_cells(study, 1, ThreadPoolExecutor, variations)
+    return list(collected(Assumptions(variations), study).cells)
 
 
 def test_with_all_heights_zero_the_real_models_agree_within_their_errors() -> None:

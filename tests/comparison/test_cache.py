@@ -16,7 +16,8 @@ from rich.console import Console
 from comparison.execution.cache import MAGIC, Cache
 from comparison.execution.environment import source_digest
 from comparison.execution.keys import batch_key, cached_batch
-from comparison.execution.runner import computed
+from comparison.execution.runner import Runner
+from comparison.execution.task_results import TaskResults
 from comparison.study.batches import BatchResult, execute_batch, unanswered
 from comparison.study.study import Study
 from reference.problem import Outcome, load_scene
@@ -28,7 +29,7 @@ def _study(grid: int = 4) -> Study:
 
 def _computed(study: Study, store: Cache) -> tuple[list[BatchResult], int]:
     """The answers, and how many batches were there before."""
-    found = computed(study, store, Console(quiet=True), 2, ThreadPoolExecutor)
+    found = Runner(TaskResults(store), Console(quiet=True), 2, ThreadPoolExecutor).run_study(study)
     return list(found.answers), found.stored
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from known_analyses import collected
 from numpy.typing import NDArray
 
 from comparison.analysis.claims import evidence
@@ -17,11 +19,16 @@ from comparison.analysis.claims.claims import CLAIMS, Claim
 from comparison.analysis.claims.evidence import Evidence, Question
 from comparison.analysis.claims.readings import CASES, EVERY_READING, READINGS, Reading, without_effect
 from comparison.analysis.claims.smoothness import Bend
-from comparison.analysis.claims.table import claims_tested, questions, tabulated
+from comparison.analysis.claims.table import Claims, questions, tabulated
 from comparison.cli.claims import main
+from comparison.execution import runner
+from comparison.execution.task import Task
+from comparison.study.study import Study
+from reference.problem import builtin_scenes, load_scene
 
 Array = NDArray[np.float64]
 N = 16
+PAPERS = Study(tuple(map(load_scene, builtin_scenes())), 4, 1e-3)  # every scene that the claims are about
 A1, A2 = np.meshgrid(*[2.0 * np.pi * np.arange(N) / N] * 2, indexing="ij")
 SMOOTH, FOLD = Bend(2.0, (0.0, 0.0)), Bend(1.0, (0.5, 1.0))
 
@@ -153,7 +160,7 @@ def test_a_case_that_fails_or_dies_is_named_and_the_others_answered(monkeypatch:
         return PAPER[question.case]
 
     monkeypatch.setattr(table_module, "gathered", gathered)
-    table = claims_tested(2, ThreadPoolExecutor, N, READINGS[:2])
+    table = collected(Claims(N, READINGS[:2]), PAPERS)
     findings = {claim.says: row[0] for claim, row in zip(table.claims, table.verdicts)}
     assert findings["mu_1 is similar to case II"].found == "fig4-dry: solver failed: RuntimeError: singular"
     assert findings["mu_1 has two peaks separated by a valley"].finding.holds
@@ -168,9 +175,15 @@ def test_what_a_solver_complains_about_becomes_the_fault(monkeypatch: pytest.Mon
     assert (found.error_message, found.complete) == ("ZeroDivisionError: no ground", False)
 
 
-def test_the_command_prints_the_table(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr(table_module, "gathered", lambda question: PAPER[question.case])
-    assert main(["--jobs", "2", "--grid", "16", "--words"], ThreadPoolExecutor) == 0
+def test_the_command_prints_the_table(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    def gathered(question: Question) -> Evidence:
+        return PAPER[question.case]
+
+    monkeypatch.setattr(table_module, "gathered", gathered)
+    monkeypatch.setattr(runner, "compiling_task", lambda stage: Task(len, (), stage, 0.0, None, False))
+    assert main(["--jobs", "2", "--grid", "16", "--words", "--out", str(tmp_path / "report")], ThreadPoolExecutor) == 0
     printed = capsys.readouterr().out
     assert "1 m/s², f_c 0.1 s/m, resolved: 15 of 16" in printed
     assert "periodic 2 and 2; drawn 4 and 3" in printed
@@ -179,6 +192,31 @@ def test_the_command_prints_the_table(monkeypatch: pytest.MonkeyPatch, capsys: p
         main(["--grid", "7"], ThreadPoolExecutor)
     assert stop.value.code == 2
     assert "'7': must be a whole number, 8 or more" in capsys.readouterr().err
+
+
+def test_the_command_goes_on_where_it_stopped(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    asked: list[Question] = []
+    total = len(questions(READINGS, CLAIMS, 16))
+
+    def gathered(question: Question) -> Evidence:
+        asked.append(question)
+        if 5 < len(asked) <= total:  # all of the first command but its first five
+            raise RuntimeError("stopped")
+        return PAPER[question.case]
+
+    monkeypatch.setattr(table_module, "gathered", gathered)
+    monkeypatch.setattr(runner, "compiling_task", lambda stage: Task(len, (), stage, 0.0, None, False))
+    words = ["--jobs", "1", "--grid", "16", "--out", str(tmp_path / "report")]
+    tables = []
+    for computed in (total, total - 5, 0):
+        count = len(asked)
+        assert main(words, ThreadPoolExecutor) == 0
+        tables.append(capsys.readouterr().out.split("of 16")[-1])
+        assert len(asked) - count == computed
+    assert tables[1] == tables[2] != tables[0]
+    assert not (tmp_path / "report").exists(), "the command writes no report"
 
 
 def test_evidence_of_the_paper_is_what_the_equations_give() -> None:
@@ -194,5 +232,5 @@ def test_evidence_of_the_paper_is_what_the_equations_give() -> None:
 @pytest.mark.long
 def test_four_peaks_and_three_valleys_are_a_matter_of_the_drawing() -> None:
     """1 m/s^2, resolved peak: two ridges on the square that closes; cut open they are the paper's four and three."""
-    table = claims_tested(1, ThreadPoolExecutor, 16, [Reading()], [_claim("Fig. 3a", "four"), _claim("Fig. 3c", "two")])
+    table = collected(Claims(16, [Reading()], [_claim("Fig. 3a", "four"), _claim("Fig. 3c", "two")]), PAPERS)
     assert [row[0].finding for row in table.verdicts] == [Finding.AS_DRAWN] * 2

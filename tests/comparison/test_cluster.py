@@ -27,7 +27,7 @@ def _answers(
 ) -> list[BatchResult]:
     """The engine's surface; `done` is told how many batches are."""
     study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(model, batch=batch))
-    batches = [batch for batch in study.batches() if batch.model == "translational"]
+    batches = [one for one in study.batches() if one.model == "translational"]
     count = iter(range(1, len(batches) + 1))
 
     def arrived(one: Batch, answer: BatchResult) -> None:

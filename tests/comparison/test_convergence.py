@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from known_analyses import collected
 from numpy.typing import NDArray
 
 from comparison.analysis import convergence
-from comparison.analysis.convergence import LIMITS, PENETRATIONS, convergence_trends, limit_trends
-from comparison.analysis.tasks import predicted
+from comparison.analysis.convergence import LIMITS, PENETRATIONS, Convergence, limit_trends
+from comparison.registry import ANALYSES, predicted_costs
 from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
 
@@ -31,7 +31,7 @@ def test_every_limit_comes_in_order_and_a_lubricated_scene_has_only_the_contact(
 
     limits = [replace(limit, parameter=PENETRATIONS, expected=1.0, measure=planted) for limit in LIMITS]
     monkeypatch.setattr(convergence, "LIMITS", limits)
-    found = convergence_trends(_study("fig3-I", "fig4-viscous"), 2, ThreadPoolExecutor)
+    found = collected(Convergence(), _study("fig3-I", "fig4-viscous"))
     assert [(one.scene, one.body) for one in found] == [("fig3-I", 1), ("fig3-I", 2)] * 5 + [
         ("fig4-viscous", 1),
         ("fig4-viscous", 2),
@@ -40,7 +40,7 @@ def test_every_limit_comes_in_order_and_a_lubricated_scene_has_only_the_contact(
 
 
 def test_every_limit_has_a_predicted_cost() -> None:
-    tasks, seconds = predicted(_study("fig3-I"))["convergence"]
+    tasks, seconds = predicted_costs(_study("fig3-I"), ANALYSES)["convergence"]
     assert tasks == len(LIMITS)
     assert seconds == pytest.approx(sum(limit.seconds for limit in LIMITS))
     assert all(limit.seconds > 0.0 for limit in LIMITS)
@@ -64,9 +64,9 @@ def test_the_order_in_v_reg_is_that_of_the_law(monkeypatch: pytest.MonkeyPatch, 
     for number in (0, 2):  # the equations and the engine, against the resolved peak
         trends = list(limit_trends((load_scene("fig3-I"), number)))
         assert trends
-        for trend in trends:
-            assert trend.verdict == says
-            assert trend.slope.exponent == pytest.approx(power, abs=1e-6)
+        for found in trends:
+            assert found.verdict == says
+            assert found.slope.exponent == pytest.approx(power, abs=1e-6)
 
 
 def test_a_limit_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -74,7 +74,7 @@ def test_a_limit_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
         raise RuntimeError("no engine")
 
     monkeypatch.setattr(convergence, "LIMITS", [replace(LIMITS[4], measure=broken)])
-    assert [limit_trend.verdict for limit_trend in limit_trends((load_scene("fig3-I"), 0))] == [
+    assert [one.verdict for one in limit_trends((load_scene("fig3-I"), 0))] == [
         "solver failed: RuntimeError: no engine"
     ] * 2
 

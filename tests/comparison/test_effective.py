@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from conftest import Run
 from fake_models import fake_hierarchy
+from known_analyses import collected
 
-from comparison.analysis.effective import PHASES, effective_values, read_back, stated
+from comparison.analysis.effective import PHASES, EffectiveValues, read_back, stated
 from comparison.study.models import Model
 from comparison.study.study import Study
 from reference.problem import ground_acceleration, load_scene
@@ -68,7 +68,7 @@ def test_a_platform_that_never_moves_has_no_radius_and_no_friction() -> None:
 
 def test_every_scene_has_its_own_statement_and_its_models_below_it() -> None:
     study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), 2, 1e-3, fake_hierarchy())
-    found = effective_values(study, 2, ThreadPoolExecutor)
+    found = collected(EffectiveValues(), study)
     dry = ["scene", "small", "exact", "resolved", "regularised", "translational", "spatial"]
     assert [one.model for one in found if one.scene == "fig3-I"] == dry
     assert [one.model for one in found if one.scene == "fig4-viscous"] == ["scene", "small", "exact", *dry[-2:]]

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
+from known_analyses import collected
 
 from comparison.analysis import errata
-from comparison.analysis.errata import ERRATA, PHASES, Erratum, errata_effects, measured
+from comparison.analysis.errata import ERRATA, PHASES, Errata, Erratum, measured
 from comparison.analysis.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
 from comparison.study.models import V_REG
 from comparison.study.study import Study
@@ -48,7 +48,7 @@ def test_effects_come_in_order_and_a_measure_that_fails_is_named(monkeypatch: py
         Erratum("c", "p", "c", "w", breaks),
     ]
     monkeypatch.setattr(errata, "ERRATA", planted)
-    found = errata_effects(_study("fig3-I", "fig3-II"), 2, ThreadPoolExecutor, planted)
+    found = collected(Errata(), _study("fig3-I", "fig3-II"))
     assert [(one.scene, one.erratum) for one in found] == [("fig3-I", 0), ("fig3-I", 2), ("fig3-II", 0), ("fig3-II", 2)]
     assert found[0].change == ((0.5, 0.5), (0.5, 0.5))
     assert found[1].error_message == "RuntimeError: singular"

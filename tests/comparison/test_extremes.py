@@ -176,6 +176,30 @@ def test_the_file_is_read_back_as_it_was_and_another_file_is_refused(tmp_path: P
         load(tmp_path)
 
 
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        ('{"columns": {}, "rows": [], "run": {}, "old": 1}', "old = 1: "),
+        ('{"columns": {}, "rows": 3, "run": {}}', "rows = 3: "),
+        ('{"columns": {}', "Invalid JSON"),
+        ("\xff", "Invalid JSON"),
+    ],
+)
+def test_a_matrix_of_an_earlier_version_is_refused_in_one_line(content: str, reason: str, tmp_path: Path):
+    (tmp_path / FILE).write_bytes(content.encode("latin-1"))
+    with pytest.raises(ValueError, match="not a matrix of extremes") as error:
+        load(tmp_path)
+    assert reason in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_a_matrix_with_a_verdict_that_is_none_is_refused(tmp_path: Path):
+    found = Matrix({"fake": "a fake"}, [_extreme("fine", 1e-7)], {"command": "a test"})
+    (tmp_path / FILE).write_bytes(as_json(found))
+    with pytest.raises(ValueError, match="'fine' is not a valid Verdict"):
+        load(tmp_path)
+
+
 def _extreme(verdict: str, error: float | None):
     from comparison.analysis.extremes.matrix import Extreme
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from importlib import resources
 from pathlib import Path
 
 from conftest import Run
@@ -55,7 +54,7 @@ def test_the_matrix_may_be_there_before_the_first_report(command: Callable[..., 
     run = command(*SMALL)
     assert run.code == 0, run.err
     summary = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))
-    schema = json.loads((resources.files("comparison.report") / "summary.schema.json").read_text(encoding="utf-8"))
+    schema = json.loads((run.report / "summary.schema.json").read_text(encoding="utf-8"))
     assert [error_message.message for error_message in Draft202012Validator(schema).iter_errors(summary)] == []
     assert summary["extremes"]["rows"][1]["entries"]["spatial"]["reason"] == "step limit"
 

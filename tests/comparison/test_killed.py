@@ -22,9 +22,9 @@ from rich.console import Console
 
 from comparison.analysis.trajectories import Place, StoredMotion
 from comparison.execution.cache import Cache, store_beside
-from comparison.execution.runner import computed, fetched
+from comparison.execution.runner import Runner
 from comparison.execution.task import Task
-from comparison.execution.task_cache import TaskCache
+from comparison.execution.task_results import TaskResults
 from comparison.study.batches import BatchResult
 from comparison.study.study import Study
 from reference.problem import load_scene
@@ -74,8 +74,8 @@ def study() -> Study:
     return Study((load_scene("fig3-I"),), 6, 1e-3, hierarchy)
 
 
-def _errands(first: int, count: int) -> list[Task]:
-    return [Task("motions", motion, number, 0.01, "about") for number in range(first, first + count)]
+def _tasks(first: int, count: int) -> list[Task]:
+    return [Task(motion, number, "motions", 0.01, "about") for number in range(first, first + count)]
 
 
 def motion(number: int) -> StoredMotion:
@@ -88,23 +88,22 @@ def motion(number: int) -> StoredMotion:
 
 def whole_run(folder: Path, console: Console) -> tuple[list[BatchResult], list[object], int, int]:
     """Batches with 24 tasks beside them and 24 after them; what was found, and how much of either was there before."""
-    store = Cache(folder)
-    answers = TaskCache(store)
-    found = computed(study(), store, console, 2, ThreadPoolExecutor, _errands(0, 24), answers)
-    fetched(_errands(24, 24), answers, console, 2, ThreadPoolExecutor)
-    executor = answers.on(ThreadPoolExecutor)(1)
-    motions = [executor.submit(motion, number).result() for number in range(48)]
+    results = TaskResults(Cache(folder))
+    runner = Runner(results, console, 2, ThreadPoolExecutor)
+    found = runner.run_study(study(), _tasks(0, 24))
+    runner.run_tasks(_tasks(24, 24))
+    motions = [results[task].value for task in _tasks(0, 48)]
     return (
         list(found.answers),
         [(m.place, m.stick, *(x.tobytes() for x in (m.time, m.position, m.acceleration))) for m in motions],
         found.stored,
-        answers.parts["motions"].stored,
+        results.parts["motions"].stored,
     )
 
 
 def _computed(study: Study, store: Cache) -> tuple[list[BatchResult], int]:
     """The answers, and how many batches were there before."""
-    found = computed(study, store, Console(quiet=True), 2, ThreadPoolExecutor)
+    found = Runner(TaskResults(store), Console(quiet=True), 2, ThreadPoolExecutor).run_study(study)
     return list(found.answers), found.stored
 
 

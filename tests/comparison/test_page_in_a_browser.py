@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import without_tasks
 from fake_models import fake_hierarchy, silenced
+from known_analyses import analyses_are
 from matplotlib.image import imread
 from playwright.sync_api import Browser, Locator, Page, sync_playwright
 
@@ -181,10 +181,7 @@ def test_nothing_was_asked_of_a_network_and_nothing_complained(visit: Visit, fin
 def test_surfaces_without_any_value_are_said_to_have_none(
     browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    without_tasks(monkeypatch)
-    monkeypatch.setattr(comparison.run, "errata_effects", lambda *rest: [])
-    monkeypatch.setattr(comparison.run, "stored_motions", lambda *rest: [])
-    monkeypatch.setattr(comparison.run, "claims_and_trends", lambda *rest: {})
+    analyses_are(monkeypatch, motions=[])
     hierarchy = silenced(*(model.key for model in fake_hierarchy()))
     words = ["fig3-I", "--grid", "2", "--jobs", "2", "--out", str(tmp_path / "report")]
     assert comparison.run.main(words, hierarchy, ThreadPoolExecutor) == 0

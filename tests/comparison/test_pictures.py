@@ -9,17 +9,17 @@ from typing import Any
 
 import pytest
 import xarray as xr
-from conftest import quick_figure
+from conftest import quick_figures
 from fake_models import fake_hierarchy
+from known_analyses import collected
 from rich.console import Console
 
 from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.tasks import predicted
 from comparison.execution.cache import Cache
-from comparison.execution.runner import fetched
-from comparison.execution.task_cache import TaskCache
-from comparison.report.figures import pictures
-from comparison.report.figures.pictures import PAGE, all_drawn, for_page, picture_tasks
+from comparison.execution.runner import Runner
+from comparison.execution.task_results import TaskResults
+from comparison.registry import ANALYSES, predicted_costs
+from comparison.report.figures.pictures import PAGE, Pictures, for_page
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
 from reference.problem import load_scene
@@ -42,19 +42,18 @@ def _solved(gap: float = 0.01, grid: int = 4) -> tuple[Study, xr.Dataset]:
 
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("draw_pair", "draw_budget", "draw_paper_figure"):
-        monkeypatch.setattr(pictures, name, quick_figure)
+    quick_figures(monkeypatch)
 
 
 @pytest.mark.usefixtures("quick")
 def test_every_picture_of_the_page_has_its_small_form() -> None:
     study, surfaces = _solved()
-    files = all_drawn(study, surfaces, 1, ThreadPoolExecutor)
+    files = collected(Pictures(), study, surfaces)
     shown = [name for name in files if name.endswith(".png") and not name.endswith("paper.png")]
     assert len(shown) == 2 * 2 * 4, "three differences and the budget, of two bodies in two scenes"
     assert {for_page(name) for name in shown} == {name for name in files if name.endswith(PAGE)}
-    tasks = picture_tasks(study, surfaces)
-    assert predicted(study)["pictures"] == (
+    tasks = Pictures().tasks(study, surfaces)
+    assert predicted_costs(study, ANALYSES)["pictures"] == (
         len(tasks),
         pytest.approx(sum(task.seconds for task in tasks), rel=0.2),
     )
@@ -63,16 +62,16 @@ def test_every_picture_of_the_page_has_its_small_form() -> None:
 @pytest.mark.usefixtures("quick")
 def test_what_no_worker_draws_is_drawn_at_home() -> None:
     study, surfaces = _solved()
-    assert all_drawn(study, surfaces, 2, lambda jobs: Broken()) == all_drawn(study, surfaces, 2, ThreadPoolExecutor)
+    assert collected(Pictures(), study, surfaces, lambda jobs: Broken()) == collected(Pictures(), study, surfaces)
 
 
 @pytest.mark.usefixtures("quick")
 def test_pictures_are_stored_and_belong_to_their_numbers(tmp_path: Path) -> None:
     def drawn_anew(study: Study, surfaces: xr.Dataset) -> int:
-        answers = TaskCache(Cache(tmp_path))
-        tasks = picture_tasks(study, surfaces)
-        fetched(tasks, answers, Console(quiet=True), 1, ThreadPoolExecutor)
-        return len(tasks) - answers.parts["pictures"].stored
+        results = TaskResults(Cache(tmp_path))
+        tasks = Pictures().tasks(study, surfaces)
+        Runner(results, Console(quiet=True), 1, ThreadPoolExecutor).run_tasks(tasks)
+        return len(tasks) - results.parts["pictures"].stored
 
     whole = drawn_anew(*_solved())
     assert whole > 0
@@ -82,7 +81,7 @@ def test_pictures_are_stored_and_belong_to_their_numbers(tmp_path: Path) -> None
 
 def test_a_real_figure_is_a_file_and_its_small_form() -> None:
     study, surfaces = _solved()
-    budget = next(task for task in picture_tasks(study, surfaces) if task.argument.kind == "budget")
+    budget = next(task for task in Pictures().tasks(study, surfaces) if task.argument.kind == "budget")
     files = budget.function(budget.argument)
     assert [name for name, content in files if len(content) > 1000] == [
         "fig3-I-body1-budget.png",

@@ -118,16 +118,16 @@ def analysis_cost(study: Study, with_analyses: bool) -> float:
 def test_no_ambition_asks_for_what_a_model_cannot_do() -> None:
     measured = cost_of.costs((SCENE,), MODEL_HIERARCHY, False)
     assert len(STUDY_PRESETS) > DEFAULT_PRESET
-    for study_preset in STUDY_PRESETS[DEFAULT_PRESET:]:
-        assert planning._plan(study_preset, StudyRequest((SCENE,), budget=1.0), measured).omitted == ()
+    for one in STUDY_PRESETS[DEFAULT_PRESET:]:
+        assert planning._plan(one, StudyRequest((SCENE,), budget=1.0), measured).omitted == ()
 
 
 def test_every_ambition_costs_more_than_the_one_before() -> None:
     scenes = tuple(load_scene(name) for name in ("fig3-I", "fig4-viscous"))
     measured = cost_of.costs(scenes, MODEL_HIERARCHY, False)
     wall = [
-        planning._plan(study_preset, StudyRequest(scenes, budget=1.0, analysis_cost=analysis_cost), measured).wall
-        for study_preset in STUDY_PRESETS
+        planning._plan(one, StudyRequest(scenes, budget=1.0, analysis_cost=analysis_cost), measured).wall
+        for one in STUDY_PRESETS
     ]
     assert wall == sorted(wall)
     assert len(set(wall)) == len(wall)
@@ -137,7 +137,7 @@ def test_every_ambition_costs_more_than_the_one_before() -> None:
 def test_a_budget_takes_the_last_study_that_fits(jobs: int) -> None:
     asked = StudyRequest((SCENE,), budget=1e6, jobs=jobs, analysis_cost=analysis_cost)
     measured = cost_of.costs(asked.scenes, MODEL_HIERARCHY, True)
-    walls = [planning._plan(study_preset, asked, measured).wall for study_preset in STUDY_PRESETS]
+    walls = [planning._plan(one, asked, measured).wall for one in STUDY_PRESETS]
     for number, wall in enumerate(walls):
         found = plan_study(replace(asked, budget=1.001 * wall + 0.5))
         last = max(planning for planning, other in enumerate(walls) if other <= 1.001 * wall + 0.5)
@@ -217,7 +217,7 @@ def test_a_budget_leaves_out_what_a_report_can_do_without(command: Callable[...,
 
 
 def test_the_tightest_tolerance_is_one_that_some_model_meets() -> None:
-    assert tightest() == min(value.tightest for value in recorded().accuracy.values())
+    assert tightest() == min(own.tightest for own in recorded().accuracy.values())
 
 
 def test_the_default_ambition_is_the_default_ladder() -> None:

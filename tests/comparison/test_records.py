@@ -10,17 +10,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from conftest import Run, without_tasks
+from conftest import Run
 from fake_models import fake_hierarchy, known_motions
+from known_analyses import analyses_are
 from playwright.sync_api import sync_playwright
 from test_page_in_a_browser import CHROMIUM, DESKTOP, FLAGS, LAPTOP, _opened
 
-import comparison.run
 from comparison.analysis.budget import budget
 from comparison.analysis.surfaces import NOT_ASKED, labeled_surfaces
-from comparison.analysis.tasks import analysis_tasks, predicted
 from comparison.analysis.trajectories import chosen_places
 from comparison.cli.assumptions import main as assumptions
+from comparison.registry import ANALYSES, first_tasks, predicted_costs
 from comparison.run import main
 from comparison.study.batches import execute_batch
 from comparison.study.reductions import reductions
@@ -50,9 +50,9 @@ def test_a_record_is_one_point_of_every_model_and_the_other_scene_keeps_its_grid
 
 
 def test_what_needs_phases_or_amplitudes_is_not_asked_of_a_record(study):
-    stages = {task.stage for task in analysis_tasks(Study(study.scenes[:1], 4, 1e-3))}
+    stages = {task.stage for task in first_tasks(Study(study.scenes[:1], 4, 1e-3), ANALYSES)}
     assert stages == {"effective values"}
-    assert predicted(Study(study.scenes[:1], 4, 1e-3))["pictures"][0] == 0
+    assert predicted_costs(Study(study.scenes[:1], 4, 1e-3), ANALYSES)["pictures"][0] == 0
     assert not reductions(Study(study.scenes[:1], 4, 1e-3))
     (place,) = chosen_places(study, None, study.scenes[0])
     assert (place.row, place.column) == (0, 0)
@@ -102,10 +102,7 @@ def test_varied_rings_are_refused_of_a_record_in_one_line(capsys: pytest.Capture
 def test_the_page_shows_the_table_and_the_motions_of_a_record_without_a_click(tmp_path: Path) -> None:
     place = tmp_path / "report"
     with pytest.MonkeyPatch.context() as patch:
-        without_tasks(patch)
-        patch.setattr(comparison.run, "errata_effects", lambda *rest: [])
-        patch.setattr(comparison.run, "stored_motions", known_motions)
-        patch.setattr(comparison.run, "claims_and_trends", lambda *rest: {})
+        analyses_are(patch, motions=known_motions)
         words = [*example_scenes(), "--grid", "4", "--jobs", "1", "--out", str(place)]
         assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
     with sync_playwright() as driver:

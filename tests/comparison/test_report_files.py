@@ -16,7 +16,16 @@ from comparison.study.models import MODEL_HIERARCHY
 from reference.problem import load_scene
 
 GRID = 4
-PARTS = {"index.html", "surfaces.nc", "summary.json", "summary.md", "junit.xml", "figures", "manifest.json"}
+PARTS = {
+    "index.html",
+    "surfaces.nc",
+    "summary.json",
+    "summary.schema.json",
+    "summary.md",
+    "junit.xml",
+    "figures",
+    "manifest.json",
+}
 
 
 @pytest.fixture(scope="module")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+import re
 from collections.abc import Callable, Iterator
 from importlib import resources
 from pathlib import Path
@@ -13,6 +15,7 @@ import pytest
 from fake_models import errors_in, fake_hierarchy
 from jsonschema import Draft202012Validator
 
+from comparison.report.results import BarSegment, Results
 from reference.problem import load_scene
 
 LIMITS = ("median", "maximum", "ratio", "closure", "failed")
@@ -67,23 +70,18 @@ def test_junit_has_one_case_per_limit_and_scene_and_fails_the_broken_ones(finish
         assert [line.split(": ")[1] for line in text.splitlines()] == ["body 1", "body 2"], "both bodies break it"
 
 
-def _schema() -> dict[str, Any]:
-    text = (resources.files("comparison.report") / "summary.schema.json").read_text(encoding="utf-8")
-    schema: dict[str, Any] = json.loads(text)
-    return schema
-
-
 def _objects(schema: dict[str, Any]) -> Iterator[dict[str, Any]]:
     """Every schema inside a schema."""
     yield schema
-    inner = [*schema.get("properties", {}).values(), schema.get("items"), schema.get("additionalProperties")]
+    inner = [*schema.get("properties", {}).values(), *schema.get("$defs", {}).values()]
+    inner += [schema.get("items"), schema.get("additionalProperties"), *schema.get("anyOf", [])]
     for part in inner:
         if isinstance(part, dict):
             yield from _objects(part)
 
 
 def test_every_key_of_the_summary_is_documented_and_as_documented(finished: Path) -> None:
-    schema = _schema()
+    schema = json.loads((finished / "summary.schema.json").read_text(encoding="utf-8"))
     Draft202012Validator.check_schema(schema)
     summary = json.loads((finished / "summary.json").read_text(encoding="utf-8"))
     assert [error_message.message for error_message in Draft202012Validator(schema).iter_errors(summary)] == []
@@ -91,6 +89,41 @@ def test_every_key_of_the_summary_is_documented_and_as_documented(finished: Path
         if "properties" in part:
             assert part["additionalProperties"] is False, "an undocumented key is a fault"
             assert all(key.get("description") for key in part["properties"].values())
+
+
+def test_the_summary_read_back_is_the_results(finished: Path) -> None:
+    text = (finished / "summary.json").read_text(encoding="utf-8")
+    assert json.loads(Results.model_validate_json(text).as_json()) == json.loads(text)
+
+
+def test_the_page_and_every_text_have_the_verdict_of_the_results(finished: Path) -> None:
+    summary = json.loads((finished / "summary.json").read_text(encoding="utf-8"))
+    page, text = ((finished / name).read_text(encoding="utf-8") for name in ("index.html", "summary.md"))
+    shown = re.sub("<.*?>", "", page)
+    for scene in summary["scenes"]:
+        verdict = scene["verdict"]
+        assert verdict["sentence"].startswith(f"body {verdict['body']} differs by +1 % at (")
+        sentence = verdict["sentence"].replace("mu_1", "μ1")
+        assert sentence in shown
+        assert verdict["sentence"].replace("mu_1", r"μ\_1") in text
+        assert [bar["body"] for bar in scene["bars"]] == [1, 2]
+        assert sum(part["share"] for part in scene["bars"][0]["segments"]) == pytest.approx(1.0)
+
+
+def test_broken_limits_are_numbers_and_the_lines_say_the_same(finished: Path) -> None:
+    summary = json.loads((finished / "summary.json").read_text(encoding="utf-8"))
+    limits = [limit for scene in summary["scenes"] for limit in scene["limits"]]
+    assert [line for limit in limits for line in limit["broken"]] == summary["broken"]
+    median = next(limit for limit in limits if limit["key"] == "median")
+    assert [breach["body"] for breach in median["breaches"]] == [1, 2]
+    assert [breach["found"] for breach in median["breaches"]] == pytest.approx([0.01, 0.01])
+    assert median["allowed"] == 1e-4
+
+
+def test_a_missing_number_is_null_in_one_way() -> None:
+    segment = BarSegment(model="exact", size=math.nan, share=math.inf, real=0.5)
+    assert segment.model_dump(mode="json") == {"model": "exact", "size": None, "share": None, "real": 0.5}
+    assert math.isnan(BarSegment.model_validate(segment.model_dump(mode="json")).size)
 
 
 def test_a_point_without_an_answer_is_in_the_summary(command: Callable[..., object]) -> None:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
+from known_analyses import collected
 from numpy.typing import NDArray
 
 from comparison.analysis import scaling
-from comparison.analysis.scaling import PRINTED, STEP, scaled, scaling_trends
+from comparison.analysis.scaling import PRINTED, STEP, Scaling, scaled
 from comparison.analysis.trends import Trend
 from comparison.study.study import Study
 from reference import trajectory
@@ -37,7 +37,7 @@ def _model(step: Callable[[float], float]) -> Callable[..., Amplification]:
 
 def _found(monkeypatch: pytest.MonkeyPatch, step: Callable[[float], float], name: str = "fig3-I") -> list[Trend]:
     monkeypatch.setattr(scaling, "amplification", _model(step))
-    return scaling_trends(_study(name), 1, ThreadPoolExecutor)
+    return list(collected(Scaling(), _study(name)))
 
 
 def test_a_geometric_step_has_the_exponent_two(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -68,7 +68,7 @@ def test_a_lubricated_scene_has_one_peak_and_one_that_fails_says_why(monkeypatch
         raise RuntimeError("singular")
 
     monkeypatch.setattr(scaling, "amplification", broken)
-    found = scaling_trends(_study("fig4-viscous"), 1, ThreadPoolExecutor)
+    found = collected(Scaling(), _study("fig4-viscous"))
     assert [one.body for one in found] == [1, 2]
     assert {one.verdict for one in found} == {"solver failed: RuntimeError: singular"}
 
@@ -84,6 +84,6 @@ def test_the_scaled_scene_moves_as_the_scene_scaled(name: str) -> None:
 @pytest.mark.long
 def test_the_step_to_the_exact_equations_is_geometry() -> None:
     """fig3-II: every trend like s^2, with an uncertainty below 0.1."""
-    found = scaling_trends(_study("fig3-II"), 1, ThreadPoolExecutor)
+    found = collected(Scaling(), _study("fig3-II"))
     assert {one.verdict for one in found} == {"like the power 2"}
     assert max(one.slope.uncertainty for one in found) < 0.1

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import pickle
+import signal
 from collections.abc import Callable
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import replace
@@ -13,17 +15,20 @@ from typing import Any
 import numpy as np
 import pytest
 from fake_models import fake_hierarchy
+from known_analyses import collected
 from rich.console import Console
 
+from comparison.analysis import errata
+from comparison.analysis.claims.table import paper_complete
 from comparison.analysis.effective import Effective
 from comparison.analysis.errata import Effect
-from comparison.analysis.tasks import analysis_tasks, paper_complete
 from comparison.analysis.trajectories import Place, StoredMotion
 from comparison.execution.cache import Cache
-from comparison.execution.runner import fetched
-from comparison.execution.sweep import sweep
+from comparison.execution.executors import process_pool
+from comparison.execution.runner import Runner
 from comparison.execution.task import Task, TaskResult, fingerprint
-from comparison.execution.task_cache import TaskCache
+from comparison.execution.task_results import TaskResults
+from comparison.registry import ANALYSES, first_tasks
 from comparison.study.study import Study
 from reference.problem import Outcome, builtin_scenes, load_scene
 
@@ -46,34 +51,47 @@ def broken(task: object) -> tuple[Effect, ...]:
     return Effect("s", 0), Effect("s", 1, error_message="it broke")
 
 
+def raises(number: int) -> int:
+    raise RuntimeError("singular")
+
+
+def dies(number: int) -> int:
+    os.kill(os.getpid(), signal.SIGKILL)
+    return number
+
+
+def doubled(number: int) -> int:
+    return 2 * number
+
+
 def forbidden(jobs: int) -> Executor:
     raise AssertionError("nothing should have been computed")
 
 
 def _task(task: tuple[Any, ...] = (load_scene("fig3-I"), 1, 0.5, np.arange(3.0))) -> Task:
-    return Task("motions", motion, task, 0.1, task[0])
+    return Task(motion, task, "motions", 0.1, task[0])
 
 
-def _fetched(task: Task, folder: Path, make: Callable[[int], Executor] = ThreadPoolExecutor) -> TaskCache:
-    answers = TaskCache(Cache(folder))
-    fetched([task], answers, QUIET, 1, make)
-    return answers
+def _run(task: Task, folder: Path, make: Callable[[int], Executor] = ThreadPoolExecutor) -> TaskResults:
+    results = TaskResults(Cache(folder))
+    Runner(results, QUIET, 1, make).run_tasks([task])
+    return results
 
 
 def test_an_answer_comes_back_to_the_last_bit_and_is_not_computed_twice(tmp_path: Path) -> None:
     task = _task()
-    found = [_fetched(task, tmp_path), _fetched(task, tmp_path, forbidden)]
-    assert [answers.parts["motions"].stored for answers in found] == [0, 1]
-    first, second = (answers.on(forbidden)(1).submit(motion, task.argument).result() for answers in found)
+    found = [_run(task, tmp_path), _run(task, tmp_path, forbidden)]
+    assert [results.parts["motions"].stored for results in found] == [0, 1]
+    first, second = (results[task].value for results in found)
     assert pickle.dumps(first) == pickle.dumps(second) == pickle.dumps(motion(task.argument))
-    assert TaskCache(Cache(tmp_path)).holds(task)
-    assert not TaskCache(Cache(tmp_path), fresh=True).holds(task)
-    assert TaskCache(Cache(tmp_path), fresh=True).missing([task]) == [task]
+    assert TaskResults(Cache(tmp_path)).holds(task)
+    assert not TaskResults(Cache(tmp_path), fresh=True).holds(task)
+    assert TaskResults(Cache(tmp_path), fresh=True).missing([task]) == [task]
 
 
 def test_it_belongs_to_function_task_versions_and_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     task = _task()
-    _fetched(task, tmp_path)
+    _run(task, tmp_path)
     scene, *rest = task.argument
     others = {
         "function": replace(task, function=another),
@@ -85,12 +103,12 @@ def test_it_belongs_to_function_task_versions_and_source(tmp_path: Path, monkeyp
         "shape": _task((scene, 1, 0.5, np.arange(3.0)[None])),
     }
     for name, other in others.items():
-        assert TaskCache(Cache(tmp_path)).missing([other]), name
+        assert TaskResults(Cache(tmp_path)).missing([other]), name
     for name in ("_version", "source_digest"):
         with monkeypatch.context() as patch:
             patch.setattr(f"comparison.execution.environment.{name}", lambda package: "changed")
-            assert TaskCache(Cache(tmp_path)).missing([task]), name
-    assert not TaskCache(Cache(tmp_path)).missing([task])
+            assert TaskResults(Cache(tmp_path)).missing([task]), name
+    assert not TaskResults(Cache(tmp_path)).missing([task])
 
 
 def test_a_model_is_known_by_its_source_too(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -102,48 +120,62 @@ def test_a_model_is_known_by_its_source_too(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_what_names_a_fault_serves_the_run_and_is_tried_again_by_the_next(tmp_path: Path) -> None:
-    task = Task("errata", broken, 1, 0.1)
+    task = Task(broken, 1, "errata", 0.1)
     calls.clear()
-    answers = _fetched(task, tmp_path)
-    assert answers.on(forbidden)(1).submit(broken, 1).result()[1].error_message == "it broke"
-    _fetched(task, tmp_path)
+    results = _run(task, tmp_path)
+    assert results[task].value[1].error_message == "it broke"
+    _run(task, tmp_path)
     assert calls == [1, 1]
 
 
 @pytest.mark.parametrize("damage", ["torn", "one bit", "a foreign class"])
 def test_what_is_damaged_or_would_run_foreign_code_is_computed_again(tmp_path: Path, damage: str) -> None:
     task = _task()
-    _fetched(task, tmp_path)
+    _run(task, tmp_path)
     (file,) = tmp_path.glob("*/*.answer")
     text = file.read_bytes()
     if damage == "a foreign class":
         content = pickle.dumps(Path("reports"), protocol=4)
         text = hashlib.sha256(f"{file.parent.name}/{file.name}".encode() + content).digest() + content
     file.write_bytes({"torn": text[:-9], "one bit": text[:-1] + bytes([text[-1] ^ 1])}.get(damage, text))
-    assert _fetched(task, tmp_path).parts["motions"].stored == 0
-    assert _fetched(task, tmp_path, forbidden).parts["motions"].stored == 1, "and mended"
+    assert _run(task, tmp_path).parts["motions"].stored == 0
+    assert _run(task, tmp_path, forbidden).parts["motions"].stored == 1, "and mended"
 
 
-def test_an_analysis_asks_itself_for_what_was_not_fetched(tmp_path: Path) -> None:
-    answers = _fetched(_task(), tmp_path)
+def test_a_task_that_raises_or_whose_worker_dies_is_a_result_with_its_reason_and_the_others_are_computed(
+    tmp_path: Path,
+) -> None:
+    def on_failure(argument: object, outcome: Outcome, error_message: str) -> object:
+        return argument, outcome, error_message
+
+    tasks = [Task(raises, 1, "errata", 0.3), Task(dies, 2, "errata", 0.2), Task(doubled, 3, "errata", 0.1)]
+    results = TaskResults(Cache(tmp_path))
+    Runner(results, QUIET, 2, process_pool).run_tasks(tasks)
+    assert [results.value(task, on_failure) for task in tasks] == [
+        (1, Outcome.SOLVER_FAILED, "RuntimeError: singular"),
+        (2, Outcome.WORKER_DIED, "the worker process died 2 times"),
+        6,
+    ]
+    assert TaskResults(Cache(tmp_path)).missing(tasks) == tasks[:2], "the next run tries them again"
+    assert results.parts["errata"].tasks == 3
+
+
+def test_collecting_computes_nothing_and_looks_every_result_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each function is called once, by the runner."""
     calls.clear()
-    tasks = [_task().argument, (1,)]
-    found = sweep(tasks, motion, lambda *rest: None, lambda *rest: None, 2, answers.on(ThreadPoolExecutor))
-    assert len(found) == 2
-    assert calls == [(1,)]
+
+    def counted(task: tuple[Any, int]) -> Effect:
+        calls.append(task)
+        return Effect(task[0].name, task[1])
+
+    monkeypatch.setattr(errata, "measured", counted)
+    study = Study((load_scene("fig3-I"),), 4, 1e-3)
+    assert len(collected(errata.Errata(), study)) == len(calls) == len(errata.Errata().tasks(study))
 
 
-def test_an_errand_whose_worker_died_is_left_to_its_analysis() -> None:
-    answers = TaskCache(Cache(Path("unused")))
-    answers.put(_task(), None)
-    assert answers.missing([_task()])
-    answers.put(Task("errata", broken, 1, 0.1), TaskResult(Effect("s", 1, error_message=str(Outcome.WORKER_DIED)), 0.0))
-    assert answers.parts["errata"].tasks == 1
-
-
-def test_every_errand_of_a_study_has_a_place_of_its_own() -> None:
+def test_every_task_of_a_study_has_a_place_of_its_own() -> None:
     study = Study(tuple(map(load_scene, builtin_scenes())), 6, 1e-3)
-    found = analysis_tasks(study)
+    found = first_tasks(study, ANALYSES)
     assert paper_complete(study)
     assert len({task.key for task in found}) == len(found)
     assert {task.stage for task in found} == {
@@ -153,8 +185,8 @@ def test_every_errand_of_a_study_has_a_place_of_its_own() -> None:
 
 
 def test_effective_values_without_a_motion_are_not_kept_for_good(tmp_path: Path) -> None:
-    answers = TaskCache(Cache(tmp_path))
-    answers.put(
-        Task("effective values", broken, 1, 0.1), TaskResult(Effective("s", "small", error_message="it ended"), 0.1)
+    results = TaskResults(Cache(tmp_path))
+    results.put(
+        Task(broken, 1, "effective values", 0.1), TaskResult(Effective("s", "small", error_message="it ended"), 0.1)
     )
     assert not list(tmp_path.glob("*/*"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -16,11 +17,12 @@ from rich.progress import Progress
 from comparison.analysis.assumptions.variations import FEW, Cell
 from comparison.analysis.surfaces import labeled_surfaces
 from comparison.execution.progress import description, wide_console
+from comparison.report.assemble import assemble
 from comparison.report.figures.assumptions import draw_assumptions
 from comparison.report.figures.families import draw_family
 from comparison.report.figures.file_names import figure_file, with_ending
 from comparison.report.figures.paper import draw_paper_figure, paper_figure_name
-from comparison.report.findings import findings
+from comparison.report.findings import collect_findings
 from comparison.report.junit import junit
 from comparison.report.summary_text import summary_text
 from comparison.study.batches import execute_batch
@@ -29,7 +31,19 @@ from comparison.study.study import Study
 from reference.problem import Family, Scene, load_family, load_scene
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"
-RUN = {"began": "2026", "command": "run `a`", "seconds": 1.0, "jobs": 1, "provenance": {}}
+RUN: dict[str, Any] = {
+    "began": "2026",
+    "command": "run `a`",
+    "seconds": 1.0,
+    "compute_seconds": 1.0,
+    "predicted_compute_seconds": 1.0,
+    "tiles": 1,
+    "tiles_stored_before": 0,
+    "parts": {},
+    "jobs": 1,
+    "provenance": {},
+    "choice": None,
+}
 
 
 def _written(folder: Path, name: str, title: str = "plain", friction: str = "0.1") -> str:
@@ -116,11 +130,11 @@ def test_junit_and_summary_are_well_formed_whatever_a_scene_is_called() -> None:
     scene = Scene.model_construct(**{**dict(valid), "name": "a\x00\x01\ud800\ufffe<b>", "title": title})
     study = Study((scene,), 2, 1e-3, fake_hierarchy())
     surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
-    found = findings(study, surfaces, [], [], [], RUN)
+    found = collect_findings(study, surfaces, {}, [], RUN)
     assert found.broken
-    suites = ElementTree.fromstring(junit(found).encode())
+    suites = ElementTree.fromstring(junit(assemble(found)).encode())
     assert suites[0].get("name") == "a\ufffd\ufffd\ufffd\ufffd<b>"
-    text = summary_text(found)
+    text = summary_text(assemble(found))
     assert r"\[a\](http://b) \#1 \$x\$ \&copy; \~\~c\~\~ \<b\> \| d" in text
     assert "`` run `a` ``" in text
     assert np.unique([line.count("|") for line in text.splitlines() if line.startswith("| a")]).size <= 2

@@ -17,7 +17,7 @@ import xarray as xr
 from comparison.analysis.tradeoff import measure
 from comparison.analysis.tradeoff.measure import Found, entry, measured, sample
 from comparison.analysis.tradeoff.settings import QUESTIONS, RUN, Setting, settings
-from comparison.analysis.tradeoff.trade import FILE, Trade, load, on_pareto_front, quantile, with_pareto_fronts
+from comparison.analysis.tradeoff.trade import FILE, Trade, as_json, load, on_pareto_front, quantile, with_pareto_fronts
 from comparison.cli import tradeoff as command
 from reference.problem import Scene, load_scene
 
@@ -33,11 +33,11 @@ def scene() -> Scene:
 def trade(scene: Scene) -> Trade:
     """The quick trade, without what is dear, in this process."""
     dear = "Exudyn", "Radau", "DOP853"
-    kept = [setting for setting in settings(scene, quick=True) if not any(name in setting.method for name in dear)]
+    kept = [one for one in settings(scene, quick=True) if not any(name in one.method for name in dear)]
     kept = [one for one in kept if one.question != "spatial"]
     patch = pytest.MonkeyPatch()
     patch.setattr(measure, "settings", lambda scene, quick: kept)
-    patch.setattr(measure, "asked", lambda scene: [question for question in QUESTIONS if question.key != "spatial"])
+    patch.setattr(measure, "asked", lambda scene: [one for one in QUESTIONS if one.key != "spatial"])
     patch.setattr(measure, "sweep", lambda work, solve, *rest: [solve(task) for task in work])
     found, _ = measured(scene, True, 1, {"command": "here", "provenance": {}})
     patch.undo()
@@ -70,11 +70,7 @@ def test_a_setting_that_leaves_points_without_a_value_or_solves_another_model_is
     other = replace(
         entry(setting, Found(reference_solution, reference_solution, 0.1, np.nan), reference_solution), model_error=True
     )
-    assert [with_pareto_front.pareto_front for with_pareto_front in with_pareto_fronts([good, lost, other], 1)] == [
-        (True,),
-        (False,),
-        (False,),
-    ]
+    assert [one.pareto_front for one in with_pareto_fronts([good, lost, other], 1)] == [(True,), (False,), (False,)]
     assert lost.answered == 2
 
 
@@ -87,7 +83,7 @@ def test_the_error_of_the_reference_falls_with_its_tolerance(trade: Trade, quest
 
 
 def test_every_error_estimate_of_the_reference_holds_at_95_percent_of_the_points(trade: Trade) -> None:
-    own = [entry for entry in trade.entries if entry.controlled and entry.method.startswith("reference")]
+    own = [one for one in trade.entries if one.controlled and one.method.startswith("reference")]
     assert own
     for one in own:
         for error, error_estimate in zip(one.most, one.error_estimate, strict=True):
@@ -100,7 +96,7 @@ def test_scipy_and_the_engine_tend_to_the_truth_of_the_reference(trade: Trade) -
         own = [one for one in trade.of("regularised") if one.method.startswith(method)]
         assert max(own[-1].most) < within
         assert max(own[-1].most) < 0.1 * max(own[0].most)
-    checks = next(question.checks for question in trade.questions if question.key == "regularised")
+    checks = next(one.checks for one in trade.questions if one.key == "regularised")
     assert any("SciPy LSODA" in line for line in checks)
     assert any("translational engine" in line for line in checks)
 
@@ -152,8 +148,18 @@ def test_a_wrong_command_is_one_line(words: list[str], said: str, capsys: pytest
 
 def test_a_file_that_is_no_trade_is_refused_in_one_line(tmp_path: Path) -> None:
     (tmp_path / FILE).write_text('{"schema": "another"}', encoding="utf-8")
-    with pytest.raises(ValueError, match="not a measured trade: its schema is 'another'"):
+    with pytest.raises(ValueError, match="not a measured trade: schema = 'another'"):
         load(tmp_path)
+
+
+def test_a_trade_of_an_earlier_version_is_refused_in_one_line_that_names_the_key(trade: Trade, tmp_path: Path) -> None:
+    text = as_json([trade]).decode().replace('"pareto_front"', '"front"')
+    (tmp_path / FILE).write_text(text, encoding="utf-8")
+    with pytest.raises(
+        ValueError, match=r"trades\.0\.entries\.0\.front = .*: run python -m comparison.tradeoff$"
+    ) as error:
+        load(tmp_path)
+    assert "\n" not in str(error.value)
 
 
 def test_a_model_that_raises_leaves_points_without_a_value(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from dataclasses import replace
-from importlib import resources
 from pathlib import Path
 
 import pytest
@@ -61,7 +60,7 @@ def test_the_diagrams_beside_a_report_are_part_of_the_next_and_stay_there(
         assert seen in page, seen
     assert "1.0e-03, 1.0e-03" not in page, "what is beaten is in the picture alone"
     summary = json.loads((report / "summary.json").read_text(encoding="utf-8"))
-    schema = json.loads((resources.files("comparison.report") / "summary.schema.json").read_text(encoding="utf-8"))
+    schema = json.loads((report / "summary.schema.json").read_text(encoding="utf-8"))
     assert [error_message.message for error_message in Draft202012Validator(schema).iter_errors(summary)] == []
     assert summary["tradeoff"][0]["entries"][0]["pareto_front"] == [True, True]
 

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
 from fake_models import fake_hierarchy, sliding
+from known_analyses import collected
 from numpy.typing import NDArray
 
 import comparison.analysis.trajectories
 from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.trajectories import SHARE, chosen_places, moved, shown_models, stored_motions, thinned
+from comparison.analysis.trajectories import SHARE, Motions, chosen_places, moved, shown_models, thinned
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
 from reference.problem import Scene, Trajectory, load_scene
@@ -73,7 +73,7 @@ def test_a_model_with_a_coarse_grid_moves_at_its_own_phases_only(monkeypatch: py
         return comparison.analysis.trajectories._nothing(task[3], task[1].key, "ok", "")  # type: ignore[arg-type]
 
     monkeypatch.setattr(comparison.analysis.trajectories, "moved", noted)
-    motions = stored_motions(study, surfaces, 1, ThreadPoolExecutor)
+    motions = collected(Motions(), study, surfaces)
     stride = study.strides["spatial"]
     assert stride > 1
     assert {(row % stride, column % stride) for key, row, column in asked if key == "spatial"} == {(0, 0)}

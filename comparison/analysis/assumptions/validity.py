@@ -4,12 +4,26 @@ The paper's assumptions (i)-(vi): what the engine's models do with each, and how
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
-from comparison.analysis.assumptions.variations import DURATION, PHASES, Cell, Range, assumption_cells, ranges
+import xarray as xr
+
+from comparison.analysis.assumptions.variations import (
+    DURATION,
+    FEW,
+    PHASES,
+    Cell,
+    Range,
+    Variation,
+    assumption_cells,
+    ranges,
+    variation_tasks,
+)
+from comparison.analysis.protocol import Analysis
+from comparison.execution.task import Task
+from comparison.execution.task_results import TaskResults
 from comparison.study.study import Study
 from reference.problem import Scene
 
@@ -84,13 +98,6 @@ class ValidityRanges:
     phases: Sequence[Sequence[float]] = tuple(map(tuple, PHASES.tolist()))  # rad
     duration: float = DURATION  # s
 
-    @staticmethod
-    def of(study: Study, jobs: int, executor: Callable[[int], Executor]) -> ValidityRanges | None:
-        """The few cells that a study computes; None if no scene of it has a spatial model."""
-        cells = assumption_cells(study, jobs, executor)
-        names = {cell.scene for cell in cells}
-        return ValidityRanges([scene for scene in study.scenes if scene.name in names], cells) if cells else None
-
     def lines(self, scene: Scene) -> list[str]:
         """One line per body, share and direction."""
         return [describe(found) for found in ranges([scene], self.cells)]
@@ -98,12 +105,30 @@ class ValidityRanges:
     def listed(self) -> dict[str, Any]:
         """For summary.json: assumptions, phase pairs, duration, every cell and every range."""
         return {
-            "assumptions": [asdict(assumption) for assumption in self.assumptions],
+            "assumptions": [asdict(one) for one in self.assumptions],
             "phases": [list(pair) for pair in self.phases],
             "duration": self.duration,
             "cells": [asdict(cell) for cell in self.cells],
             "ranges": [asdict(found) for found in ranges(self.scenes, self.cells)],
         }
+
+
+@dataclass(frozen=True)
+class Assumptions(Analysis[ValidityRanges]):
+    """How far the assumptions carry in the scenes of a study: a few variations, or as many as a command asks for."""
+
+    key, stage = "assumptions", "assumptions"
+    variations: Sequence[Variation] = FEW
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """The translational model and every variation of the spatial one, for every scene to which both apply."""
+        return variation_tasks(study, self.stage, self.variations)
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> ValidityRanges | None:
+        """The cells; None if no scene has both models of the engine."""
+        cells = assumption_cells(self.tasks(study), results)
+        names = {cell.scene for cell in cells}
+        return ValidityRanges([scene for scene in study.scenes if scene.name in names], cells) if cells else None
 
 
 def describe(found: Range) -> str:

@@ -6,15 +6,15 @@ The translational model, which no such variation changes, is what they are held 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.execution.sweep import sweep
+from comparison.execution.task import Task
+from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
@@ -24,6 +24,7 @@ Array = NDArray[np.float64]
 
 PHASES = np.array([(0.0, 0.0), (0.3, 1.1), (2.0, 0.7)])  # rad; the first is where turning tells most in fig3-I
 DURATION = 6.0  # s: the loading is strongest in its first seconds
+SECONDS = {"translational": 0.5, "spatial": 1.1}  # predicted cost of one task, s on `study.models.RECORDED_ON`
 WITHIN = (0.01, 0.05)  # of mu_i
 
 
@@ -136,22 +137,30 @@ def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> 
     return asked
 
 
-def assumption_cells(
-    study: Study,
-    jobs: int,
-    executor: Callable[[int], Executor],
-    variations: Sequence[Variation] = FEW,
-    done: Callable[[], None] = lambda: None,
-) -> list[Cell]:
-    """
-    Every variation of every scene to which both engine models apply, computed on `executor(jobs)`.
+def variation_tasks(study: Study, stage: str, variations: Sequence[Variation] = FEW) -> list[Task]:
+    """`variation_arguments` as tasks."""
+    return [
+        Task(
+            varied,
+            arguments,
+            stage,
+            SECONDS["translational" if arguments[2] is None else "spatial"],
+            arguments[0],
+            needs_compiled_reference=False,
+        )
+        for arguments in variation_arguments(study, variations)
+    ]
 
-    `done` is called as each is finished, and once more per scene for the translational model.
-    """
-    asked = variation_arguments(study, variations)
-    solved = sweep(asked, varied, _lost, lambda task, found: done(), jobs, executor)
-    held_against = {task[0].name: found for task, found in zip(asked, solved) if task[2] is None}
-    return [_cell(task[0], task[2], found, held_against[task[0].name]) for task, found in zip(asked, solved) if task[2]]
+
+def assumption_cells(tasks: Sequence[Task], results: TaskResults) -> list[Cell]:
+    """Every variation of every scene to which both engine models apply, from the results of `variation_tasks`."""
+    answers = [(task.argument, results.value(task, _lost)) for task in tasks]
+    held_against = {scene.name: answer for (scene, _, variation, _), answer in answers if variation is None}
+    return [
+        _cell(scene, variation, answer, held_against[scene.name])
+        for (scene, _, variation, _), answer in answers
+        if variation is not None
+    ]
 
 
 def varied(task: Arguments) -> Solved:

@@ -7,15 +7,20 @@ table says which, names the reading that reproduces most, and lists what none re
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+
+import xarray as xr
 
 from comparison.analysis.claims.checks import Finding, Verdict
 from comparison.analysis.claims.claims import CLAIMS, Claim
 from comparison.analysis.claims.evidence import Evidence, Question, gathered, lost
 from comparison.analysis.claims.readings import CASES, READINGS, Reading, without_effect
-from comparison.execution.executors import Pool, process_pool
-from comparison.execution.sweep import sweep
+from comparison.analysis.protocol import Analysis
+from comparison.execution.task import Task
+from comparison.execution.task_results import TaskResults
+from comparison.study.study import Study
+from reference.problem import builtin_scenes
 
 GRID = 16  # phases per axis: 24 change a count here and there, and none of the claims that no reading reproduces
 SECONDS = 0.15  # of one case under one reading on GRID, recorded beside `Model.seconds_per_point`
@@ -59,20 +64,38 @@ class ClaimTable:
         return "every reading" if len(names) == len(self.readings) else "; ".join(names) or "no reading"
 
 
-def claims_tested(
-    jobs: int,
-    executor: Pool = process_pool,
-    grid: int = GRID,
-    readings: Sequence[Reading] = READINGS,
-    claims: Sequence[Claim] = CLAIMS,
-    done: Callable[[Question], None] = lambda question: None,
-) -> ClaimTable:
-    """Every claim under every reading, computed on `executor`, see `sweep`; `done` is told of each case."""
-    asked = questions(readings, claims, grid)
-    found = sweep(asked, gathered, lost, lambda question, evidence: done(question), jobs, executor)
-    known = dict(zip(asked, found))
-    columns = [{case: known[_question(case, reading, grid)] for case in _cases(claims)} for reading in readings]
-    return tabulated(claims, readings, grid, columns)
+@dataclass(frozen=True)
+class Claims(Analysis[ClaimTable]):
+    """Every claim under every reading, on `grid` phases per axis."""
+
+    key, stage = "claims", "claims"
+    grid: int = GRID
+    readings: Sequence[Reading] = READINGS
+    claims: Sequence[Claim] = CLAIMS
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """One task for each case under each reading; none unless the study has every scene of the paper."""
+        if not paper_complete(study):
+            return []
+        return [self._task(question) for question in questions(self.readings, self.claims, self.grid)]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> ClaimTable | None:
+        """The table; None unless the study has every scene of the paper."""
+        if not paper_complete(study):
+            return None
+        columns = [
+            {case: results.value(self._task(_question(case, reading, self.grid)), lost) for case in _cases(self.claims)}
+            for reading in self.readings
+        ]
+        return tabulated(self.claims, self.readings, self.grid, columns)
+
+    def _task(self, question: Question) -> Task:
+        return Task(gathered, question, self.stage, SECONDS * (self.grid / GRID) ** 2)
+
+
+def paper_complete(study: Study) -> bool:
+    """Whether the study has every scene of the paper, whose claims speak about all of them."""
+    return {scene.name for scene in study.scenes} >= set(builtin_scenes())
 
 
 def tabulated(

@@ -9,46 +9,71 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from itertools import groupby
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, Field
 
 from comparison.analysis.extremes.cells import Cell, Solved
 from comparison.analysis.extremes.rows import Column
 from comparison.analysis.extremes.verdicts import Judged, Verdict
 from comparison.analysis.extremes.worker import NoAnswer
+from comparison.analysis.stored import FILE_FORMAT, load_file
 
 FILE, PICTURE = "extremes.json", "extremes.png"
 
 
+VerdictName = Annotated[
+    str,
+    AfterValidator(lambda name: Verdict(name).value),
+    Field(json_schema_extra={"enum": [verdict.value for verdict in Verdict]}),
+]
+
+
 @dataclass(frozen=True)
 class Entry:
-    """
-    One cell. error: the largest relative one claimed, None without a value. seconds, total: processor time of the
-    model's answer, and of the cell with its finer runs; None without an answer.
-    """
+    """One cell of the matrix."""
 
-    verdict: str
+    __pydantic_config__ = FILE_FORMAT
+
+    verdict: VerdictName
+    """converged: error confirmed by a finer run; refused: against a rule or outside the model; limit: the model says
+    that it cannot; FAILED: all else"""
     reason: str
+    """in a few words"""
     error: float | None
+    """largest relative error estimate; null without a value"""
     seconds: float | None
+    """processor time of the model's answer, s; null without an answer"""
     total: float | None
+    """processor time of the cell with its finer runs, s; null without an answer"""
 
 
 @dataclass(frozen=True)
 class Extreme:
-    """One row: entries by the key of the column; a model that the extreme does not concern has none."""
+    """One row of the matrix: one extreme."""
+
+    __pydantic_config__ = FILE_FORMAT
 
     group: str
+    """the quantity"""
     title: str
+    """its extreme value"""
     entries: Mapping[str, Entry]
+    """what came of it, by key of the model; none for a model that the extreme does not concern"""
 
 
 @dataclass(frozen=True)
 class Matrix:
-    """columns: titles by key. run: command, times, provenance; whether it is the reduced form."""
+    """Every model at the extremes of every quantity, judged by finer runs."""
+
+    __pydantic_config__ = FILE_FORMAT
 
     columns: Mapping[str, str]
+    """titles of the models by key"""
     rows: Sequence[Extreme]
+    """one per extreme"""
     run: Mapping[str, Any]
+    """command, times, provenance, and whether it is the reduced form"""
 
     def counts(self) -> dict[str, int]:
         """Number of cells of each verdict, in the order from best to worst."""
@@ -98,15 +123,4 @@ def as_json(found: Matrix) -> bytes:
 
 def load(folder: Path) -> Matrix | None:
     """The matrix that `as_json` left in the folder, None if there is none. Raises ValueError if it is another file."""
-    file = folder / FILE
-    if not file.exists():
-        return None
-    try:
-        data = json.loads(file.read_text(encoding="utf-8"))
-        rows = [
-            Extreme(row["group"], row["title"], {key: Entry(**entry) for key, entry in row["entries"].items()})
-            for row in data["rows"]
-        ]
-        return Matrix(data["columns"], rows, data["run"])
-    except (KeyError, TypeError, ValueError) as error:
-        raise ValueError(f"{file}: not a matrix of extremes: {error!r}: run python -m comparison.extremes") from None
+    return load_file(folder / FILE, Matrix, "a matrix of extremes", "python -m comparison.extremes")

@@ -139,8 +139,8 @@ def measured(
     work = [task for task, _ in tasks(scene, quick)]
     results = sweep(work, solve, lost, lambda task, found: done(task), jobs, executor)
     parts: dict[str, list[tuple[int, Found]]] = {}
-    for task, result in zip(work, results):
-        parts.setdefault(key(task.function), []).append((task.first, result))
+    for task, found in zip(work, results):
+        parts.setdefault(key(task.function), []).append((task.first, found))
     whole = {name: _joined([found for _, found in sorted(own, key=lambda one: one[0])]) for name, own in parts.items()}
     entries, mu, reference_solutions, claims = [], [], [], []
     for setting in settings(scene, quick):
@@ -214,7 +214,7 @@ def _agreements(question: Question, entries: Sequence[Entry]) -> list[str]:
     How far the most accurate setting of other methods agrees with the reference solution; of the same one where there
     is none.
     """
-    own = [entry for entry in entries if entry.question == question.key and not entry.model_error and entry.answered]
+    own = [one for one in entries if one.question == question.key and not one.model_error and one.answered]
     engine = question.reference_solution[0].startswith("multibody")
     others = {
         "SciPy": "another method on the same equations",

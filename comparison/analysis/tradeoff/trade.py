@@ -7,70 +7,100 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from comparison.analysis.stored import FILE_FORMAT, load_file
+
 Array = NDArray[np.float64]
 
-FILE, SCHEMA = "tradeoff.json", "phase-resonance/tradeoff"
+FILE = "tradeoff.json"
+SCHEMA: Literal["phase-resonance/tradeoff"] = "phase-resonance/tradeoff"
 
 
 @dataclass(frozen=True)
 class Entry:
-    """
-    One setting. points, answered: phase pairs asked for, and with a value. seconds: of processor time per point.
-    median, most: relative error of each mu against the reference solution, at half and at 95 % of the points; None
-    without a value. error_estimate: 95 % of the relative error estimates, None where the method has none. pareto_front:
-    for each mu, whether no other method here is as accurate (95 %) in less time. Other fields as in `settings.Setting`.
-    """
+    """One setting of a method, measured."""
+
+    __pydantic_config__ = FILE_FORMAT
 
     question: str
+    """key of the question that it answers"""
     method: str
+    """the curve that it belongs to"""
     parameter: str
+    """what varies along the curve"""
     unit: str
+    """unit of the value; empty for a pure number"""
     value: float
+    """value of the parameter"""
     controlled: bool
+    """whether an error estimate comes with it"""
     model_error: bool
+    """whether its error is that of another model, not of numerics"""
     points: int
+    """phase pairs asked for"""
     answered: int
+    """phase pairs with a value"""
     seconds: float
+    """processor time per point, s"""
     median: Sequence[float | None]
+    """median relative error of each mu against the reference solution; null without a value"""
     most: Sequence[float | None]
+    """relative error of each mu that 95 % of the points meet; null without a value"""
     error_estimate: Sequence[float | None]
-    step: float | None = None  # s, mean step, where the method tells it
+    """relative error estimate of each mu that 95 % of the points meet; null without estimates"""
+    step: float | None = None
+    """mean step, s; null where the method does not tell it"""
     pareto_front: Sequence[bool] = ()
+    """for each mu, whether no other method is as accurate (95 %) in less time"""
     error_message: str = ""
+    """what went wrong, or empty"""
 
 
 @dataclass(frozen=True)
 class Answered:
-    """
-    One question: its title, its reference solution in words, the reference solution's relative error estimate, and how
-    it was checked.
-    """
+    """One question with its reference solution."""
+
+    __pydantic_config__ = FILE_FORMAT
 
     key: str
+    """key of the question"""
     title: str
+    """equations and law of friction"""
     points: int
+    """phase pairs of the sample"""
     reference_solution: str
+    """what the errors are against"""
     error: float
+    """largest relative error estimate of the reference solution"""
     checks: Sequence[str]
+    """how the reference solution was checked"""
 
 
 @dataclass(frozen=True)
 class Trade:
-    """The measured trade of one scene. run: command, times, machine."""
+    """The measured trade of one scene."""
+
+    __pydantic_config__ = FILE_FORMAT
 
     scene: str
+    """name of the scene"""
     title: str
+    """title of the scene"""
     digest: str
+    """hash of the scene"""
     bodies: int
+    """number of bodies"""
     questions: Sequence[Answered]
+    """one per panel of the diagram"""
     entries: Sequence[Entry]
+    """one per setting"""
     run: Mapping[str, Any]
+    """command, times, provenance"""
 
     def of(self, question: str) -> list[Entry]:
         """The entries of one question, in the order in which they were listed."""
@@ -117,33 +147,28 @@ def with_pareto_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
     return [Entry(**{**vars(entry), "pareto_front": tuple(marks[place])}) for place, entry in enumerate(entries)]
 
 
+@dataclass(frozen=True)
+class TradeFile:
+    """Content of the file."""
+
+    __pydantic_config__ = FILE_FORMAT
+
+    schema: Literal["phase-resonance/tradeoff"]
+    """what the file is"""
+    trades: list[Trade]
+    """one per scene"""
+
+
 def as_json(found: Sequence[Trade]) -> bytes:
     """The content of the file."""
-    content = {"schema": SCHEMA, "trades": [asdict(trade) for trade in found]}
+    content = asdict(TradeFile(SCHEMA, list(found)))
     return (json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
 
 
 def load(folder: Path) -> list[Trade] | None:
     """The trades that `as_json` left in the folder, None if there are none. Raises ValueError for another file."""
-    file = folder / FILE
-    if not file.exists():
-        return None
-    try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-        if content["schema"] != SCHEMA:
-            raise ValueError(f"its schema is {content['schema']!r}")
-        return [
-            Trade(
-                **{
-                    **trade,
-                    "questions": [Answered(**part) for part in trade["questions"]],
-                    "entries": [Entry(**part) for part in trade["entries"]],
-                }
-            )
-            for trade in content["trades"]
-        ]
-    except (KeyError, TypeError, ValueError) as error:
-        raise ValueError(f"{file}: not a measured trade: {error}: run python -m comparison.tradeoff") from None
+    content = load_file(folder / FILE, TradeFile, "a measured trade", "python -m comparison.tradeoff")
+    return None if content is None else content.trades
 
 
 def labeled(

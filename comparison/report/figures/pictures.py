@@ -3,26 +3,20 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable
-from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from io import BytesIO
 from pathlib import Path
 from typing import Literal
 
 import xarray as xr
-from PIL import Image
 
-from comparison.execution.sweep import sweep
+from comparison.analysis.protocol import Analysis
 from comparison.execution.task import Task, fingerprint
-from comparison.report.figures.budget import budget_figure_name, draw_budget
+from comparison.execution.task_results import TaskResults
 from comparison.report.figures.file_names import with_ending
-from comparison.report.figures.pairs import draw_pair, figure_name
-from comparison.report.figures.paper import draw_paper_figure, paper_figure_name
 from comparison.study.models import Pair
-from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.study import Study
-from reference.problem import Outcome, Scene
+from reference.problem import Scene
 
 SECONDS = {"pair": 0.45, "budget": 0.6, "paper": 1.0}  # of drawing one, recorded beside `Model.seconds_per_point`
 PAGE = ".webp"
@@ -51,45 +45,74 @@ class Picture:
 Files = tuple[tuple[str, bytes], ...]  # names and contents
 
 
-def pictures(study: Study, surfaces: xr.Dataset, selection: Selection = EVERYTHING) -> list[Picture]:
-    """Every picture of the selected sections: a scene without phases has no surfaces."""
+def pictures(study: Study, surfaces: xr.Dataset) -> list[Picture]:
+    """Every picture of the study: a scene without phases has no surfaces."""
     found = []
     for scene in study.phased:
         silent = {scene.name: (study.silent or {}).get(scene.name, ())}
-        alone = replace(study, scenes=(scene,), costs=None, silent=silent)
+        own = replace(study, scenes=(scene,), costs=None, silent=silent)
         shown = surfaces[SHOWN].sel(scene=[scene.name])
-        with_surfaces, with_budget = (selection.has(section, scene.name) for section in ("surfaces", "budget"))
-        if with_surfaces:
-            found.append(Picture("paper", alone, shown))
+        found.append(Picture("paper", own, shown))
         for body in range(1, len(scene.bodies) + 1):
-            if with_surfaces:
-                found += [Picture("pair", alone, shown, body, pair) for pair in study.pairs(scene)]
-            if with_budget:
-                found.append(Picture("budget", alone, shown, body))
+            found += [Picture("pair", own, shown, body, pair) for pair in study.pairs(scene)]
+            found.append(Picture("budget", own, shown, body))
     return found
 
 
-def picture_tasks(study: Study, surfaces: xr.Dataset, selection: Selection = EVERYTHING) -> list[Task]:
-    """The same as tasks for the workers."""
-    about = {scene.name: fingerprint(surfaces[SHOWN].sel(scene=[scene.name])) for scene in study.scenes}
-    return [
-        Task("pictures", drawn, picture, SECONDS[picture.kind], about[picture.scene.name], compiled=False)
-        for picture in pictures(study, surfaces, selection)
-    ]
+class Pictures(Analysis[dict[str, bytes]]):
+    """Every file of every picture by its name."""
+
+    key, stage, needs_surfaces, essential = "pictures", "pictures", True, True
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """One task for each picture."""
+        assert surfaces is not None, "they are what is drawn"
+        about = {scene.name: fingerprint(surfaces[SHOWN].sel(scene=[scene.name])) for scene in study.scenes}
+        return [
+            Task(
+                drawn,
+                picture,
+                self.stage,
+                SECONDS[picture.kind],
+                about[picture.scene.name],
+                needs_compiled_reference=False,
+            )
+            for picture in pictures(study, surfaces)
+        ]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> dict[str, bytes]:
+        """The files; a picture that no worker could draw is drawn here, for the page refers to it."""
+        tasks = self.tasks(study, surfaces)
+        return {
+            name: content
+            for task in tasks
+            for name, content in results.value(task, lambda picture, *failure: drawn(picture))
+        }
+
+    def predicted_seconds(self, study: Study) -> list[float]:
+        """Of what `pictures` lists."""
+        return [
+            seconds
+            for scene in study.phased
+            for body_seconds in [(SECONDS["budget"], *(SECONDS["pair"] for _ in study.pairs(scene)))]
+            for seconds in (SECONDS["paper"], *body_seconds * len(scene.bodies))
+        ]
 
 
 def drawn(picture: Picture) -> Files:
     """The files of one picture. Runs inside a worker process."""
+    from comparison.report.figures import budget, pairs, paper  # plotting: not needed to list what is drawn
+
     study, surfaces, scene, body = picture.study, picture.surfaces, picture.scene, picture.body
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         if picture.kind == "paper":
-            draw_paper_figure(folder / paper_figure_name(scene), study, surfaces, scene)
+            paper.draw_paper_figure(folder / paper.paper_figure_name(scene), study, surfaces, scene)
         elif picture.kind == "budget":
-            draw_budget(folder / budget_figure_name(scene, body), study, surfaces, scene, body)
+            budget.draw_budget(folder / budget.budget_figure_name(scene, body), study, surfaces, scene, body)
         else:
             assert picture.pair is not None
-            draw_pair(folder / figure_name(scene, body, picture.pair), surfaces, scene, body, picture.pair)
+            pairs.draw_pair(folder / pairs.figure_name(scene, body, picture.pair), surfaces, scene, body, picture.pair)
         files = [(file.name, file.read_bytes()) for file in sorted(folder.iterdir())]
     if picture.kind != "paper":  # what the page shows
         files += [(for_page(name), smaller(content)) for name, content in files]
@@ -103,24 +126,9 @@ def for_page(name: str) -> str:
 
 def smaller(png: bytes) -> bytes:
     """The same picture to the last dot in half the bytes."""
+    from PIL import Image  # as above
+
     found = BytesIO()
     with Image.open(BytesIO(png)) as picture:
         picture.convert("RGB").save(found, "WEBP", lossless=True, quality=20, method=1)  # hardly smaller with more
     return found.getvalue()
-
-
-def all_drawn(
-    study: Study,
-    surfaces: xr.Dataset,
-    jobs: int,
-    executor: Callable[[int], Executor],
-    selection: Selection = EVERYTHING,
-) -> dict[str, bytes]:
-    """Every file of every picture by its name, drawn on `executor(jobs)`; what fails there is drawn here."""
-    asked = pictures(study, surfaces, selection)
-    found = sweep(asked, drawn, _lost, lambda picture, files: None, jobs, executor)
-    return {name: content for picture, files in zip(asked, found) for name, content in files or drawn(picture)}
-
-
-def _lost(picture: Picture, outcome: Outcome, error_message: str) -> Files:
-    return ()

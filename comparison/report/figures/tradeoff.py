@@ -71,7 +71,7 @@ def _panel(axes: Axes, trade: Trade, question: Answered, body: int) -> None:
     axes.axhspan(LOWEST, max(question.error, LOWEST), color="0.9", zorder=0)
     seen: dict[str, int] = {}
     for method, entries in trade.methods(question.key).items():
-        family, dark, light = next((family for family in FAMILIES if method.startswith(family[0])), FAMILIES[0])
+        family, dark, light = next((one for one in FAMILIES if method.startswith(one[0])), FAMILIES[0])
         number = seen[family] = seen.get(family, -1) + 1
         _curve(axes, method, entries, body, dark if number % 2 == 0 else light, MARKERS[number])
     front = sorted(

@@ -5,14 +5,15 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from comparison.analysis import claims_and_trends as module
-from comparison.analysis.claims_and_trends import claims_and_trends, claims_summary, trends_summary
+from comparison.analysis.claims.table import Claims
+from comparison.analysis.convergence import Convergence
+from comparison.analysis.scaling import Scaling
+from comparison.execution.task_results import TaskResults
 from comparison.study.study import Study
 from reference.problem import builtin_scenes, load_scene
 
@@ -56,18 +57,16 @@ def test_the_summary_has_them_without_nan(finished: Path) -> None:
     assert claims["never"] == ["Fig. 3b: mu_2 has several peaks and valleys, more complex than those of mu_1"]
     assert summary["scaling"][0]["exponent"] == pytest.approx(2.0)
     assert summary["convergence"][0]["exponent"] is None
-    assert (claims_summary(None), trends_summary(None)) == (None, None)
 
 
-def test_claims_are_tested_only_where_every_scene_of_the_paper_is_studied(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "claims_tested", lambda *rest: "claims")
-    for name in ("scaling_trends", "convergence_trends"):
-        monkeypatch.setattr(module, name, lambda study, *rest: [scene.name for scene in study.scenes])
+def test_claims_are_tested_only_where_every_scene_of_the_paper_is_studied() -> None:
     every = Study(tuple(load_scene(name) for name in builtin_scenes()), 4, 1e-3)
-    assert claims_and_trends(every, 1, ThreadPoolExecutor)["claims"] == "claims"
+    assert Claims().tasks(every)
     one = Study((load_scene("fig3-I"),), 4, 1e-3)
-    found = claims_and_trends(one, 1, ThreadPoolExecutor)
-    assert found == {"claims": None, "scaling": ["fig3-I"], "convergence": ["fig3-I"]}
+    assert Claims().tasks(one) == []
+    assert Claims().collect(one, None, TaskResults()) is None
+    for analysis in (Scaling(), Convergence()):
+        assert {task.about.name for task in analysis.tasks(one)} == {"fig3-I"}
 
 
 def test_a_report_without_them_says_which_command_makes_them(command: Callable[..., Any]) -> None:
@@ -76,3 +75,4 @@ def test_a_report_without_them_says_which_command_makes_them(command: Callable[.
     page = (run.report / "index.html").read_text(encoding="utf-8")
     assert 'id="claims"' not in page
     assert "python -m comparison.claims alone" in page
+    assert json.loads((run.report / "summary.json").read_text(encoding="utf-8"))["claims"] is None

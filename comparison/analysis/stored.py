@@ -1,0 +1,55 @@
+"""Files of results that another command left beside the report."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TypeVar
+
+from pydantic import ConfigDict, TypeAdapter, ValidationError
+
+# of dataclasses that are read from files: unknown keys are refused; the text below a field is its meaning
+FILE_FORMAT = ConfigDict(extra="forbid", use_attribute_docstrings=True)
+
+T = TypeVar("T")
+
+
+def load_file(file: Path, kind: type[T], what: str, command: str) -> T | None:
+    """
+    The content of a JSON file as the dataclass `kind`.
+
+    Parameters
+    ----------
+    file : Path
+        File to read.
+    kind : type
+        Dataclass that states its keys.
+    what : str
+        What the file should be, for the message.
+    command : str
+        Command that writes it, for the message.
+
+    Returns
+    -------
+    kind or None
+        None if there is no such file.
+
+    Raises
+    ------
+    ValueError
+        In one line, if the file is anything else.
+    """
+    if not file.exists():
+        return None
+    try:
+        return TypeAdapter(kind).validate_json(file.read_bytes())
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        place = ".".join(map(str, first["loc"]))
+        given = "" if first["type"] in ("missing", "json_invalid") else f" = {_short(first['input'])}"
+        reason = f"{place}{given}: {first['msg']}" if place else first["msg"]
+        raise ValueError(f"{file}: not {what}: {reason}: run {command}") from None
+
+
+def _short(value: object, length: int = 60) -> str:
+    shown = repr(value)
+    return shown if len(shown) <= length else f"{shown[:length]}…"

@@ -1,0 +1,173 @@
+"""What a run found, assembled into the one `Results` object that the report is made from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from comparison.analysis.claims.table import ClaimTable
+from comparison.analysis.errata import ERRATA
+from comparison.analysis.surfaces import largest_cap_share, outcome_counts
+from comparison.analysis.trends import Trend as FittedTrend
+from comparison.analysis.unanswered import advice
+from comparison.analysis.verdicts import bar, verdict
+from comparison.report.findings import Findings
+from comparison.report.results import (
+    Assumptions,
+    Bar,
+    BudgetEntry,
+    Claim,
+    Claims,
+    Difference,
+    Effect,
+    Effective,
+    Erratum,
+    FamilyResult,
+    Limit,
+    ModelDescription,
+    ModelOutcome,
+    Results,
+    Run,
+    SceneResult,
+    Trend,
+    Unanswered,
+    Verdict,
+)
+from comparison.study.models import Model, models_of
+from reference.problem import Outcome, Scene
+
+
+def assemble(found: Findings) -> Results:
+    """
+    The results of a run.
+
+    Parameters
+    ----------
+    found : Findings
+        Study, surfaces and what the analyses returned.
+
+    Returns
+    -------
+    Results
+        Everything that summary.json holds; verdicts, bars and limits included.
+    """
+    study = found.study
+    return Results(
+        run=Run.model_validate(found.run),
+        grid=study.grid,
+        tolerance=study.tolerance,
+        models=[ModelDescription.model_validate(model) for model in study.hierarchy],
+        scenes=[_scene(found, scene) for scene in study.scenes],
+        errata=_errata(found),
+        assumptions=None if found.assumptions is None else Assumptions.model_validate(found.assumptions.listed()),
+        claims=None if found.claims is None else _claims(found.claims),
+        scaling=_trends(found.scaling),
+        convergence=_trends(found.convergence),
+        extremes=found.extremes,
+        tradeoff=None if found.tradeoff is None else list(found.tradeoff),
+        families=None if found.families is None else [
+            FamilyResult(
+                name=family.name,
+                key=family.key,
+                values=list(family.values),
+                scenes=[scene.name for scene in family.scenes],
+            )
+            for family in found.families
+        ],
+        unanswered=[Unanswered.model_validate(lacking) for lacking in found.unanswered],
+        broken=[line for limit in found.limits for line in limit.broken],
+        faults=list(found.faults),
+    )  # fmt: skip
+
+
+def _scene(found: Findings, scene: Scene) -> SceneResult:
+    def of_scene(rows: Sequence[Any]) -> list[Any]:
+        return [row for row in rows if row.scene == scene.name]
+
+    study, surfaces, bodies = found.study, found.surfaces, len(scene.bodies)
+    return SceneResult(
+        name=scene.name,
+        title=scene.title,
+        digest=scene.digest(),
+        bodies=bodies,
+        duration=scene.duration,
+        recorded=scene.recorded,
+        acceptance=scene.acceptance,
+        verdict=Verdict.model_validate(verdict(study, surfaces, scene)),
+        models={model.key: _model(found, scene, model) for model in models_of(scene, study.hierarchy)},
+        differences=[Difference.model_validate(row) for row in of_scene(found.rows)],
+        budget=[BudgetEntry.model_validate(entry) for entry in of_scene(found.budget)],
+        bars=[Bar.model_validate(bar(study, surfaces, scene, body)) for body in range(1, bodies + 1)],
+        limits=[Limit.model_validate(limit) for limit in of_scene(found.limits)],
+        effective=[Effective.model_validate(values) for values in of_scene(found.effective)],
+    )
+
+
+def _model(found: Findings, scene: Scene, model: Model) -> ModelOutcome:
+    study, surfaces = found.study, found.surfaces
+    counts = outcome_counts(surfaces, scene.name, model.key)
+    return ModelOutcome(
+        phases_per_axis=len(study.axis(model, scene)),
+        points=study.points(model, scene),
+        outcomes=counts,
+        advice={outcome: advice(study, scene, model, outcome) for outcome in counts if outcome != Outcome.OK},
+        cap_share=largest_cap_share(surfaces, scene.name, model.key),
+        cost=float(surfaces["cost"].sel(scene=scene.name, model=model.key)),
+    )
+
+
+def _errata(found: Findings) -> list[Erratum]:
+    return [
+        Erratum(
+            where=erratum.where,
+            printed=erratum.printed,
+            corrected=erratum.corrected,
+            why=erratum.why,
+            none=erratum.none,
+            effects=[Effect.model_validate(effect) for effect in found.effects if effect.erratum == number],
+        )
+        for number, erratum in enumerate(ERRATA)
+    ]
+
+
+def _claims(table: ClaimTable) -> Claims:
+    return Claims(
+        grid=table.grid,
+        readings=[reading.name for reading in table.readings],
+        reproduced=[table.held(column) for column in range(len(table.readings))],
+        best=[reading.name for reading in table.best],
+        never=[f"{claim.figure}: {claim.says}" for claim in table.never],
+        claims=[
+            Claim.model_validate(
+                {
+                    "figure": claim.figure,
+                    "says": claim.says,
+                    "rule": claim.rule,
+                    "weaker": claim.weaker,
+                    "verdicts": list(row),
+                }
+            )
+            for claim, row in zip(table.claims, table.verdicts)
+        ],
+    )
+
+
+def _trends(trends: Sequence[FittedTrend] | None) -> list[Trend] | None:
+    return None if trends is None else [_trend(trend) for trend in trends]
+
+
+def _trend(trend: FittedTrend) -> Trend:
+    slope = trend.slope
+    return Trend(
+        scene=trend.scene,
+        body=trend.body,
+        what=trend.what,
+        parameter=list(trend.parameter),
+        medians=trend.medians,
+        exponent=slope.exponent,
+        uncertainty=slope.uncertainty,
+        points=slope.points,
+        pairs=slope.pairs,
+        expected=trend.expected,
+        verdict=trend.verdict,
+    )

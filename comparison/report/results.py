@@ -1,0 +1,658 @@
+"""
+Results of a study as typed data: everything that summary.json holds.
+
+The page, summary.md, JUnit and summary.json are made from one `Results` object. The models state the format of
+summary.json: its JSON schema is generated from them and written beside it. Relative sizes are fractions, not percent.
+
+Two types hold what JSON cannot: `Number` writes NaN as null, and `Text` replaces what UTF-8 does not know.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
+
+from comparison.analysis.extremes.matrix import Matrix
+from comparison.analysis.tradeoff.trade import Trade
+from reference.problem.acceptance import Acceptance
+
+SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"
+VERSION: Literal[3] = 3  # grows when a key changes its meaning or goes
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _nan(value: Any) -> Any:
+    return math.nan if value is None else value
+
+
+def _encodable(value: Any) -> Any:
+    """The text with single surrogates, which no UTF-8 holds, replaced."""
+    return value.encode("utf-16", "surrogatepass").decode("utf-16", "replace") if isinstance(value, str) else value
+
+
+Number = Annotated[float, BeforeValidator(_nan), PlainSerializer(_finite, return_type=float | None)]
+Text = Annotated[str, BeforeValidator(_encodable)]
+Phases = tuple[Number, Number]
+
+
+class Part(BaseModel):
+    """A part of the results: read from the attributes of what an analysis returns; unknown keys are refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, from_attributes=True, use_attribute_docstrings=True)
+
+
+class WorkPart(Part):
+    """One kind of work beside the surfaces."""
+
+    tasks: int
+    """number of tasks"""
+    stored_before: int
+    """of these, taken from an earlier run"""
+    seconds: float
+    """processor time of all of them when they were computed, s"""
+
+
+class TargetOfModel(Part):
+    """What one model met of a target."""
+
+    key: str
+    """key of the model"""
+    title: str
+    """title of the model"""
+    tolerance: float
+    """relative error that was to be met"""
+    asked: float
+    """tolerance that the model was given for it"""
+    points: int
+    """phase pairs of all its surfaces"""
+    met: float
+    """fraction of them whose error estimates meet the tolerance"""
+    error99: float | None
+    """relative error estimate that 99 % do not exceed; null if more than 1 % have no value"""
+
+
+class Targets(Part):
+    """What --tolerance or --budget chose, and what came of it."""
+
+    tolerance: float | None
+    """value of --tolerance"""
+    budget: float | None
+    """value of --budget, s"""
+    predicted_seconds: float
+    """compute time expected for the surfaces, s"""
+    seconds: float
+    """compute time they took, s"""
+    predicted_wall: float
+    """wall time expected for the whole run, s"""
+    left_out: list[Text]
+    """models left out, and why"""
+    models: list[TargetOfModel]
+    """what every model met"""
+
+
+class Run(Part):
+    """How the report was made."""
+
+    command: Text
+    """the command line"""
+    began: str
+    """date and time, UTC"""
+    seconds: float
+    """wall time of the computation, s"""
+    compute_seconds: float
+    """compute time of the surfaces, all workers together, s"""
+    predicted_compute_seconds: float
+    """what --plan predicts for it, s"""
+    tiles: int
+    """number of batches"""
+    tiles_stored_before: int
+    """of these, taken from an earlier run"""
+    parts: dict[str, WorkPart]
+    """work beside the surfaces, by its name"""
+    jobs: int
+    """worker processes"""
+    provenance: dict[str, Text]
+    """versions, machine, commit"""
+    choice: Targets | None
+    """what --tolerance or --budget chose; null without either"""
+
+
+class ModelDescription(Part):
+    """One model of the hierarchy."""
+
+    key: str
+    """its name everywhere in this file"""
+    title: str
+    """its name for readers"""
+    adds: str
+    """what it adds to the model before it"""
+    settings: dict[str, Any]
+    """keyword arguments of its functions"""
+
+
+class ModelOutcome(Part):
+    """What one model did in one scene."""
+
+    phases_per_axis: int
+    """values of alpha1, and of alpha2"""
+    points: int
+    """phase pairs that the model was asked for"""
+    outcomes: dict[str, int]
+    """how many phase pairs ended in each named outcome, most frequent first"""
+    advice: dict[str, Text]
+    """by outcome that is not ok: what it means and what to try"""
+    cap_share: Number
+    """largest horizontal displacement of the platform over rho; null without an answer"""
+    cost: float
+    """compute time, s"""
+
+
+class Verdict(Part):
+    """The largest real total difference of the scene, and its cause."""
+
+    scene: Text
+    """name of the scene"""
+    size: Number
+    """signed, relative to mu of the first model; null where no difference is real"""
+    body: int
+    """number of the body; 0 where no difference is real"""
+    phases: Phases
+    """(alpha1, alpha2), rad; null under a record"""
+    cause: str
+    """title of the model whose step is largest there"""
+    part: Number
+    """signed size of that step there"""
+    real: Number
+    """fraction of the phase pairs where the total difference of this body is real"""
+    first: str
+    """title of the first model"""
+    second: str
+    """title of the last model"""
+    compared: int
+    """values of both models that were compared: of this body, or of all bodies where no difference is real"""
+    mu: Number
+    """mu of the first model there"""
+    lowest: Number
+    """lowest mu of the first model, of this body"""
+    highest: Number
+    """highest mu of the first model, of this body"""
+    recorded: bool
+    """whether the scene has a recorded motion and so no phases"""
+    sentence: Text
+    """all that in words"""
+
+
+class Difference(Part):
+    """The difference of two models in one body: second minus first, relative to the first."""
+
+    scene: Text
+    """name of the scene"""
+    pair: str
+    """key of the pair: total, translational, like-for-like"""
+    first: str
+    """key of the first model"""
+    second: str
+    """key of the second model"""
+    body: int
+    """number of the body; 1 is the platform"""
+    median: Number
+    """median of the absolute size over the phase pairs where both have a value"""
+    percentile95: Number
+    """95 % of the absolute sizes are below this"""
+    maximum: Number
+    """largest absolute size"""
+    phases: Phases
+    """(alpha1, alpha2) of the largest, rad"""
+    beyond_error: Number
+    """fraction of the phase pairs where it exceeds u_D = sqrt(u_A^2 + u_B^2), the two error estimates together"""
+    ratio: Number
+    """largest absolute size in units of u_D"""
+    asked: int
+    """phase pairs that both models were asked for"""
+    not_ok: int
+    """phase pairs where either outcome is not ok"""
+    unanswered: int
+    """phase pairs where either has no value"""
+
+
+class BudgetEntry(Part):
+    """One step of the model hierarchy, or the total, in one body; relative to mu of the first model."""
+
+    scene: Text
+    """name of the scene"""
+    body: int
+    """number of the body; 1 is the platform"""
+    step: str
+    """key of the model that the step leads to, or total"""
+    first: str
+    """key of the model before the step"""
+    second: str
+    """key of the model after the step"""
+    mean: Number
+    """mean of the signed size"""
+    median: Number
+    """median of the absolute size"""
+    rms: Number
+    """root mean square of the size"""
+    percentile95: Number
+    """95 % of the absolute sizes are below this"""
+    maximum: Number
+    """largest absolute size"""
+    phases: Phases
+    """(alpha1, alpha2) of the largest, rad"""
+    real: Number
+    """fraction of the points where |D| > 5 u_D"""
+    unresolved: Number
+    """fraction of the points where u_D < |D| <= 5 u_D"""
+    error_estimate: Number
+    """median of u_D"""
+    peak_moves: Number
+    """how far the highest point of the surface moves at least on the periodic square, rad"""
+    correlation: Number
+    """Pearson's correlation of the two surfaces"""
+    points: int
+    """phase pairs where both models have a value"""
+    asked: int
+    """phase pairs that both models were asked for"""
+
+
+class BarSegment(Part):
+    """One step in a bar."""
+
+    model: str
+    """key of the model that the step leads to"""
+    size: Number
+    """mean absolute size, relative to mu of the first model"""
+    share: Number
+    """fraction of the bar"""
+    real: Number
+    """fraction of the size that is real"""
+
+
+class Bar(Part):
+    """The budget of one surface as one bar, over the phase pairs where every model has a value."""
+
+    scene: Text
+    """name of the scene"""
+    body: int
+    """number of the body; 1 is the platform"""
+    total: Number
+    """mean absolute size of the total difference, in which steps of opposite sign cancel"""
+    points: int
+    """phase pairs where every model has a value"""
+    segments: list[BarSegment]
+    """one per step"""
+
+
+class Breach(Part):
+    """Where an acceptance limit is broken."""
+
+    body: int
+    """number of the body; 0 where the limit is of the scene"""
+    found: Number
+    """value that exceeds the limit; null without one"""
+    reason: Text
+    """why there is no value, or what was counted; empty otherwise"""
+
+
+class Limit(Part):
+    """An acceptance limit that the scene states, held against the results."""
+
+    key: str
+    """as written below acceptance"""
+    allowed: float
+    """largest value that holds it"""
+    breaches: list[Breach]
+    """where it is broken; empty if it holds"""
+    broken: list[Text]
+    """the same in words, one line each"""
+
+
+class Effective(Part):
+    """Values read back from one motion of a model, or as the scene states them; null where the motion does not tell."""
+
+    scene: Text
+    """name of the scene"""
+    model: str
+    """key of the model, or scene"""
+    radius: Number
+    """radius of the sphere that the platform moves on, m"""
+    friction: Number
+    """coefficient of friction, or s/m in a lubricated scene"""
+    contact: Number
+    """contact force at t = 0, N"""
+    mass: Number
+    """total mass, kg"""
+    acceleration: Number
+    """absolute acceleration of the platform at t = 0, m/s^2"""
+    error_message: Text
+    """why there are no values, or empty"""
+
+
+class SceneResult(Part):
+    """One scene."""
+
+    name: Text
+    """file stem or built-in name"""
+    title: Text
+    """as the scene states it"""
+    digest: str
+    """hash of the scene"""
+    bodies: int
+    """number of bodies"""
+    duration: float
+    """duration of the motion, s"""
+    recorded: bool
+    """whether the scene has a recorded motion and so no phases"""
+    acceptance: Acceptance
+    """limits stated by the scene for --check; null where none"""
+    verdict: Verdict
+    """the largest real total difference, and its cause"""
+    models: dict[str, ModelOutcome]
+    """by key of the model"""
+    differences: list[Difference]
+    """one per body and pair"""
+    budget: list[BudgetEntry]
+    """one per body and step, then the total"""
+    bars: list[Bar]
+    """one per body"""
+    limits: list[Limit]
+    """every acceptance limit that the scene states"""
+    effective: list[Effective]
+    """the scene, then every model"""
+
+
+class Effect(Part):
+    """What the printed form of an erratum does to mu in one scene."""
+
+    scene: Text
+    """name of the scene"""
+    erratum: int
+    """number of the erratum, from 0"""
+    change: list[list[Number]]
+    """relative change of mu by phase pair and body; null where the printed form has no answer; empty if untouched"""
+    error_message: Text
+    """what went wrong, or empty"""
+
+
+class Erratum(Part):
+    """One erratum of the print."""
+
+    where: str
+    """place in the paper"""
+    printed: str
+    """what is printed"""
+    corrected: str
+    """what it should be"""
+    why: str
+    """reason"""
+    none: str
+    """why it has no measurable effect, or empty"""
+    effects: list[Effect]
+    """one per scene with phases"""
+
+
+class Assumption(Part):
+    """One of the paper's assumptions (i) to (vi)."""
+
+    number: str
+    """of the paper"""
+    statement: str
+    """what the paper assumes"""
+    engine: str
+    """what the engine's models do with it"""
+    relaxed: Literal["yes", "partly", "no"]
+    """whether the engine's models drop it"""
+
+
+class Variation(Part):
+    """The scene with another ring of supports and other heights."""
+
+    ring: float
+    """radius of the ring, as a multiple of the stated one"""
+    height: float
+    """heights of the bodies, as multiples of the stated ones"""
+    supports: int | None
+    """number of supports; null for the stated one"""
+
+
+class AssumptionCell(Part):
+    """The spatial model of one variation against the translational model."""
+
+    scene: Text
+    """name of the scene"""
+    variation: Variation
+    """what is varied"""
+    change: list[list[Number]]
+    """relative change of mu by phase pair and body"""
+    uncertainty: list[list[Number]]
+    """of the change, the two error estimates together"""
+    status: list[str]
+    """outcome of each phase pair"""
+    error_message: Text
+    """what went wrong, or empty"""
+    cost: float
+    """compute time of the spatial model, s"""
+
+
+class ValidityRange(Part):
+    """Where mu of one body stays within a fraction of the translational result, on one line of variations."""
+
+    scene: Text
+    """name of the scene"""
+    body: int
+    """number of the body; 1 is the platform"""
+    share: float
+    """largest relative change"""
+    key: Literal["ring", "height"]
+    """what varies: ring, m, or height, as a multiple of the stated one"""
+    holds: float | None
+    """last value up to which every value tried stays within; null if none does"""
+    fails: float | None
+    """first value tried that does not; null if all do"""
+
+
+class Assumptions(Part):
+    """How far the paper's assumptions carry."""
+
+    assumptions: list[Assumption]
+    """what the paper assumes"""
+    phases: list[Phases]
+    """phase pairs (alpha1, alpha2), rad"""
+    duration: float
+    """duration of the motion, s"""
+    cells: list[AssumptionCell]
+    """one per scene and variation"""
+    ranges: list[ValidityRange]
+    """what the cells allow to say"""
+
+
+class ClaimVerdict(Part):
+    """What the surfaces of one reading say about a claim."""
+
+    finding: str
+    """reproduced, as drawn, not reproduced, or no answer"""
+    found: Text
+    """numbers behind it"""
+
+
+class Claim(Part):
+    """One statement of the paper about its figures."""
+
+    figure: str
+    """figure of the paper"""
+    says: str
+    """what the paper says"""
+    rule: str
+    """how it is decided"""
+    weaker: bool
+    """whether it is a weaker form of a claim, which is not counted"""
+    verdicts: list[ClaimVerdict]
+    """one per reading"""
+
+
+class Claims(Part):
+    """The paper's statements about its figures, held against readings of the scenes."""
+
+    grid: int
+    """phases per axis"""
+    readings: list[str]
+    """names of the readings"""
+    reproduced: list[int]
+    """how many claims each reading reproduces"""
+    best: list[str]
+    """readings that reproduce most"""
+    never: list[str]
+    """claims that no reading reproduces"""
+    claims: list[Claim]
+    """one per statement"""
+
+
+class Trend(Part):
+    """How a difference falls with what causes it."""
+
+    scene: Text
+    """name of the scene"""
+    body: int
+    """number of the body; 1 is the platform"""
+    what: str
+    """the two things that differ"""
+    parameter: list[float]
+    """values of the parameter, falling"""
+    medians: list[Number]
+    """median absolute relative difference over the phase pairs, for every value"""
+    exponent: Number
+    """exponent of the power law fitted to the differences above their errors; null without enough of them"""
+    uncertainty: Number
+    """of the exponent"""
+    points: int
+    """differences in the fit"""
+    pairs: int
+    """phase pairs that they are of"""
+    expected: float | None
+    """exponent that theory gives, or null"""
+    verdict: Text
+    """what the fit allows to say"""
+
+
+class FamilyResult(Part):
+    """Scenes of one file in which one value runs."""
+
+    name: Text
+    """name of the file"""
+    key: str
+    """key that runs"""
+    values: list[Any]
+    """its values"""
+    scenes: list[Text]
+    """names of its scenes, in the order of the values"""
+
+
+class OutcomeNote(Part):
+    """One outcome of a model that is not ok."""
+
+    outcome: str
+    """name of the outcome"""
+    count: int
+    """phase pairs that ended so"""
+    advice: Text
+    """what it means and what to try"""
+
+
+class Unanswered(Part):
+    """A model without a value at some or all phase pairs of a scene."""
+
+    scene: Text
+    """name of the scene"""
+    model: str
+    """key of the model"""
+    title: str
+    """title of the model"""
+    points: int
+    """phase pairs without a value"""
+    asked: int
+    """phase pairs that the model was asked for"""
+    used: bool
+    """whether comparisons use the values that it has"""
+    outcomes: list[OutcomeNote]
+    """its outcomes that are not ok"""
+    why: Text
+    """these outcomes in words"""
+    sentence: Text
+    """all that in words"""
+
+
+class Results(Part):
+    """Everything that a program needs to judge a run. Relative sizes are fractions; a missing number is null."""
+
+    kind: Literal["phase-resonance/summary"] = Field(
+        default=SCHEMA, validation_alias="schema", serialization_alias="schema"
+    )
+    """what this file is"""
+    version: Literal[3] = VERSION
+    """grows when a key changes its meaning or goes; new keys may come without"""
+    run: Run
+    """how the report was made"""
+    grid: int
+    """phases per axis"""
+    tolerance: float
+    """relative error asked of every mu"""
+    models: list[ModelDescription]
+    """the model hierarchy, in order"""
+    scenes: list[SceneResult]
+    """in the order of the command"""
+    errata: list[Erratum]
+    """in the order of the paper"""
+    assumptions: Assumptions | None
+    """how far the paper's assumptions carry; null without a spatial model"""
+    claims: Claims | None
+    """the paper's statements about its figures; null unless every scene of the paper was studied"""
+    scaling: list[Trend] | None
+    """the step from small to exact equations over a common scale of loading and friction; null if not computed"""
+    convergence: list[Trend] | None
+    """what the steps of friction law and contact tend to; null if not computed"""
+    extremes: Matrix | None
+    """every model at the extremes of every quantity; null unless python -m comparison.extremes left it beside the
+    report"""
+    tradeoff: list[Trade] | None
+    """error against compute time for every model and parameter; null unless python -m comparison.tradeoff left it
+    beside the report"""
+    families: list[FamilyResult] | None
+    """families of scenes in which one value runs; null without any"""
+    unanswered: list[Unanswered]
+    """models without a value at some or all phase pairs of a scene"""
+    broken: list[Text]
+    """broken acceptance limits in words, one line for each body"""
+    faults: list[Text]
+    """error messages of the solvers"""
+
+    @property
+    def phased(self) -> list[SceneResult]:
+        """The scenes that have phases."""
+        return [scene for scene in self.scenes if not scene.recorded]
+
+    @property
+    def limits(self) -> list[Limit]:
+        """The acceptance limits of all scenes."""
+        return [limit for scene in self.scenes for limit in scene.limits]
+
+    def as_json(self) -> str:
+        """Content of summary.json."""
+        return _json(self.model_dump(mode="json", by_alias=True))
+
+
+def schema_json() -> str:
+    """JSON schema (draft 2020-12) of summary.json."""
+    schema = Results.model_json_schema(by_alias=True, mode="serialization")
+    title = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "summary.json of a study"}
+    return _json({**schema, **title})
+
+
+def _json(data: dict[str, Any]) -> str:
+    return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"

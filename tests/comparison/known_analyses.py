@@ -1,0 +1,92 @@
+"""Known answers in place of what a study finds beside its surfaces, and the answers of one analysis alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from rich.console import Console
+
+import comparison.registry
+from comparison.analysis.claims.checks import Finding, Verdict
+from comparison.analysis.claims.claims import CLAIMS
+from comparison.analysis.claims.readings import READINGS
+from comparison.analysis.claims.table import ClaimTable
+from comparison.analysis.protocol import Analysis
+from comparison.analysis.trends import trend
+from comparison.execution.executors import Pool
+from comparison.execution.runner import Runner
+from comparison.execution.task import Task
+from comparison.execution.task_results import TaskResults
+from comparison.study.study import Study
+
+SCALES = (1.0, 0.5, 0.25)
+ASKED = ("effective", "assumptions", "pictures")  # of the models of the hierarchy, or drawn from their surfaces
+
+
+@dataclass(frozen=True)
+class Known(Analysis[Any]):
+    """In place of another analysis: computes nothing and says `value`, or what that returns for study and surfaces."""
+
+    other: Analysis[Any]
+    value: Any = None
+
+    @property
+    def key(self) -> str:  # type: ignore[override]
+        return self.other.key
+
+    @property
+    def stage(self) -> str:  # type: ignore[override]
+        return self.other.stage
+
+    @property
+    def essential(self) -> bool:  # type: ignore[override]
+        return self.other.essential
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        return []
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Any:
+        return self.value(study, surfaces) if callable(self.value) else self.value
+
+    def predicted_seconds(self, study: Study) -> list[float]:
+        return self.other.predicted_seconds(study)
+
+
+def analyses_are(patch: pytest.MonkeyPatch, **known: Any) -> None:
+    """A study runs the analyses that ask its own models; the others have known answers, or none."""
+    analyses = [
+        analysis if analysis.key in ASKED else Known(analysis, known.get(analysis.key))
+        for analysis in comparison.registry.ANALYSES
+    ]
+    patch.setattr(comparison.registry, "ANALYSES", analyses)
+
+
+def collected(
+    analysis: Analysis[Any],
+    study: Study,
+    surfaces: xr.Dataset | None = None,
+    executor: Pool | Callable[[int], Any] = ThreadPoolExecutor,
+) -> Any:
+    """What an analysis says of a study, its tasks executed on two workers and stored nowhere."""
+    results = TaskResults()
+    Runner(results, Console(quiet=True), 2, executor).run_tasks(analysis.tasks(study, surfaces))
+    return analysis.collect(study, surfaces, results)
+
+
+def known_others() -> dict[str, Any]:
+    """Three claims under two readings; one trend that falls like s^2 and one that is nothing but noise."""
+    held, drawn = Verdict(Finding.REPRODUCED, "periodic 4 and 3"), Verdict(Finding.AS_DRAWN, "drawn 4 and 3")
+    no, unanswered = Verdict(Finding.NOT, "|x_2 - y_2| up to 0"), Verdict(Finding.OPEN, "fig3-I: rim reached")
+    table = ClaimTable(CLAIMS[3:6], READINGS[3:5], 16, [[held, drawn], [no, held], [no, unanswered]])
+    sizes = np.array([[4e-3, 1e-3, 2.5e-4]])
+    return {
+        "claims": table,
+        "scaling": [trend("fig3-I", 1, "exact minus small, supremum", SCALES, sizes, 1e-3 * sizes, 2.0)],
+        "convergence": [trend("fig3-I", 2, "engine against resolved", SCALES, sizes, 2.0 * sizes, 1.0)],
+    }
