@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from comparison.analysis.assumptions.validity import Assumptions
@@ -29,22 +30,34 @@ ANALYSES: tuple[Analysis[Any], ...] = (
 )
 
 
-def chosen_analyses(with_analyses: bool = True) -> list[Analysis[Any]]:
-    """Those of ANALYSES that a study runs; not `with_analyses`: the essential ones only."""
-    return [analysis for analysis in ANALYSES if with_analyses or analysis.essential]
+def affordable(study: Study, with_analyses: bool = True) -> Study:
+    """The study itself, or, not `with_analyses`, the same with the essential analyses only."""
+    expensive = [analysis.key for analysis in ANALYSES if not analysis.essential]
+    return study if with_analyses else replace(study, selection=study.selection.without(expensive))
+
+
+def chosen_analyses(study: Study) -> list[Analysis[Any]]:
+    """Those of ANALYSES that are made of a scene of the study."""
+    return [analysis for analysis in ANALYSES if study.selecting(analysis.key).scenes]
 
 
 def first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:
     """What can be computed without knowing the surfaces."""
-    return [task for analysis in analyses if not analysis.needs_surfaces for task in analysis.tasks(study)]
+    return [
+        task
+        for analysis in analyses
+        if not analysis.needs_surfaces
+        for task in analysis.tasks(study.selecting(analysis.key))
+    ]
 
 
 def predicted_costs(study: Study, analyses: Sequence[Analysis[Any]]) -> dict[str, tuple[int, float]]:
     """Tasks and s on one core of each analysis, by stage."""
-    seconds = {analysis.stage: analysis.predicted_seconds(study) for analysis in analyses}
+    seconds = {analysis.stage: analysis.predicted_seconds(study.selecting(analysis.key)) for analysis in analyses}
     return {stage: (len(costs), sum(costs)) for stage, costs in seconds.items()}
 
 
 def analysis_cost(study: Study, with_analyses: bool) -> float:
     """s on one core of all that is computed beside the surfaces."""
-    return sum(seconds for _, seconds in predicted_costs(study, chosen_analyses(with_analyses)).values())
+    chosen = affordable(study, with_analyses)
+    return sum(seconds for _, seconds in predicted_costs(chosen, chosen_analyses(chosen)).values())

@@ -43,7 +43,7 @@ from comparison.execution.resume import command_line, resume_hint, without_sched
 from comparison.execution.runner import Computed, Runner
 from comparison.execution.task_results import TaskResults
 from comparison.execution.workers import workers
-from comparison.registry import analysis_cost, chosen_analyses, first_tasks
+from comparison.registry import affordable, analysis_cost, chosen_analyses, first_tasks
 from comparison.report.findings import Findings, collect_findings
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.planning import BudgetError, StudyPlan, StudyRequest, plan_study
@@ -77,7 +77,7 @@ def main(argv: Sequence[str], hierarchy: Sequence[Model] = MODEL_HIERARCHY, exec
             console = wide_console()
             plan = _chosen(options, hierarchy)
             if options.plan:
-                print_plan(console, plan.study, options, plan.with_analyses)
+                print_plan(console, affordable(plan.study, plan.with_analyses), options)
             if options.by_trade:
                 print_study_plan(console, plan, options)
             return 0 if options.plan else _ended(plan, options, console, argv, executor)
@@ -88,7 +88,15 @@ def main(argv: Sequence[str], hierarchy: Sequence[Model] = MODEL_HIERARCHY, exec
 
 def _chosen(options: Options, hierarchy: Sequence[Model]) -> StudyPlan:
     """What is computed. Raises SceneError where no study fits the budget."""
-    asked = options.tolerance, options.budget, options.grid, options.jobs, options.full, analysis_cost
+    asked = (
+        options.tolerance,
+        options.budget,
+        options.grid,
+        options.jobs,
+        options.full,
+        analysis_cost,
+        options.selection,
+    )
     try:
         return plan_study(StudyRequest(options.scenes, hierarchy, *asked))
     except BudgetError as error:
@@ -126,7 +134,8 @@ def _run(
 
     begin, began = time.monotonic(), datetime.now(UTC)
     clear_dead(options.out)
-    study, analyses = plan.study, chosen_analyses(plan.with_analyses)
+    study = affordable(plan.study, plan.with_analyses)
+    analyses = chosen_analyses(study)
     keys = [batch_key(batch) for batch in study.batches()]
     store.trim(keys)
     if options.fresh:
@@ -137,9 +146,11 @@ def _run(
     seconds = time.monotonic() - begin
     surfaces = labeled_surfaces(study, computed.batches, computed.answers)
     study = with_silent_models(study, surfaces)
-    console.print("Keeping a few motions of every scene for the report, and drawing the surfaces.")
     later = [analysis for analysis in analyses if analysis.needs_surfaces]
-    runner.run_tasks([task for analysis in later for task in analysis.tasks(study, surfaces)])
+    tasks = [task for analysis in later for task in analysis.tasks(study.selecting(analysis.key), surfaces)]
+    if tasks:
+        console.print("Computing what the surfaces choose, and drawing the figures of the report.")
+    runner.run_tasks(tasks)
 
     faults = _faults(study, computed)
     run: dict[str, Any] = {
@@ -161,12 +172,15 @@ def _run(
     found = collect_findings(
         study,
         surfaces,
-        {analysis.key: analysis.collect(study, surfaces, runner.results) for analysis in analyses},
+        {
+            analysis.key: analysis.collect(study.selecting(analysis.key), surfaces, runner.results)
+            for analysis in analyses
+        },
         faults,
         run,
         families=[family for family in options.families if len(family.scenes) > 1] or None,
-        extremes=_taken_up(stored_extremes, options.out),
-        tradeoff=_taken_up(stored_trades, options.out),
+        extremes=None if "extremes" in study.absent else _taken_up(stored_extremes, options.out),
+        tradeoff=None if "tradeoff" in study.absent else _taken_up(stored_trades, options.out),
     )
 
     console.print("Writing the report.")
@@ -183,7 +197,8 @@ def _run(
     print_unanswered(console, found.unanswered)
     place = options.out if report.place == options.out.resolve() else report.place
     _print_closing(console, options, place, run, time.monotonic() - begin, bool(study.phased))
-    print_differences(console, found.rows)
+    differences = [row for row in found.rows if study.selection.has("differences", row.scene)]
+    print_differences(console, differences, bool(study.phased))
     return 1 if options.check and found.broken else 0
 
 
@@ -229,4 +244,3 @@ def _print_closing(
     console.print(f"Report: {report / 'index.html'}", soft_wrap=True)  # a path is copied whole
     finer = "; a finer look: --grid N with a larger N; what that costs: --plan" if phased else ""
     console.print(f"Next: open it in a browser{finer}.")
-    console.print(f"Relative differences{' over the phases' if phased else ''}, per body:")

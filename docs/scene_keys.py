@@ -7,11 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from reference.problem import Scene
+from reference.problem.analyses import ANALYSES
 from reference.problem.ranges import MAX_CYCLES, SCENE
 
 PAGE = Path(__file__).with_name("scene.md")
 SET_BY_THE_READER = {"name", "samples"}  # fields of the models that are no keys of a file
-NESTED = {"isolator", "bodies", "excitation", "acceptance"}
+NESTED = {"isolator", "bodies", "excitation", "acceptance", "analyses"}
 TABLES = (  # heading, model in the schema, dotted name, introduction
     ("At the top of the file", "", "", ""),
     ("`[isolator]`", "Isolator", "isolator", "The spherical gravity-friction isolator under the platform."),
@@ -29,6 +30,13 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         "acceptance",
         "Limits for `--check`. `median`, `maximum` and `ratio` here are those of `like_for_like`; the tables `total`,"
         " `translational` and `like_for_like` take the same three keys.",
+    ),
+    (
+        "`[analyses]`",
+        "Analyses",
+        "analyses",
+        f"What the report tells of the scene beside its amplification factors: {', '.join(ANALYSES)}. `--only` and"
+        " `--skip` of the command line come before it.",
     ),
 )
 INTRODUCTION = f"""# The scene file
@@ -84,6 +92,8 @@ def _limits(key: str, field: dict[str, Any]) -> str:
     kinds = [kind for kind in field.get("anyOf", [field]) if kind.get("type") != "null"]
     if any("$ref" in kind for kind in kinds):
         return "table"
+    if kinds[0]["type"] == "array":
+        return "list of names"
     if kinds[0]["type"] == "string":
         return "text" if len(kinds) == 1 else "file, or table of files"
     if "exclusiveMinimum" in kinds[0]:

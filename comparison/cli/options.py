@@ -12,8 +12,10 @@ from comparison.cli.arguments import CommandParser, jobs, number, whole_number
 from comparison.execution.cache import refuse_foreign_store
 from comparison.execution.output import destination, refuse_foreign_report
 from comparison.study.planning import DEFAULT_PRESET, DEFAULT_TOLERANCE, STUDY_PRESETS, tightest
+from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.study import refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
+from reference.problem.analyses import ANALYSES, known_analyses
 
 
 @dataclass(frozen=True)
@@ -31,6 +33,7 @@ class Options:
     fresh: bool = False
     scheduler: str | None = None
     full: bool = False
+    selection: Selection = EVERYTHING
 
     @property
     def by_trade(self) -> bool:
@@ -48,8 +51,12 @@ def parsed(argv: Sequence[str]) -> Options:
     given = _parser().parse_args(argv)
     names: list[str] = given.scenes or builtin_scenes()
     amplitude = None if given.amplitude is None else number("--amplitude", given.amplitude, 1e-12, 1e6, "m/s^2")
+    families = tuple(load_family(name, amplitude) for name in names)
+    only, skip = _analyses("--only", given.only), _analyses("--skip", given.skip)
+    if only is not None and skip is not None:
+        raise SceneError("command line", "--skip", given.skip, "names what --only leaves out anyway: give one of them")
     options = Options(
-        families=tuple(load_family(name, amplitude) for name in names),
+        families=families,
         grid=None if given.grid is None else whole_number("--grid", given.grid, 2, 512),
         out=destination(given.out),
         jobs=jobs(given),
@@ -60,6 +67,7 @@ def parsed(argv: Sequence[str]) -> Options:
         fresh=given.fresh,
         full=given.full,
         scheduler=given.scheduler,
+        selection=Selection.of((scene for family in families for scene in family.scenes), only, skip),
     )
     sources = list(zip(names, options.families))
     refuse_same_names((source, family.name) for source, family in sources)
@@ -112,9 +120,22 @@ def _parser() -> CommandParser:
         action="store_true",
         help="compute every phase pair and model in full, even what the scene does not require; --plan lists that",
     )
+    names = ", ".join(ANALYSES)
+    parser.add_argument("--only", metavar="LIST", help=f"make these analyses only, separated by commas: {names}")
+    parser.add_argument("--skip", metavar="LIST", help="make all analyses but these")
     parser.add_argument("--check", action="store_true", help="exit 1 if a scene's acceptance limits are broken")
     parser.add_argument("--plan", action="store_true", help="print what would be computed and its cost; run nothing")
     return parser
+
+
+def _analyses(option: str, text: str | None) -> list[str] | None:
+    """The analyses that an option lists, separated by commas."""
+    if text is None:
+        return None
+    try:
+        return known_analyses([name.strip() for name in text.split(",")])
+    except ValueError as error:
+        raise SceneError("command line", option, text, str(error)) from None
 
 
 def _optional(option: str, text: str | None, least: float, most: float, unit: str) -> float | None:

@@ -25,7 +25,7 @@ from comparison.study.reductions import reductions
 from comparison.study.study import Study
 
 
-def print_plan(console: Console, study: Study, options: Options, with_analyses: bool = True) -> None:
+def print_plan(console: Console, study: Study, options: Options) -> None:
     """What would be computed and its predicted cost."""
     table = _table("scene", "model", "points", "computed", "tolerance", "s on one core")
     total, refused = 0.0, []
@@ -42,10 +42,13 @@ def print_plan(console: Console, study: Study, options: Options, with_analyses: 
             table.add_row(scene.name, model.title, *cells)
     console.print(table)
     _print_reductions(console, study)
-    analyses = chosen_analyses(with_analyses)
+    analyses = chosen_analyses(study)
     costs = predicted_costs(study, analyses)
     others = ", ".join(f"{name} {seconds:.0f} s ({tasks})" for name, (tasks, seconds) in costs.items() if tasks)
-    console.print(f"Beside the surfaces, s on one core and tasks: {others}.")
+    console.print(f"Beside the surfaces, s on one core and tasks: {others or 'nothing'}.")
+    if study.absent:
+        reasons = ", ".join(f"{analysis} ({reason})" for analysis, reason in study.absent.items())
+        console.print(f"Not in the report: {reasons}.", soft_wrap=True)
     total += sum(seconds for _, seconds in costs.values())
     wall = START_UP + total / options.jobs + WRITING
     if len(study.phased) < len(study.scenes):
@@ -134,8 +137,11 @@ def print_unanswered(console: Console, lacking: Sequence[Unanswered]) -> None:
         console.print(f"Without a value: {one.sentence}", soft_wrap=True)
 
 
-def print_differences(console: Console, rows: Sequence[Difference]) -> None:
+def print_differences(console: Console, rows: Sequence[Difference], phased: bool) -> None:
     """Median, 95 % and maximum relative difference, and the points not ok, for every scene, body and pair."""
+    if not rows:
+        return
+    console.print(f"Relative differences{' over the phases' if phased else ''}, per body:")
     table = _table("scene", "body", "difference", "median", "95 %", "maximum", "not ok")
     for row in rows:
         sizes = (f"{value:.1e}" for value in (row.median, row.percentile95, row.maximum))

@@ -35,6 +35,7 @@ from comparison.report.results import (
 )
 from comparison.study.models import Model, models_of
 from reference.problem import Outcome, Scene
+from reference.problem.analyses import ANALYSES
 
 
 def assemble(found: Findings) -> Results:
@@ -58,7 +59,7 @@ def assemble(found: Findings) -> Results:
         tolerance=study.tolerance,
         models=[ModelDescription.model_validate(model) for model in study.hierarchy],
         scenes=[_scene(found, scene) for scene in study.scenes],
-        errata=_errata(found),
+        errata=None if "errata" in study.absent else _errata(found),
         assumptions=None if found.assumptions is None else Assumptions.model_validate(found.assumptions.listed()),
         claims=None if found.claims is None else _claims(found.claims),
         scaling=_trends(found.scaling),
@@ -75,6 +76,7 @@ def assemble(found: Findings) -> Results:
             for family in found.families
         ],
         unanswered=[Unanswered.model_validate(lacking) for lacking in found.unanswered],
+        absent=study.absent,
         broken=[line for limit in found.limits for line in limit.broken],
         faults=list(found.faults),
     )  # fmt: skip
@@ -92,6 +94,7 @@ def _scene(found: Findings, scene: Scene) -> SceneResult:
         bodies=bodies,
         duration=scene.duration,
         recorded=scene.recorded,
+        analyses=[name for name in ANALYSES if study.selection.has(name, scene.name)],
         acceptance=scene.acceptance,
         verdict=Verdict.model_validate(verdict(study, surfaces, scene)),
         models={model.key: _model(found, scene, model) for model in models_of(scene, study.hierarchy)},

@@ -62,8 +62,8 @@ class Section:
     title_recorded: str = ""
 
     def present(self, found: Findings) -> bool:
-        """Whether the findings hold what the section shows."""
-        return not self.finding or getattr(found, self.finding) is not None
+        """Whether the section was asked for and the findings hold what it shows."""
+        return self.name not in found.study.absent and (not self.finding or getattr(found, self.finding) is not None)
 
 
 def draw_all_assumptions(figures: Path, found: Findings) -> None:
@@ -171,7 +171,11 @@ def _page(figures: Path, found: Findings, results: Results) -> str:
     hierarchy = [model for model in study.hierarchy if any(model.applies(scene) for scene in study.scenes)]
     return page.render(
         sections=[section for section in SECTIONS if section.present(found)],
-        absent=[section for section in SECTIONS if not section.present(found)],
+        absent=[
+            (section.title, study.absent.get(section.name, section.absent))
+            for section in SECTIONS
+            if not section.present(found)
+        ],
         found=found,
         results=results,
         figure_names={
@@ -182,7 +186,10 @@ def _page(figures: Path, found: Findings, results: Results) -> str:
         picture=lambda name: _inlined(smaller((figures / name).read_bytes())),
         study=study,
         run=results.run,
-        scenes=[_scene(found, scene, result) for scene, result in zip(study.scenes, results.scenes)],
+        scenes=[
+            _scene(found, number, scene, result)
+            for number, (scene, result) in enumerate(zip(study.scenes, results.scenes))
+        ],
         question=_question(study),
         compared=_compared(study),
         section_titles={s.name: s.title if study.phased else s.title_recorded or s.title for s in SECTIONS},
@@ -191,11 +198,11 @@ def _page(figures: Path, found: Findings, results: Results) -> str:
         step_numbers={model.key: number for number, model in enumerate(hierarchy)},
         titles={"scene": "as stated", **{model.key: model.title for model in study.hierarchy}},
         properties=_properties(hierarchy),
-        rows=[row for scene in results.scenes for row in scene.differences],
-        budget=[entry for scene in results.scenes for entry in scene.budget],
+        rows=[row for scene in results.scenes_with("differences") for row in scene.differences],
+        budget=[entry for scene in results.scenes_with("budget") for entry in scene.budget],
         effective=[values for scene in results.scenes for values in scene.effective],
         phases=PHASES,
-        errata=[{"erratum": erratum, "effects": _effects(erratum)} for erratum in results.errata],
+        errata=[{"erratum": erratum, "effects": _effects(erratum)} for erratum in results.errata or []],
         checks=CHECKS,
         claim_signs=SIGNS,
         verdicts=[(verdict.value, COLORS[verdict], MEANING[verdict]) for verdict in Verdict],
@@ -229,11 +236,15 @@ def _compared(study: Study) -> str:
     return sentences.pop() if len(sentences) == 1 else "the first against the last model that has values, in each scene"
 
 
-def _scene(found: Findings, scene: Scene, result: SceneResult) -> dict[str, Any]:
+def _scene(found: Findings, number: int, scene: Scene, result: SceneResult) -> dict[str, Any]:
     pairs = found.study.pairs(scene)
+    with_surfaces, with_budget = "surfaces" in result.analyses, "budget" in result.analyses
     rows = {pair.key: [row for row in result.differences if row.pair == pair.key] for pair in pairs}
     return {
+        "number": number,
         "scene": scene,
+        "surfaces": with_surfaces,
+        "budget": with_budget,
         "digest": result.digest,
         "verdict": result.verdict,
         "verdicts": [_verdict(pair, rows[pair.key], scene.recorded) for pair in pairs],
@@ -244,9 +255,9 @@ def _scene(found: Findings, scene: Scene, result: SceneResult) -> dict[str, Any]
                 "record": record_rows(found, scene, bar.body),
                 "pictures": [
                     {"pair": pair, "png": _inlined(found.pictures[for_page(figure_name(scene, bar.body, pair))])}
-                    for pair in ([] if scene.recorded else pairs)
+                    for pair in (pairs if with_surfaces and not scene.recorded else [])
                 ],
-                "budget": _budget(found, scene, bar.body),
+                "budget": _budget(found, scene, bar.body) if with_budget else "",
             }
             for bar in result.bars
         ],

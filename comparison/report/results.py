@@ -350,6 +350,8 @@ class SceneResult(Part):
     """duration of the motion, s"""
     recorded: bool
     """whether the scene has a recorded motion and so no phases"""
+    analyses: list[str]
+    """names of the analyses that the report has of the scene"""
     acceptance: Acceptance
     """limits stated by the scene for --check; null where none"""
     verdict: Verdict
@@ -607,8 +609,8 @@ class Results(Part):
     """the model hierarchy, in order"""
     scenes: list[SceneResult]
     """in the order of the command"""
-    errata: list[Erratum]
-    """in the order of the paper"""
+    errata: list[Erratum] | None
+    """in the order of the paper; null where they were not asked for"""
     assumptions: Assumptions | None
     """how far the paper's assumptions carry; null without a spatial model"""
     claims: Claims | None
@@ -625,6 +627,8 @@ class Results(Part):
     beside the report"""
     families: list[FamilyResult] | None
     """families of scenes in which one value runs; null without any"""
+    absent: dict[str, str]
+    """analyses that were made of no scene, with the reason"""
     unanswered: list[Unanswered]
     """models without a value at some or all phase pairs of a scene"""
     broken: list[Text]
@@ -636,6 +640,10 @@ class Results(Part):
     def phased(self) -> list[SceneResult]:
         """The scenes that have phases."""
         return [scene for scene in self.scenes if not scene.recorded]
+
+    def scenes_with(self, analysis: str) -> list[SceneResult]:
+        """The scenes of which the report has the analysis."""
+        return [scene for scene in self.scenes if analysis in scene.analyses]
 
     @property
     def limits(self) -> list[Limit]:

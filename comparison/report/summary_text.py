@@ -21,15 +21,19 @@ def summary_text(results: Results) -> str:
     kinds += ["one value under each recorded motion"] if len(phased) < count else []
     heading = f"## Phase-resonance study: {count} scene{'' if count == 1 else 's'}, {', '.join(kinds)}"
     parts = [heading, _limits(results), *_unanswered(results), _verdicts(results)]
-    parts += [*_differences(results), *_budget(results), *_lost(results)]
-    shown = "Surfaces to turn, motions" if phased else "Motions"
+    parts += _differences(results) if "differences" not in results.absent else []
+    parts += _budget(results) if "budget" not in results.absent else []
+    parts += _lost(results)
+    shown = {"surfaces": "surfaces to turn" if phased else "", "motions": "motions", "assumptions": "assumptions"}
+    names = [name for analysis, name in shown.items() if name and analysis not in results.absent]
+    listed = f"{', '.join([*names, 'tables'])} and provenance".capitalize()
     made = ", ".join(
         f"{name} {run.provenance[name]}" for name in ("commit", "exudyn", "numba") if name in run.provenance
     )
     parts.append(
         "The two codes are cross-verified, not validated: no measurement is involved.  \n"
         f"{_code(run.command)}: {run.seconds} s with {run.jobs} workers, began {run.began}; {made}. "
-        f"{shown}, assumptions and provenance: `index.html` of the report."
+        f"{listed}: `index.html` of the report."
     )
     return "\n\n".join(parts) + "\n"
 
@@ -68,7 +72,7 @@ def _differences(results: Results) -> list[str]:
             percent(row.beyond_error),
             f"{row.unanswered} of {row.asked}",
         ]
-        for scene in results.scenes
+        for scene in results.scenes_with("differences")
         for row in scene.differences
     ]
     names = ["scene", "body", "difference", "median", "95 %", "maximum", "at (α₁, α₂)", "beyond u_D", "no value"]
@@ -78,7 +82,7 @@ def _differences(results: Results) -> list[str]:
 def _budget(results: Results) -> list[str]:
     models = [model for model in results.models[1:] if any(model.key in scene.models for scene in results.scenes)]
     rows = []
-    for scene in results.scenes:
+    for scene in results.scenes_with("budget"):
         for bar in scene.bars:
             sizes = {segment.model: percent(segment.size) for segment in bar.segments}
             rows.append(

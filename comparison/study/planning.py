@@ -16,6 +16,7 @@ from comparison.study.accuracy_record import recorded
 from comparison.study.costs import Costs, costs, is_recorded
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.overhead import START_UP, WRITING
+from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.study import Study
 from reference.problem import Scene
 
@@ -61,8 +62,9 @@ def nothing(study: Study, with_analyses: bool) -> float:
 @dataclass(frozen=True)
 class StudyRequest:
     """
-    What the user asks of a study. tolerance, budget (s of the whole run), grid: None where that is left to us. beside:
-    processor time of what workers do besides its surfaces, s, and whether that is all of it.
+    What the user asks of a study. tolerance, budget (s of the whole run), grid: None where that is left to us.
+    analysis_cost: processor time of the analyses of a study, s, of all or of the essential ones. selection: the
+    analyses asked for.
     """
 
     scenes: tuple[Scene, ...]
@@ -73,6 +75,7 @@ class StudyRequest:
     jobs: int = 1
     full: bool = False
     analysis_cost: Callable[[Study, bool], float] = nothing
+    selection: Selection = EVERYTHING
 
     @property
     def measures_machine(self) -> bool:
@@ -150,7 +153,7 @@ def _plan(preset: StudyPreset, request: StudyRequest, measured: Costs) -> StudyP
         for model in models
         if (cost := measured.of(scene, model, model.tolerance(tolerance))) is not None
     }
-    study = Study(request.scenes, grid, tolerance, models, request.full, seconds)
+    study = Study(request.scenes, grid, tolerance, models, request.full, seconds, selection=request.selection)
     compute = sum(study.seconds(model) for model in models)
     workers = compute + request.analysis_cost(study, preset.with_analyses) * measured.speed
     wall = (START_UP + WRITING) * measured.speed + workers / request.jobs

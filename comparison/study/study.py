@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 
 from comparison.study.batches import Batch
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, models_of, pairs_of
+from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.speedup import speedup
 from comparison.study.symmetry import sources
 from reference.problem import Scene, SceneError, phase_grid
+from reference.problem.analyses import ANALYSES
 
 
 def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
@@ -37,7 +39,7 @@ class Study:
     unless the study is `full`. A scene with a recorded motion has no phases: every model computes the one point (0, 0).
     costs: processor time of a point, s, by name of the scene and key of the model, where it is known better than from
     the model hierarchy (costs.py). silent: by name of the scene, the models that have no value there: comparisons pass
-    over them (analysis/unanswered.py).
+    over them (analysis/unanswered.py). selection: the analyses that are made of each scene.
     """
 
     scenes: tuple[Scene, ...]
@@ -47,6 +49,7 @@ class Study:
     full: bool = False
     costs: Mapping[tuple[str, str], float] | None = None
     silent: Mapping[str, tuple[str, ...]] | None = None
+    selection: Selection = EVERYTHING
 
     @cached_property
     def strides(self) -> dict[str, int]:
@@ -62,6 +65,19 @@ class Study:
     def phased(self) -> tuple[Scene, ...]:
         """The scenes that have phases."""
         return tuple(scene for scene in self.scenes if not scene.recorded)
+
+    def selecting(self, analysis: str) -> Study:
+        """The study of the scenes of which the analysis is made."""
+        return replace(self, scenes=tuple(scene for scene in self.scenes if self.selection.has(analysis, scene.name)))
+
+    @cached_property
+    def absent(self) -> dict[str, str]:
+        """The analyses that are made of no scene, with the reason."""
+        return {
+            analysis: "does not fit the budget" if analysis in self.selection.dropped else "not asked for"
+            for analysis in ANALYSES
+            if not self.selecting(analysis).scenes
+        }
 
     def compared(self, scene: Scene) -> list[Model]:
         """The models of a scene that have values there, in order; all of them while nothing is computed."""

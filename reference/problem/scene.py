@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from pydantic import Discriminator, Field, Tag, ValidationError, model_validator
 
 from reference.problem.acceptance import Acceptance, Limits
+from reference.problem.analyses import Analyses
 from reference.problem.changed_values import put_value
 from reference.problem.constants import GRAVITY
 from reference.problem.ranges import MAX_CYCLES, SCENE
@@ -78,6 +79,7 @@ class Scene(Table):
         Discriminator(kind_of_excitation),
     ]
     acceptance: Acceptance = Acceptance()
+    analyses: Analyses = Analyses()
     name: Text = "scene"  # file stem or built-in name; set by load_scene, no key of a scene file
 
     @model_validator(mode="after")
@@ -270,7 +272,7 @@ class Scene(Table):
     def digest(self) -> str:
         """Hash of everything that enters a result, for stores of results and for provenance."""
         content = self.model_dump_json(
-            exclude={"title": True, "name": True, "acceptance": True, "excitation": {"record": True}},
+            exclude={"title": True, "name": True, "acceptance": True, "analyses": True, "excitation": {"record": True}},
             exclude_none=True,  # a key that is not given changes no result
         )
         return hashlib.sha256(content.encode()).hexdigest()[:16]
@@ -281,6 +283,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "isolator": tuple(Isolator.model_fields),
     "bodies": tuple(Body.model_fields),
     "acceptance": tuple(Acceptance.model_fields),
+    "analyses": tuple(Analyses.model_fields),
     **{f"acceptance.{pair}": tuple(Limits.model_fields) for pair in ("like_for_like", "total", "translational")},
     "excitation": (*Excitation.model_fields, "record", "scale"),
     f"excitation.{EXCITATIONS[0]}": tuple(Excitation.model_fields),

@@ -18,6 +18,7 @@ USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values
 ALL = "all"  # models that read a key
 SPATIAL = "spatial"
 STUDY = "`--check`"
+REPORT = "the report"
 NONE = "none"
 
 

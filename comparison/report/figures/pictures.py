@@ -15,6 +15,7 @@ from comparison.execution.task import Task, fingerprint
 from comparison.execution.task_results import TaskResults
 from comparison.report.figures.file_names import with_ending
 from comparison.study.models import Pair
+from comparison.study.selection import EVERYTHING
 from comparison.study.study import Study
 from reference.problem import Scene
 
@@ -46,16 +47,20 @@ Files = tuple[tuple[str, bytes], ...]  # names and contents
 
 
 def pictures(study: Study, surfaces: xr.Dataset) -> list[Picture]:
-    """Every picture of the study: a scene without phases has no surfaces."""
+    """Every picture of the selected sections: a scene without phases has no surfaces."""
     found = []
     for scene in study.phased:
         silent = {scene.name: (study.silent or {}).get(scene.name, ())}
-        own = replace(study, scenes=(scene,), costs=None, silent=silent)
+        alone = replace(study, scenes=(scene,), costs=None, silent=silent, selection=EVERYTHING)
         shown = surfaces[SHOWN].sel(scene=[scene.name])
-        found.append(Picture("paper", own, shown))
+        with_surfaces, with_budget = (study.selection.has(section, scene.name) for section in ("surfaces", "budget"))
+        if with_surfaces:
+            found.append(Picture("paper", alone, shown))
         for body in range(1, len(scene.bodies) + 1):
-            found += [Picture("pair", own, shown, body, pair) for pair in study.pairs(scene)]
-            found.append(Picture("budget", own, shown, body))
+            if with_surfaces:
+                found += [Picture("pair", alone, shown, body, pair) for pair in study.pairs(scene)]
+            if with_budget:
+                found.append(Picture("budget", alone, shown, body))
     return found
 
 
@@ -91,12 +96,13 @@ class Pictures(Analysis[dict[str, bytes]]):
 
     def predicted_seconds(self, study: Study) -> list[float]:
         """Of what `pictures` lists."""
-        return [
-            seconds
-            for scene in study.phased
-            for body_seconds in [(SECONDS["budget"], *(SECONDS["pair"] for _ in study.pairs(scene)))]
-            for seconds in (SECONDS["paper"], *body_seconds * len(scene.bodies))
-        ]
+        costs = []
+        for scene in study.phased:
+            if study.selection.has("surfaces", scene.name):
+                costs += [SECONDS["paper"], *[SECONDS["pair"]] * (len(scene.bodies) * len(study.pairs(scene)))]
+            if study.selection.has("budget", scene.name):
+                costs += [SECONDS["budget"]] * len(scene.bodies)
+        return costs
 
 
 def drawn(picture: Picture) -> Files:
