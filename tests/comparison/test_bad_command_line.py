@@ -96,14 +96,17 @@ def test_an_amplitude_that_makes_a_scene_impossible_names_the_scene(
     assert run.err.count("\n") == 1
 
 
-def test_out_never_destroys_what_is_not_a_report(command: Callable[..., Run], tmp_path: Path) -> None:
+def test_out_never_destroys_what_is_not_a_report(
+    command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     foreign = tmp_path / "thesis"
     foreign.mkdir()
     (foreign / "chapter1.txt").write_text("years of work", encoding="utf-8")
-    run = command("fig3-I", "--grid", "2", "--out", str(foreign))
+    monkeypatch.chdir(tmp_path)
+    run = command("fig3-I", "--grid", "2", "--out", "thesis")
     assert run.code == 2
     assert run.err == (
-        f"command line: --out = {str(foreign)!r}: exists and is not a report of this study: "
+        "command line: --out = 'thesis': exists and is not a report of this study: "
         "give another directory, or empty this one\n"
     )
     assert (foreign / "chapter1.txt").read_text(encoding="utf-8") == "years of work"

@@ -188,10 +188,11 @@ def test_the_command_prints_the_table(
     assert "1 m/s², f_c 0.1 s/m, resolved: 15 of 16" in printed
     assert "periodic 2 and 2; drawn 4 and 3" in printed
     assert "Under no reading: Fig. 3: the harmonics are close to resonance." in printed
-    with pytest.raises(SystemExit) as stop:
-        main(["--grid", "7"], ThreadPoolExecutor)
-    assert stop.value.code == 2
-    assert "'7': must be a whole number, 8 or more" in capsys.readouterr().err
+    assert main(["--grid", "7"], ThreadPoolExecutor) == 2
+    message = capsys.readouterr().err
+    assert "--grid" in message
+    assert "must be a whole number from 8 to 512" in message
+    assert message.count("\n") == 1
 
 
 def test_the_command_goes_on_where_it_stopped(
