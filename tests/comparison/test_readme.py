@@ -14,7 +14,7 @@ def test_there_are_two_command_lines_each_of_one_line() -> None:
     assert [block.count("\n") for block in blocks] == [1, 1]
     study, tests = blocks
     assert study.endswith("-m comparison.run\n")
-    assert tests.endswith("-m pytest\n"), "the line that the continuous integration runs as it stands"
+    assert tests.endswith("-m pytest -n auto --dist loadfile\n"), "the line that the continuous integration runs as it stands"
     assert all(block.startswith("python3 -m venv .venv && .venv/bin/pip install ") for block in blocks)
 
 
