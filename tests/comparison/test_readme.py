@@ -14,7 +14,8 @@ def test_there_are_two_command_lines_each_of_one_line() -> None:
     assert [block.count("\n") for block in blocks] == [1, 1]
     study, tests = blocks
     assert study.endswith("-m comparison.run\n")
-    assert tests.endswith("-m pytest -n auto --dist loadfile\n"), "the line that the continuous integration runs as it stands"
+    by_continuous_integration = "-m pytest -n auto --dist loadfile\n"
+    assert tests.endswith(by_continuous_integration)
     assert all(block.startswith("python3 -m venv .venv && .venv/bin/pip install ") for block in blocks)
 
 
