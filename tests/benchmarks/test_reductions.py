@@ -58,9 +58,8 @@ def measured(answer: Callable[..., Any], scene: Scene, many: np.ndarray, few: np
         ]
     )
     full, reduced = seconds.min(axis=0)
-    print(
-        f"\n{scene.title}, {options}: {full / reduced:.2f} times less, rounds {np.round(seconds[:, 0] / seconds[:, 1], 2)}"
-    )
+    rounds = np.round(seconds[:, 0] / seconds[:, 1], 2)
+    print(f"\n{scene.title}, {options}: {full / reduced:.2f} times less, rounds {rounds}")
     return float(full / reduced)
 
 
