@@ -34,9 +34,10 @@ from comparison.cli.arguments import command, writing
 from comparison.cli.options import Options, parsed
 from comparison.cli.terminal import print_differences, print_plan, print_study_plan, print_targets_met, print_unanswered
 from comparison.execution.cache import Cache, StoreError, store_beside
-from comparison.execution.executors import ExecutorLostError, Pool, process_pool
+from comparison.execution.executors import ExecutorLostError, Pool
 from comparison.execution.keys import batch_key
 from comparison.execution.output import atomic_replace, clear_dead, on_stderr
+from comparison.execution.processes import process_pool
 from comparison.execution.progress import wide_console
 from comparison.execution.provenance import provenance
 from comparison.execution.resume import command_line, resume_hint, without_scheduler

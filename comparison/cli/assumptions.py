@@ -19,8 +19,9 @@ from comparison.analysis.assumptions.validity import Assumptions, describe
 from comparison.analysis.assumptions.variations import DURATION, MANY, PHASES, Cell, ranges
 from comparison.cli.arguments import CommandParser, command, jobs, writing
 from comparison.cli.stored import OUT_HELP, results_beside
-from comparison.execution.executors import Pool, process_pool
+from comparison.execution.executors import Pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
+from comparison.execution.processes import process_pool
 from comparison.execution.progress import wide_console
 from comparison.execution.runner import Runner
 from comparison.execution.workers import workers

@@ -16,7 +16,8 @@ from comparison.analysis.claims.readings import EVERY_READING, READINGS
 from comparison.analysis.claims.table import GRID, SIGNS, Claims, ClaimTable
 from comparison.cli.arguments import CommandParser, command, jobs, whole_number
 from comparison.cli.stored import OUT_HELP, results_beside
-from comparison.execution.executors import Pool, process_pool
+from comparison.execution.executors import Pool
+from comparison.execution.processes import process_pool
 from comparison.execution.progress import wide_console
 from comparison.execution.runner import Runner
 from comparison.execution.workers import workers

@@ -22,8 +22,9 @@ from rich.table import Table
 from comparison.analysis.tradeoff.measure import Task, measured, tasks
 from comparison.analysis.tradeoff.trade import FILE, Trade, as_json, load
 from comparison.cli.arguments import CommandParser, command, jobs, writing
-from comparison.execution.executors import Pool, process_pool
+from comparison.execution.executors import Pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
+from comparison.execution.processes import process_pool
 from comparison.execution.progress import Stage, progress, wide_console
 from comparison.execution.provenance import provenance
 from comparison.execution.resume import command_line

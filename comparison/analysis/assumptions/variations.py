@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.execution.task import Task
+from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
-from reference.problem import Outcome, Scene, untilted
+from reference.problem import Scene, untilted
 
 Array = NDArray[np.float64]
 
@@ -154,7 +154,7 @@ def variation_tasks(study: Study, stage: str, variations: Sequence[Variation] = 
 
 def assumption_cells(tasks: Sequence[Task], results: TaskResults) -> list[Cell]:
     """Every variation of every scene to which both engine models apply, from the results of `variation_tasks`."""
-    answers = [(task.argument, results.value(task, _lost)) for task in tasks]
+    answers = [(task.argument, results.value(task, _without_value)) for task in tasks]
     held_against = {scene.name: answer for (scene, _, variation, _), answer in answers if variation is None}
     return [
         _cell(scene, variation, answer, held_against[scene.name])
@@ -169,16 +169,13 @@ def varied(task: Arguments) -> Solved:
     short = scene.with_values({"duration": min(scene.duration, DURATION)})
     changed = short if variation is None else variation.of(short)
     whole = {"full": True} if untilted(changed) else {}  # a check of assumption (vi) must not make use of it
-    try:
-        found = imported(model.amplification)(changed, PHASES, **model.settings, tolerance=tolerance, **whole)
-    except Exception as error:
-        return _lost(task, Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}")
-    return Solved(found.mu, found.error, tuple(str(one) for one in found.status), "", float(found.cost))
+    result = imported(model.amplification)(changed, PHASES, **model.settings, tolerance=tolerance, **whole)
+    return Solved(result.mu, result.error, tuple(map(str, result.status)), "", float(result.cost))
 
 
-def _lost(task: Arguments, outcome: Outcome, error_message: str) -> Solved:
+def _without_value(task: Arguments, failed: TaskResult) -> Solved:
     nothing = np.full((len(PHASES), len(task[0].bodies)), np.nan)
-    return Solved(nothing, nothing, (outcome.value,) * len(PHASES), error_message, 0.0)
+    return Solved(nothing, nothing, (failed.outcome.value,) * len(PHASES), failed.error_message, 0.0)
 
 
 def _cell(scene: Scene, variation: Variation, spatial: Solved, plain: Solved) -> Cell:

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from comparison.analysis.tradeoff.settings import Question, Setting, Settings, asked, settings
 from comparison.analysis.tradeoff.trade import Answered, Entry, Trade, labeled, quantile, with_pareto_fronts
-from comparison.execution.executors import Pool, process_pool
+from comparison.execution.executors import Pool
+from comparison.execution.processes import process_pool
 from comparison.execution.sweep import sweep
 from comparison.study.batches import imported
 from reference.problem import Amplification, Outcome, Scene
