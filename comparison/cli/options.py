@@ -96,12 +96,7 @@ def _parser() -> CommandParser:
     )
     parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {STUDY_PRESETS[DEFAULT_PRESET].grid})")
     parser.add_out("report")
-    parser.add_jobs(cluster=True)
-    parser.add_argument(
-        "--fresh",
-        action="store_true",
-        help="compute everything anew; without it what an earlier run left in DIR.tiles, finished or not, is reused",
-    )
+    parser.add_computing()
     parser.add_argument(
         "--tolerance",
         metavar="X",
