@@ -120,7 +120,9 @@ class _Sweep(Generic[Task, Result]):
             ]
             broken = [work for work, future in arrived if isinstance(_error(future), BrokenExecutor)]
             try:
-                unbroken = not broken and self._fill(pool, jobs, more=True)  # workers go on while results are stored
+                unbroken = not broken and self._fill(
+                    pool, jobs, arriving=True
+                )  # workers go on while results are stored
             finally:
                 for work, future in arrived:
                     self._take(work, future)
@@ -144,13 +146,13 @@ class _Sweep(Generic[Task, Result]):
             message = f"{type(error).__name__}: {error}"
             self._keep(work, self._on_failure(work.task, Outcome.SOLVER_FAILED, message))
 
-    def _fill(self, pool: Executor, jobs: int, more: bool = False) -> bool:
+    def _fill(self, pool: Executor, jobs: int, arriving: bool = False) -> bool:
         """
         As many tasks at work as the executor has workers; False if it is found broken.
 
-        more: results have arrived that may make tasks ready, so that none is passed over yet.
+        arriving: results have arrived that may make tasks ready, so that none is passed over yet.
         """
-        while len(self._at_work) < width(pool, jobs) and (work := self._next(more)) is not None:
+        while len(self._at_work) < width(pool, jobs) and (work := self._next(arriving)) is not None:
             try:
                 future = start(pool, self._solve, work.task, getattr(work.task, "timeout", None))
             except BrokenExecutor:
@@ -161,7 +163,7 @@ class _Sweep(Generic[Task, Result]):
             self._at_work[future] = work
         return True
 
-    def _next(self, more: bool) -> _Work[Task, Result] | None:
+    def _next(self, arriving: bool) -> _Work[Task, Result] | None:
         """What to submit now, taken from the queue; a suspect runs alone."""
         at_work = list(self._at_work.values())
         if any(work.alone for work in at_work):
@@ -169,7 +171,7 @@ class _Sweep(Generic[Task, Result]):
         for work in self._queue:
             if not (work.alone and at_work) and self._ready(work.task):
                 break
-            if more:
+            if arriving:
                 return None
         else:
             if at_work or not self._queue:

@@ -191,19 +191,19 @@ def _rows(array: Array) -> tuple[tuple[float, ...], ...]:
 
 def ranges(scenes: Sequence[Scene], cells: Sequence[Cell]) -> list[Range]:
     """For every scene, body and share of WITHIN: over rings at the stated heights, over heights at the stated ring."""
-    found = []
+    validity = []
     for scene in scenes:
-        own = [cell for cell in cells if cell.scene == scene.name and cell.variation.supports is None]
+        usual = [cell for cell in cells if cell.scene == scene.name and cell.variation.supports is None]
         for body in range(1, len(scene.bodies) + 1):
             for share in WITHIN:
-                wide = [cell for cell in own if cell.variation.height == 1.0]
-                low = [cell for cell in own if cell.variation.ring == 1.0]
-                own_ring = scene.isolator.ring or float("nan")
-                rings = sorted(((cell.variation.ring * own_ring, cell) for cell in wide), key=lambda pair: -pair[0])
+                wide = [cell for cell in usual if cell.variation.height == 1.0]
+                low = [cell for cell in usual if cell.variation.ring == 1.0]
+                ring = scene.isolator.ring or float("nan")
+                rings = sorted(((cell.variation.ring * ring, cell) for cell in wide), key=lambda pair: -pair[0])
                 heights = sorted(((cell.variation.height, cell) for cell in low), key=lambda pair: pair[0])
                 for key, line in (("ring", rings), ("height", heights)):
-                    found.append(Range(scene.name, body, share, key, *_bracket(line, body, share)))
-    return found
+                    validity.append(Range(scene.name, body, share, key, *_bracket(line, body, share)))
+    return validity
 
 
 def _bracket(line: Sequence[tuple[float, Cell]], body: int, share: float) -> tuple[float | None, float | None]:

@@ -74,11 +74,11 @@ def gathered(question: Question) -> Evidence:
         return amplification(scene, phases, equations="small", tolerance=tolerance, **law)
 
     mu, error, statuses = surface(scene, question.grid, solved)
-    found = Evidence(mu, float(np.nanmax(error, initial=0.0)), tuple(statuses))
-    if not found.complete or len(scene.bodies) == 1:
-        return found
+    surfaces = Evidence(mu, float(np.nanmax(error, initial=0.0)), tuple(statuses))
+    if not surfaces.complete or len(scene.bodies) == 1:
+        return surfaces
     sharp = bends(mu, lambda phases: solved(scene, phases, SHARP).mu)
-    return Evidence(mu, found.error, found.statuses, tuple(sharp), *_motion(scene, law.get("regularization")))
+    return Evidence(mu, surfaces.error, surfaces.statuses, tuple(sharp), *_motion(scene, law.get("regularization")))
 
 
 def without_value(question: Question, failed: TaskResult) -> Evidence:
