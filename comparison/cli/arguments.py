@@ -15,16 +15,26 @@ from functools import wraps
 from pathlib import Path
 from typing import Concatenate, ParamSpec
 
-from comparison.execution.executors import ExecutorLostError, cores
+from comparison.execution.executors import cores
 from comparison.execution.resume import invocation
 from reference.problem import SceneError
 from reference.problem.command import OneLineParser, UsageError
 
 Rest = ParamSpec("Rest")
 
+STORED_RESULTS = "report whose stored results, in DIR.tiles, are used and added to"  # --out of what writes nothing else
+
 
 class WriteError(RuntimeError):
     """A file of the user that could not be written. `str(error)` is one line."""
+
+
+class EndedEarlyError(RuntimeError):
+    """A command that ended with `code` before its work was done. `str(error)` is one line that says how to go on."""
+
+    def __init__(self, code: int, line: str) -> None:
+        super().__init__(line)
+        self.code = code
 
 
 class CommandParser(OneLineParser):
@@ -44,13 +54,15 @@ class CommandParser(OneLineParser):
             "--out", default=Path("report"), type=Path, metavar="DIR", help=f"{content} (default %(default)s)"
         )
 
-    def add_jobs(self, cluster: bool = False) -> None:
-        """The number of worker processes; cluster: whether a Dask cluster may take their place."""
+    def add_computing(self) -> None:
+        """Where is computed, and whether what is stored is computed anew."""
         self.add_argument("--jobs", metavar="N", help=f"worker processes of this machine (default {cores()})")
-        if cluster:
-            self.add_argument("--scheduler", metavar="ADDRESS", help="compute on the Dask cluster with this scheduler")
-        else:
-            self.set_defaults(scheduler=None)
+        self.add_argument("--scheduler", metavar="ADDRESS", help="compute on the Dask cluster with this scheduler")
+        self.add_argument(
+            "--fresh",
+            action="store_true",
+            help="compute everything anew; without it what an earlier run left in DIR.tiles, finished or not, is used",
+        )
 
 
 def jobs(options: argparse.Namespace) -> int:
@@ -60,7 +72,7 @@ def jobs(options: argparse.Namespace) -> int:
     Parameters
     ----------
     options : argparse.Namespace
-        Parsed by a `CommandParser` with `add_jobs`.
+        Parsed by a `CommandParser` with `add_computing`.
 
     Returns
     -------
@@ -116,7 +128,8 @@ def command(
     """
     Give a command its exit codes and take its words from the command line where a program gives none.
 
-    2: wrong input. 3: something could not be written. 4: the cluster was lost. Each is explained by one line.
+    2: wrong input. 3: something could not be written. 4: the cluster was lost. 128 + number: a signal, 130 for Ctrl-C.
+    Each is explained by one line.
     """
 
     @wraps(main)
@@ -129,8 +142,8 @@ def command(
         except WriteError as error:
             print(error, file=sys.stderr)
             return 3
-        except ExecutorLostError as error:
+        except EndedEarlyError as error:
             print(error, file=sys.stderr)
-            return 4
+            return error.code
 
     return ended

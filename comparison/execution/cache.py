@@ -102,6 +102,15 @@ class Cache:
             raise StoreError(f"{str(self.folder)!r}: a result could not be stored: {error.strerror}") from None
         self.kept[key.kind] += 1
 
+    def remove(self, keys: Iterable[Key]) -> None:
+        """Drop these results and no others."""
+        wanted = {key.name for key in keys}
+        for group in {Path(name).parent.name for name in wanted}:
+            with suppress(OSError):
+                for entry in os.scandir(self.folder / group):
+                    if f"{group}/{entry.name}" in wanted and _is_result(entry):
+                        os.unlink(entry.path)
+
     def forget(self, keys: Iterable[Key]) -> None:
         """Drop the groups of these results."""
         for group in {key.group for key in keys}:

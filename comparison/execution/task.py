@@ -33,6 +33,7 @@ class Task:
     seconds: float  # predicted cost, as `Model.seconds_per_point`
     about: Any = None  # what its directory in the cache belongs to
     needs_compiled_reference: bool = True  # on a new installation it waits until one worker has compiled the reference
+    timeout: float | None = None  # most processor time, s, rounded up; what takes longer is ended: Outcome.TIME_LIMIT
 
     @cached_property
     def key(self) -> str:
@@ -50,6 +51,11 @@ class TaskResult:
     outcome: Outcome = Outcome.OK
     error_message: str = ""
 
+    @property
+    def reason(self) -> str:
+        """Why there is no value, in one line."""
+        return f"{self.outcome}: {self.error_message}"
+
 
 def execute(task: Task) -> TaskResult:
     """Runs inside a worker process."""
@@ -59,7 +65,7 @@ def execute(task: Task) -> TaskResult:
 
 
 def unfinished(task: Task, outcome: Outcome, error_message: str) -> TaskResult:
-    """The result of a task that raised or whose worker died."""
+    """The result of a task that raised, took too long or whose worker died."""
     return TaskResult(None, 0.0, outcome, error_message)
 
 

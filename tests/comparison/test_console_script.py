@@ -47,7 +47,7 @@ def called(script: Path, *words: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_the_modules_beside_a_user_are_not_imported_by_the_script_or_its_workers(script: Path) -> None:
-    run = called(script, "extremes", "--models", "small", "--only", "outside the rules", "--jobs", "2")
+    run = called(script, "extremes", "--models", "small", "--rows", "outside the rules", "--jobs", "2")
     assert run.returncode == 0, run.stderr
     matrix = json.loads((script.parent.parent / "work/report/extremes.json").read_text(encoding="utf-8"))
     assert matrix["run"]["command"].startswith("phase-resonance extremes --models small")

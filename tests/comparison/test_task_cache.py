@@ -24,7 +24,7 @@ from comparison.analysis.effective import Effective
 from comparison.analysis.errata import Effect
 from comparison.analysis.trajectories import Place, StoredMotion
 from comparison.execution.cache import Cache
-from comparison.execution.executors import process_pool
+from comparison.execution.processes import process_pool
 from comparison.execution.runner import Runner
 from comparison.execution.task import Task, TaskResult, fingerprint
 from comparison.execution.task_results import TaskResults
@@ -145,15 +145,15 @@ def test_what_is_damaged_or_would_run_foreign_code_is_computed_again(tmp_path: P
 def test_a_task_that_raises_or_whose_worker_dies_is_a_result_with_its_reason_and_the_others_are_computed(
     tmp_path: Path,
 ) -> None:
-    def on_failure(argument: object, outcome: Outcome, error_message: str) -> object:
-        return argument, outcome, error_message
+    def on_failure(argument: object, failed: TaskResult) -> object:
+        return argument, failed.outcome, failed.error_message
 
     tasks = [Task(raises, 1, "errata", 0.3), Task(dies, 2, "errata", 0.2), Task(doubled, 3, "errata", 0.1)]
     results = TaskResults(Cache(tmp_path))
     Runner(results, QUIET, 2, process_pool).run_tasks(tasks)
     assert [results.value(task, on_failure) for task in tasks] == [
         (1, Outcome.SOLVER_FAILED, "RuntimeError: singular"),
-        (2, Outcome.WORKER_DIED, "the worker process died 2 times"),
+        (2, Outcome.WORKER_DIED, "the worker process died 2 times (exit code -9)"),
         6,
     ]
     assert TaskResults(Cache(tmp_path)).missing(tasks) == tasks[:2], "the next run tries them again"

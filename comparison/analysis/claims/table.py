@@ -14,7 +14,7 @@ import xarray as xr
 
 from comparison.analysis.claims.checks import Finding, Verdict
 from comparison.analysis.claims.claims import CLAIMS, Claim
-from comparison.analysis.claims.evidence import Evidence, Question, gathered, lost
+from comparison.analysis.claims.evidence import Evidence, Question, gathered, without_value
 from comparison.analysis.claims.readings import CASES, READINGS, Reading, without_effect
 from comparison.analysis.protocol import Analysis
 from comparison.execution.task import Task
@@ -84,7 +84,10 @@ class Claims(Analysis[ClaimTable]):
         if not paper_complete(study):
             return None
         columns = [
-            {case: results.value(self._task(_question(case, reading, self.grid)), lost) for case in _cases(self.claims)}
+            {
+                case: results.value(self._task(_question(case, reading, self.grid)), without_value)
+                for case in _cases(self.claims)
+            }
             for reading in self.readings
         ]
         return tabulated(self.claims, self.readings, self.grid, columns)

@@ -24,39 +24,37 @@ EQUATIONS, ENGINE = "reference:amplification", "multibody:amplification"
 
 @dataclass(frozen=True)
 class Column:
-    """
-    A model: its function ("package:function"), its settings, and the relative error asked of it.
-
-    finer: how a value is confirmed, in this order until one answers: function, settings, relative error asked.
-    """
+    """A model and what confirms it."""
 
     key: str
     title: str
-    amplification: str
-    settings: Mapping[str, Any]
-    tolerance: float
+    amplification: str  # "package:function"
+    settings: Mapping[str, Any]  # of the function
+    tolerance: float  # relative error asked
+    # how a value is confirmed, in this order until one answers: function, settings, relative error asked
     finer: tuple[tuple[str, Mapping[str, Any], float], ...]
+    seconds: float = 0.5  # processor time of a cell with its finer runs, recorded as `Model.seconds_per_point`
 
 
 @dataclass(frozen=True)
 class Row:
-    """
-    An extreme. scene: as in a scene file. columns: keys of the models it concerns. settings: of the models, in place of
-    the column's. invalid: the rules of the input refuse it. right: outcomes that may stand in place of an answer,
-    where the physics or the rules say which; any named one if empty. quick: takes the equations less than a second.
-    amplification: function in place of the column's.
-    """
+    """An extreme."""
 
-    group: str
-    title: str
-    scene: Mapping[str, Any]
-    columns: tuple[str, ...]
+    group: str  # the quantity
+    title: str  # its value
+    scene: Mapping[str, Any]  # as in a scene file
+    columns: tuple[str, ...]  # keys of the models it concerns
     phases: Phases = PHASES
-    settings: Mapping[str, Any] = field(default_factory=dict)
-    invalid: bool = False
-    right: tuple[str, ...] = ()
-    quick: bool = True
-    amplification: str = ""
+    settings: Mapping[str, Any] = field(default_factory=dict)  # of the models, in place of the column's
+    invalid: bool = False  # the rules of the input refuse it
+    right: tuple[str, ...] = ()  # outcomes that may stand in place of an answer, where they are known; any if empty
+    quick: bool = True  # takes the equations less than a second
+    amplification: str = ""  # function in place of the column's
+
+    @property
+    def name(self) -> str:
+        """Quantity and value."""
+        return f"{self.group} {self.title}"
 
 
 def _column(key: str, title: str, equations: str, regularization: float | None) -> Column:
@@ -68,7 +66,7 @@ V_REG = 1e-3  # m/s, where it is not the extreme
 _REGULARIZED = {"equations": "exact", "regularization": V_REG}
 _TRANSLATIONAL = {"model": "translational", "regularization": V_REG}
 _SPATIAL = {"model": "spatial", "regularization": V_REG}
-GIVEN = "comparison.analysis.extremes.engine:amplification"  # the engine at a step or a contact stiffness of the row
+STATED = "comparison.analysis.extremes.engine:amplification"  # the engine at a step or a contact stiffness of the row
 
 COLUMNS = (
     _column("small", "small equations", "small", None),
@@ -86,6 +84,7 @@ COLUMNS = (
             (ENGINE, _TRANSLATIONAL, 3e-5),
             (ENGINE, _TRANSLATIONAL, 1e-4),
         ),
+        1.0,
     ),
     Column(
         "spatial",
@@ -94,6 +93,7 @@ COLUMNS = (
         _SPATIAL,
         1e-2,
         ((ENGINE, _SPATIAL, 3e-4), (ENGINE, _SPATIAL, 1e-3)),
+        8.5,
     ),
 )
 ALL = tuple(column.key for column in COLUMNS)
@@ -157,19 +157,19 @@ def rows() -> Iterator[Row]:
     for cutoff in (1e-1, 1e-4, 1e-12):
         yield Row("cutoff v_c, m/s", f"{cutoff:g}", scene(), ("small", "exact"), settings={"cutoff": cutoff})
     for exponent in (2, 4, 6, 8, 10, 12):
-        given = {"contact_stiffness": 10.0**exponent, "tolerance": 1e-2}
+        changed = {"contact_stiffness": 10.0**exponent, "tolerance": 1e-2}
         yield Row(
             "contact stiffness, N/m",
             f"1e{exponent}",
             scene(duration=1.0),
             WITH_ENGINE,
-            settings=given,
-            amplification=GIVEN,
+            settings=changed,
+            amplification=STATED,
         )
     for exponent in (-6, -5, -4, -3, -2, -1):
-        given = {"step": 10.0**exponent, "tolerance": 1e-2}
+        changed = {"step": 10.0**exponent, "tolerance": 1e-2}
         brief = scene(duration=0.02 if exponent == -6 else 0.2 if exponent == -5 else 1.0)
-        yield Row("step of the engine, s", f"1e{exponent}", brief, WITH_ENGINE, settings=given, amplification=GIVEN)
+        yield Row("step of the engine, s", f"1e{exponent}", brief, WITH_ENGINE, settings=changed, amplification=STATED)
     for amplitude in (1e-9, 1e-6, 1e-3, 5.0, 20.0, 1e3, 1e9):
         yield Row("amplitude, m/s^2", f"{amplitude:g}", scene(amplitudes=_along(amplitude)), ALL)
     near_rim = scene(amplitudes=_along(12.0), friction=0.02, duration=20.0)

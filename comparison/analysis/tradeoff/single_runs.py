@@ -32,9 +32,9 @@ def reference_run(
     """
     pairs = checked_phases(phases)
     system, demand = checked_demand(scene, equations, regularization, 1e-6, None, "consistent")
-    found = peaks_at(system, pairs, demand, inside)
-    mu = np.where((found.code == SOLVED)[:, None], found.value, np.nan) / ground_peak(scene, pairs)[:, None]
-    return mu, float(scene.duration / found.steps.mean())
+    peaks = peaks_at(system, pairs, demand, inside)
+    mu = np.where((peaks.code == SOLVED)[:, None], peaks.value, np.nan) / ground_peak(scene, pairs)[:, None]
+    return mu, float(scene.duration / peaks.steps.mean())
 
 
 def engine_run(
