@@ -19,7 +19,6 @@ from comparison.analysis.claims.table import SIGNS
 from comparison.analysis.effective import PHASES
 from comparison.analysis.extremes.matrix import PICTURE
 from comparison.analysis.extremes.verdicts import Verdict
-from comparison.analysis.surfaces import wide_swings
 from comparison.report.figures.assumptions import assumption_figure_name, draw_assumptions
 from comparison.report.figures.budget import budget_figure_name
 from comparison.report.figures.extremes import COLORS, MEANING, describe, draw_extremes
@@ -197,9 +196,9 @@ def page(figures: Path, found: Findings, results: Results) -> str:
         peak_share=SHARE,
         peak_shares=(LEAST_SHARE, MOST_SHARE),
         outcomes=_outcomes(results),
-        broken=results.broken,
+        broken=[alert.line for alert in results.broken],
         faults=results.faults,
-        wide_swings=wide_swings(study, found.surfaces),
+        wide_swings=[alert.line for alert in results.alerts if alert.kind == "swing"],
         style=(templates / "report.css").read_text(encoding="utf-8"),
         scripts=[(templates / name).read_text(encoding="utf-8") for name in SCRIPTS],
         plotly=packed(get_plotlyjs().encode()),
