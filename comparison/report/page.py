@@ -28,7 +28,8 @@ from comparison.report.figures.pairs import figure_name
 from comparison.report.figures.pictures import for_page, smaller
 from comparison.report.figures.tradeoff import draw_tradeoff, tradeoff_figure_name
 from comparison.report.findings import Findings
-from comparison.report.page_data import packed, packed_motions, page_data
+from comparison.report.motion_data import packed, packed_motions
+from comparison.report.page_data import page_data
 from comparison.report.record_rows import record_rows
 from comparison.report.results import Difference, Effect, Erratum, Results, SceneResult
 from comparison.report.verification import CHECKS

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import base64
-import gzip
 import json
-from collections.abc import Iterator, Sequence
-from itertools import groupby
 from typing import Any
 
 import contourpy
@@ -16,14 +12,13 @@ from numpy.typing import NDArray
 
 from comparison.analysis.differences import pair_step
 from comparison.analysis.surfaces import common_phases
-from comparison.analysis.trajectories import Place, StoredMotion
 from comparison.report.findings import Findings
+from comparison.report.motion_data import Starts, motion_starts, places
 from comparison.study.models import Pair, models_of
 from comparison.study.study import Study
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
-Starts = dict[tuple[Place, str], int]
 
 
 def page_data(found: Findings) -> str:
@@ -36,7 +31,7 @@ def page_data(found: Findings) -> str:
     start and count of its instants in the packed numbers).
     """
     study, surfaces = found.study, found.surfaces
-    starts = _starts(found.motions or [])
+    starts = motion_starts(found.motions or [])
     data = {
         "grid": study.grid,
         "strides": study.strides,
@@ -44,16 +39,6 @@ def page_data(found: Findings) -> str:
         "scenes": [_scene(found, scene, surfaces, starts) for scene in study.scenes],
     }
     return json.dumps(data, allow_nan=False).replace("<", "\\u003c")
-
-
-def packed_motions(found: Findings) -> str:
-    """Every motion in order, 32-bit numbers: time (T,), position (T, N, 2), acceleration (T, N, 2)."""
-    return packed(b"".join(_numbers(motion).tobytes() for motion in found.motions or []))
-
-
-def packed(content: bytes) -> str:
-    """Compressed and written in letters; the browser undoes both."""
-    return base64.b64encode(gzip.compress(content, mtime=0)).decode()
 
 
 def crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[float]]]:
@@ -84,40 +69,5 @@ def _scene(found: Findings, scene: Scene, surfaces: xr.Dataset, starts: Starts) 
         "pairs": {pair.key: [pair.first.key, pair.second.key] for pair in pairs},
         "mu": {model.key: [listed(model.key, body) for body in bodies] for model in models_of(scene, study.hierarchy)},
         "contours": {pair.key: [contours(pair, body) for body in bodies] for pair in pairs},
-        "places": list(_places(found, scene, starts)),
+        "places": list(places(found, scene, starts)),
     }
-
-
-def _places(found: Findings, scene: Scene, starts: Starts) -> Iterator[dict[str, Any]]:
-    own = [motion for motion in found.motions or [] if motion.place.scene == scene.name]
-    alpha1, alpha2 = (np.asarray(found.surfaces[name]) for name in ("alpha1", "alpha2"))
-    for place, motions in groupby(own, key=lambda motion: motion.place):
-        yield {
-            "row": place.row,
-            "column": place.column,
-            "phases": None if scene.recorded else [float(alpha1[place.row]), float(alpha2[place.column])],
-            "why": place.why,
-            "motions": [
-                {
-                    "model": motion.model,
-                    "status": motion.status,
-                    "error_message": motion.error_message,
-                    "stick": [[round(start, 4), round(end, 4)] for start, end in motion.stick],
-                    "start": starts[place, motion.model],
-                    "count": len(motion.time),
-                }
-                for motion in motions
-            ],
-        }
-
-
-def _numbers(motion: StoredMotion) -> NDArray[np.float32]:
-    parts = (motion.time, motion.position, motion.acceleration)
-    return np.concatenate([part.ravel() for part in parts]).astype("<f4")
-
-
-def _starts(motions: Sequence[StoredMotion]) -> Starts:
-    """Where the first number of every motion stands among all of them."""
-    sizes = [motion.time.size + motion.position.size + motion.acceleration.size for motion in motions]
-    keys = [(motion.place, motion.model) for motion in motions]
-    return dict(zip(keys, np.concatenate([[0], np.cumsum(sizes)]).astype(int).tolist()))
