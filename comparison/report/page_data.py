@@ -3,42 +3,60 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import Any
 
 import contourpy
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from comparison.analysis.differences import pair_step
 from comparison.analysis.surfaces import common_phases
 from comparison.report.findings import Findings
-from comparison.report.motion_data import Starts, motion_starts, places
-from comparison.study.models import Pair, models_of
-from comparison.study.study import Study
+from comparison.report.motion_data import motion_starts, places
+from comparison.report.results import Completion, SceneResult
+from comparison.study.models import Model, Pair, models_of
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
+Rows = list[list[float | None]]
+
+DIGITS, ERROR_DIGITS = 7, 2  # significant, of mu and of an error
 
 
-def page_data(found: Findings) -> str:
+def page_data(found: Findings, scenes: Sequence[SceneResult]) -> str:
     """
-    JSON that is safe inside a script element; NaN is null.
+    JSON of all that is drawn; NaN is null.
 
-    grid; strides, titles: by model. scenes, each: duration, s; pairs (first and second model, by pair); mu (by model,
-    per body: rows alpha1, columns alpha2); contours (by pair, per body: polylines [[alpha1, alpha2], ...], rad, on
-    which |D| = u_D); places (row, column, phases or null under a record, why, and motions: model, status, fault, stick,
-    start and count of its instants in the packed numbers).
+    grid: phases per axis of the study. titles: by model. scenes, each: name, title, bodies, duration (s), recorded,
+    radius (m); pairs, each: key, title, sentence, first, second (models), contours (per body: polylines
+    [[alpha1, alpha2], ...], rad, on which |D| = u_D), uncertainty (per body: u_D relative to the first model on the
+    phases of both, or null where both are surfaces); models (by key: see `_model`); places (see `motion_data.places`).
+    A surface is a list of rows, one per alpha1, of values, one per alpha2.
     """
-    study, surfaces = found.study, found.surfaces
+    study = found.study
     starts = motion_starts(found.motions or [])
     data = {
         "grid": study.grid,
-        "strides": study.strides,
         "titles": {model.key: model.title for model in study.hierarchy},
-        "scenes": [_scene(found, scene, surfaces, starts) for scene in study.scenes],
+        "scenes": [
+            {
+                "name": scene.name,
+                "title": scene.title,
+                "bodies": len(scene.bodies),
+                "duration": scene.duration,
+                "recorded": scene.recorded,
+                "radius": scene.radius,
+                "pairs": [_pair(found, scene, pair) for pair in study.pairs(scene)],
+                "models": {
+                    model.key: _model(found, scene, result, model) for model in models_of(scene, study.hierarchy)
+                },
+                "places": list(places(found, scene, starts)),
+            }
+            for scene, result in zip(study.scenes, scenes, strict=True)
+        ],
     }
-    return json.dumps(data, allow_nan=False).replace("<", "\\u003c")
+    return json.dumps(data, allow_nan=False, separators=(",", ":"))
 
 
 def crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[float]]]:
@@ -49,25 +67,53 @@ def crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[f
     return [np.round(np.asarray(line), 4).tolist() for line in lines]
 
 
-def _scene(found: Findings, scene: Scene, surfaces: xr.Dataset, starts: Starts) -> dict[str, Any]:
-    study: Study = found.study
-    bodies = range(1, len(scene.bodies) + 1)
-
-    def contours(pair: Pair, body: int) -> list[list[list[float]]]:
-        if scene.recorded:
-            return []
-        step = pair_step(surfaces, scene.name, pair, body)
-        return crossings(step.size, step.uncertainty, step.alpha1)
-
-    def listed(model: str, body: int) -> list[list[float | None]]:
-        mu = common_phases(surfaces, scene.name, [model])["mu"].sel(model=model, body=body).values
-        return [[float(f"{value:.7g}") if np.isfinite(value) else None for value in row] for row in mu]
-
-    pairs = study.pairs(scene)
+def _pair(found: Findings, scene: Scene, pair: Pair) -> dict[str, Any]:
+    surfaces = not scene.recorded and _surface(found, scene, pair.first) and _surface(found, scene, pair.second)
+    steps = [pair_step(found.surfaces, scene.name, pair, body) for body in range(1, len(scene.bodies) + 1)]
     return {
-        "duration": scene.duration,
-        "pairs": {pair.key: [pair.first.key, pair.second.key] for pair in pairs},
-        "mu": {model.key: [listed(model.key, body) for body in bodies] for model in models_of(scene, study.hierarchy)},
-        "contours": {pair.key: [contours(pair, body) for body in bodies] for pair in pairs},
-        "places": list(places(found, scene, starts)),
+        "key": pair.key,
+        "title": pair.title,
+        "sentence": pair.sentence,
+        "first": pair.first.key,
+        "second": pair.second.key,
+        "contours": [crossings(step.size, step.uncertainty, step.alpha1) if surfaces else [] for step in steps],
+        "uncertainty": None if surfaces else [_rows(step.uncertainty, ERROR_DIGITS) for step in steps],
     }
+
+
+def _surface(found: Findings, scene: Scene, model: Model) -> bool:
+    """Whether the values of a model are drawn as a surface as they are: on all phases, and not few of a spatial one."""
+    few = model.settings.get("model") == "spatial" and len(found.study.axis(model, scene)) <= FEW_PER_AXIS
+    return found.study.stride(model, scene) == 1 and not few
+
+
+FEW_PER_AXIS = 8  # phases of a spatial model: so few are drawn as points
+
+
+def _model(found: Findings, scene: Scene, result: SceneResult, model: Model) -> dict[str, Any]:
+    """
+    One model of a scene.
+
+    phases: per axis. computed: phase pairs that symmetry did not give. surface: whether its values are drawn as one.
+    mu: per body. error: per body, null for a surface. completed: per body, null or through (a model), error (largest
+    of leaving out one), reason (why it is not drawn), difference (whether that may be drawn), mu (null where refused).
+    """
+    data = common_phases(found.surfaces, scene.name, [model.key]).sel(model=model.key)
+    bodies = range(1, len(scene.bodies) + 1)
+    surface = not scene.recorded and _surface(found, scene, model)
+
+    def listed(name: str, digits: int) -> list[Rows]:
+        return [_rows(np.asarray(data[name].sel(body=body), float), digits) for body in bodies]
+
+    return {
+        "phases": len(found.study.axis(model, scene)),
+        "computed": len(found.study.solved(scene, model)),
+        "surface": surface,
+        "mu": listed("mu", DIGITS),
+        "error": None if surface else listed("error", ERROR_DIGITS),
+        "completed": [None for body in bodies],
+    }
+
+
+def _rows(values: Array, digits: int) -> Rows:
+    return [[float(f"{value:.{digits}g}") if np.isfinite(value) else None for value in row] for row in values]
