@@ -3,28 +3,29 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import contourpy
 import numpy as np
 from numpy.typing import NDArray
 
+from comparison.analysis.completion import Completion, completions
 from comparison.analysis.differences import pair_step
 from comparison.analysis.surfaces import common_phases
 from comparison.report.findings import Findings
 from comparison.report.motion_data import motion_starts, places
-from comparison.report.results import Completion, SceneResult
 from comparison.study.models import Model, Pair, models_of
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
 Rows = list[list[float | None]]
 
+FEW_PER_AXIS = 8  # phases of a spatial model: so few are drawn as points
 DIGITS, ERROR_DIGITS = 7, 2  # significant, of mu and of an error
 
 
-def page_data(found: Findings, scenes: Sequence[SceneResult]) -> str:
+def page_data(found: Findings) -> str:
     """
     JSON of all that is drawn; NaN is null.
 
@@ -48,12 +49,10 @@ def page_data(found: Findings, scenes: Sequence[SceneResult]) -> str:
                 "recorded": scene.recorded,
                 "radius": scene.radius,
                 "pairs": [_pair(found, scene, pair) for pair in study.pairs(scene)],
-                "models": {
-                    model.key: _model(found, scene, result, model) for model in models_of(scene, study.hierarchy)
-                },
+                "models": _models(found, scene),
                 "places": list(places(found, scene, starts)),
             }
-            for scene, result in zip(study.scenes, scenes, strict=True)
+            for scene in study.scenes
         ],
     }
     return json.dumps(data, allow_nan=False, separators=(",", ":"))
@@ -87,10 +86,14 @@ def _surface(found: Findings, scene: Scene, model: Model) -> bool:
     return found.study.stride(model, scene) == 1 and not few
 
 
-FEW_PER_AXIS = 8  # phases of a spatial model: so few are drawn as points
+def _models(found: Findings, scene: Scene) -> dict[str, Any]:
+    completed = {(each.model, each.body): each for each in completions(found.study, found.surfaces, scene)}
+    return {model.key: _model(found, scene, completed, model) for model in models_of(scene, found.study.hierarchy)}
 
 
-def _model(found: Findings, scene: Scene, result: SceneResult, model: Model) -> dict[str, Any]:
+def _model(
+    found: Findings, scene: Scene, completed: Mapping[tuple[str, int], Completion], model: Model
+) -> dict[str, Any]:
     """
     One model of a scene.
 
@@ -111,7 +114,19 @@ def _model(found: Findings, scene: Scene, result: SceneResult, model: Model) -> 
         "surface": surface,
         "mu": listed("mu", DIGITS),
         "error": None if surface else listed("error", ERROR_DIGITS),
-        "completed": [None for body in bodies],
+        "completed": [_completed(completed.get((model.key, body))) for body in bodies],
+    }
+
+
+def _completed(completion: Completion | None) -> dict[str, Any] | None:
+    if completion is None:
+        return None
+    return {
+        "through": completion.through,
+        "error": completion.error if np.isfinite(completion.error) else None,
+        "reason": completion.reason,
+        "difference": completion.difference_accepted,
+        "mu": _rows(completion.mu, DIGITS) if completion.accepted else None,
     }
 
 

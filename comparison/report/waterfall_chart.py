@@ -100,6 +100,33 @@ def charts(waterfall: Waterfall, scales: dict[str, Scale]) -> dict[str, list[Bar
     }
 
 
+@dataclass(frozen=True)
+class LogScale:
+    """A logarithmic axis of relative sizes; `ticks` are the places of the powers of ten, percent."""
+
+    low: float
+    high: float
+
+    def at(self, size: float) -> float:
+        """Place of a size, percent of the length; at the edge what lies beyond."""
+        if not size > self.low:
+            return 1.0
+        return round(min(99.0, 1.0 + 98.0 * math.log(size / self.low) / math.log(self.high / self.low)), 3)
+
+    @property
+    def ticks(self) -> list[float]:
+        """Places of the powers of ten."""
+        powers = range(round(math.log10(self.low)), round(math.log10(self.high)) + 1)
+        return [self.at(10.0**power) for power in powers]
+
+
+def log_scale(sizes: Iterable[float]) -> LogScale:
+    """Powers of ten around all sizes above zero."""
+    powers = [math.log10(size) for size in sizes if math.isfinite(size) and size > 0.0]
+    low, high = (math.floor(min(powers)), math.ceil(max(powers))) if powers else (-4, 0)
+    return LogScale(10.0**low, 10.0 ** max(high, low + 1))
+
+
 def _bar(bar: WaterfallBar, model: str, start: float, scale: Scale) -> Bar:
     begin = scale.at(start)
     if not math.isfinite(bar.size):
