@@ -240,7 +240,7 @@ def _card(scene: SceneResult, axes: dict[str, Scale], found: Findings) -> dict[s
     """One scene on the first screen."""
     bodies = [
         {
-            "sentence": headline.sentence,
+            "sentence": headline.sentence.removeprefix(f"{scene.name}, ").replace(f"{scene.name}: ", ""),
             "bars": charts(waterfall, axes),
             "mean_caption": f"mu_{waterfall.body}, {_phases_of(waterfall, scene)}",
             "largest_caption": f"mu_{waterfall.body}, {_place_of(waterfall)}",

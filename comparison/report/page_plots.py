@@ -32,8 +32,8 @@ def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
         for number, trend in enumerate(rows[:MAX_CURVES]):
             slope = f"{trend.exponent:.2f} ± {trend.uncertainty:.2f}" if math.isfinite(trend.exponent) else "none"
             points = {"x": list(values), "y": _plain(trend.medians), "color": number, "marks": True}
-            series.append({"name": f"mu_{trend.body}, {trend.what}: slope {slope}".replace("mu", "μ"), **points})
-        axis = parameter or ("v_reg, m/s" if max(values) >= 1e-3 and "v_reg" in rows[0].what else "parameter")
+            series.append({"name": f"μ_{trend.body}, {trend.what}: slope {slope}", **points})
+        axis = parameter or ("penetration, ρ" if "contact" in rows[0].what else "v_reg, m/s")
         plot = {
             "label": f"{scene}: median relative difference over {axis}; " + "; ".join(line["name"] for line in series),
             "x": {"title": axis, "log": True},
@@ -86,8 +86,8 @@ def claim_heat(results: Results) -> list[dict[str, Any]]:
         return []
     counted = [claim for claim in results.claims.claims if not claim.weaker]
     rows = []
-    for figure, group in groupby(counted, key=lambda claim: claim.figure):
-        claims = list(group)
+    for figure in dict.fromkeys(claim.figure for claim in counted):
+        claims = [claim for claim in counted if claim.figure == figure]
         held = [
             sum(claim.verdicts[column].finding == "reproduced" for claim in claims)
             for column in range(len(results.claims.readings))

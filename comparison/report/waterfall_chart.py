@@ -11,6 +11,7 @@ from comparison.wording import percent, signed
 
 MARGIN = 0.03  # of the scale, beyond the longest bar
 MAX_TICKS = 5
+SHOWN_ERROR = 0.01  # of a size: a smaller error is not seen in two digits
 
 
 @dataclass(frozen=True)
@@ -135,8 +136,15 @@ def _bar(bar: WaterfallBar, model: str, start: float, scale: Scale) -> Bar:
     error = bar.error if math.isfinite(bar.error) else 0.0
     ends = scale.at(start + bar.size - error), scale.at(start + bar.size + error)
     kind = "unreal" if not bar.real else "total" if model == "total" else "up" if bar.size >= 0.0 else "down"
-    text = f"{signed(bar.size)} ± {percent(error)}"
-    return Bar(model, kind, min(begin, end), round(abs(end - begin), 3), ends, end, text)
+    return Bar(model, kind, min(begin, end), round(abs(end - begin), 3), ends, end, _text(bar.size, error))
+
+
+def _text(size: float, error: float) -> str:
+    """A size with its error where two digits of the size show it."""
+    if not error > SHOWN_ERROR * abs(size):
+        return signed(size)
+    sign = "0" if abs(size) < 1e-6 else ("−" if size < 0.0 else "+") + f"{100.0 * abs(size):.2g}"
+    return f"{sign} ± " + (f"{100.0 * error:.1g} %" if error >= 1e-6 else percent(error))
 
 
 def _ticks(low: float, high: float) -> list[float]:

@@ -68,10 +68,16 @@ function draw3d(canvas, panel, camera) {
   pen.moveTo(low[0], low[1]);
   pen.lineTo(high[0], high[1]);
   pen.stroke();
-  [0.12, 0.5, 1].forEach(part => {
-    const [x, y] = at(...corners[leftmost], part), value = panel.range[0] + part * (panel.range[1] - panel.range[0]);
-    pen.fillText(`${+value.toPrecision(3)}`, x - 4, y + 4);
+  ticksOf({}, panel.range, 4).forEach(([value, text]) => {
+    const [x, y] = at(...corners[leftmost], share(panel, value));
+    if (share(panel, value) > 0.1) pen.fillText(text, x - 4, y + 4);
   });
+  const base = panel.range[0] < 0 ? share(panel, 0) : 0;  // differences stand on zero
+  if (base) {
+    pen.setLineDash([3, 3]);
+    strokeLine(pen, [...corners, corners[0]].map(([a, b]) => at(a, b, base)));
+    pen.setLineDash([]);
+  }
   const order = (forward, count) => Array.from({ length: count }, (_, i) => forward ? i : count - 1 - i);
   if (panel.sheet) {
     const rows = order(Math.sin(camera.azimuth) < 0, n), columns = order(Math.cos(camera.azimuth) < 0, n), tilt = n / 9;
@@ -95,8 +101,8 @@ function draw3d(canvas, panel, camera) {
   panel.lines.forEach(points => strokeLine(pen, points.map(lift)));
   panel.points.slice().sort((p, q) => at(q.a, q.b, 0)[2] - at(p.a, p.b, 0)[2]).forEach(point => {
     const [x, y] = at(point.a, point.b, share(panel, point.z));
-    if (panel.sheet) return dot(pen, x, y, 1.5, ink);
-    const foot = at(point.a, point.b, 0);
+    if (panel.sheet) return dot(pen, x, y, 1.1, ink);
+    const foot = at(point.a, point.b, base);
     pen.strokeStyle = soft;
     pen.lineWidth = 0.6;
     strokeLine(pen, [foot, [x, y]]);
@@ -108,7 +114,7 @@ function draw3d(canvas, panel, camera) {
     }
     dot(pen, x, y, 4, panel.color(share(panel, point.z)), ink);
   });
-  drawMarks(pen, panel, ([a, b]) => lift([a, b]) ?? at(a, b, 0));
+  drawMarks(pen, panel, ([a, b]) => lift([a, b]) ?? at(a, b, base));
   canvas.inverse = (x, y) => nearestVertex(panel, at, x, y);
 }
 
@@ -152,10 +158,10 @@ function drawMap(canvas, panel) {
   };
 }
 
-// the largest value: a triangle; stored motions: rings, the one shown filled; what is pointed at: a cross
+// the largest value: a triangle; stored motions: diamonds, the one shown filled; what is pointed at: a cross
 function drawMarks(pen, panel, at) {
   const [ink, back, accent] = ["--ink", "--back", "--mark"].map(variable);
-  panel.places.forEach((place, i) => { const [x, y] = at(place); i === panel.chosen ? dot(pen, x, y, 6.5, accent, back) : dot(pen, x, y, 4, back, ink); });
+  panel.places.forEach((place, i) => diamond(pen, at(place), i === panel.chosen ? 8 : 5, i === panel.chosen ? accent : "", i === panel.chosen ? back : ink));
   if (panel.largest) {
     const [x, y] = at(panel.largest);
     pen.fillStyle = ink;
@@ -183,6 +189,16 @@ function dot(pen, x, y, radius, fill, edge = "") {
   if (!edge) return;
   pen.strokeStyle = edge;
   pen.lineWidth = 1.2;
+  pen.stroke();
+}
+function diamond(pen, [x, y], radius, fill, edge) {
+  pen.beginPath();
+  [[0, -1], [1, 0], [0, 1], [-1, 0]].forEach(([u, v], i) => i ? pen.lineTo(x + radius * u, y + radius * v) : pen.moveTo(x + radius * u, y + radius * v));
+  pen.closePath();
+  pen.fillStyle = fill;
+  if (fill) pen.fill();
+  pen.strokeStyle = edge;
+  pen.lineWidth = 1.5;
   pen.stroke();
 }
 function strokeLine(pen, points) {

@@ -80,8 +80,8 @@ function drawPlot(box, spec) {
     svg.append(svgElement("line", { x1: left, x2: left + inner.width, y1: Y(value), y2: Y(value), class: value === 0 ? "zero" : "grid" }));
     svg.append(svgElement("text", { x: left - 5, y: Y(value) + 4, "text-anchor": "end" }, text));
   });
-  svg.append(svgElement("text", { x: 2, y: 12, class: "axis" }, spec.y.title ?? ""));
-  svg.append(svgElement("text", { x: width - 4, y: height - 6, "text-anchor": "end", class: "axis" }, spec.x.title ?? ""));
+  svg.append(svgElement("text", { x: 2, y: 12, class: "axis" }, plain(spec.y.title ?? "")));
+  svg.append(svgElement("text", { x: width - 4, y: height - 6, "text-anchor": "end", class: "axis" }, plain(spec.x.title ?? "")));
   const clip = `clip-${drawPlot.count = (drawPlot.count ?? 0) + 1}`;
   const frame = svgElement("clipPath", { id: clip });
   frame.append(svgElement("rect", { x: left - 6, y: top - 6, width: inner.width + 12, height: inner.height + 12 }));
@@ -126,6 +126,7 @@ function legendOf(list) {
   });
   return legend;
 }
+const plain = text => text.replaceAll("_", "");  // inside a picture, where no index can stand
 // v_reg with its index below the line
 const indexed = text => text.split(/(_\w+)/).map(part => part.startsWith("_") ? element("sub", "", part.slice(1)) : part);
 

@@ -118,7 +118,7 @@ function change(changes) {
   const bodies = part("body");
   bodies.replaceChildren(...Array.from({ length: scene.bodies }, (_, i) => new Option(i ? `body ${i + 1}` : "body 1 (platform)", i + 1, false, i + 1 === state.body)));
   const pairs = part("pair");
-  pairs.replaceChildren(...scene.pairs.map(pair => new Option(pair.title, pair.key, false, pair === pairNow())));
+  pairs.replaceChildren(...scene.pairs.map(pair => new Option(`${pair.title}: ${study.titles[pair.first]} | ${study.titles[pair.second]}`.replaceAll("_", " "), pair.key, false, pair === pairNow())));
   part("sentence").replaceChildren(...indexed(`${pairNow().sentence}.`));
   part("scene").value = String(state.scene);
   ["view", "grid"].forEach(name => viewer.querySelectorAll(`button[data-${name}]`).forEach(button => button.setAttribute("aria-pressed", String(button.dataset[name] === state[name]))));
@@ -141,10 +141,13 @@ function pick(phases) {
   change({ cursor: phases, place: near.index, away: near.far });
   showMotions();
 }
+// the first pair whose second model is drawn as a surface: points beside a surface look as if they differed from it
+const drawnPair = body => (sceneNow().pairs.find(pair => surfaceOf(sceneNow(), pair.second, body).sheet) ?? sceneNow().pairs[0]).key;
 // another scene: the motion where its difference is largest
 const firstPlace = () => sceneNow().places.length ? 0 : null;
 function chooseScene(scene, body = 1) {
   Object.assign(state, { scene, body, cursor: null, away: null, place: null });
+  if (!sceneNow().recorded) state.pair = drawnPair(body);
   const largest = sceneNow().places.findIndex(place => place.why.includes(`body ${body}`));
   change({ place: largest >= 0 ? largest : firstPlace() });
   part("readout").textContent = "";
@@ -199,5 +202,5 @@ function startViewer() {
   new ResizeObserver(paintSoon).observe(part("panels"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", show);
   matchMedia("print").addEventListener("change", () => { if (!sceneNow().recorded) { shown = panels(); paint(); } });
-  chooseScene(0);
+  chooseScene(Number(part("scene").options[0].value));
 }
