@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import hashlib
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -12,7 +13,6 @@ from typing import Any
 
 import jinja2
 import numpy as np
-from plotly.offline import get_plotlyjs
 
 from comparison.analysis.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE
 from comparison.analysis.claims.table import SIGNS
@@ -20,21 +20,22 @@ from comparison.analysis.effective import PHASES
 from comparison.analysis.extremes.matrix import PICTURE
 from comparison.analysis.extremes.verdicts import Verdict
 from comparison.report.figures.assumptions import assumption_figure_name, draw_assumptions
-from comparison.report.figures.budget import budget_figure_name
-from comparison.report.figures.extremes import COLORS, MEANING, describe, draw_extremes
-from comparison.report.figures.families import draw_families, family_figure_name
-from comparison.report.figures.pairs import figure_name
-from comparison.report.figures.pictures import for_page, smaller
+from comparison.report.figures.extremes import MEANING, describe, draw_extremes
+from comparison.report.figures.families import draw_families
+from comparison.report.figures.pictures import smaller
 from comparison.report.figures.tradeoff import draw_tradeoff, tradeoff_figure_name
 from comparison.report.findings import Findings
-from comparison.report.page_data import packed, packed_motions, page_data
+from comparison.report.glossary import explained, term
+from comparison.report.motion_data import packed, packed_motions
+from comparison.report.page_data import page_data
+from comparison.report.page_plots import claim_heat, family_panels, tradeoff_answers, tradeoff_panels, trend_panels
 from comparison.report.record_rows import record_rows
-from comparison.report.results import Difference, Effect, Erratum, Results, SceneResult
+from comparison.report.results import Claim, ClaimVerdict, Effect, Erratum, Results, SceneResult, Waterfall
 from comparison.report.verification import CHECKS
-from comparison.study.models import Pair
+from comparison.report.waterfall_chart import Scale, charts, log_scale, scales
 from comparison.study.study import Study
-from comparison.wording import degrees, percent, scientific, significant, symbols
-from reference.problem import Outcome, Scene
+from comparison.wording import degrees, percent, scientific, signed, significant, symbols
+from reference.problem import Outcome
 
 
 @dataclass(frozen=True)
@@ -42,21 +43,26 @@ class Section:
     """
     One section of the page: templates/sections/<name>.html.j2 below its heading, in the order of SECTIONS.
 
-    finding: the field of `Findings` it shows, at hand in the template as `section_data`; where that is None the section
-    is left out and `absent` says which command makes it. draw: writes its pictures into the folder of the figures; the
-    template shows one by {{ picture("file name") }}. title_recorded: title where no scene has phases, "" for the same.
+    result: the field of `Results` it shows; where that is None the section is left out and `absent` says which command
+    makes it. draw: writes its pictures into the folder of the figures. title_recorded: title where no scene has phases,
+    "" for the same. folded: whether the reader opens it.
     """
 
     name: str
     title: str
-    finding: str = ""
+    result: str = ""
     absent: str = ""
     draw: Callable[[Path, Findings], None] | None = None
     title_recorded: str = ""
+    folded: bool = True
 
-    def present(self, found: Findings) -> bool:
-        """Whether the section was asked for and the findings hold what it shows."""
-        return self.name not in found.study.absent and (not self.finding or getattr(found, self.finding) is not None)
+    def present(self, results: Results) -> bool:
+        """Whether the section was asked for and the results hold what it shows."""
+        return self.name not in results.absent and (not self.result or getattr(results, self.result) is not None)
+
+    def title_of(self, results: Results) -> str:
+        """Title of the section in these results."""
+        return self.title if results.phased else self.title_recorded or self.title
 
 
 def draw_all_assumptions(figures: Path, found: Findings) -> None:
@@ -73,6 +79,15 @@ def draw_all_trades(figures: Path, found: Findings) -> None:
 
 
 SECTIONS = (
+    Section("surfaces", "Surfaces and motions", title_recorded="Values and motions under the records", folded=False),
+    Section(
+        "families",
+        "Families of scenes",
+        "families",
+        "a range in a scene file makes one: friction = {range = [0.02, 0.2], steps = 10}",
+        draw_families,
+        folded=False,
+    ),
     Section("differences", "Differences"),
     Section("budget", "What makes the difference"),
     Section("scaling", "Scaling test", "scaling", "python -m comparison.run makes it, of scenes with phases"),
@@ -82,14 +97,6 @@ SECTIONS = (
         "convergence",
         "python -m comparison.run makes it, of scenes with phases",
     ),
-    Section(
-        "families",
-        "Families of scenes",
-        "families",
-        "a range in a scene file makes one: friction = {range = [0.02, 0.2], steps = 10}",
-        draw_families,
-    ),
-    Section("surfaces", "Surfaces", title_recorded="Values under the records"),
     Section("outcomes", "Outcomes and cost"),
     Section("models", "What was compared"),
     Section(
@@ -124,7 +131,7 @@ SECTIONS = (
     Section("verification", "What checks each side alone"),
     Section("provenance", "Provenance"),
 )
-SCRIPTS = ("motions.js", "surfaces.js", "report.js")
+SCRIPTS = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions.js", "page.js")
 
 
 def page(figures: Path, found: Findings, results: Results) -> str:
@@ -136,9 +143,9 @@ def page(figures: Path, found: Findings, results: Results) -> str:
     figures : Path
         Folder with the pictures of the report.
     found : Findings
-        What the run found.
+        What the run found: surfaces and motions that are drawn.
     results : Results
-        The same as typed data.
+        Everything else, as typed data.
 
     Returns
     -------
@@ -147,64 +154,78 @@ def page(figures: Path, found: Findings, results: Results) -> str:
     """
     study = found.study
     templates = resources.files("comparison.report") / "templates"
-    loader = jinja2.PackageLoader("comparison.report", "templates")
-    environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
-    environment.filters.update(
-        percent=percent, scientific=scientific, degrees=degrees, significant=significant, symbols=symbols
-    )
-    template = environment.get_template("report.html.j2")
+    style = (templates / "report.css").read_text(encoding="utf-8")
+    script = "\n".join((templates / name).read_text(encoding="utf-8") for name in SCRIPTS)
     hierarchy = [model for model in study.hierarchy if any(model.applies(scene) for scene in study.scenes)]
-    return template.render(
-        sections=[section for section in SECTIONS if section.present(found)],
+    axes = scales(results)
+    rows = [row for scene in results.scenes_with("differences") for row in scene.differences]
+    outcomes = _outcomes(results)
+    return _environment().get_template("report.html.j2").render(
+        policy=content_policy(script, style),
+        style=style,
+        script=script,
+        sections=[section for section in SECTIONS if section.present(results)],
         absent=[
-            (section.title, study.absent.get(section.name, section.absent))
+            (section.title, results.absent.get(section.name, section.absent))
             for section in SECTIONS
-            if not section.present(found)
+            if not section.present(results)
         ],
-        found=found,
         results=results,
-        figure_names={
-            "assumptions": assumption_figure_name,
-            "family": family_figure_name,
-            "tradeoff": tradeoff_figure_name,
-        },
-        picture=lambda name: _inlined(smaller((figures / name).read_bytes())),
         study=study,
-        run=results.run,
-        scenes=[
-            _scene(found, number, scene, result)
-            for number, (scene, result) in enumerate(zip(study.scenes, results.scenes))
-        ],
         question=_question(study),
-        compared=_compared(study),
-        section_titles={s.name: s.title if study.phased else s.title_recorded or s.title for s in SECTIONS},
-        pairs=list({pair.key: pair for scene in study.scenes for pair in study.pairs(scene)}.values()),
+        has_surfaces=lambda scene: "surfaces" in scene.analyses,
+        cards=[_card(scene, axes, found) for scene in results.scenes],
+        scales=axes,
+        effects={model.key: model.effect or model.title for model in study.hierarchy},
+        record_tables=_record_tables(found),
+        rows=rows,
+        dots=log_scale([size for row in rows for size in (row.median, row.maximum)]),
+        budget=[entry for scene in results.scenes_with("budget") for entry in scene.budget],
+        trend_panels=trend_panels,
+        tradeoff_panels=tradeoff_panels,
+        tradeoff_answers=tradeoff_answers,
+        family_panels=family_panels(found),
+        claim_heat=claim_heat(results),
+        claim_findings=_claim_findings,
         hierarchy=hierarchy,
-        step_numbers={model.key: number for number, model in enumerate(hierarchy)},
         titles={"scene": "as stated", **{model.key: model.title for model in study.hierarchy}},
         properties=_properties(hierarchy),
-        rows=[row for scene in results.scenes_with("differences") for row in scene.differences],
-        budget=[entry for scene in results.scenes_with("budget") for entry in scene.budget],
         effective=[values for scene in results.scenes for values in scene.effective],
         phases=PHASES,
         errata=[{"erratum": erratum, "effects": _effects(erratum)} for erratum in results.errata or []],
+        assumption_pictures=_assumption_pictures(figures, found, results),
         checks=CHECKS,
         claim_signs=SIGNS,
-        verdicts=[(verdict.value, COLORS[verdict], MEANING[verdict]) for verdict in Verdict],
+        verdicts=[(verdict.value, MEANING[verdict]) for verdict in Verdict],
         describe=describe,
-        digests={scene.digest() for scene in study.scenes},
+        digests={scene.digest for scene in results.scenes},
         peak_share=SHARE,
         peak_shares=(LEAST_SHARE, MOST_SHARE),
-        outcomes=_outcomes(results),
-        broken=[alert.line for alert in results.broken],
-        faults=results.faults,
-        wide_swings=[alert.line for alert in results.alerts if alert.kind == "swing"],
-        style=(templates / "report.css").read_text(encoding="utf-8"),
-        scripts=[(templates / name).read_text(encoding="utf-8") for name in SCRIPTS],
-        plotly=packed(get_plotlyjs().encode()),
+        outcomes=outcomes,
+        most_cost=max((row["cost"] for row in outcomes), default=0.0) or 1.0,
+        data=packed(page_data(found).encode()),
         motions=packed_motions(found),
-        data=page_data(found),
-    )
+    )  # fmt: skip
+
+
+def content_policy(script: str, style: str) -> str:
+    """The page's content security policy: its own script and style by their hash, pictures inside it, nothing else."""
+
+    def digest(text: str) -> str:
+        return "'sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() + "'"
+
+    allowed = {"script-src": digest(script), "style-src": digest(style), "img-src": "data:"}
+    denied = dict.fromkeys(("default-src", "base-uri", "form-action"), "'none'")
+    return "; ".join(f"{name} {value}" for name, value in (denied | allowed).items())
+
+
+def _environment() -> jinja2.Environment:
+    loader = jinja2.PackageLoader("comparison.report", "templates")
+    environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
+    filters = (percent, signed, scientific, degrees, significant, symbols, explained)
+    environment.filters.update({function.__name__: function for function in filters})
+    environment.globals["term"] = term  # in macros, too
+    return environment
 
 
 def _question(study: Study) -> str:
@@ -215,65 +236,69 @@ def _question(study: Study) -> str:
     return phases if len(study.phased) == len(study.scenes) else f"{phases}, or under a recorded motion"
 
 
-def _compared(study: Study) -> str:
-    """Which models the total difference compares, if it is the same in every scene."""
-    sentences = {study.pairs(scene)[0].sentence for scene in study.scenes}
-    return sentences.pop() if len(sentences) == 1 else "the first against the last model that has values, in each scene"
+def _card(scene: SceneResult, axes: dict[str, Scale], found: Findings) -> dict[str, Any]:
+    """One scene on the first screen."""
+    bodies = [
+        {
+            "sentence": headline.sentence.removeprefix(f"{scene.name}, ").replace(f"{scene.name}: ", ""),
+            "bars": charts(waterfall, axes),
+            "mean_caption": f"mu_{waterfall.body}, {_phases_of(waterfall, scene)}",
+            "largest_caption": f"mu_{waterfall.body}, {_place_of(waterfall)}",
+        }
+        for headline, waterfall in zip(scene.headlines, scene.waterfalls)
+    ]
+    return {"scene": scene, "bodies": bodies}
 
 
-def _scene(found: Findings, number: int, scene: Scene, result: SceneResult) -> dict[str, Any]:
-    pairs = found.study.pairs(scene)
-    with_surfaces, with_budget = "surfaces" in result.analyses, "budget" in result.analyses
-    rows = {pair.key: [row for row in result.differences if row.pair == pair.key] for pair in pairs}
-    return {
-        "number": number,
-        "scene": scene,
-        "surfaces": with_surfaces,
-        "budget": with_budget,
-        "digest": result.digest,
-        "verdict": result.verdict,
-        "verdicts": [_verdict(pair, rows[pair.key], scene.recorded) for pair in pairs],
-        "bodies": [
-            {
-                "number": bar.body,
-                "bar": bar,
-                "record": record_rows(found, scene, bar.body),
-                "pictures": [
-                    {"pair": pair, "png": _inlined(found.pictures[for_page(figure_name(scene, bar.body, pair))])}
-                    for pair in (pairs if with_surfaces and not scene.recorded else [])
-                ],
-                "budget": _budget(found, scene, bar.body) if with_budget else "",
-            }
-            for bar in result.bars
-        ],
-    }
+def _phases_of(waterfall: Waterfall, scene: SceneResult) -> str:
+    """Over which phase pairs the means are."""
+    if scene.recorded:
+        return "under the record"
+    pairs = "phase pair" if waterfall.points == 1 else "phase pairs"
+    return f"mean over {waterfall.points} {pairs}, {waterfall.independent} of them independent"
 
 
-def _verdict(pair: Pair, rows: Sequence[Difference], recorded: bool) -> str:
-    """One line: how large the pair's difference is, and where."""
-    known = [row for row in rows if math.isfinite(row.maximum)]
-    if not known:
-        return f"{pair.title.capitalize()}: {'no value' if recorded else 'no phase pair has a value'} on both sides."
-    worst = max(known, key=lambda row: row.maximum)
-    if recorded:
-        sizes = ", ".join(f"{percent(row.maximum)} for body {row.body}" for row in rows)
-        return f"{pair.title.capitalize()} ({pair.first.title} against {pair.second.title}): {sizes}."
-    medians = ", ".join(f"{percent(row.median)} for body {row.body}" for row in rows)
-    return (
-        f"{pair.title.capitalize()} ({pair.first.title} against {pair.second.title}): median {medians}; "
-        f"largest {percent(worst.maximum)}, body {worst.body}, at ({degrees(worst.phases[0])}, "
-        f"{degrees(worst.phases[1])}); {rows[0].not_ok} of {rows[0].asked} points not ok."
-    )
+def _place_of(waterfall: Waterfall) -> str:
+    """Where the largest difference is."""
+    first, second = waterfall.largest.phases
+    return f"at ({degrees(first)}, {degrees(second)})" if math.isfinite(first) else "no difference is known"
 
 
-def _budget(found: Findings, scene: Scene, body: int) -> str:
-    """The picture of the budget over the phases, of which a recorded motion has none."""
-    return "" if scene.recorded else _inlined(found.pictures[for_page(budget_figure_name(scene, body))])
+def _record_tables(found: Findings) -> list[dict[str, Any]]:
+    """What stands in place of surfaces for every body of a scene under a record."""
+    return [
+        {"scene": number, "body": body, "excitation": scene.excitation, "rows": record_rows(found, scene, body)}
+        for number, scene in enumerate(found.study.scenes)
+        if scene.recorded
+        for body in range(1, len(scene.bodies) + 1)
+    ]
+
+
+def _assumption_pictures(figures: Path, found: Findings, results: Results) -> list[dict[str, Any]]:
+    if found.assumptions is None or results.assumptions is None:
+        return []
+    return [
+        {
+            "title": scene.title,
+            "name": scene.name,
+            "picture": _inlined(smaller((figures / assumption_figure_name(scene)).read_bytes())),
+            "lines": found.assumptions.lines(scene),
+        }
+        for scene in found.assumptions.scenes
+    ]
 
 
 def _inlined(webp: bytes) -> str:
     """A picture inside the page."""
     return "data:image/webp;base64," + base64.b64encode(webp).decode()
+
+
+def _claim_findings(claim: Claim) -> list[tuple[ClaimVerdict, list[int]]]:
+    """What the checks of a claim found, each different answer once, with the numbers of its readings from 1 on."""
+    groups: dict[tuple[str, str], tuple[ClaimVerdict, list[int]]] = {}
+    for number, verdict in enumerate(claim.verdicts, start=1):
+        groups.setdefault((verdict.finding, verdict.found), (verdict, []))[1].append(number)
+    return list(groups.values())
 
 
 def _properties(hierarchy: Sequence[Any]) -> list[dict[str, Any]]:

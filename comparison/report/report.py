@@ -45,6 +45,6 @@ def write_report(folder: Path, results: Results, found: Findings) -> None:
         if not name.endswith(PAGE):
             (figures / name).write_bytes(content)
     for section in SECTIONS:
-        if section.draw and section.present(found):
+        if section.draw and section.present(results):
             section.draw(figures, found)
     (folder / "index.html").write_text(page(figures, found, results), encoding="utf-8")
