@@ -81,6 +81,12 @@ class Step:
         return self.size[:: stride // self.stride, :: stride // self.stride]
 
 
+def known_mu(data: xr.Dataset, model: Model) -> Array:
+    """mu of one model in the data of one scene and body; NaN where it is not known to half of itself."""
+    mu, error = (np.asarray(data[name].sel(model=model.key), float) for name in ("mu", "error"))
+    return np.where(error <= WORTHLESS * mu, mu, np.nan)
+
+
 def step(surfaces: xr.Dataset, scene: str, key: str, first: Model, second: Model, body: int, per: Model) -> Step:
     """
     The difference of two models in one body, as a share of mu of the model `per`, which must be above 0.
@@ -90,8 +96,7 @@ def step(surfaces: xr.Dataset, scene: str, key: str, first: Model, second: Model
     data = common_phases(surfaces, scene, [first.key, second.key, per.key]).sel(body=body)
 
     def mu(model: Model) -> Array:
-        value = np.asarray(data["mu"].sel(model=model.key), float)
-        return np.where(error(model) <= WORTHLESS * value, value, np.nan)
+        return known_mu(data, model)
 
     def error(model: Model) -> Array:
         return np.asarray(data["error"].sel(model=model.key), float)

@@ -51,14 +51,16 @@ class Unanswered:
     @property
     def description(self) -> str:
         """The same without the scene."""
-        if self.asked == 1:
-            where = "no value"
-        elif self.points == self.asked:
-            where = f"no value at any of {self.asked} phase pairs"
-        else:
-            where = f"no value at {self.points} of {self.asked} phase pairs"
         rest = "" if self.used else ". Comparisons leave this model out"
-        return f"{self.title}: {where}: {self.why}{rest}"
+        return f"{self.title}: {self.where}: {self.why}{rest}"
+
+    @property
+    def where(self) -> str:
+        """At how many phase pairs there is no value."""
+        if self.asked == 1:
+            return "no value"
+        count = f"any of {self.asked}" if self.points == self.asked else f"{self.points} of {self.asked}"
+        return f"no value at {count} phase pairs"
 
 
 def with_silent_models(study: Study, surfaces: xr.Dataset) -> Study:

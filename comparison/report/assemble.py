@@ -7,10 +7,14 @@ from typing import Any
 
 from comparison.analysis.claims.table import ClaimTable
 from comparison.analysis.errata import ERRATA
+from comparison.analysis.grid_maxima import grid_maxima
+from comparison.analysis.headline import headline
 from comparison.analysis.surfaces import largest_cap_share, outcome_counts
 from comparison.analysis.trends import Trend as FittedTrend
 from comparison.analysis.unanswered import advice
 from comparison.analysis.verdicts import bar, verdict
+from comparison.analysis.waterfall import waterfall
+from comparison.report.alerts import alerts
 from comparison.report.findings import Findings
 from comparison.report.results import (
     Assumptions,
@@ -18,11 +22,14 @@ from comparison.report.results import (
     BudgetEntry,
     Claim,
     Claims,
+    Completion,
     Difference,
     Effect,
     Effective,
     Erratum,
     FamilyResult,
+    GridMaximum,
+    Headline,
     Limit,
     ModelDescription,
     ModelOutcome,
@@ -32,6 +39,7 @@ from comparison.report.results import (
     Trend,
     Unanswered,
     Verdict,
+    Waterfall,
 )
 from comparison.study.models import Model, models_of
 from reference.problem import Outcome, Scene
@@ -77,7 +85,7 @@ def assemble(found: Findings) -> Results:
         ],
         unanswered=[Unanswered.model_validate(lacking) for lacking in found.unanswered],
         absent=study.absent,
-        broken=[line for limit in found.limits for line in limit.broken],
+        alerts=alerts(found),
         faults=list(found.faults),
     )  # fmt: skip
 
@@ -87,6 +95,8 @@ def _scene(found: Findings, scene: Scene) -> SceneResult:
         return [row for row in rows if row.scene == scene.name]
 
     study, surfaces, bodies = found.study, found.surfaces, len(scene.bodies)
+    waterfalls = [waterfall(study, surfaces, scene, body) for body in range(1, bodies + 1)]
+    headlines = [headline(study, surfaces, scene, bars, found.rows) for bars in waterfalls]
     return SceneResult(
         name=scene.name,
         title=scene.title,
@@ -101,6 +111,10 @@ def _scene(found: Findings, scene: Scene) -> SceneResult:
         differences=[Difference.model_validate(row) for row in of_scene(found.rows)],
         budget=[BudgetEntry.model_validate(entry) for entry in of_scene(found.budget)],
         bars=[Bar.model_validate(bar(study, surfaces, scene, body)) for body in range(1, bodies + 1)],
+        headlines=[Headline.model_validate(each) for each in headlines],
+        waterfalls=[Waterfall.model_validate(each) for each in waterfalls],
+        completions=[Completion.model_validate(surface) for surface in of_scene(found.completions)],
+        grid_maxima=[GridMaximum.model_validate(each) for each in grid_maxima(study, surfaces, scene)],
         limits=[Limit.model_validate(limit) for limit in of_scene(found.limits)],
         effective=[Effective.model_validate(values) for values in of_scene(found.effective)],
     )
@@ -112,6 +126,7 @@ def _model(found: Findings, scene: Scene, model: Model) -> ModelOutcome:
     return ModelOutcome(
         phases_per_axis=len(study.axis(model, scene)),
         points=study.points(model, scene),
+        computed=len(study.solved(scene, model)),
         outcomes=counts,
         advice={outcome: advice(study, scene, model, outcome) for outcome in counts if outcome != Outcome.OK},
         cap_share=largest_cap_share(surfaces, scene.name, model.key),

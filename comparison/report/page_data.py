@@ -2,58 +2,60 @@
 
 from __future__ import annotations
 
-import base64
-import gzip
 import json
-from collections.abc import Iterator, Sequence
-from itertools import groupby
+from collections.abc import Mapping
 from typing import Any
 
 import contourpy
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
+from comparison.analysis.completion import Completion
 from comparison.analysis.differences import pair_step
 from comparison.analysis.surfaces import common_phases
-from comparison.analysis.trajectories import Place, StoredMotion
 from comparison.report.findings import Findings
-from comparison.study.models import Pair, models_of
-from comparison.study.study import Study
+from comparison.report.motion_data import motion_starts, places
+from comparison.study.models import Model, Pair, models_of
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
-Starts = dict[tuple[Place, str], int]
+Rows = list[list[float | None]]
+
+FEW_PER_AXIS = 8  # phases of a spatial model: so few are drawn as points
+DIGITS, ERROR_DIGITS = 7, 2  # significant, of mu and of an error
 
 
 def page_data(found: Findings) -> str:
     """
-    JSON that is safe inside a script element; NaN is null.
+    JSON of all that is drawn; NaN is null.
 
-    grid; strides, titles: by model. scenes, each: duration, s; pairs (first and second model, by pair); mu (by model,
-    per body: rows alpha1, columns alpha2); contours (by pair, per body: polylines [[alpha1, alpha2], ...], rad, on
-    which |D| = u_D); places (row, column, phases or null under a record, why, and motions: model, status, fault, stick,
-    start and count of its instants in the packed numbers).
+    grid: phases per axis of the study. titles: by model. scenes, each: name, title, bodies, duration (s), recorded,
+    radius (m); pairs, each: key, title, sentence, first, second (models), contours (per body: polylines
+    [[alpha1, alpha2], ...], rad, on which |D| = u_D), uncertainty (per body: u_D relative to the first model on the
+    phases of both, or null where both are surfaces); models (by key: see `_model`); places (see `motion_data.places`).
+    A surface is a list of rows, one per alpha1, of values, one per alpha2.
     """
-    study, surfaces = found.study, found.surfaces
-    starts = _starts(found.motions or [])
+    study = found.study
+    starts = motion_starts(found.motions or [])
     data = {
         "grid": study.grid,
-        "strides": study.strides,
         "titles": {model.key: model.title for model in study.hierarchy},
-        "scenes": [_scene(found, scene, surfaces, starts) for scene in study.scenes],
+        "scenes": [
+            {
+                "name": scene.name,
+                "title": scene.title,
+                "bodies": len(scene.bodies),
+                "duration": scene.duration,
+                "recorded": scene.recorded,
+                "radius": scene.radius,
+                "pairs": [_pair(found, scene, pair) for pair in study.pairs(scene)],
+                "models": _models(found, scene),
+                "places": list(places(found, scene, starts)),
+            }
+            for scene in study.scenes
+        ],
     }
-    return json.dumps(data, allow_nan=False).replace("<", "\\u003c")
-
-
-def packed_motions(found: Findings) -> str:
-    """Every motion in order, 32-bit numbers: time (T,), position (T, N, 2), acceleration (T, N, 2)."""
-    return packed(b"".join(_numbers(motion).tobytes() for motion in found.motions or []))
-
-
-def packed(content: bytes) -> str:
-    """Compressed and written in letters; the browser undoes both."""
-    return base64.b64encode(gzip.compress(content, mtime=0)).decode()
+    return json.dumps(data, allow_nan=False, separators=(",", ":"))
 
 
 def crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[float]]]:
@@ -64,60 +66,69 @@ def crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[f
     return [np.round(np.asarray(line), 4).tolist() for line in lines]
 
 
-def _scene(found: Findings, scene: Scene, surfaces: xr.Dataset, starts: Starts) -> dict[str, Any]:
-    study: Study = found.study
-    bodies = range(1, len(scene.bodies) + 1)
-
-    def contours(pair: Pair, body: int) -> list[list[list[float]]]:
-        if scene.recorded:
-            return []
-        step = pair_step(surfaces, scene.name, pair, body)
-        return crossings(step.size, step.uncertainty, step.alpha1)
-
-    def listed(model: str, body: int) -> list[list[float | None]]:
-        mu = common_phases(surfaces, scene.name, [model])["mu"].sel(model=model, body=body).values
-        return [[float(f"{value:.7g}") if np.isfinite(value) else None for value in row] for row in mu]
-
-    pairs = study.pairs(scene)
+def _pair(found: Findings, scene: Scene, pair: Pair) -> dict[str, Any]:
+    surfaces = not scene.recorded and _surface(found, scene, pair.first) and _surface(found, scene, pair.second)
+    steps = [pair_step(found.surfaces, scene.name, pair, body) for body in range(1, len(scene.bodies) + 1)]
     return {
-        "duration": scene.duration,
-        "pairs": {pair.key: [pair.first.key, pair.second.key] for pair in pairs},
-        "mu": {model.key: [listed(model.key, body) for body in bodies] for model in models_of(scene, study.hierarchy)},
-        "contours": {pair.key: [contours(pair, body) for body in bodies] for pair in pairs},
-        "places": list(_places(found, scene, starts)),
+        "key": pair.key,
+        "title": pair.title,
+        "sentence": pair.sentence,
+        "first": pair.first.key,
+        "second": pair.second.key,
+        "contours": [crossings(step.size, step.uncertainty, step.alpha1) if surfaces else [] for step in steps],
+        "uncertainty": None if surfaces else [_rows(step.uncertainty, ERROR_DIGITS) for step in steps],
     }
 
 
-def _places(found: Findings, scene: Scene, starts: Starts) -> Iterator[dict[str, Any]]:
-    own = [motion for motion in found.motions or [] if motion.place.scene == scene.name]
-    alpha1, alpha2 = (np.asarray(found.surfaces[name]) for name in ("alpha1", "alpha2"))
-    for place, motions in groupby(own, key=lambda motion: motion.place):
-        yield {
-            "row": place.row,
-            "column": place.column,
-            "phases": None if scene.recorded else [float(alpha1[place.row]), float(alpha2[place.column])],
-            "why": place.why,
-            "motions": [
-                {
-                    "model": motion.model,
-                    "status": motion.status,
-                    "error_message": motion.error_message,
-                    "stick": [[round(start, 4), round(end, 4)] for start, end in motion.stick],
-                    "start": starts[place, motion.model],
-                    "count": len(motion.time),
-                }
-                for motion in motions
-            ],
-        }
+def _surface(found: Findings, scene: Scene, model: Model) -> bool:
+    """Whether the values of a model are drawn as a surface as they are: on all phases, and not few of a spatial one."""
+    few = model.settings.get("model") == "spatial" and len(found.study.axis(model, scene)) <= FEW_PER_AXIS
+    return found.study.stride(model, scene) == 1 and not few
 
 
-def _numbers(motion: StoredMotion) -> NDArray[np.float32]:
-    parts = (motion.time, motion.position, motion.acceleration)
-    return np.concatenate([part.ravel() for part in parts]).astype("<f4")
+def _models(found: Findings, scene: Scene) -> dict[str, Any]:
+    completed = {(each.model, each.body): each for each in found.completions if each.scene == scene.name}
+    return {model.key: _model(found, scene, completed, model) for model in models_of(scene, found.study.hierarchy)}
 
 
-def _starts(motions: Sequence[StoredMotion]) -> Starts:
-    """Where the first number of every motion stands among all of them."""
-    sizes = [motion.time.size + motion.position.size + motion.acceleration.size for motion in motions]
-    keys = [(motion.place, motion.model) for motion in motions]
-    return dict(zip(keys, np.concatenate([[0], np.cumsum(sizes)]).astype(int).tolist()))
+def _model(
+    found: Findings, scene: Scene, completed: Mapping[tuple[str, int], Completion], model: Model
+) -> dict[str, Any]:
+    """
+    One model of a scene.
+
+    phases: per axis. computed: phase pairs that symmetry did not give. surface: whether its values are drawn as one.
+    mu: per body. error: per body, null for a surface. completed: per body, null or through (a model), error (largest
+    of leaving out one), reason (why it is not drawn), difference (whether that may be drawn), mu (null where refused).
+    """
+    data = common_phases(found.surfaces, scene.name, [model.key]).sel(model=model.key)
+    bodies = range(1, len(scene.bodies) + 1)
+    surface = not scene.recorded and _surface(found, scene, model)
+
+    def listed(name: str, digits: int) -> list[Rows]:
+        return [_rows(np.asarray(data[name].sel(body=body), float), digits) for body in bodies]
+
+    return {
+        "phases": len(found.study.axis(model, scene)),
+        "computed": len(found.study.solved(scene, model)),
+        "surface": surface,
+        "mu": listed("mu", DIGITS),
+        "error": None if surface else listed("error", ERROR_DIGITS),
+        "completed": [_completed(completed.get((model.key, body))) for body in bodies],
+    }
+
+
+def _completed(completion: Completion | None) -> dict[str, Any] | None:
+    if completion is None:
+        return None
+    return {
+        "through": completion.through,
+        "error": completion.error if np.isfinite(completion.error) else None,
+        "reason": completion.reason,
+        "difference": completion.difference_accepted,
+        "mu": _rows(completion.mu, DIGITS) if completion.accepted else None,
+    }
+
+
+def _rows(values: Array, digits: int) -> Rows:
+    return [[float(f"{value:.{digits}g}") if np.isfinite(value) else None for value in row] for row in values]

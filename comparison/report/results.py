@@ -20,7 +20,7 @@ from comparison.analysis.tradeoff.trade import Trade
 from reference.problem.acceptance import Acceptance
 
 SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"
-VERSION: Literal[3] = 3  # grows when a key changes its meaning or goes
+VERSION: Literal[4] = 4  # grows when a key changes its meaning or goes
 
 
 def _finite(value: float) -> float | None:
@@ -132,6 +132,8 @@ class ModelDescription(Part):
     """its name for readers"""
     adds: str
     """what it adds to the model before it"""
+    effect: str
+    """the same in two or three words, as the cause of a difference"""
     settings: dict[str, Any]
     """keyword arguments of its functions"""
 
@@ -143,6 +145,8 @@ class ModelOutcome(Part):
     """values of alpha1, and of alpha2"""
     points: int
     """phase pairs that the model was asked for"""
+    computed: int
+    """of these, computed; the others are their mirror images"""
     outcomes: dict[str, int]
     """how many phase pairs ended in each named outcome, most frequent first"""
     advice: dict[str, Text]
@@ -262,6 +266,145 @@ class BudgetEntry(Part):
     """phase pairs that both models were asked for"""
 
 
+class WaterfallBar(Part):
+    """One step of the model hierarchy, or the total; relative to mu of the first model."""
+
+    model: str
+    """key of the model that the step leads to"""
+    size: Number
+    """signed size; null where a model has no value"""
+    error: Number
+    """error estimate of the size"""
+    real: bool
+    """whether the size exceeds five times its error estimate"""
+
+
+class LargestDifference(Part):
+    """The largest absolute difference of an engine model and the first model, taken apart at its phase pair."""
+
+    bars: list[WaterfallBar]
+    """one per step, up to the model that has the difference; they add up to the total"""
+    total: WaterfallBar
+    """the difference itself"""
+    phases: Phases
+    """(alpha1, alpha2), rad; null under a record"""
+    phases_per_axis: int
+    """of the grid of phase pairs that both models were asked for; 1 under a record, 0 without a difference"""
+
+
+class Waterfall(Part):
+    """The total difference of one body as signed bars that add up."""
+
+    scene: Text
+    """name of the scene"""
+    body: int
+    """number of the body; 1 is the platform"""
+    bars: list[WaterfallBar]
+    """one per step: means over the phase pairs where every compared model has a value"""
+    total: WaterfallBar
+    """mean of the total difference over the same phase pairs: the sum of the bars"""
+    points: int
+    """number of these phase pairs"""
+    independent: int
+    """of these, not related by a symmetry of the scene"""
+    largest: LargestDifference
+    """the same at the phase pair of the largest difference"""
+
+
+class Headline(Part):
+    """The total difference of one body in numbers and in a plain sentence; relative to mu of the first model."""
+
+    scene: Text
+    """name of the scene"""
+    body: int
+    """number of the body; 1 is the platform"""
+    name: str
+    """name of the body"""
+    first: str
+    """key of the first model"""
+    second: str
+    """key of the last model"""
+    median: Number
+    """median of the signed difference over the phase pairs where both have a value"""
+    phases_per_axis: int
+    """of the grid of phase pairs that both models were asked for; 1 under a record"""
+    points: int
+    """phase pairs of this grid where both have a value"""
+    independent: int
+    """of these, not related by a symmetry of the scene"""
+    real: Number
+    """fraction of these where the difference exceeds five times its error estimate"""
+    maximum: Number
+    """signed; the largest absolute difference of the first and any engine model, at any phase pair where both have a
+    value"""
+    maximum_error: Number
+    """error estimate of the maximum"""
+    maximum_phases: Phases
+    """(alpha1, alpha2) of the maximum, rad; null under a record"""
+    maximum_model: str
+    """key of the engine model that has the maximum"""
+    maximum_phases_per_axis: int
+    """of the grid of phase pairs that this model and the first were asked for"""
+    cause: list[str]
+    """keys of the models whose steps in the means are the causes, largest first; empty where no step is real"""
+    maximum_cause: list[str]
+    """the same at the phase pair of the maximum"""
+    like_for_like: Number
+    """largest absolute difference of the two codes given the same equations and friction law"""
+    sentence: Text
+    """all that in words"""
+
+
+class Completion(Part):
+    """
+    One body's surface of a model that is computed on fewer phases than the study has, completed through a finer model.
+
+    It is the finer model plus the interpolated difference of the two. The completed values are the variable `completed`
+    of surfaces.nc.
+    """
+
+    scene: Text
+    """name of the scene"""
+    model: str
+    """key of the model that is completed"""
+    through: str
+    """key of the finer model; empty without one"""
+    body: int
+    """number of the body; 1 is the platform"""
+    computed: int
+    """phase pairs where both models have a value"""
+    error: Number
+    """largest leave-one-out error of mu; null where nothing was interpolated"""
+    relative_error: Number
+    """the same, relative to mu of the finer model"""
+    relief: Number
+    """highest less lowest value of the completed surface"""
+    difference: Number
+    """95 % of the absolute differences of the completed surface from the first model are below this, relative to it"""
+    accepted: bool
+    """whether the surface may be drawn as completed: the error is at most a hundredth of the relief"""
+    difference_accepted: bool
+    """whether its difference from the first model may be drawn as completed: the relative error is at most a fifth of
+    it"""
+    reason: Text
+    """why the surface may not be drawn; empty where it may"""
+
+
+class GridMaximum(Part):
+    """The largest value of one surface on the phases that were computed."""
+
+    model: str
+    """key of the model"""
+    body: int
+    """number of the body; 1 is the platform"""
+    mu: Number
+    """largest value; null without any"""
+    error: Number
+    """estimated absolute error of it"""
+    phases: Phases
+    """(alpha1, alpha2), rad; null under a record"""
+
+
 class BarSegment(Part):
     """One step in a bar."""
 
@@ -364,6 +507,14 @@ class SceneResult(Part):
     """one per body and step, then the total"""
     bars: list[Bar]
     """one per body"""
+    headlines: list[Headline]
+    """one per body"""
+    waterfalls: list[Waterfall]
+    """one per body"""
+    completions: list[Completion]
+    """one per body of every model that lacks phases of the study"""
+    grid_maxima: list[GridMaximum]
+    """one per model and body"""
     limits: list[Limit]
     """every acceptance limit that the scene states"""
     effective: list[Effective]
@@ -590,6 +741,31 @@ class Unanswered(Part):
     """all that in words"""
 
 
+class Alert(Part):
+    """What a reader must know before trusting a number."""
+
+    level: Literal["red", "amber"]
+    """red: a model refused or a limit is broken; amber: a number is missing or to be read with care"""
+    kind: Literal["refused", "limit", "lacking", "fault", "swing"]
+    """model without any value, broken acceptance limit, phase pairs without a value, error message of a solver, wide
+    swing of the platform"""
+    scene: Text
+    """name of the scene"""
+    text: Text
+    """what is the matter"""
+    help: Text
+    """what helps; empty where nothing is known to"""
+
+    @property
+    def line(self) -> str:
+        """All that in one line."""
+        return ". ".join(f"{part[0].upper()}{part[1:]}" if number else part for number, part in enumerate(self._parts))
+
+    @property
+    def _parts(self) -> list[str]:
+        return [f"{self.scene}: {self.text}", *([self.help] if self.help else [])]
+
+
 class Results(Part):
     """Everything that a program needs to judge a run. Relative sizes are fractions; a missing number is null."""
 
@@ -597,7 +773,7 @@ class Results(Part):
         default=SCHEMA, validation_alias="schema", serialization_alias="schema"
     )
     """what this file is"""
-    version: Literal[3] = VERSION
+    version: Literal[4] = VERSION
     """grows when a key changes its meaning or goes; new keys may come without"""
     run: Run
     """how the report was made"""
@@ -631,10 +807,15 @@ class Results(Part):
     """analyses that were made of no scene, with the reason"""
     unanswered: list[Unanswered]
     """models without a value at some or all phase pairs of a scene"""
-    broken: list[Text]
-    """broken acceptance limits in words, one line for each body"""
+    alerts: list[Alert]
+    """what a reader must know before trusting a number, the most serious first"""
     faults: list[Text]
     """error messages of the solvers"""
+
+    @property
+    def broken(self) -> list[Alert]:
+        """The broken acceptance limits, one alert for each body."""
+        return [alert for alert in self.alerts if alert.kind == "limit"]
 
     @property
     def phased(self) -> list[SceneResult]:

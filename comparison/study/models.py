@@ -77,6 +77,7 @@ class Model:
     applies: Callable[[Scene], bool] = field(default=any_scene)
     asks: float | None = None
     refusal: str | None = None
+    effect: str = ""
 
     def tolerance(self, asked: float) -> float:
         """Relative error this model asks of its own numbers when the study asks for `asked`."""
@@ -172,6 +173,7 @@ EXACT = _next(
     },
     key="exact",
     title="exact equations",
+    effect="geometry",
     adds="The whole sphere: equations (3.9)-(3.13) with the errata of the print corrected, same friction law.",
     settings={"equations": "exact", "regularization": None},
 )
@@ -180,6 +182,7 @@ RESOLVED = _next(
     {"mu_i": "largest value at rest or sliding faster than v_c = 1e-3 m/s"},
     key="resolved",
     title="exact equations, resolved peak",
+    effect="the instant of stopping",
     adds="The same motion, read only at rest and while sliding faster than v_c = 1e-3 m/s: what the one-sided "
     "limits at stops, which no sampling reaches, are worth.",
     settings={**EXACT.settings, "cutoff": V_REG},
@@ -191,6 +194,7 @@ REGULARIZED = _next(
     {"friction": "Coulomb, linear below v_reg = 1e-3 m/s", "mu_i": _PEAK},
     key="regularised",
     title="exact equations, v_reg",
+    effect="friction smoothed near rest",
     adds="Friction linear below v_reg = 1e-3 m/s, as an engine has it: no true rest, no jump at a stop.",
     settings={"equations": "exact", "regularization": V_REG},
     seconds_per_point=0.003,
@@ -207,6 +211,7 @@ TRANSLATIONAL = _next(
     },
     key="translational",
     title="translational engine",
+    effect="elastic contact",
     adds="Exudyn: spheres in hollow spheres with an elastic contact, every body free to translate only.",
     side="engine",
     amplification="multibody:amplification",
@@ -227,6 +232,7 @@ SPATIAL = _next(
     },
     key="spatial",
     title="spatial engine",
+    effect="turning of the bodies",
     adds="Every body free to turn, at its height, on a ring of supports: overturning shares the load unequally, "
     "friction twists the platform, supports may lift off.",
     settings={"model": "spatial", "regularization": V_REG},

@@ -17,7 +17,7 @@ from fake_models import fake_hierarchy
 from comparison.cli.options import parsed
 from comparison.registry import chosen_analyses, first_tasks, predicted_costs
 from comparison.report.figures.pictures import Pictures
-from comparison.report.report import SECTIONS
+from comparison.report.page import SECTIONS
 from comparison.study.selection import Selection
 from comparison.study.study import Study
 from reference.problem import load_scene

@@ -14,7 +14,7 @@ from conftest import Run
 from fake_models import fake_hierarchy
 
 from comparison.execution.output import atomic_replace, clear_dead, publish
-from comparison.report import report
+from comparison.report import page
 
 SMALL = ["fig3-I", "--grid", "2"]
 
@@ -42,7 +42,7 @@ def test_a_report_that_cannot_be_finished_leaves_the_old_one(
     def breaks(*rest: object) -> str:
         raise error_message  # the surfaces, the summary and the figures are written by then
 
-    monkeypatch.setattr(report, "page_data", breaks)
+    monkeypatch.setattr(page, "page_data", breaks)
     run = command(*SMALL, "--tolerance", "2e-3")
     assert run.code == (130 if isinstance(error_message, KeyboardInterrupt) else 3)
     assert run.err.count("\n") == 1

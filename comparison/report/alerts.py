@@ -1,0 +1,80 @@
+"""What a reader must know before trusting a number: refusals, broken limits, gaps, faults, wide swings. One place."""
+
+from __future__ import annotations
+
+from comparison.analysis.surfaces import largest_cap_share
+from comparison.report.findings import Findings
+from comparison.report.results import Alert
+from comparison.study.models import models_of
+
+WIDE = 0.5  # of rho: a displacement of the platform from the middle that a reader must know of
+
+
+def alerts(found: Findings) -> list[Alert]:
+    """
+    Every alert of a run, red before amber, otherwise in the order of the kinds and scenes.
+
+    Red: a model has no value at any phase pair, or an acceptance limit is broken. Amber: a model lacks a value at some
+    phase pairs, a solver reported an error, or a platform moves so far that the report says so.
+    """
+    listed = [*_gaps(found), *_limits(found), *_faults(found), *_swings(found)]
+    return sorted(listed, key=lambda alert: alert.level != "red")
+
+
+def _gaps(found: Findings) -> list[Alert]:
+    rows = []
+    for lacking in found.unanswered:
+        refused = lacking.points == lacking.asked
+        rest = "" if lacking.used else "; comparisons leave this model out"
+        outcomes = ", ".join(
+            note.outcome if note.count == lacking.asked else f"{note.count} × {note.outcome}"
+            for note in lacking.outcomes
+        )
+        rows.append(
+            Alert(
+                level="red" if refused else "amber",
+                kind="refused" if refused else "lacking",
+                scene=lacking.scene,
+                text=f"{lacking.title}: {lacking.where}: {outcomes}{rest}",
+                help="; ".join(note.advice for note in lacking.outcomes),
+            )
+        )
+    return rows
+
+
+def _limits(found: Findings) -> list[Alert]:
+    return [
+        Alert(
+            level="red",
+            kind="limit",
+            scene=limit.scene,
+            text=line.removeprefix(f"{limit.scene}: "),
+            help="read the cause of the difference, then correct the scene or the limit in its [acceptance] table",
+        )
+        for limit in found.limits
+        for line in limit.broken
+    ]
+
+
+def _faults(found: Findings) -> list[Alert]:
+    rows = []
+    for line in found.faults:
+        scene, _, text = line.partition(", ")
+        rows.append(Alert(level="amber", kind="fault", scene=scene, text=text, help=""))
+    return rows
+
+
+def _swings(found: Findings) -> list[Alert]:
+    study = found.study
+    return [
+        Alert(
+            level="amber",
+            kind="swing",
+            scene=scene.name,
+            text=f"{model.title}: the platform moves up to {100.0 * share:.1f} % of rho from the middle",
+            help="the model assumes a cap that reaches so far: compare with the isolator that is to be built",
+        )
+        for scene in study.scenes
+        for model in models_of(scene, study.hierarchy)
+        if (share := largest_cap_share(found.surfaces, scene.name, model.key)) > WIDE
+    ]

@@ -1,0 +1,56 @@
+"""Words of the field that a reader of the first screen may not know, explained at the pointer and the keyboard."""
+
+from __future__ import annotations
+
+import re
+
+from markupsafe import Markup
+
+from comparison.wording import symbols
+
+GLOSSARY = {
+    "phases": "The starting angles alpha_1 and alpha_2 of the two harmonics of the loading. One pair is one motion.",
+    "phase pairs": "The starting angles alpha_1 and alpha_2 of the harmonics of the loading. One pair is one motion.",
+    "independent": "Not the mirror image of another phase pair: symmetry gives the others without computing them.",
+    "median": "Half of the phase pairs have a smaller value, half a larger one.",
+    "engine": "Exudyn, a general multibody code: spheres in hollow spheres with elastic contact, built without the "
+    "paper's equations.",
+    "paper's equations": "The printed equations (4.3)-(4.4) for small vibrations, with dry friction that sticks.",
+    "geometry": "The whole sphere instead of its small-vibration form: equations (3.9)-(3.13).",
+    "the instant of stopping": "When a sliding platform comes to rest, its acceleration jumps. The paper's largest "
+    "value counts the limit just before the jump, which no computed motion reaches. This step leaves it out.",
+    "friction smoothed near rest": "Friction that grows linearly with the speed below v_reg = 1 mm/s, as engines "
+    "have it, instead of friction that sticks.",
+    "elastic contact": "The engine's contact gives way a little; that of the equations is rigid.",
+    "turning of the bodies": "Bodies may turn, overturning shifts load between the supports, and supports may lift "
+    "off. The paper assumes that no body turns.",
+    "two codes": "Equations and engine, given the same geometry and the same friction law: what remains is the "
+    "error of the codes.",
+    "real": "Larger than five times the error estimates of both models together, and so known to a fifth of itself.",
+    "limits": "Largest values that a scene file states as acceptable.",
+}  # fmt: skip
+WORDS = re.compile("|".join(rf"\b{re.escape(word)}\b" for word in sorted(GLOSSARY, key=len, reverse=True)))
+
+
+def term(word: str, text: str = "") -> Markup:
+    """`text`, or the word itself, with the explanation of the word at the pointer and the keyboard."""
+    explanation = GLOSSARY.get(word)
+    shown = symbols(text or word)
+    if explanation is None:
+        return shown
+    tip = symbols(explanation).striptags()
+    return Markup('<span class="term" tabindex="0" data-tip="{}">{}</span>').format(tip, shown)
+
+
+def explained(sentence: str, seen: set[str] | None = None) -> Markup:
+    """The sentence with every word of the glossary explained where it stands first."""
+    seen = set() if seen is None else seen
+    parts: list[Markup] = []
+    end = 0
+    for match in WORDS.finditer(sentence):
+        if match.group() in seen:
+            continue
+        seen.add(match.group())
+        parts += [symbols(sentence[end : match.start()]), term(match.group())]
+        end = match.end()
+    return Markup("").join([*parts, symbols(sentence[end:])])

@@ -1,0 +1,346 @@
+"""The page index.html: its sections, and what their templates show."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import numpy as np
+
+from comparison.analysis.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE
+from comparison.analysis.claims.table import SIGNS
+from comparison.analysis.effective import PHASES
+from comparison.analysis.extremes.matrix import PICTURE
+from comparison.analysis.extremes.verdicts import Verdict
+from comparison.report.figures.assumptions import assumption_figure_name, draw_assumptions
+from comparison.report.figures.extremes import MEANING, describe, draw_extremes
+from comparison.report.figures.families import draw_families
+from comparison.report.figures.pictures import smaller
+from comparison.report.figures.tradeoff import draw_tradeoff, tradeoff_figure_name
+from comparison.report.findings import Findings
+from comparison.report.glossary import explained, term
+from comparison.report.motion_data import packed, packed_motions
+from comparison.report.page_data import page_data
+from comparison.report.page_plots import claim_heat, family_panels, tradeoff_answers, tradeoff_panels, trend_panels
+from comparison.report.record_rows import record_rows
+from comparison.report.results import Claim, ClaimVerdict, Effect, Erratum, Results, SceneResult, Waterfall
+from comparison.report.verification import CHECKS
+from comparison.report.waterfall_chart import Scale, charts, log_scale, scales
+from comparison.study.study import Study
+from comparison.wording import degrees, percent, scientific, signed, significant, symbols
+from reference.problem import Outcome
+
+
+@dataclass(frozen=True)
+class Section:
+    """
+    One section of the page: templates/sections/<name>.html.j2 below its heading, in the order of SECTIONS.
+
+    result: the field of `Results` it shows; where that is None the section is left out and `absent` says which command
+    makes it. draw: writes its pictures into the folder of the figures. title_recorded: title where no scene has phases,
+    "" for the same. folded: whether the reader opens it.
+    """
+
+    name: str
+    title: str
+    result: str = ""
+    absent: str = ""
+    draw: Callable[[Path, Findings], None] | None = None
+    title_recorded: str = ""
+    folded: bool = True
+
+    def present(self, results: Results) -> bool:
+        """Whether the section was asked for and the results hold what it shows."""
+        return self.name not in results.absent and (not self.result or getattr(results, self.result) is not None)
+
+    def title_of(self, results: Results) -> str:
+        """Title of the section in these results."""
+        return self.title if results.phased else self.title_recorded or self.title
+
+
+def draw_all_assumptions(figures: Path, found: Findings) -> None:
+    """The picture of every scene that has a spatial model."""
+    if found.assumptions:
+        for scene in found.assumptions.scenes:
+            draw_assumptions(figures / assumption_figure_name(scene), scene, found.assumptions.cells)
+
+
+def draw_all_trades(figures: Path, found: Findings) -> None:
+    """The diagrams of every scene that has them."""
+    for trade in found.tradeoff or ():
+        draw_tradeoff(figures / tradeoff_figure_name(trade.scene), trade)
+
+
+SECTIONS = (
+    Section("surfaces", "Surfaces and motions", title_recorded="Values and motions under the records", folded=False),
+    Section(
+        "families",
+        "Families of scenes",
+        "families",
+        "a range in a scene file makes one: friction = {range = [0.02, 0.2], steps = 10}",
+        draw_families,
+        folded=False,
+    ),
+    Section("differences", "Differences"),
+    Section("budget", "What makes the difference"),
+    Section("scaling", "Scaling test", "scaling", "python -m comparison.run makes it, of scenes with phases"),
+    Section(
+        "convergence",
+        "What the steps tend to",
+        "convergence",
+        "python -m comparison.run makes it, of scenes with phases",
+    ),
+    Section("outcomes", "Outcomes and cost"),
+    Section("models", "What was compared"),
+    Section(
+        "claims",
+        "The paper's claims",
+        "claims",
+        "python -m comparison.run with every scene of the paper makes it, and python -m comparison.claims alone",
+    ),
+    Section("errata", "Errata of the print"),
+    Section(
+        "assumptions",
+        "How far the paper's assumptions carry",
+        "assumptions",
+        "no scene with phases says where its supports are and how high and large its bodies, as the spatial model asks",
+        draw_all_assumptions,
+    ),
+    Section(
+        "extremes",
+        "Stability at the extremes",
+        "extremes",
+        "python -m comparison.extremes makes it, beside the report; the next run of the study shows it",
+        lambda figures, found: draw_extremes(figures / PICTURE, found.extremes) if found.extremes else None,
+    ),
+    Section(
+        "tradeoff",
+        "Speed for accuracy",
+        "tradeoff",
+        "python -m comparison.tradeoff SCENE makes it, beside the report; the next run of the study shows it",
+        draw_all_trades,
+    ),
+    Section("effective", "Effective values"),
+    Section("verification", "What checks each side alone"),
+    Section("provenance", "Provenance"),
+)
+SCRIPTS = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions.js", "page.js")
+
+
+def page(figures: Path, found: Findings, results: Results) -> str:
+    """
+    Content of index.html.
+
+    Parameters
+    ----------
+    figures : Path
+        Folder with the pictures of the report.
+    found : Findings
+        What the run found: surfaces and motions that are drawn.
+    results : Results
+        Everything else, as typed data.
+
+    Returns
+    -------
+    str
+        The page, which needs no other file and no network.
+    """
+    study = found.study
+    templates = resources.files("comparison.report") / "templates"
+    style = (templates / "report.css").read_text(encoding="utf-8")
+    script = "\n".join((templates / name).read_text(encoding="utf-8") for name in SCRIPTS)
+    hierarchy = [model for model in study.hierarchy if any(model.applies(scene) for scene in study.scenes)]
+    axes = scales(results)
+    rows = [row for scene in results.scenes_with("differences") for row in scene.differences]
+    outcomes = _outcomes(results)
+    return _environment().get_template("report.html.j2").render(
+        policy=content_policy(script, style),
+        style=style,
+        script=script,
+        sections=[section for section in SECTIONS if section.present(results)],
+        absent=[
+            (section.title, results.absent.get(section.name, section.absent))
+            for section in SECTIONS
+            if not section.present(results)
+        ],
+        results=results,
+        study=study,
+        question=_question(study),
+        has_surfaces=lambda scene: "surfaces" in scene.analyses,
+        cards=[_card(scene, axes, found) for scene in results.scenes],
+        scales=axes,
+        effects={model.key: model.effect or model.title for model in study.hierarchy},
+        record_tables=_record_tables(found),
+        rows=rows,
+        dots=log_scale([size for row in rows for size in (row.median, row.maximum)]),
+        budget=[entry for scene in results.scenes_with("budget") for entry in scene.budget],
+        trend_panels=trend_panels,
+        tradeoff_panels=tradeoff_panels,
+        tradeoff_answers=tradeoff_answers,
+        family_panels=family_panels(found),
+        claim_heat=claim_heat(results),
+        claim_findings=_claim_findings,
+        hierarchy=hierarchy,
+        titles={"scene": "as stated", **{model.key: model.title for model in study.hierarchy}},
+        properties=_properties(hierarchy),
+        effective=[values for scene in results.scenes for values in scene.effective],
+        phases=PHASES,
+        errata=[{"erratum": erratum, "effects": _effects(erratum)} for erratum in results.errata or []],
+        assumption_pictures=_assumption_pictures(figures, found, results),
+        checks=CHECKS,
+        claim_signs=SIGNS,
+        verdicts=[(verdict.value, MEANING[verdict]) for verdict in Verdict],
+        describe=describe,
+        digests={scene.digest for scene in results.scenes},
+        peak_share=SHARE,
+        peak_shares=(LEAST_SHARE, MOST_SHARE),
+        outcomes=outcomes,
+        most_cost=max((row["cost"] for row in outcomes), default=0.0) or 1.0,
+        data=packed(page_data(found).encode()),
+        motions=packed_motions(found),
+    )  # fmt: skip
+
+
+def content_policy(script: str, style: str) -> str:
+    """The page's content security policy: its own script and style by their hash, pictures inside it, nothing else."""
+
+    def digest(text: str) -> str:
+        return "'sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() + "'"
+
+    allowed = {"script-src": digest(script), "style-src": digest(style), "img-src": "data:"}
+    denied = dict.fromkeys(("default-src", "base-uri", "form-action"), "'none'")
+    return "; ".join(f"{name} {value}" for name, value in (denied | allowed).items())
+
+
+def _environment() -> jinja2.Environment:
+    loader = jinja2.PackageLoader("comparison.report", "templates")
+    environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
+    filters = (percent, signed, scientific, degrees, significant, symbols, explained)
+    environment.filters.update({function.__name__: function for function in filters})
+    environment.globals["term"] = term  # in macros, too
+    return environment
+
+
+def _question(study: Study) -> str:
+    """Over what the page shows the amplification factors: phases, records, or both."""
+    phases = f"over {study.grid} × {study.grid} initial phases of the two-frequency loading"
+    if not study.phased:
+        return "under a recorded motion" if len(study.scenes) == 1 else "under recorded motions"
+    return phases if len(study.phased) == len(study.scenes) else f"{phases}, or under a recorded motion"
+
+
+def _card(scene: SceneResult, axes: dict[str, Scale], found: Findings) -> dict[str, Any]:
+    """One scene on the first screen."""
+    bodies = [
+        {
+            "sentence": headline.sentence.removeprefix(f"{scene.name}, ").replace(f"{scene.name}: ", ""),
+            "bars": charts(waterfall, axes),
+            "mean_caption": f"mu_{waterfall.body}, {_phases_of(waterfall, scene)}",
+            "largest_caption": f"mu_{waterfall.body}, {_place_of(waterfall)}",
+        }
+        for headline, waterfall in zip(scene.headlines, scene.waterfalls)
+    ]
+    return {"scene": scene, "bodies": bodies}
+
+
+def _phases_of(waterfall: Waterfall, scene: SceneResult) -> str:
+    """Over which phase pairs the means are."""
+    if scene.recorded:
+        return "under the record"
+    pairs = "phase pair" if waterfall.points == 1 else "phase pairs"
+    return f"mean over {waterfall.points} {pairs}, {waterfall.independent} of them independent"
+
+
+def _place_of(waterfall: Waterfall) -> str:
+    """Where the largest difference is."""
+    first, second = waterfall.largest.phases
+    return f"at ({degrees(first)}, {degrees(second)})" if math.isfinite(first) else "no difference is known"
+
+
+def _record_tables(found: Findings) -> list[dict[str, Any]]:
+    """What stands in place of surfaces for every body of a scene under a record."""
+    return [
+        {"scene": number, "body": body, "excitation": scene.excitation, "rows": record_rows(found, scene, body)}
+        for number, scene in enumerate(found.study.scenes)
+        if scene.recorded
+        for body in range(1, len(scene.bodies) + 1)
+    ]
+
+
+def _assumption_pictures(figures: Path, found: Findings, results: Results) -> list[dict[str, Any]]:
+    if found.assumptions is None or results.assumptions is None:
+        return []
+    return [
+        {
+            "title": scene.title,
+            "name": scene.name,
+            "picture": _inlined(smaller((figures / assumption_figure_name(scene)).read_bytes())),
+            "lines": found.assumptions.lines(scene),
+        }
+        for scene in found.assumptions.scenes
+    ]
+
+
+def _inlined(webp: bytes) -> str:
+    """A picture inside the page."""
+    return "data:image/webp;base64," + base64.b64encode(webp).decode()
+
+
+def _claim_findings(claim: Claim) -> list[tuple[ClaimVerdict, list[int]]]:
+    """What the checks of a claim found, each different answer once, with the numbers of its readings from 1 on."""
+    groups: dict[tuple[str, str], tuple[ClaimVerdict, list[int]]] = {}
+    for number, verdict in enumerate(claim.verdicts, start=1):
+        groups.setdefault((verdict.finding, verdict.found), (verdict, []))[1].append(number)
+    return list(groups.values())
+
+
+def _properties(hierarchy: Sequence[Any]) -> list[dict[str, Any]]:
+    """Rows of the table of assumptions; in each, which models depart from the one before them."""
+    names = list(dict.fromkeys(name for model in hierarchy for name in model.assumptions))
+    table = []
+    for name in names:
+        texts = [model.assumptions.get(name, "") for model in hierarchy]
+        cells = [{"text": text, "differs": i > 0 and text != texts[i - 1]} for i, text in enumerate(texts)]
+        table.append({"name": name, "cells": cells})
+    return table
+
+
+def _effects(erratum: Erratum) -> list[str]:
+    """One sentence about the largest effect of an erratum in every scene that it touches."""
+    touched = [effect for effect in erratum.effects if effect.change or effect.error_message]
+    return [_effect(effect) for effect in touched] or [erratum.none or "no scene here"]
+
+
+def _effect(effect: Effect) -> str:
+    if effect.error_message:
+        return f"{effect.scene}: {effect.error_message}"
+    change = np.array(effect.change)
+    lost = "" if np.isfinite(change).all() else "no answer at some phases; "
+    sizes = [
+        f"mu_{body} by up to {percent(float(np.nanmax(np.abs(column)))) if np.isfinite(column).any() else 'any size'}"
+        for body, column in enumerate(change.T, start=1)
+    ]
+    return f"{effect.scene}: {lost}{', '.join(sizes)}"
+
+
+def _outcomes(results: Results) -> list[dict[str, Any]]:
+    titles = {model.key: model.title for model in results.models}
+    return [
+        {
+            "scene": scene.name,
+            "model": titles[key],
+            "points": model.points,
+            "cost": model.cost,
+            "others": [f"{model.outcomes[outcome]} × {outcome}: {text}" for outcome, text in model.advice.items()],
+            "ok": model.outcomes.get(Outcome.OK.value, 0),
+        }
+        for scene in results.scenes
+        for key, model in scene.models.items()
+    ]

@@ -1,0 +1,211 @@
+"""Descriptions of the plots in the page's folded sections, as plot.js draws them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+
+from comparison.analysis.tradeoff.trade import Answered, Entry, Trade
+from comparison.report.findings import Findings
+from comparison.report.results import Results, Trend
+from comparison.study.models import models_of
+from comparison.wording import scientific
+from reference.problem import Family
+
+Panel = dict[str, Any]  # title, and plot: see plot.js
+
+MAX_CURVES = 6  # in one panel: more cannot be told apart
+TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)  # relative errors for which the trade is put into words
+
+
+def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
+    """One log-log panel for each scene and parameter: median difference over it, the fitted slopes in the legend."""
+    panels = []
+    ordered = sorted(trends, key=lambda trend: (trend.scene, trend.parameter[-1]))
+    for (scene, values), group in groupby(ordered, key=lambda trend: (trend.scene, tuple(trend.parameter))):
+        rows = list(group)
+        series: list[dict[str, Any]] = []
+        for number, trend in enumerate(rows[:MAX_CURVES]):
+            slope = f"{trend.exponent:.2f} ± {trend.uncertainty:.2f}" if math.isfinite(trend.exponent) else "none"
+            points = {"x": list(values), "y": _plain(trend.medians), "color": number, "marks": True}
+            series.append({"name": f"μ_{trend.body}, {trend.what}: slope {slope}", **points})
+        axis = parameter or ("penetration, ρ" if "contact" in rows[0].what else "v_reg, m/s")
+        plot = {
+            "label": f"{scene}: median relative difference over {axis}; " + "; ".join(line["name"] for line in series),
+            "x": {"title": axis, "log": True},
+            "y": {"title": "median relative difference", "log": True},
+            "series": series,
+        }
+        panels.append({"title": scene, "plot": plot})
+    return panels
+
+
+def tradeoff_panels(trade: Trade) -> list[Panel]:
+    """One panel for each question, of the platform and of the last body."""
+    bodies = [0] if trade.bodies == 1 else [0, trade.bodies - 1]
+    return [_tradeoff_panel(trade, question, body) for question in trade.questions for body in bodies]
+
+
+def tradeoff_answers(trade: Trade) -> list[dict[str, str]]:
+    """For each question, which method meets which error in the least time."""
+    answers = []
+    for question in trade.questions:
+        parts = []
+        for target in TARGETS:
+            able = [entry for entry in trade.of(question.key) if _meets(entry, target)]
+            if not able:
+                parts.append(f"for {target:.0e} none")
+                continue
+            best = min(able, key=lambda entry: entry.seconds)
+            setting = f"{best.parameter} {best.value:.3g} {best.unit}".strip()
+            parts.append(f"for {target:.0e} ask {best.method}, {setting} ({1e3 * best.seconds:.3g} ms)")
+        answers.append({"title": question.title, "text": "; ".join(parts) + "."})
+    return answers
+
+
+def family_panels(found: Findings) -> list[dict[str, Any]]:
+    """For each family: mu of every body by every model over the value that runs, and what each effect adds."""
+    listed = []
+    for family in found.families or ():
+        bodies = range(1, family.bodies + 1)
+        panels = [
+            panel for body in bodies for panel in (_family_mu(found, family, body), _family_steps(found, family, body))
+        ]
+        first = family.scenes[0]
+        listed.append(
+            {
+                "title": first.title,
+                "name": family.name,
+                "count": len(family.values),
+                "key": family.key,
+                "panels": panels,
+            }
+        )
+    return listed
+
+
+def claim_heat(results: Results) -> list[dict[str, Any]]:
+    """How many claims about each figure each reading reproduces; level: 0 (none) to 4 (all)."""
+    if results.claims is None:
+        return []
+    counted = [claim for claim in results.claims.claims if not claim.weaker]
+    rows = []
+    for figure in dict.fromkeys(claim.figure for claim in counted):
+        claims = [claim for claim in counted if claim.figure == figure]
+        held = [
+            sum(claim.verdicts[column].finding == "reproduced" for claim in claims)
+            for column in range(len(results.claims.readings))
+        ]
+        cells = [{"held": h, "claims": len(claims), "level": math.ceil(4 * h / len(claims))} for h in held]
+        rows.append({"figure": figure, "cells": cells})
+    return rows
+
+
+def _tradeoff_panel(trade: Trade, question: Answered, body: int) -> Panel:
+    curves = {
+        method: known
+        for method, entries in trade.methods(question.key).items()
+        if (known := [e for e in entries if e.most[body] is not None and e.answered == e.points])
+    }
+    order = sorted(curves, key=lambda method: (curves[method][0].model_error, -_fronts(curves[method], body)))
+    series = [_curve(method, curves[method], body, number) for number, method in enumerate(order[:MAX_CURVES])]
+    title = f"{question.title}, mu_{body + 1}"
+    plot = {
+        "label": f"{trade.scene}, {title}: relative error over processor time; " + ", ".join(order[:MAX_CURVES]),
+        "x": {"title": "processor time per point, s", "log": True},
+        "y": {"title": "relative error, 95 %", "log": True},
+        "series": series,
+        "bands": [{"from": 1e-30, "to": question.error}] if question.error > 0.0 else [],
+        "height": 260,
+    }
+    return {"title": title, "plot": plot}
+
+
+def _fronts(entries: Sequence[Entry], body: int) -> int:
+    return sum(entry.pareto_front[body] for entry in entries if entry.pareto_front)
+
+
+def _curve(method: str, entries: Sequence[Entry], body: int, number: int) -> dict[str, Any]:
+    titles = [
+        f"{method}, {entry.parameter} {entry.value:.3g} {entry.unit}: {scientific(entry.most[body] or 0.0)} in "
+        f"{1e3 * entry.seconds:.3g} ms"
+        for entry in entries
+    ]
+    line: dict[str, Any] = {
+        "name": method,
+        "x": [entry.seconds for entry in entries],
+        "y": [max(entry.most[body] or 0.0, 1e-16) for entry in entries],
+        "marks": True,
+        "titles": titles,
+        "color": number,
+    }
+    return {**line, "dash": "5 3"} if entries[0].model_error else line
+
+
+def _meets(entry: Entry, target: float) -> bool:
+    errors = [size for size in entry.most if size is not None]
+    complete = len(errors) == len(entry.most) and entry.answered == entry.points
+    return complete and not entry.model_error and max(errors) <= target
+
+
+def _axis(family: Family) -> tuple[list[float], dict[str, Any]]:
+    """Places of the values on the axis, and the axis: by name where they are no numbers."""
+    if any(isinstance(value, str) for value in family.values):
+        places = [float(number) for number in range(len(family.values))]
+        names = [[place, str(value)] for place, value in zip(places, family.values)]
+        return places, {"title": family.key, "ticks": names, "range": [-0.3, len(places) - 0.7]}
+    return [float(value) for value in family.values], {"title": family.key}
+
+
+def _family_mu(found: Findings, family: Family, body: int) -> Panel:
+    places, axis = _axis(family)
+    mu = found.surfaces["mu"].sel(body=body)
+    series = []
+    for number, model in enumerate(models_of(family.scenes[0], found.study.hierarchy)):
+        surfaces = [np.asarray(mu.sel(scene=scene.name, model=model.key)).ravel() for scene in family.scenes]
+        known = [surface[np.isfinite(surface)] for surface in surfaces]
+        line: dict[str, Any] = {"name": model.title, "x": places, "color": number, "marks": True}
+        line["y"] = [float(values.mean()) if values.size else None for values in known]
+        if any(values.size > 1 for values in known):
+            line["low"] = [float(values.min()) if values.size else None for values in known]
+            line["high"] = [float(values.max()) if values.size else None for values in known]
+        series.append(line)
+    plot = {
+        "label": f"mu_{body} of every model over {family.key}",
+        "x": axis,
+        "y": {"title": f"μ{body}"},
+        "series": series,
+    }
+    return {"title": f"mu_{body}", "plot": plot}
+
+
+def _family_steps(found: Findings, family: Family, body: int) -> Panel:
+    places, axis = _axis(family)
+    effects = {model.key: model.effect or model.title for model in found.study.hierarchy} | {"total": "total"}
+    by_step: dict[str, Mapping[str, float]] = {}
+    for entry in found.budget:
+        if entry.body == body and entry.scene in {scene.name for scene in family.scenes}:
+            by_step.setdefault(entry.step, {})
+            by_step[entry.step] = {**by_step[entry.step], entry.scene: 100.0 * entry.mean}
+    series = [
+        {
+            "name": effects[step],
+            "x": places,
+            "y": _plain([sizes.get(scene.name, math.nan) for scene in family.scenes]),
+            "color": "ink" if step == "total" else number,
+            "marks": True,
+        }
+        for number, (step, sizes) in enumerate(by_step.items(), start=1)
+    ]
+    label = f"what each effect adds to mu_{body} over {family.key}"
+    plot = {"label": label, "x": axis, "y": {"title": "% of the first model"}, "series": series}
+    return {"title": f"what each effect adds to mu_{body}", "plot": plot}
+
+
+def _plain(values: Sequence[float]) -> list[float | None]:
+    """What JSON can hold: NaN is null."""
+    return [value if math.isfinite(value) else None for value in values]

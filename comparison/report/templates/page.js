@@ -1,0 +1,42 @@
+"use strict";
+// the page itself: explanations at words, the switch of the bars, links into folded sections; then the data
+const tip = document.getElementById("tip");
+function explain(word) {
+  tip.textContent = word.dataset.tip;
+  tip.hidden = false;
+  const box = word.getBoundingClientRect(), width = tip.offsetWidth, left = Math.min(Math.max(8, box.left), document.documentElement.clientWidth - width - 8);
+  tip.style.left = `${left + scrollX}px`;
+  tip.style.top = `${(box.bottom + tip.offsetHeight + 8 > innerHeight && box.top > tip.offsetHeight + 8 ? box.top - tip.offsetHeight - 6 : box.bottom + 6) + scrollY}px`;
+  word.setAttribute("aria-describedby", "tip");
+}
+function hush(word) {
+  tip.hidden = true;
+  word.removeAttribute("aria-describedby");
+}
+document.querySelectorAll(".term").forEach(word => {
+  ["mouseenter", "focus"].forEach(name => word.addEventListener(name, () => explain(word)));
+  ["mouseleave", "blur"].forEach(name => word.addEventListener(name, () => hush(word)));
+  word.addEventListener("keydown", event => { if (event.key === "Escape") hush(word); });
+});
+
+const bars = [...document.querySelectorAll("button[data-bars]")];
+bars.forEach(button => button.addEventListener("click", () => {
+  bars.forEach(other => other.setAttribute("aria-pressed", String(other === button)));
+  document.querySelectorAll("[data-waterfall]").forEach(table => { table.hidden = table.dataset.waterfall !== button.dataset.bars; });
+}));
+
+function openTarget() {
+  const target = location.hash.length > 1 && document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  if (target instanceof HTMLDetailsElement) target.open = true;
+  if (target) target.scrollIntoView();
+}
+addEventListener("hashchange", openTarget);
+document.querySelectorAll("a[data-show-scene]").forEach(link => link.addEventListener("click", () => { if (study) chooseScene(Number(link.dataset.showScene)); }));
+addEventListener("beforeprint", () => document.querySelectorAll("details.section").forEach(section => { section.open = true; }));
+
+unpacked("data").then(buffer => {
+  study = JSON.parse(new TextDecoder().decode(buffer));
+  if (study.scenes.length && part("scene").options.length) startViewer();
+  document.documentElement.dataset.ready = "true";
+  openTarget();
+});

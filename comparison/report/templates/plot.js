@@ -1,0 +1,147 @@
+"use strict";
+// every plot of the page: drawn as SVG at the width it has, from a description
+//   { label, height, x: {title, log, range, ticks: [[value, text], ...], equal}, y: the same,
+//     series: [{ name, x, y, low, high, line, marks, color, dash, width, titles, legend }], bands: [{ from, to, text }] }
+// color: 0 to 7 of the palette, "ink" or "gray"; a null in y parts a line; low and high make error bars
+const SVG = "http://www.w3.org/2000/svg";
+function svgElement(name, attributes = {}, text = "") {
+  const element = document.createElementNS(SVG, name);
+  Object.entries(attributes).forEach(([key, value]) => element.setAttribute(key, value));
+  if (text) element.textContent = text;
+  return element;
+}
+function element(name, className = "", ...content) {
+  const made = document.createElement(name);
+  if (className) made.className = className;
+  made.append(...content);
+  return made;
+}
+
+const known = value => value !== null && Number.isFinite(value);
+function rangeOf(axis, values) {
+  if (axis.range) return axis.range;
+  const fit = values.filter(value => known(value) && (!axis.log || value > 0));
+  if (!fit.length) return axis.log ? [0.1, 1] : [0, 1];
+  let low = fit.reduce((a, b) => Math.min(a, b)), high = fit.reduce((a, b) => Math.max(a, b));
+  if (axis.log) return low < high ? [low / (high / low) ** 0.06, high * (high / low) ** 0.06] : [low / 2, high * 2];
+  if (low === high) [low, high] = [low - (Math.abs(low) || 1) * 0.1, high + (Math.abs(high) || 1) * 0.1];
+  return [low - 0.05 * (high - low), high + 0.05 * (high - low)];
+}
+// round values for the ticks: at most `most` of them
+function ticksOf(axis, [low, high], most) {
+  if (axis.ticks) return axis.ticks;
+  if (axis.log) {
+    const from = Math.ceil(Math.log10(low) - 1e-9), to = Math.floor(Math.log10(high) + 1e-9), every = Math.max(1, Math.ceil((to - from + 1) / most));
+    const powers = Array.from({ length: Math.max(0, to - from + 1) }, (_, i) => from + i).filter(power => power % every === 0);
+    if (powers.length > 1) return powers.map(power => [10 ** power, scientific(power)]);
+    return [1, 2, 5].flatMap(digit => [from - 1, from, to].map(power => digit * 10 ** power)).filter((v, i, all) => v >= low && v <= high && all.indexOf(v) === i)
+      .sort((a, b) => a - b).map(v => [v, shortNumber(v)]);
+  }
+  const rough = (high - low) / most, power = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 5, 10].map(digit => digit * power).find(size => size >= rough) || 10 * power;
+  const first = Math.ceil(low / step - 1e-9), count = Math.max(0, Math.floor(high / step + 1e-9) - first + 1);
+  return Array.from({ length: Math.min(count, 50) }, (_, i) => [(first + i) * step, shortNumber(+((first + i) * step).toPrecision(10))]);
+}
+const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
+const scientific = power => power === 0 ? "1" : power === 1 ? "10" : `10${[...String(power)].map(letter => RAISED[letter]).join("")}`;
+const shortNumber = value => value !== 0 && (Math.abs(value) < 1e-3 || Math.abs(value) >= 1e5) ? value.toExponential(0).replace("e", "·10^").replace(/\^\+?(-?\d+)/, (_, power) => [...power].map(letter => RAISED[letter]).join("")) : String(value).replace("-", "−");
+
+function drawPlot(box, spec) {
+  const width = Math.max(200, box.clientWidth), height = spec.height ?? 230;
+  const all = key => spec.series.flatMap(series => [...series[key], ...(key === "y" ? [...(series.low ?? []), ...(series.high ?? [])] : [])]);
+  let xRange = rangeOf(spec.x, all("x")), yRange = rangeOf(spec.y, all("y"));
+  const yTicks = ticksOf(spec.y, yRange, Math.max(2, Math.floor(height / 42)));
+  const left = 12 + 6.6 * Math.max(2, ...yTicks.map(([, text]) => text.length)), right = 14, top = 22, bottom = 38;
+  const inner = { width: width - left - right, height: height - top - bottom };
+  if (spec.equal) {  // one meter is as long in x as in y
+    const per = Math.max((xRange[1] - xRange[0]) / inner.width, (yRange[1] - yRange[0]) / inner.height);
+    const about = (range, length) => { const middle = (range[0] + range[1]) / 2; return [middle - per * length / 2, middle + per * length / 2]; };
+    [xRange, yRange] = [about(xRange, inner.width), about(yRange, inner.height)];
+  }
+  const place = (axis, [low, high], length) => value => (axis.log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low)) * length;
+  const px = place(spec.x, xRange, inner.width), py = place(spec.y, yRange, inner.height);
+  const X = value => left + px(value), Y = value => top + inner.height - py(value);
+  const clampY = value => Math.min(top + inner.height + 4, Math.max(top - 4, Y(value)));
+  const svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": spec.label, class: "plot-svg" });
+  (spec.bands ?? []).forEach(band => {
+    const [a, b] = [band.from, band.to].map(value => Y(Math.min(yRange[1], Math.max(yRange[0], value))));
+    svg.append(svgElement("rect", { x: left, y: Math.min(a, b), width: inner.width, height: Math.abs(b - a), class: "band" }));
+  });
+  const widest = Math.max(1, ...(spec.x.ticks ?? []).map(([, text]) => text.length), 5);
+  const xTicks = ticksOf(spec.x, xRange, Math.max(2, Math.floor(inner.width / (8.5 * widest))));
+  const apart = spec.x.ticks ? Math.max(1, Math.ceil(xTicks.length * 7.5 * widest / inner.width)) : 1;  // texts given by name stay apart
+  xTicks.forEach(([value, text], i) => {
+    if (value < xRange[0] || value > xRange[1]) return;
+    svg.append(svgElement("line", { x1: X(value), x2: X(value), y1: top, y2: top + inner.height, class: "grid" }));
+    if (i % apart === 0) svg.append(svgElement("text", { x: X(value), y: top + inner.height + 14, "text-anchor": "middle" }, text));
+  });
+  yTicks.concat(spec.equal ? ticksOf(spec.y, yRange, 4) : []).filter(([value], i, list) => list.findIndex(([other]) => other === value) === i).forEach(([value, text]) => {
+    if (value < yRange[0] || value > yRange[1]) return;
+    svg.append(svgElement("line", { x1: left, x2: left + inner.width, y1: Y(value), y2: Y(value), class: value === 0 ? "zero" : "grid" }));
+    svg.append(svgElement("text", { x: left - 5, y: Y(value) + 4, "text-anchor": "end" }, text));
+  });
+  svg.append(svgElement("text", { x: 2, y: 12, class: "axis" }, plain(spec.y.title ?? "")));
+  svg.append(svgElement("text", { x: width - 4, y: height - 6, "text-anchor": "end", class: "axis" }, plain(spec.x.title ?? "")));
+  const clip = `clip-${drawPlot.count = (drawPlot.count ?? 0) + 1}`;
+  const frame = svgElement("clipPath", { id: clip });
+  frame.append(svgElement("rect", { x: left - 6, y: top - 6, width: inner.width + 12, height: inner.height + 12 }));
+  const drawing = svgElement("g", { "clip-path": `url(#${clip})` });
+  svg.append(frame, drawing);
+  spec.series.forEach(series => {
+    const look = `c-${series.color ?? 0}`, shown = series.x.map((x, i) => known(x) && known(series.y[i]) && (!spec.x.log || x > 0) && (!spec.y.log || series.y[i] > 0));
+    if (series.line !== false) {
+      let path = "", down = false;
+      series.x.forEach((x, i) => { path += shown[i] ? `${down ? "L" : "M"}${X(x).toFixed(1)} ${Y(series.y[i]).toFixed(1)}` : ""; down = shown[i]; });
+      drawing.append(svgElement("path", { d: path, class: `line ${look}`, "stroke-width": series.width ?? 1.6, ...(series.dash ? { "stroke-dasharray": series.dash } : {}) }));
+    }
+    series.x.forEach((x, i) => {
+      if (!shown[i]) return;
+      if (series.low && known(series.low[i])) drawing.append(svgElement("line", { x1: X(x), x2: X(x), y1: clampY(Math.max(series.low[i], spec.y.log ? yRange[0] : -Infinity)), y2: clampY(series.high[i]), class: `line ${look}` }));
+      if (!series.marks) return;
+      const mark = markOf(series.marks === true ? series.color : series.marks, X(x), Y(series.y[i]), look);
+      mark.append(svgElement("title", {}, series.titles?.[i] ?? `${series.name}: ${+x.toPrecision(5)}, ${+series.y[i].toPrecision(4)}`));
+      drawing.append(mark);
+    });
+  });
+  const named = spec.series.filter(series => series.name && series.legend !== false);
+  box.replaceChildren(...(named.length && spec.legend !== false ? [legendOf(named)] : []), svg);
+}
+// a mark has a shape of its own for each color: told apart without colors
+function markOf(color, x, y, look) {
+  const r = 3.6, points = list => svgElement("polygon", { points: list.map(([a, b]) => `${x + a * r},${y + b * r}`).join(" "), class: `mark ${look}` });
+  const shapes = [
+    () => svgElement("circle", { cx: x, cy: y, r, class: `mark ${look}` }), () => points([[-1, -1], [1, -1], [1, 1], [-1, 1]]),
+    () => points([[0, -1.3], [1.2, 0.9], [-1.2, 0.9]]), () => points([[0, -1.4], [1.4, 0], [0, 1.4], [-1.4, 0]]),
+    () => points([[0, 1.3], [1.2, -0.9], [-1.2, -0.9]]), () => points([[-1.3, 0], [0.9, -1.2], [0.9, 1.2]]), () => points([[1.3, 0], [-0.9, -1.2], [-0.9, 1.2]]),
+  ];
+  return (shapes[Number(color)] ?? shapes[0])();
+}
+function legendOf(list) {
+  const legend = element("ul", "legend");
+  list.forEach(series => {
+    const key = svgElement("svg", { viewBox: "0 0 26 12", "aria-hidden": "true", class: "key" }), look = `c-${series.color ?? 0}`;
+    if (series.line !== false) key.append(svgElement("path", { d: "M1 6 H25", class: `line ${look}`, "stroke-width": 2, ...(series.dash ? { "stroke-dasharray": series.dash } : {}) }));
+    if (series.marks) key.append(markOf(series.marks === true ? series.color : series.marks, 13, 6, look));
+    legend.append(element("li", "", key, element("span", "", ...indexed(series.name))));
+  });
+  return legend;
+}
+const plain = text => text.replaceAll("_", "");  // inside a picture, where no index can stand
+// v_reg with its index below the line
+const indexed = text => text.split(/(_\w+)/).map(part => part.startsWith("_") ? element("sub", "", part.slice(1)) : part);
+
+// plots that stand in the page: drawn when they come into view, and again at another width
+const plotWatcher = new ResizeObserver(entries => entries.forEach(({ target, contentRect }) => {
+  if (contentRect.width && Math.abs(contentRect.width - (target.drawnAt ?? 0)) > 1) {
+    target.drawnAt = contentRect.width;
+    drawPlot(target, target.spec ??= JSON.parse(target.dataset.plot));
+  }
+}));
+document.querySelectorAll("[data-plot]").forEach(box => plotWatcher.observe(box));
+// a plot that a script makes: a figure with its title
+function plotFigure(title, spec) {
+  const box = element("div", "plot");
+  box.spec = spec;
+  plotWatcher.observe(box);
+  return element("figure", "", element("figcaption", "", ...indexed(title)), box);
+}

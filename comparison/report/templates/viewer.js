@@ -1,0 +1,206 @@
+"use strict";
+// paper, engine and their difference of one body of one scene, side by side; the second screen
+const camera = { azimuth: -0.65, elevation: 0.5 };
+const state = { scene: 0, body: 1, pair: "total", view: "3d", grid: "own", cursor: null, place: null, away: null };
+let study = null;  // the data, unpacked when the page stands
+const viewer = document.getElementById("viewer");
+const part = name => viewer.querySelector(`[data-part="${name}"]`);
+const degrees = phase => `${Math.round(phase * 180 / Math.PI)}°`;
+const at = phases => `(${phases.map(degrees).join(", ")})`;
+const percentText = value => !known2(value) ? "none" : `${value > 0 ? "+" : value < 0 ? "−" : ""}${Math.abs(value) >= 10 ? Math.abs(value).toFixed(0) : +Math.abs(value).toPrecision(2)} %`;
+const digits = (value, count = 4) => known2(value) ? String(+value.toPrecision(count)).replace("-", "−") : "none";
+
+async function unpacked(id) {
+  const bytes = Uint8Array.from(atob(document.getElementById(id).textContent), letter => letter.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+}
+
+const sceneNow = () => study.scenes[state.scene];
+const pairNow = () => sceneNow().pairs.find(pair => pair.key === state.pair) ?? sceneNow().pairs[0];
+const thinned = (rows, n) => { const k = rows.length / n; return rows.filter((_, i) => i % k === 0).map(row => row.filter((_, j) => j % k === 0)); };
+const pointsOf = (rows, errors) => rows.flatMap((row, i) => row.flatMap((z, j) => known2(z) ? [{ a: turn * i / rows.length, b: turn * j / rows.length, z, error: errors?.[i][j] }] : []));
+
+// one model as it may be drawn: all phases, completed, or points; `every` asks for so many phases per axis only
+function surfaceOf(scene, key, body, every = null) {
+  const model = scene.models[key], mu = model.mu[body - 1], completed = model.completed[body - 1];
+  if (every !== null && every < model.phases) return { rows: thinned(mu, every), sheet: false, points: pointsOf(thinned(mu, every), null), model };
+  if (model.surface) return { rows: mu, sheet: true, points: [], model };
+  if (completed?.mu) return { rows: completed.mu, sheet: true, points: pointsOf(mu, null), model, completed };
+  return { rows: mu, sheet: false, points: pointsOf(mu, model.error?.[body - 1]), model, completed };
+}
+const relative = (rows, base) => rows.map((row, i) => row.map((value, j) => known2(value) && base[i][j] > 0 ? 100 * (value - base[i][j]) / base[i][j] : null));
+// the difference in percent of the first model, on the phases of both
+function differenceOf(scene, pair, body) {
+  const [first, second] = [pair.first, pair.second].map(key => surfaceOf(scene, key, body)), [a, b] = [pair.first, pair.second].map(key => scene.models[key]);
+  const n = Math.min(a.phases, b.phases), raw = relative(thinned(b.mu[body - 1], n), thinned(a.mu[body - 1], n));
+  const errors = pair.uncertainty?.[body - 1].map(row => row.map(value => known2(value) ? 100 * value : null));
+  if (first.sheet && second.sheet && first.rows.length === second.rows.length && [first, second].every(one => !one.completed || one.completed.difference))
+    return { rows: relative(second.rows, first.rows), sheet: true, points: first.completed || second.completed ? pointsOf(raw, null) : [], completed: second.completed ?? first.completed };
+  return { rows: raw, sheet: false, points: pointsOf(raw, errors) };
+}
+const values = surface => surface.sheet ? surface.rows.flat().filter(known2) : surface.points.map(point => point.z);
+function extent(list) {
+  if (!list.length) return [0, 1];
+  const low = list.reduce((a, b) => Math.min(a, b)), high = list.reduce((a, b) => Math.max(a, b));
+  return low < high ? [low, high] : [low - 0.1 * (Math.abs(low) || 1), high + 0.1 * (Math.abs(high) || 1)];
+}
+// the largest value that was computed, by its size where it is signed
+function largestOf(surface, size = value => value) {
+  const list = surface.sheet && !surface.points.length ? pointsOf(surface.rows, null) : surface.points;
+  return list.reduce((best, point) => !best || size(point.z) > size(best.z) ? point : best, null);
+}
+
+function panels() {
+  const scene = sceneNow(), pair = pairNow(), { body } = state, second = surfaceOf(scene, pair.second, body);
+  const first = surfaceOf(scene, pair.first, body, state.grid === "second" ? scene.models[pair.second].phases : null), difference = differenceOf(scene, pair, body);
+  const range = extent([...values(surfaceOf(scene, pair.first, body)), ...values(second)]), reach = Math.max(...extent(values(difference)).map(Math.abs)) || 1;
+  const common = { places: scene.places.map(place => place.phases), chosen: state.place, cursor: state.cursor };
+  const light = palette(CIVIDIS), signs = palette(dark() ? SIGN_DARK : SIGN_LIGHT);
+  const grid = (surface, n) => `${n} × ${n} phases, ${surface.model.computed} computed${surface.completed?.mu ? `, completed through ${study.titles[surface.completed.through]}` : ""}`;
+  return [first, second, difference].map((surface, k) => {
+    const largest = largestOf(surface, k === 2 ? Math.abs : undefined), shown = surface.sheet ? surface.rows.length : Math.round(Math.sqrt(surface.rows.flat().length));
+    const notes = [k === 2 ? `${shown} × ${shown} phases${surface.completed ? ", completed" : ""}` : state.grid === "second" && k === 0 && !surface.sheet ? `${shown} × ${shown} of ${surface.model.phases} × ${surface.model.phases} phases` : grid(surface, surface.model.phases)];
+    if (surface.completed?.mu && k < 2) notes.push(`dots: computed; leaving out one misses it by at most ${digits(surface.completed.error, 2)}`);
+    if (!surface.sheet && k === 1 && surface.completed?.reason) notes.push(`points: ${surface.completed.reason}`);
+    if (largest) notes.push(`${surface.completed ? "largest computed" : "largest"} ${k === 2 ? percentText(largest.z) : digits(largest.z)} at ${at([largest.a, largest.b])} ▾`);
+    else notes.push("no value at any phase pair");
+    return { ...common, ...surface, range: k === 2 ? [-reach, reach] : range, color: k === 2 ? signs : light, largest: largest && [largest.a, largest.b],
+      lines: k === 2 && surface.sheet && !surface.completed ? pair.contours[body - 1] : [], notes,
+      title: k === 2 ? "difference, % of the first" : study.titles[k ? pair.second : pair.first], unit: k === 2 ? " %" : "" };
+  });
+}
+
+const canvases = [...viewer.querySelectorAll("figure canvas.surface")];
+let shown = [];
+function paint() {
+  canvases.forEach((canvas, k) => state.view === "3d" ? draw3d(canvas, shown[k], camera) : drawMap(canvas, shown[k]));
+}
+let waiting = false;
+function paintSoon() {
+  if (waiting) return;
+  waiting = true;
+  requestAnimationFrame(() => { waiting = false; if (!part("panels").hidden) paint(); });
+}
+function show() {
+  const scene = sceneNow();
+  part("panels").hidden = scene.recorded;
+  part("shape").hidden = scene.recorded;
+  viewer.querySelectorAll("[data-record]").forEach(box => { box.hidden = box.dataset.record !== `${state.scene}-${state.body}`; });
+  if (scene.recorded) return;
+  shown = panels();
+  shown.forEach((panel, k) => {
+    const figure = canvases[k].closest("figure"), scale = figure.querySelector("canvas.scale"), pen = scale.getContext("2d"), [low, high] = panel.range;
+    figure.querySelector("b").replaceChildren(...(k < 2 ? indexed(`mu_${state.body}`.replace("mu", "μ")) : []), k < 2 ? ", " : "", ...indexed(panel.title));
+    figure.querySelector(".notes").replaceChildren(...panel.notes.map(note => element("span", "", ...indexed(note))));
+    for (let x = 0; x < scale.width; x++) { pen.fillStyle = panel.color(x / (scale.width - 1)); pen.fillRect(x, 0, 1, scale.height); }
+    [low, high].forEach((value, end) => { figure.querySelectorAll(".scale span")[end].textContent = k === 2 ? percentText(value) : digits(value, 3); });
+    canvases[k].setAttribute("aria-label", `${panel.title}, ${scene.title}, body ${state.body}: ${panel.notes.join("; ")}. Arrow keys move the cross, Enter shows the nearest stored motion.`);
+  });
+  paintSoon();
+}
+function readOut() {
+  const scene = sceneNow(), pair = pairNow();
+  if (!state.cursor) return;
+  const [a, b, d] = shown.map(panel => valueAt(panel, state.cursor));
+  part("readout").replaceChildren(...indexed(`${at(state.cursor)}: ${study.titles[pair.first]} ${digits(a)}, ${study.titles[pair.second]} ${digits(b)}, difference ${percentText(d)}`));
+}
+function valueAt(panel, [alpha1, alpha2]) {
+  if (panel.sheet) return heightAt(panel.rows, alpha1, alpha2);
+  const near = panel.points.find(point => around(point.a, alpha1) + around(point.b, alpha2) < 0.02);
+  return near ? near.z : null;
+}
+
+// what a click, a key or a picker changes
+function change(changes) {
+  Object.assign(state, changes);
+  const scene = sceneNow();
+  if (state.body > scene.bodies) state.body = 1;
+  const bodies = part("body");
+  bodies.replaceChildren(...Array.from({ length: scene.bodies }, (_, i) => new Option(i ? `body ${i + 1}` : "body 1 (platform)", i + 1, false, i + 1 === state.body)));
+  const pairs = part("pair");
+  pairs.replaceChildren(...scene.pairs.map(pair => new Option(`${pair.title}: ${study.titles[pair.first]} | ${study.titles[pair.second]}`.replaceAll("_", " "), pair.key, false, pair === pairNow())));
+  part("sentence").replaceChildren(...indexed(`${pairNow().sentence}.`));
+  part("scene").value = String(state.scene);
+  ["view", "grid"].forEach(name => viewer.querySelectorAll(`button[data-${name}]`).forEach(button => button.setAttribute("aria-pressed", String(button.dataset[name] === state[name]))));
+  listPlaces();
+  show();
+  readOut();
+}
+function listPlaces() {
+  const scene = sceneNow();
+  part("place").replaceChildren(...(scene.places.length ? [] : [new Option("none stored", "")]), ...scene.places.map((place, i) => new Option([place.phases ? at(place.phases) : "the record", place.why].filter(Boolean).join(", "), i, false, i === state.place)));
+}
+function nearestPlace(phases) {
+  return sceneNow().places.reduce((best, place, index) => {
+    const far = Math.hypot(around(place.phases[0], phases[0]), around(place.phases[1], phases[1]));
+    return far < best.far ? { index, far } : best;
+  }, { index: null, far: Infinity });
+}
+function pick(phases) {
+  const near = nearestPlace(phases);
+  change({ cursor: phases, place: near.index, away: near.far });
+  showMotions();
+}
+// the first pair whose second model is drawn as a surface: points beside a surface look as if they differed from it
+const drawnPair = body => (sceneNow().pairs.find(pair => surfaceOf(sceneNow(), pair.second, body).sheet) ?? sceneNow().pairs[0]).key;
+// another scene: the motion where its difference is largest
+const firstPlace = () => sceneNow().places.length ? 0 : null;
+function chooseScene(scene, body = 1) {
+  Object.assign(state, { scene, body, cursor: null, away: null, place: null });
+  if (!sceneNow().recorded) state.pair = drawnPair(body);
+  const largest = sceneNow().places.findIndex(place => place.why.includes(`body ${body}`));
+  change({ place: largest >= 0 ? largest : firstPlace() });
+  part("readout").textContent = "";
+  showMotions();
+}
+
+function startViewer() {
+  part("scene").addEventListener("change", event => chooseScene(Number(event.target.value)));
+  part("body").addEventListener("change", event => chooseScene(state.scene, Number(event.target.value)));
+  part("pair").addEventListener("change", event => { change({ pair: event.target.value }); showMotions(); });
+  part("place").addEventListener("change", event => { change({ place: Number(event.target.value), away: null, cursor: null }); showMotions(); });
+  ["view", "grid"].forEach(name => viewer.querySelectorAll(`button[data-${name}]`).forEach(button => button.addEventListener("click", () => change({ [name]: button.dataset[name] }))));
+  viewer.querySelectorAll("button[data-turn]").forEach(button => button.addEventListener("click", () => { camera.azimuth += Number(button.dataset.turn) * Math.PI / 8; paintSoon(); }));
+  canvases.forEach(canvas => {
+    let pressed = null;
+    const spot = event => { const box = canvas.getBoundingClientRect(); return [event.clientX - box.left, event.clientY - box.top]; };
+    canvas.addEventListener("pointerdown", event => { pressed = { x: event.clientX, y: event.clientY, azimuth: camera.azimuth, elevation: camera.elevation, moved: false }; });
+    canvas.addEventListener("pointermove", event => {
+      if (pressed && event.buttons && state.view === "3d") {
+        const [dx, dy] = [event.clientX - pressed.x, event.clientY - pressed.y];
+        if (Math.hypot(dx, dy) > 4) pressed.moved = true;
+        if (!pressed.moved) return;
+        camera.azimuth = pressed.azimuth - dx / 150;
+        camera.elevation = Math.min(1.5, Math.max(0.1, pressed.elevation + dy / 200));
+        paintSoon();
+      } else {
+        const phases = canvas.inverse?.(...spot(event));
+        if (!phases) return;
+        state.cursor = shown[1].rows.length ? phases : null;
+        readOut();
+        shown.forEach(panel => { panel.cursor = state.cursor; });
+        paintSoon();
+      }
+    });
+    canvas.addEventListener("pointerup", event => {
+      const phases = pressed && !pressed.moved && canvas.inverse?.(...spot(event));
+      pressed = null;
+      if (phases && sceneNow().places.length) pick(phases);
+    });
+    canvas.addEventListener("keydown", event => {
+      const step = turn / study.grid, move = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] }[event.key];
+      if (event.key === "Enter" && state.cursor && sceneNow().places.length) pick(state.cursor);
+      if (!move) return;
+      event.preventDefault();
+      const from = state.cursor ?? sceneNow().places[state.place]?.phases ?? [0, 0];
+      state.cursor = from.map((phase, k) => (phase + move[k] + turn) % turn);
+      shown.forEach(panel => { panel.cursor = state.cursor; });
+      readOut();
+      paintSoon();
+    });
+  });
+  new ResizeObserver(paintSoon).observe(part("panels"));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", show);
+  matchMedia("print").addEventListener("change", () => { if (!sceneNow().recorded) { shown = panels(); paint(); } });
+  chooseScene(Number(part("scene").options[0].value));
+}
