@@ -196,8 +196,8 @@ def test_the_command_measures_nothing_twice_and_its_values_come_back_to_the_last
 ) -> None:
     path = f"{__name__}:_known"
     question = Question("exact", "known", (path, {"gap": 0.0, "tolerance": 1e-9}), 5, 3, 100.0)
-    found = [Setting("exact", "one", "gap", "", gap, path, {"gap": gap}, 100.0) for gap in (1e-3, 1e-2)]
-    monkeypatch.setattr(analysis, "settings", lambda scene, quick: found)
+    known = [Setting("exact", "one", "gap", "", gap, path, {"gap": gap}, 100.0) for gap in (1e-3, 1e-2)]
+    monkeypatch.setattr(analysis, "settings", lambda scene, quick: known)
     monkeypatch.setattr(analysis, "asked", lambda scene: [question])
     words = ["fig3-I", "--jobs", "1", "--out", str(tmp_path / "out")]
     assert command.main(words, ThreadPoolExecutor) == 0
