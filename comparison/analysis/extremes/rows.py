@@ -114,7 +114,33 @@ def scene(
     storey: float = 1.0,
     **isolator: Any,
 ) -> dict[str, Any]:
-    """The plain scene, `fig3-I` at twice its amplitude, with what is given changed. link: its periods in x, y, s."""
+    """
+    The plain scene, `fig3-I` at twice its amplitude, with one quantity or a few changed.
+
+    Parameters
+    ----------
+    amplitudes : (2 or 3, 2)
+        Of x, y and upward motion for either harmonic, m/s^2.
+    periods : (2,)
+        Of the harmonics, s.
+    decay : (2,)
+        Of the harmonics, 1/s.
+    duration : float
+        s.
+    masses : (N,)
+        kg, from below.
+    link : (2,)
+        Periods of the links in x and y, s.
+    storey : float
+        Height from body to body, m.
+    **isolator
+        Keys of the isolator's table.
+
+    Returns
+    -------
+    dict
+        As in a scene file; a value of None stands for an absent key.
+    """
     if "radius" not in isolator:
         isolator = {"period": 1.0, **isolator}
     size = [2.0, 2.0, 0.2]
