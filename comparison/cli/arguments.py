@@ -90,7 +90,27 @@ def jobs(options: argparse.Namespace) -> int:
 
 
 def whole_number(option: str, text: str, least: int, most: int) -> int:
-    """The value of an option that takes a whole number from `least` to `most`. Raises SceneError."""
+    """
+    The value of an option that takes a whole number.
+
+    Parameters
+    ----------
+    option : str
+        Its name, for the message.
+    text : str
+        As it was typed.
+    least, most : int
+        Range.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    SceneError
+        One line.
+    """
     rule = f"must be a whole number from {least} to {most}"
     try:
         value = int(text)
@@ -102,7 +122,29 @@ def whole_number(option: str, text: str, least: int, most: int) -> int:
 
 
 def number(option: str, text: str, least: float, most: float, unit: str) -> float:
-    """The value of an option that takes a number from `least` to `most` in `unit`. Raises SceneError."""
+    """
+    The value of an option that takes a number.
+
+    Parameters
+    ----------
+    option : str
+        Its name, for the message.
+    text : str
+        As it was typed.
+    least, most : float
+        Range.
+    unit : str
+        For the message.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    SceneError
+        One line.
+    """
     rule = f"must be a number from {least:g} to {most:g}, {unit}"
     try:
         value = float(text)

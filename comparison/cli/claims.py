@@ -47,7 +47,16 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 
 
 def print_claims(console: Console, table: ClaimTable, words: bool = False) -> None:
-    """The table, a line for every claim; then the reading that reproduces most and the claims that none reproduces."""
+    """
+    Print the table: a line for every claim; the reading that reproduces most; the claims that none reproduces.
+
+    Parameters
+    ----------
+    console : Console
+    table : ClaimTable
+    words : bool
+        Print what every check found, too.
+    """
     stated = sum(not claim.weaker for claim in table.claims)  # by the paper
     for number, reading in enumerate(table.readings, start=1):
         console.print(f"{number:2d}: {reading.name}: {table.held(number - 1)} of {stated}")

@@ -57,7 +57,25 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 def judged_matrix(
     extremes: Extremes, options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
 ) -> Matrix:
-    """The matrix with all that is known of its run; stored cells are not judged again."""
+    """
+    The matrix with all that is known of its run; stored cells are not judged again.
+
+    Parameters
+    ----------
+    extremes : Extremes
+        The cells.
+    options : argparse.Namespace
+        Of the command line.
+    words : sequence of str
+        The command line.
+    console : Console
+    executor : Executor or callable
+        What makes the processes of this machine, or an executor in their place.
+
+    Returns
+    -------
+    Matrix
+    """
     begin, began = time.monotonic(), datetime.now(UTC)
     tasks = extremes.tasks()
     results = computed("extremes", options, words, tasks, MODELS, console, executor)

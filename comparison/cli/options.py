@@ -47,7 +47,23 @@ class Options:
 
 
 def parsed(argv: Sequence[str]) -> Options:
-    """Options of `python -m comparison.run`. Raises SceneError or UsageError: one line, file, key, value, rule."""
+    """
+    Options of `python -m comparison.run`, all checked.
+
+    Parameters
+    ----------
+    argv : sequence of str
+        Words of the command line.
+
+    Returns
+    -------
+    Options
+
+    Raises
+    ------
+    SceneError, UsageError
+        One line: file or option, key, value, rule.
+    """
     words = _parser().parse_args(argv)
     names: list[str] = words.scenes or builtin_scenes()
     amplitude = None if words.amplitude is None else number("--amplitude", words.amplitude, 1e-12, 1e6, "m/s^2")

@@ -89,7 +89,25 @@ def _stored(out: Path) -> list[Trade]:
 def measured_trades(
     scenes: Sequence[Scene], options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
 ) -> list[MeasuredTrade]:
-    """The trades of the scenes with all that is known of their run; what is stored is not measured again."""
+    """
+    The trades of the scenes with all that is known of their run; what is stored is not measured again.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+    options : argparse.Namespace
+        Of the command line.
+    words : sequence of str
+        The command line.
+    console : Console
+    executor : Executor or callable
+        What makes the processes of this machine, or an executor in their place.
+
+    Returns
+    -------
+    list of MeasuredTrade
+        In the order of the scenes.
+    """
     tradeoff, study = TradeOff(options.quick), Study(tuple(scenes), 1, TOLERANCE)
     tasks, width = tradeoff.tasks(study), jobs(options)
     about = STARTING + sum(task.seconds for task in tasks) / width

@@ -130,12 +130,40 @@ class Cache:
 
 
 def store_beside(out: Path) -> Path:
-    """Where the results of the report `out` are kept."""
+    """
+    Where the results of a report are kept.
+
+    Parameters
+    ----------
+    out : Path
+        Folder of the report.
+
+    Returns
+    -------
+    Path
+
+    Examples
+    --------
+    >>> store_beside(Path("report")).name
+    'report.tiles'
+    """
     return out.with_name(f"{out.name}.tiles")
 
 
 def refuse_foreign_store(out: Path) -> None:
-    """Raise SceneError, one line, if something that is not a folder of results is where that of `out` belongs."""
+    """
+    Refuse to keep results where something else is.
+
+    Parameters
+    ----------
+    out : Path
+        Folder of the report.
+
+    Raises
+    ------
+    SceneError
+        One line, if something that is not a folder of results is where that of `out` belongs.
+    """
 
     def refusal(rule: str) -> SceneError:
         return SceneError("command line", "--out", str(out), f"{folder.name!r} beside it {rule}")

@@ -41,12 +41,35 @@ def cores() -> int:
 
 
 def factory(pool: Pool) -> Callable[[int], Executor]:
-    """What makes an executor for N jobs. One that was lent is given every time, and not shut down."""
+    """
+    What makes an executor for a number of workers.
+
+    Parameters
+    ----------
+    pool : Executor or callable
+        One that was lent is given every time, and not shut down.
+
+    Returns
+    -------
+    callable
+    """
     return (lambda jobs: Lent(pool)) if isinstance(pool, Executor) else pool
 
 
 def width(executor: Executor, jobs: int) -> int:
-    """How many tasks to keep in flight: no more than workers, so that few are suspected when one dies."""
+    """
+    How many tasks to keep at work: no more than workers, so that few are suspected when one dies.
+
+    Parameters
+    ----------
+    executor : Executor
+    jobs : int
+        For an executor that does not state its `width`.
+
+    Returns
+    -------
+    int
+    """
     return int(getattr(executor, "width", jobs))
 
 

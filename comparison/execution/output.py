@@ -59,6 +59,17 @@ def destination(path: Path, option: str = "--out") -> Path:
     """
     The folder that a path of the command line means, with no symbolic link or ".." left in it.
 
+    Parameters
+    ----------
+    path : Path
+        As it was typed.
+    option : str
+        Option that it belongs to, for the message.
+
+    Returns
+    -------
+    Path
+
     Raises
     ------
     SceneError
@@ -116,7 +127,23 @@ def refuse_foreign_report(out: Path) -> None:
 
 
 def refuse_foreign_files(out: Path, names: Sequence[str], option: str = "--out") -> None:
-    """Raise SceneError, one line, if files of these names cannot be written into `out`, a `destination`."""
+    """
+    Refuse a folder where files of the user would be replaced.
+
+    Parameters
+    ----------
+    out : Path
+        A `destination`.
+    names : sequence of str
+        Files that are to be written.
+    option : str
+        Option that `out` belongs to, for the message.
+
+    Raises
+    ------
+    SceneError
+        One line.
+    """
     manifest = read_manifest(out)
     for name in names if manifest else (MANIFEST, *names):
         if os.path.lexists(out / name) and not _is_own(out / name, manifest.get(name)):
@@ -195,13 +222,28 @@ def publish(
     """
     Write files of a command into a folder, which is made if there is none.
 
-    A file of the same name is replaced if the study wrote it; otherwise the new one gets another name, and `say` is
+    A file of the same name is replaced if the study wrote it. Otherwise the new one gets another name, and `say` is
     told.
+
+    Parameters
+    ----------
+    folder : Path
+    files : mapping of str to bytes
+        Contents by name.
+    command : str
+        Full name of the module of the command, for the manifest.
+    say : callable
+        Takes a line for people.
 
     Returns
     -------
     list of Path
-        The files written, in the order given. Raises OSError.
+        The files written, in the order given.
+
+    Raises
+    ------
+    OSError
+        If a file cannot be written.
     """
     folder.mkdir(parents=True, exist_ok=True)
     written = []

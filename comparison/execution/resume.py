@@ -17,7 +17,20 @@ def invocation(command: str) -> list[str]:
 
 
 def command_line(words: Sequence[str], command: str = "run") -> str:
-    """The command as it is typed."""
+    """
+    A command as it is typed.
+
+    Parameters
+    ----------
+    words : sequence of str
+        After the name of the command.
+    command : str
+        Its name.
+
+    Returns
+    -------
+    str
+    """
     return shlex.join([*invocation(command), *words])
 
 
@@ -51,7 +64,22 @@ def resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batche
 
 
 def without_scheduler(words: Sequence[str]) -> list[str]:
-    """The words of the command without the cluster: the same numbers from the processes of this machine."""
+    """
+    The words of a command line without the cluster: the same numbers from the processes of this machine.
+
+    Parameters
+    ----------
+    words : sequence of str
+
+    Returns
+    -------
+    list of str
+
+    Examples
+    --------
+    >>> without_scheduler(["fig3-I", "--scheduler", "tcp://a:1", "--grid", "4"])
+    ['fig3-I', '--grid', '4']
+    """
     rest, words = [], list(words)
     while words:
         word = words.pop(0)

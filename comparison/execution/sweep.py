@@ -64,18 +64,44 @@ def sweep(
     join: Callable[[Task, Sequence[Result]], Result] | None = None,
 ) -> list[Result]:
     """
-    `solve` every task on `executor`, an Executor or what makes one for `jobs` workers; `done` is called here as results
-    arrive, in any order.
-
-    A task that is not `ready` lets others pass; it is asked again whenever a result has arrived, and starts in any
-    case when nothing else is left to wait for.
+    Run every task on an executor and lose none.
 
     A task that raises is answered by `on_failure(task, Outcome.SOLVER_FAILED, message)`. One that has a `timeout`, s of
     processor time, and takes longer, by `on_failure(task, Outcome.TIME_LIMIT, message)`. One whose worker dies is tried
     once more, then `split` into parts, until a part that cannot be split has killed two workers: that one alone is
-    answered by `on_failure(part, Outcome.WORKER_DIED, message)`, and `join(task, results of its parts)` puts the task
-    together again. Raises ExecutorLostError when the executor cannot go on; results that `done` has seen are the
-    caller's to keep.
+    answered by `on_failure(part, Outcome.WORKER_DIED, message)`, and `join` puts the task together again.
+
+    Parameters
+    ----------
+    tasks : sequence
+        What is computed.
+    solve : callable
+        Function of a task, importable by its name.
+    on_failure : callable
+        The result of a task that `solve` gave none, from task, `Outcome` and message.
+    done : callable
+        Called here with a task and its result as results arrive, in any order.
+    jobs : int
+        Number of workers, for an executor that does not state its `width`.
+    executor : Executor or callable
+        What runs the tasks, or what makes it for a number of workers.
+    ready : callable
+        Whether a task may start. Others pass it meanwhile; it is asked again whenever a result has arrived, and the
+        task starts in any case when nothing else is left to wait for.
+    split : callable
+        The parts of a task; empty if it cannot be split.
+    join : callable
+        The result of a task from those of its parts.
+
+    Returns
+    -------
+    list
+        Results in the order of the tasks.
+
+    Raises
+    ------
+    ExecutorLostError
+        If the executor cannot go on; results that `done` has seen are the caller's to keep.
     """
     return _Sweep(tasks, solve, on_failure, done, ready, split, join).run(factory(executor), jobs)
 

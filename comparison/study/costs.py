@@ -50,10 +50,23 @@ class Costs:
 
 def costs(scenes: Sequence[Scene], hierarchy: Sequence[Model], measure: bool, full: bool = False) -> Costs:
     """
-    Seconds per point of every model on every scene; `measure`: of this machine, which takes a second or two.
+    Seconds per point of every model on every scene.
 
     A scene of the record costs what was recorded, times what a fixed piece of work takes here beside what it took then.
     Another is tried at a few phase pairs if `measure`, and else in proportion to its duration.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+    hierarchy : sequence of Model
+    measure : bool
+        Whether this machine is measured, which takes a second or two.
+    full : bool
+        Whether nothing is reduced.
+
+    Returns
+    -------
+    Costs
     """
     record, models = recorded(), [model for model in hierarchy if is_recorded(model)]
     now = machine_benchmark() if measure and models else record.machine_benchmark

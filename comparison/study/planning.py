@@ -97,7 +97,20 @@ class BudgetError(ValueError):
 
 def plan_study(request: StudyRequest) -> StudyPlan:
     """
-    The cheapest study that meets the tolerance asked, or the last preset that fits the budget. Raises BudgetError.
+    The cheapest study that meets the tolerance asked, or the last preset that fits the budget.
+
+    Parameters
+    ----------
+    request : StudyRequest
+
+    Returns
+    -------
+    StudyPlan
+
+    Raises
+    ------
+    BudgetError
+        If nothing fits.
     """
     begin = time.monotonic()
     measured = costs(request.scenes, request.hierarchy, request.measures_machine, request.full)
@@ -154,7 +167,20 @@ def _plan(preset: StudyPreset, request: StudyRequest, measured: Costs) -> StudyP
 
 
 def setting(model: Model, tolerance: float) -> float:
-    """What to ask of a model so that `tolerance` is met: the cheapest, or a tighter one that is hardly dearer."""
+    """
+    What to ask of a model so that a tolerance is met.
+
+    Parameters
+    ----------
+    model : Model
+    tolerance : float
+        Relative error that 99 % of the points are to meet.
+
+    Returns
+    -------
+    float
+        The cheapest tolerance that was recorded to meet it, or a tighter one that costs hardly more.
+    """
     accuracy = recorded().accuracy[model.key]
     able = [tolerance] + [asked for asked, met in zip(accuracy.tolerances, accuracy.met) if met and asked < tolerance]
     cheapest = min(accuracy.cost(asked) for asked in able)

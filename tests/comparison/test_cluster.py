@@ -32,18 +32,18 @@ def _answers(
 ) -> list[BatchResult]:
     """The engine's surface; `done` is told how many batches are."""
     study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(model, batch=batch))
-    batches = [one for one in study.batches() if one.model == "translational"]
+    batches = [piece for piece in study.batches() if piece.model == "translational"]
     count = iter(range(1, len(batches) + 1))
 
-    def arrived(one: Batch, answer: BatchResult) -> None:
+    def arrived(piece: Batch, answer: BatchResult) -> None:
         done(next(count))
 
     return sweep(batches, execute_batch, unanswered, arrived, 2, executor, split=split_batch, join=merge)  # type: ignore[arg-type]
 
 
-def _same(one: list[BatchResult], other: list[BatchResult]) -> None:
-    assert len(one) == len(other) > 0
-    for a, b in zip(one, other):
+def _same(answers: list[BatchResult], expected: list[BatchResult]) -> None:
+    assert len(answers) == len(expected) > 0
+    for a, b in zip(answers, expected):
         for name in ("mu", "error", "instant", "status"):
             np.testing.assert_array_equal(getattr(a, name), getattr(b, name))  # to the last bit
 

@@ -90,21 +90,21 @@ def whole_run(folder: Path, console: Console) -> tuple[list[BatchResult], list[o
     """Batches with 24 tasks beside them and 24 after them; what was found, and how much of either was there before."""
     results = TaskResults(Cache(folder))
     runner = Runner(results, console, 2, ThreadPoolExecutor)
-    found = runner.run_study(study(), _tasks(0, 24))
+    computed = runner.run_study(study(), _tasks(0, 24))
     runner.run_tasks(_tasks(24, 24))
     motions = [results[task].value for task in _tasks(0, 48)]
     return (
-        list(found.answers),
+        list(computed.answers),
         [(m.place, m.stick, *(x.tobytes() for x in (m.time, m.position, m.acceleration))) for m in motions],
-        found.stored,
+        computed.stored,
         results.parts["motions"].stored,
     )
 
 
 def _computed(study: Study, store: Cache) -> tuple[list[BatchResult], int]:
     """The answers, and how many batches were there before."""
-    found = Runner(TaskResults(store), Console(quiet=True), 2, ThreadPoolExecutor).run_study(study)
-    return list(found.answers), found.stored
+    computed = Runner(TaskResults(store), Console(quiet=True), 2, ThreadPoolExecutor).run_study(study)
+    return list(computed.answers), computed.stored
 
 
 def _bytes(answers: list[BatchResult]) -> list[object]:
@@ -186,14 +186,14 @@ def test_a_real_run_killed_among_its_analyses_reports_the_same_numbers(tmp_path:
         return subprocess.Popen(words, cwd=tmp_path, env=environment, stdout=subprocess.DEVNULL)
 
     def numbers(out: str) -> tuple[object, dict[str, dict[str, int]]]:
-        found = json.loads((tmp_path / out / "summary.json").read_text(encoding="utf-8"))
-        run = found.pop("run")
-        for scene in found["scenes"]:
+        summary = json.loads((tmp_path / out / "summary.json").read_text(encoding="utf-8"))
+        run = summary.pop("run")
+        for scene in summary["scenes"]:
             for model in scene["models"].values():
                 model.pop("cost")  # processor time is no number of the models
-        for cell in found["assumptions"]["cells"]:
+        for cell in summary["assumptions"]["cells"]:
             cell.pop("cost")
-        return json.dumps(found), run["parts"]
+        return json.dumps(summary), run["parts"]
 
     assert begun("whole").wait() == 0  # compiles the reference, which the others load
     for late in (2, 25):  # the analyses, and after the surfaces: motions and pictures

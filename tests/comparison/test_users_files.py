@@ -88,10 +88,10 @@ def test_a_study_whose_out_was_used_meanwhile_says_where_its_report_is(
 ) -> None:
     write = comparison.run.collect_findings
 
-    def meanwhile(*arguments: object, **more: object) -> object:
+    def meanwhile(*arguments: object, **options: object) -> object:
         (tmp_path / "report").mkdir()
         (tmp_path / "report" / "thesis.txt").write_text("years of work", encoding="utf-8")
-        return write(*arguments, **more)
+        return write(*arguments, **options)
 
     monkeypatch.setattr(comparison.run, "collect_findings", meanwhile)
     run = command(*SMALL)
@@ -207,8 +207,8 @@ def test_a_manifest_that_was_tampered_with_proves_nothing(tmp_path: Path) -> Non
     assert read_manifest(tmp_path / "report") == {}
     assert put(tmp_path / "report")[0].name == "report-2"
     # one with a right checksum that names a file outside
-    own = read_manifest(tmp_path / "report-2")
-    write_manifest(tmp_path / "report-2", own | {"../thesis.txt": Own("comparison.extremes", ("0" * 64,))})
+    manifest = read_manifest(tmp_path / "report-2")
+    write_manifest(tmp_path / "report-2", manifest | {"../thesis.txt": Own("comparison.extremes", ("0" * 64,))})
     assert put(tmp_path / "report-2")[0].name == "report-2"
     assert (tmp_path / "thesis.txt").read_text(encoding="utf-8") == "mine"
     assert (tmp_path / "report" / "notes.txt").read_text(encoding="utf-8") == "mine"

@@ -34,20 +34,20 @@ def test_the_verdict_finds_the_planted_difference_and_its_cause() -> None:
     study, surfaces = _studied({})
     _raised(surfaces, LATER[2:], 2, 4, 6, -0.2)  # the regularized law lowers one point, and all that follow keep it
     _raised(surfaces, LATER[4:], 2, 4, 6, 0.05)
-    found = verdict(study, surfaces, study.scenes[0])
-    assert (found.body, found.cause) == (2, "exact equations, v_reg")
-    assert found.size == pytest.approx(0.8 * 1.05 - 1.0, rel=1e-12)  # rounding
-    assert found.part == pytest.approx(-0.2, rel=1e-12)
-    assert found.phases == pytest.approx((np.pi, 1.5 * np.pi), rel=1e-15)
-    assert "body 2 differs by −16 % at (180°, 270°)" in found.sentence
-    assert "largest step there: −20 %, to the exact equations, v_reg" in found.sentence
+    judged = verdict(study, surfaces, study.scenes[0])
+    assert (judged.body, judged.cause) == (2, "exact equations, v_reg")
+    assert judged.size == pytest.approx(0.8 * 1.05 - 1.0, rel=1e-12)  # rounding
+    assert judged.part == pytest.approx(-0.2, rel=1e-12)
+    assert judged.phases == pytest.approx((np.pi, 1.5 * np.pi), rel=1e-15)
+    assert "body 2 differs by −16 % at (180°, 270°)" in judged.sentence
+    assert "largest step there: −20 %, to the exact equations, v_reg" in judged.sentence
 
 
 def test_a_difference_within_its_uncertainty_is_no_verdict() -> None:
     study, surfaces = _studied({"spatial": 0.01}, {"spatial": 0.004})  # 2.5 times u_D
-    found = verdict(study, surfaces, study.scenes[0])
-    assert (found.body, found.cause, found.real) == (0, "", 0.0)
-    assert "no real difference" in found.sentence
+    judged = verdict(study, surfaces, study.scenes[0])
+    assert (judged.body, judged.cause, judged.real) == (0, "", 0.0)
+    assert "no real difference" in judged.sentence
 
 
 def test_a_scene_without_any_common_point_says_so() -> None:
@@ -60,12 +60,12 @@ def test_a_scene_without_any_common_point_says_so() -> None:
 def test_a_bar_has_every_step_at_its_mean_size_and_shares_that_fill_it() -> None:
     planted = {**dict.fromkeys(LATER[:3], 0.03), **dict.fromkeys(LATER[3:], 0.02)}
     study, surfaces = _studied(planted)
-    one = bar(study, surfaces, study.scenes[0], 1)
-    sizes = {part.model: part.size for part in one.segments}
+    bar_of_body = bar(study, surfaces, study.scenes[0], 1)
+    sizes = {part.model: part.size for part in bar_of_body.segments}
     assert sizes == pytest.approx({**dict.fromkeys(LATER, 0.0), "exact": 0.03, "translational": 0.01}, abs=1e-12)
-    assert sum(part.share for part in one.segments) == pytest.approx(1.0, rel=1e-12)
-    assert one.total == pytest.approx(0.02, rel=1e-9), "steps of opposite sign cancel in the total"
-    assert {part.model: part.real for part in one.segments}["exact"] == 1.0
+    assert sum(part.share for part in bar_of_body.segments) == pytest.approx(1.0, rel=1e-12)
+    assert bar_of_body.total == pytest.approx(0.02, rel=1e-9), "steps of opposite sign cancel in the total"
+    assert {part.model: part.real for part in bar_of_body.segments}["exact"] == 1.0
 
 
 def test_the_line_of_the_uncertainty_runs_where_the_difference_crosses_it() -> None:

@@ -74,14 +74,15 @@ def test_splitting_finds_the_one_point_that_kills(batch: int) -> None:
     batches = Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy).batches()
     seen: list[Batch] = []
 
-    def done(one: Batch, answer: BatchResult) -> None:
-        seen.append(one)
+    def done(piece: Batch, answer: BatchResult) -> None:
+        seen.append(piece)
 
     answers = sweep(batches, execute_batch, unanswered, done, 2, process_pool, split=split_batch, join=merge)
     assert [outcome for answer in answers for outcome in answer.status] == ["ok"] * 15 + ["worker died"]
     mu = np.concatenate([answer.mu for answer in answers])
-    whole = [execute_batch(one) for one in Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(gap=0.0)).batches()]
-    np.testing.assert_array_equal(mu[:15], np.concatenate([answer.mu for answer in whole])[:15])
+    whole = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(gap=0.0)).batches()
+    expected = np.concatenate([execute_batch(batch).mu for batch in whole])
+    np.testing.assert_array_equal(mu[:15], expected[:15])
     assert len(seen) == len(batches), "told of whole batches, once each"
     assert [answer.error_message for answer in answers][-1] == "the worker process died 2 times (exit code -9)"
 

@@ -132,7 +132,17 @@ class Assumptions(Analysis[ValidityRanges]):
 
 
 def describe(validity: Range) -> str:
-    """One line for people: where mu_i stays within a share of the translational result."""
+    """
+    One line for people: where mu_i stays within a share of the translational result.
+
+    Parameters
+    ----------
+    validity : Range
+
+    Returns
+    -------
+    str
+    """
     what = f"mu_{validity.body} stays within {100.0 * validity.share:g} %"
     if validity.key == "ring":
         if validity.holds is None:

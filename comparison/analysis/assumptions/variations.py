@@ -125,7 +125,20 @@ class Solved:
 
 
 def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> list[Arguments]:
-    """The translational model and every variation of the spatial one, for every scene to which both apply."""
+    """
+    What has to be computed: the translational model and every variation of the spatial one.
+
+    Parameters
+    ----------
+    study : Study
+        Every scene with phases to which both models of the engine apply.
+    variations : sequence of Variation
+
+    Returns
+    -------
+    list of tuple
+        Scene, model, variation (None: the scene itself), tolerance.
+    """
     asked: list[Arguments] = []
     for scene in study.phased:
         engines = [model for model in models_of(scene, study.hierarchy) if model.side == "engine"]
@@ -138,7 +151,20 @@ def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> 
 
 
 def variation_tasks(study: Study, stage: str, variations: Sequence[Variation] = FEW) -> list[Task]:
-    """`variation_arguments` as tasks."""
+    """
+    `variation_arguments` as tasks.
+
+    Parameters
+    ----------
+    study : Study
+    stage : str
+        Stage of the tasks.
+    variations : sequence of Variation
+
+    Returns
+    -------
+    list of Task
+    """
     return [
         Task(
             varied,
@@ -153,7 +179,20 @@ def variation_tasks(study: Study, stage: str, variations: Sequence[Variation] = 
 
 
 def assumption_cells(tasks: Sequence[Task], results: TaskResults) -> list[Cell]:
-    """Every variation of every scene to which both engine models apply, from the results of `variation_tasks`."""
+    """
+    Every variation against the translational model of its scene.
+
+    Parameters
+    ----------
+    tasks : sequence of Task
+        `variation_tasks`.
+    results : TaskResults
+        Their results.
+
+    Returns
+    -------
+    list of Cell
+    """
     answers = [(task.argument, results.value(task, _without_value)) for task in tasks]
     held_against = {scene.name: answer for (scene, _, variation, _), answer in answers if variation is None}
     return [
@@ -164,7 +203,18 @@ def assumption_cells(tasks: Sequence[Task], results: TaskResults) -> list[Cell]:
 
 
 def varied(task: Arguments) -> Solved:
-    """One task at PHASES."""
+    """
+    One variation at PHASES. Runs inside a worker process.
+
+    Parameters
+    ----------
+    task : tuple
+        As in `variation_arguments`.
+
+    Returns
+    -------
+    Solved
+    """
     scene, model, variation, tolerance = task
     short = scene.with_values({"duration": min(scene.duration, DURATION)})
     changed = short if variation is None else variation.of(short)
@@ -190,7 +240,20 @@ def _rows(array: Array) -> tuple[tuple[float, ...], ...]:
 
 
 def ranges(scenes: Sequence[Scene], cells: Sequence[Cell]) -> list[Range]:
-    """For every scene, body and share of WITHIN: over rings at the stated heights, over heights at the stated ring."""
+    """
+    Where every mu_i stays within each share of WITHIN.
+
+    Over rings at the stated heights, and over heights at the stated ring.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+    cells : sequence of Cell
+
+    Returns
+    -------
+    list of Range
+    """
     validity = []
     for scene in scenes:
         usual = [cell for cell in cells if cell.scene == scene.name and cell.variation.supports is None]

@@ -66,7 +66,18 @@ class Question:
 
 
 def gathered(question: Question) -> Evidence:
-    """Surface, bends and motions of one case under one reading. Runs inside a worker process."""
+    """
+    Surface, bends and motions of one case under one reading. Runs inside a worker process.
+
+    Parameters
+    ----------
+    question : Question
+        Case, reading and grid.
+
+    Returns
+    -------
+    Evidence
+    """
     scene = question.scene
     law = settings(scene, question.reading)
 

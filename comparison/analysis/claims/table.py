@@ -97,19 +97,60 @@ class Claims(Analysis[ClaimTable]):
 
 
 def paper_complete(study: Study) -> bool:
-    """Whether the study has every scene of the paper, whose claims speak about all of them."""
+    """
+    Whether a study has every scene of the paper, whose claims speak about all of them.
+
+    Parameters
+    ----------
+    study : Study
+
+    Returns
+    -------
+    bool
+    """
     return {scene.name for scene in study.scenes} >= set(builtin_scenes())
 
 
 def tabulated(
     claims: Sequence[Claim], readings: Sequence[Reading], grid: int, columns: Sequence[Mapping[str, Evidence]]
 ) -> ClaimTable:
-    """The table from the evidence of every reading."""
+    """
+    The table from the evidence of every reading.
+
+    Parameters
+    ----------
+    claims : sequence of Claim
+        Rows.
+    readings : sequence of Reading
+        Columns.
+    grid : int
+        Phases per axis.
+    columns : sequence of mapping
+        For each reading the evidence by case.
+
+    Returns
+    -------
+    ClaimTable
+    """
     return ClaimTable(claims, readings, grid, [[claim.verdict(column) for column in columns] for claim in claims])
 
 
 def questions(readings: Sequence[Reading], claims: Sequence[Claim], grid: int) -> list[Question]:
-    """What has to be computed, each only once, the longest first."""
+    """
+    What has to be computed, each only once.
+
+    Parameters
+    ----------
+    readings : sequence of Reading
+    claims : sequence of Claim
+    grid : int
+        Phases per axis.
+
+    Returns
+    -------
+    list of Question
+        The longest first.
+    """
     every = [_question(case, reading, grid) for case in _cases(claims) for reading in readings]
     return sorted(dict.fromkeys(every), key=lambda question: -question.reading.amplitude)
 

@@ -96,7 +96,7 @@ class TradeOff(Analysis[list[MeasuredTrade]]):
             _answered(question, measured[key(question.reference_solution)], entries) for question in questions.values()
         ]
         trade = Trade(scene.name, scene.title, scene.digest(), len(scene.bodies), answered, entries, {})
-        phases = sample(max(question.points for question in questions.values()))
+        phases = sample(max(question.points for question in answered))
         estimates = [answer.error_estimate for answer in answers]
         return MeasuredTrade(
             trade, labeled(entries, [answer.mu for answer in answers], reference_solutions, estimates, phases)

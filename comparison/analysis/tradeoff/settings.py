@@ -103,12 +103,34 @@ QUESTIONS = (
 
 
 def asked(scene: Scene) -> list[Question]:
-    """The questions that the scene allows."""
+    """
+    The questions that a scene allows.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    list of Question
+    """
     return [question for question in QUESTIONS if question.key != "spatial" or has_spatial_data(scene)]
 
 
 def settings(scene: Scene, quick: bool = False) -> list[Setting]:
-    """Every setting that is measured for this scene; `quick`: every other one of the dear ones."""
+    """
+    Every setting that is measured for a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    quick : bool
+        Every other one of the expensive ones.
+
+    Returns
+    -------
+    list of Setting
+    """
     keys = {question.key for question in asked(scene)}
     every = [*_reference(scene), *_scipy(quick), *_engine(quick)]
     return [setting for setting in every if setting.question in keys]

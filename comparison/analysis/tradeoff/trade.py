@@ -115,13 +115,48 @@ class Trade:
 
 
 def quantile(errors: Array, share: float) -> float | None:
-    """The error that a share of the points does not exceed; a value that was met, never one between two."""
+    """
+    The error that a share of the points does not exceed: one that occurred, never a value between two.
+
+    Parameters
+    ----------
+    errors : ndarray, (M,)
+        NaN where unknown.
+    share : float
+        From 0 to 1.
+
+    Returns
+    -------
+    float or None
+        None if no error is known.
+
+    Examples
+    --------
+    >>> quantile(np.array([1.0, 2.0, 3.0, np.nan]), 0.5)
+    2.0
+    """
     known = errors[np.isfinite(errors)]
     return float(np.quantile(known, share, method="higher")) if len(known) else None
 
 
 def on_pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[bool]:
-    """Which of the pairs are not beaten: no other is at least as good in both and better in one."""
+    """
+    Which pairs are not beaten: no other is at least as good in both and better in one.
+
+    Parameters
+    ----------
+    cost, error : sequence of float
+        Of each; infinite where unknown.
+
+    Returns
+    -------
+    list of bool
+
+    Examples
+    --------
+    >>> on_pareto_front([1.0, 2.0, 3.0], [1e-2, 1e-3, 1e-2])
+    [True, True, False]
+    """
     pairs = list(zip(cost, error))
     return [
         math.isfinite(mine[0] + mine[1])
@@ -131,7 +166,20 @@ def on_pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[bool]
 
 
 def with_pareto_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
-    """The entries with `pareto_front` filled in: within each question, among those that answer it at every point."""
+    """
+    The entries with `pareto_front` filled in.
+
+    Parameters
+    ----------
+    entries : sequence of Entry
+    bodies : int
+        Number of bodies N.
+
+    Returns
+    -------
+    list of Entry
+        Compared within each question, among those that answer it at every point.
+    """
     marks: dict[int, list[bool]] = {place: [False] * bodies for place in range(len(entries))}
     for question in {entry.question for entry in entries}:
         complete = [
