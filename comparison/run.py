@@ -26,13 +26,14 @@ from typing import Any
 from rich.console import Console
 
 from comparison.analysis.extremes.matrix import load as stored_extremes
-from comparison.analysis.surfaces import labeled_surfaces, wide_swings
+from comparison.analysis.surfaces import labeled_surfaces
 from comparison.analysis.targets import targets_met
 from comparison.analysis.tradeoff.trade import load as stored_trades
 from comparison.analysis.unanswered import with_silent_models
 from comparison.cli.arguments import command, writing
+from comparison.cli.closing import print_closing, print_errors
 from comparison.cli.options import Options, parsed
-from comparison.cli.terminal import print_differences, print_plan, print_study_plan, print_targets_met, print_unanswered
+from comparison.cli.terminal import print_plan, print_study_plan
 from comparison.execution.cache import Cache, StoreError, store_beside
 from comparison.execution.executors import ExecutorLostError, Pool, process_pool
 from comparison.execution.keys import batch_key
@@ -44,7 +45,8 @@ from comparison.execution.runner import Computed, Runner
 from comparison.execution.task_results import TaskResults
 from comparison.execution.workers import workers
 from comparison.registry import affordable, analysis_cost, chosen_analyses, first_tasks
-from comparison.report.findings import Findings, collect_findings
+from comparison.report.assemble import assemble
+from comparison.report.findings import collect_findings
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.planning import BudgetError, StudyPlan, StudyRequest, plan_study
 from comparison.study.study import Study
@@ -109,7 +111,7 @@ def _ended(plan: StudyPlan, options: Options, console: Console, words: Sequence[
     models = {model.amplification for model in study.hierarchy}
     try:
         with workers(options.jobs, options.scheduler, models, executor) as (width, make):
-            return _run(plan, replace(options, jobs=width), console, command_line(words), make, store)
+            return _run(plan, replace(options, jobs=width), console, words, make, store)
     except KeyboardInterrupt as stop:
         print(f"interrupted: {resume_hint(store, study, words)}", file=sys.stderr)
         return 128 + getattr(stop, "number", signal.SIGINT)
@@ -126,7 +128,7 @@ def _run(
     plan: StudyPlan,
     options: Options,
     console: Console,
-    command_words: str,
+    words: Sequence[str],
     executor: Callable[[int], Executor],
     store: Cache,
 ) -> int:
@@ -152,9 +154,8 @@ def _run(
         console.print("Computing what the surfaces choose, and drawing the figures of the report.")
     runner.run_tasks(tasks)
 
-    faults = _faults(study, computed)
     run: dict[str, Any] = {
-        "command": command_words,
+        "command": command_line(words),
         "began": began.isoformat(timespec="seconds"),
         "seconds": round(seconds, 1),
         "compute_seconds": round(float(surfaces["cost"].sum()), 1),
@@ -169,37 +170,28 @@ def _run(
         "choice": targets_met(plan, options.tolerance, options.budget, surfaces) if options.by_trade else None,
         "provenance": provenance(),
     }
-    found = collect_findings(
+    findings = collect_findings(
         study,
         surfaces,
         {
             analysis.key: analysis.collect(study.selecting(analysis.key), surfaces, runner.results)
             for analysis in analyses
         },
-        faults,
+        _faults(study, computed),
         run,
         families=[family for family in options.families if len(family.scenes) > 1] or None,
         extremes=None if "extremes" in study.absent else _taken_up(stored_extremes, options.out),
         tradeoff=None if "tradeoff" in study.absent else _taken_up(stored_trades, options.out),
     )
+    results = assemble(findings)
 
     console.print("Writing the report.")
     with writing(options.out), atomic_replace(options.out) as report:
-        write_report(report.folder, found)
-    for line in faults:
-        print(f"solver: {line}", file=sys.stderr)
-    for line in wide_swings(study, surfaces):
-        print(f"note: {line}", file=sys.stderr)
-    for line in _checked(found) if options.check else []:
-        print(line, file=sys.stderr)
-    if options.by_trade:
-        print_targets_met(console, run["choice"], time.monotonic() - begin)
-    print_unanswered(console, found.unanswered)
+        write_report(report.folder, results, findings)
     place = options.out if report.place == options.out.resolve() else report.place
-    _print_closing(console, options, place, run, time.monotonic() - begin, bool(study.phased))
-    differences = [row for row in found.rows if study.selection.has("differences", row.scene)]
-    print_differences(console, differences, bool(study.phased))
-    return 1 if options.check and found.broken else 0
+    print_errors(results, options.check)
+    print_closing(console, results, options, words, place, time.monotonic() - begin)
+    return 1 if options.check and results.broken else 0
 
 
 def _faults(study: Study, computed: Computed) -> list[str]:
@@ -214,17 +206,6 @@ def _faults(study: Study, computed: Computed) -> list[str]:
     )
 
 
-def _checked(found: Findings) -> list[str]:
-    """What `--check` says: every broken limit, and the scenes that state none."""
-    limited = {limit.scene for limit in found.limits}
-    unlimited = [scene.name for scene in found.study.scenes if scene.name not in limited]
-    lines = [f"limit broken: {line}" for line in found.broken]
-    if unlimited:
-        which = "no scene states" if not limited else f"{', '.join(unlimited)}: no limits are stated under"
-        lines.append(f"--check: {which} [acceptance]{' limits' if not limited else ''}: nothing was checked")
-    return lines
-
-
 def _taken_up(load: Callable[[Path], Any], out: Path) -> Any:
     """What another command left beside the report; a file that has appeared since and is none of theirs is left."""
     try:
@@ -232,15 +213,3 @@ def _taken_up(load: Callable[[Path], Any], out: Path) -> Any:
     except (OSError, ValueError) as error:
         on_stderr(str(error))
         return None
-
-
-def _print_closing(
-    console: Console, options: Options, report: Path, run: dict[str, object], seconds: float, phased: bool
-) -> None:
-    console.print(
-        f"{seconds:.0f} s with {options.jobs} workers: {run['compute_seconds']} s of compute "
-        f"({run['predicted_compute_seconds']} s predicted)."
-    )
-    console.print(f"Report: {report / 'index.html'}", soft_wrap=True)  # a path is copied whole
-    finer = "; a finer look: --grid N with a larger N; what that costs: --plan" if phased else ""
-    console.print(f"Next: open it in a browser{finer}.")

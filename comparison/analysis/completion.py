@@ -8,6 +8,7 @@ model has it. How far the interpolation is off is measured by leaving out each c
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -78,6 +79,15 @@ def completions(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Comple
         for body in range(1, len(scene.bodies) + 1):
             found.append(_completion(study, surfaces, scene, models[0], finer, model, body))
     return found
+
+
+def with_completed(surfaces: xr.Dataset, listed: Sequence[Completion]) -> xr.Dataset:
+    """The surfaces with the variable `completed`: mu where a completed surface may be drawn, NaN elsewhere."""
+    completed = xr.full_like(surfaces["mu"], np.nan)
+    completed.attrs = {"units": "1", "long_name": "mu on all phases, completed through a finer model"}
+    for surface in listed:
+        completed.loc[{"scene": surface.scene, "model": surface.model, "body": surface.body}] = surface.mu
+    return surfaces.assign(completed=completed)
 
 
 def _completion(

@@ -105,6 +105,8 @@ def _sentence(study: Study, scene: Scene, numbers: Headline, bars: Waterfall) ->
     paper = "the paper's equations" if first is asked[0] else f"the {first.title}"
     engine = "the engine" if second is asked[-1] and second.side == "engine" else f"the {second.title}"
     start = f"{scene.name}, {numbers.name}: "
+    if first is second:
+        return f"{start}only {paper} were computed, there is nothing to compare."
     if not numbers.points:
         return f"{start}{engine} and {paper} have no value in common{'' if scene.recorded else ' at any phase pair'}."
     real = abs(numbers.maximum) > RESOLVED * numbers.maximum_error

@@ -13,7 +13,6 @@ from comparison.study.models import models_of
 from comparison.study.study import Study
 
 NOT_APPLICABLE = "not applicable"  # status of a model that the scene gives nothing to add
-WIDE = 0.5  # of rho: a displacement of the platform that is said
 NOT_ASKED = "not asked"  # status of the phases between those of a model that computes every k-th
 
 
@@ -105,17 +104,6 @@ def largest_cap_share(surfaces: xr.Dataset, scene: str, model: str) -> float:
     """Largest displacement of the platform over rho among the phases of a model; NaN where none has an answer."""
     share = surfaces["cap_share"].sel(scene=scene, model=model)
     return float(share.max())  # skips NaN
-
-
-def wide_swings(study: Study, surfaces: xr.Dataset) -> list[str]:
-    """One line for every model whose platform uses more than half of the cap."""
-    return [
-        f"{scene.name}, {model.title}: the platform moves up to {100.0 * share:.1f} % of rho from the middle; "
-        "the model assumes a cap that reaches so far"
-        for scene in study.scenes
-        for model in models_of(scene, study.hierarchy)
-        if (share := largest_cap_share(surfaces, scene.name, model.key)) > WIDE
-    ]
 
 
 def common_phases(surfaces: xr.Dataset, scene: str, models: Sequence[str]) -> xr.Dataset:

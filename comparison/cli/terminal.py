@@ -1,16 +1,11 @@
-"""The tables printed on the terminal: the plan before a run, the differences after it."""
+"""What the terminal says before a run: the plan, its cost, and what was chosen for a tolerance or a budget."""
 
 from __future__ import annotations
-
-from collections.abc import Mapping, Sequence
-from typing import Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from comparison.analysis.differences import Difference
-from comparison.analysis.unanswered import Unanswered
 from comparison.cli.options import Options
 from comparison.execution.cache import Cache, store_beside
 from comparison.execution.keys import batch_key
@@ -27,7 +22,7 @@ from comparison.study.study import Study
 
 def print_plan(console: Console, study: Study, options: Options) -> None:
     """What would be computed and its predicted cost."""
-    table = _table("scene", "model", "points", "computed", "tolerance", "s on one core")
+    table = new_table("scene", "model", "points", "computed", "tolerance", "s on one core")
     total, refused = 0.0, []
     for scene in study.scenes:
         for model in study.hierarchy:
@@ -94,7 +89,7 @@ def print_study_plan(console: Console, plan: StudyPlan, options: Options) -> Non
     asked = [f"--tolerance {options.tolerance:g}"] if options.tolerance is not None else []
     asked += [f"--budget {options.budget:g}"] if options.budget is not None else []
     console.print(f"Chosen for {' '.join(asked)}, by the measured trade and the speed of this machine:")
-    table = _table("model", "phases per axis", "asked for", "s of compute")
+    table = new_table("model", "phases per axis", "asked for", "s of compute")
     for model in study.hierarchy:
         if any(model.applies(scene) for scene in study.scenes):
             cells = (
@@ -118,38 +113,8 @@ def print_study_plan(console: Console, plan: StudyPlan, options: Options) -> Non
     )
 
 
-def print_targets_met(console: Console, kept: Mapping[str, Any], seconds: float) -> None:
-    """What came of it."""
-    for model in kept["models"]:
-        console.print(
-            f"{model['title']}: {model['tolerance']:g} met at {100.0 * model['met']:.4g} % of {model['points']} points "
-            f"by the error estimates, {100.0 * model['error99']:.2g} % of mu at 99 % of them."
-        )
-    console.print(
-        f"{kept['seconds']:.1f} s of compute where {kept['predicted_seconds']:.1f} s were expected; {seconds:.0f} s "
-        f"in all where {kept['predicted_wall']:.0f} s were."
-    )
-
-
-def print_unanswered(console: Console, lacking: Sequence[Unanswered]) -> None:
-    """The models without a value somewhere, a line each: why, and what helps."""
-    for one in lacking:
-        console.print(f"Without a value: {one.sentence}", soft_wrap=True)
-
-
-def print_differences(console: Console, rows: Sequence[Difference], phased: bool) -> None:
-    """Median, 95 % and maximum relative difference, and the points not ok, for every scene, body and pair."""
-    if not rows:
-        return
-    console.print(f"Relative differences{' over the phases' if phased else ''}, per body:")
-    table = _table("scene", "body", "difference", "median", "95 %", "maximum", "not ok")
-    for row in rows:
-        sizes = (f"{value:.1e}" for value in (row.median, row.percentile95, row.maximum))
-        table.add_row(row.scene, str(row.body), row.pair.replace("-", " "), *sizes, str(row.not_ok))
-    console.print(table)
-
-
-def _table(*headings: str) -> Table:
+def new_table(*headings: str) -> Table:
+    """An empty table: words to the left, numbers to the right."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for heading in headings:
         words = heading in ("scene", "model", "difference")

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from comparison.analysis.surfaces import WIDE, largest_cap_share
+from comparison.analysis.surfaces import largest_cap_share
 from comparison.report.findings import Findings
 from comparison.report.results import Alert
 from comparison.study.models import models_of
+
+WIDE = 0.5  # of rho: a displacement of the platform from the middle that a reader must know of
 
 
 def alerts(found: Findings) -> list[Alert]:

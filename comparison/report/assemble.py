@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Any
 
 from comparison.analysis.claims.table import ClaimTable
-from comparison.analysis.completion import completions
 from comparison.analysis.errata import ERRATA
 from comparison.analysis.grid_maxima import grid_maxima
 from comparison.analysis.headline import headline
@@ -87,7 +86,6 @@ def assemble(found: Findings) -> Results:
         unanswered=[Unanswered.model_validate(lacking) for lacking in found.unanswered],
         absent=study.absent,
         alerts=alerts(found),
-        broken=[line for limit in found.limits for line in limit.broken],
         faults=list(found.faults),
     )  # fmt: skip
 
@@ -115,7 +113,7 @@ def _scene(found: Findings, scene: Scene) -> SceneResult:
         bars=[Bar.model_validate(bar(study, surfaces, scene, body)) for body in range(1, bodies + 1)],
         headlines=[Headline.model_validate(each) for each in headlines],
         waterfalls=[Waterfall.model_validate(each) for each in waterfalls],
-        completions=[Completion.model_validate(each) for each in completions(study, surfaces, scene)],
+        completions=[Completion.model_validate(surface) for surface in of_scene(found.completions)],
         grid_maxima=[GridMaximum.model_validate(each) for each in grid_maxima(study, surfaces, scene)],
         limits=[Limit.model_validate(limit) for limit in of_scene(found.limits)],
         effective=[Effective.model_validate(values) for values in of_scene(found.effective)],

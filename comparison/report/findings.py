@@ -12,6 +12,7 @@ from comparison.analysis.acceptance import Limit, checked_limits
 from comparison.analysis.assumptions.validity import ValidityRanges
 from comparison.analysis.budget import Entry, budget
 from comparison.analysis.claims.table import ClaimTable
+from comparison.analysis.completion import Completion, completions, with_completed
 from comparison.analysis.differences import Difference, differences
 from comparison.analysis.effective import Effective
 from comparison.analysis.errata import Effect
@@ -27,40 +28,31 @@ from reference.problem import Family
 @dataclass(frozen=True)
 class Findings:
     """
-    surfaces: see `labeled_surfaces`. rows: differences of pairs of models. budget: what every model adds. effective:
-    values read back from each model. effects: what errata of the print do to mu. unanswered: models without a value
-    somewhere. limits: the acceptance limits that scenes state, held against the rest. faults: what solvers complained
-    about. run: command, times, provenance. pictures: files of the surfaces' by name. Fields that may be None are what
-    only some commands compute. motions, claims, scaling, convergence, assumptions: what the analyses of these keys
-    collect. families: those of more than one scene. extremes: the
-    matrix that `python -m comparison.extremes` left beside the report. tradeoff: what `python -m comparison.tradeoff`
-    left there.
+    What the results of a run are assembled from, and what the page shows beside them.
+
+    Fields that may be None are what only some commands compute.
     """
 
     study: Study
     surfaces: xr.Dataset
-    rows: Sequence[Difference]
-    budget: Sequence[Entry]
-    effective: Sequence[Effective]
-    effects: Sequence[Effect]
-    unanswered: Sequence[Unanswered]
-    limits: Sequence[Limit]
-    faults: Sequence[str]
-    run: Mapping[str, Any]
-    pictures: Mapping[str, bytes] = field(default_factory=dict)
-    motions: Sequence[StoredMotion] | None = None
+    rows: Sequence[Difference]  # differences of pairs of models
+    budget: Sequence[Entry]  # what every model adds
+    effective: Sequence[Effective]  # values read back from each model
+    effects: Sequence[Effect]  # what errata of the print do to mu
+    unanswered: Sequence[Unanswered]  # models without a value somewhere
+    limits: Sequence[Limit]  # acceptance limits of the scenes, held against the rest
+    completions: Sequence[Completion]  # surfaces of models with fewer phases, on all of them
+    faults: Sequence[str]  # what solvers reported
+    run: Mapping[str, Any]  # command, times, provenance
+    pictures: Mapping[str, bytes] = field(default_factory=dict)  # files of the pictures of the surfaces, by name
+    motions: Sequence[StoredMotion] | None = None  # motions at chosen phases
     claims: ClaimTable | None = None
     scaling: Sequence[Trend] | None = None
     convergence: Sequence[Trend] | None = None
     assumptions: ValidityRanges | None = None
-    families: Sequence[Family] | None = None
-    extremes: Matrix | None = None
-    tradeoff: Sequence[Trade] | None = None
-
-    @property
-    def broken(self) -> list[str]:
-        """Acceptance limits that are broken, one line for each body."""
-        return [line for limit in self.limits for line in limit.broken]
+    families: Sequence[Family] | None = None  # those of more than one scene
+    extremes: Matrix | None = None  # what python -m comparison.extremes left beside the report
+    tradeoff: Sequence[Trade] | None = None  # what python -m comparison.tradeoff left beside the report
 
 
 def collect_findings(
@@ -94,15 +86,17 @@ def collect_findings(
     """
     rows, lacking = differences(study, surfaces), unanswered(study, surfaces)
     optional = {key: collected.get(key) for key in ("motions", "claims", "scaling", "convergence", "assumptions")}
+    completed = [surface for scene in study.scenes for surface in completions(study, surfaces, scene)]
     return Findings(
         study=study,
-        surfaces=surfaces,
+        surfaces=with_completed(surfaces, completed),
         rows=rows,
         budget=budget(study, surfaces),
         effective=collected.get("effective") or [],
         effects=collected.get("errata") or [],
         unanswered=lacking,
         limits=checked_limits(study, surfaces, rows, lacking),
+        completions=completed,
         faults=faults,
         run=run,
         pictures=collected.get("pictures") or {},

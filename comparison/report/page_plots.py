@@ -72,10 +72,18 @@ def family_panels(found: Findings) -> list[dict[str, Any]]:
     listed = []
     for family in found.families or ():
         bodies = range(1, family.bodies + 1)
-        panels = [panel for body in bodies for panel in (_family_mu(found, family, body), _family_steps(found, family, body))]
+        panels = [
+            panel for body in bodies for panel in (_family_mu(found, family, body), _family_steps(found, family, body))
+        ]
         first = family.scenes[0]
         listed.append(
-            {"title": first.title, "name": family.name, "count": len(family.values), "key": family.key, "panels": panels}
+            {
+                "title": first.title,
+                "name": family.name,
+                "count": len(family.values),
+                "key": family.key,
+                "panels": panels,
+            }
         )
     return listed
 
@@ -166,7 +174,12 @@ def _family_mu(found: Findings, family: Family, body: int) -> Panel:
             line["low"] = [float(values.min()) if values.size else None for values in known]
             line["high"] = [float(values.max()) if values.size else None for values in known]
         series.append(line)
-    plot = {"label": f"mu_{body} of every model over {family.key}", "x": axis, "y": {"title": f"μ{body}"}, "series": series}
+    plot = {
+        "label": f"mu_{body} of every model over {family.key}",
+        "x": axis,
+        "y": {"title": f"μ{body}"},
+        "series": series,
+    }
     return {"title": f"mu_{body}", "plot": plot}
 
 

@@ -7,21 +7,30 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from comparison.report.assemble import assemble
 from comparison.report.figures.pictures import PAGE
 from comparison.report.findings import Findings
 from comparison.report.junit import junit
 from comparison.report.page import SECTIONS, page
-from comparison.report.results import schema_json
+from comparison.report.results import Results, schema_json
 from comparison.report.summary_text import summary_text
 
 
-def write_report(folder: Path, found: Findings) -> None:
-    """Write every file of the report into `folder`, which exists and is empty."""
+def write_report(folder: Path, results: Results, found: Findings) -> None:
+    """
+    Write every file of the report.
+
+    Parameters
+    ----------
+    folder : Path
+        Exists and is empty.
+    results : Results
+        What summary.json, summary.md and junit.xml hold.
+    found : Findings
+        Surfaces, motions and pictures, which the page shows beside the results.
+    """
     run = found.run
     stamped = found.surfaces.assign_attrs(command=run["command"], **run["provenance"])
     stamped.to_netcdf(folder / "surfaces.nc", engine="h5netcdf")
-    results = assemble(found)
     texts = {
         "summary.json": results.as_json(),
         "summary.schema.json": schema_json(),

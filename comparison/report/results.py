@@ -20,7 +20,7 @@ from comparison.analysis.tradeoff.trade import Trade
 from reference.problem.acceptance import Acceptance
 
 SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"
-VERSION: Literal[3] = 3  # grows when a key changes its meaning or goes
+VERSION: Literal[4] = 4  # grows when a key changes its meaning or goes
 
 
 def _finite(value: float) -> float | None:
@@ -756,6 +756,15 @@ class Alert(Part):
     help: Text
     """what helps; empty where nothing is known to"""
 
+    @property
+    def line(self) -> str:
+        """All that in one line."""
+        return ". ".join(f"{part[0].upper()}{part[1:]}" if number else part for number, part in enumerate(self._parts))
+
+    @property
+    def _parts(self) -> list[str]:
+        return [f"{self.scene}: {self.text}", *([self.help] if self.help else [])]
+
 
 class Results(Part):
     """Everything that a program needs to judge a run. Relative sizes are fractions; a missing number is null."""
@@ -764,7 +773,7 @@ class Results(Part):
         default=SCHEMA, validation_alias="schema", serialization_alias="schema"
     )
     """what this file is"""
-    version: Literal[3] = VERSION
+    version: Literal[4] = VERSION
     """grows when a key changes its meaning or goes; new keys may come without"""
     run: Run
     """how the report was made"""
@@ -798,12 +807,15 @@ class Results(Part):
     """analyses that were made of no scene, with the reason"""
     unanswered: list[Unanswered]
     """models without a value at some or all phase pairs of a scene"""
-    broken: list[Text]
-    """broken acceptance limits in words, one line for each body"""
     alerts: list[Alert]
     """what a reader must know before trusting a number, the most serious first"""
     faults: list[Text]
     """error messages of the solvers"""
+
+    @property
+    def broken(self) -> list[Alert]:
+        """The broken acceptance limits, one alert for each body."""
+        return [alert for alert in self.alerts if alert.kind == "limit"]
 
     @property
     def phased(self) -> list[SceneResult]:

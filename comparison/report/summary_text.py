@@ -1,4 +1,4 @@
-"""summary.md: the verdicts, the limits and the two tables that a pull request should show."""
+"""summary.md: the sentences, the limits and the two tables that a pull request should show."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import re
 from collections.abc import Sequence
 from math import isnan
 
-from comparison.report.results import Results
-from comparison.wording import degrees, percent
+from comparison.report.results import Results, WaterfallBar
+from comparison.wording import degrees, percent, signed
 from reference.problem import Outcome
 
 MARKS = re.compile(r"[\\|<>*_`\[\]#~$&!]")
@@ -20,7 +20,7 @@ def summary_text(results: Results) -> str:
     kinds = [f"{results.grid} × {results.grid} phases"] if phased else []
     kinds += ["one value under each recorded motion"] if len(phased) < count else []
     heading = f"## Phase-resonance study: {count} scene{'' if count == 1 else 's'}, {', '.join(kinds)}"
-    parts = [heading, _limits(results), *_unanswered(results), _verdicts(results)]
+    parts = [heading, _limits(results), *_alerts(results), _headlines(results)]
     parts += _differences(results) if "differences" not in results.absent else []
     parts += _budget(results) if "budget" not in results.absent else []
     parts += _lost(results)
@@ -38,9 +38,9 @@ def summary_text(results: Results) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _unanswered(results: Results) -> list[str]:
-    """Models without a value somewhere."""
-    lines = [f"- {_plain(lacking.sentence)}" for lacking in results.unanswered]
+def _alerts(results: Results) -> list[str]:
+    """What a reader must know before trusting a number; broken limits have a list of their own."""
+    lines = [f"- {_plain(alert.line)}" for alert in results.alerts if alert.kind in ("refused", "lacking", "swing")]
     return ["\n".join(lines)] if lines else []
 
 
@@ -50,13 +50,14 @@ def _limits(results: Results) -> str:
         return "No scene states acceptance limits: nothing was checked."
     if not broken:
         return "**Every acceptance limit holds.**"
-    lines = "\n".join(f"- {_plain(line)}" for line in broken)
+    lines = "\n".join(f"- {_plain(f'{alert.scene}: {alert.text}')}" for alert in broken)
     return f"**{len(broken)} acceptance limit{'' if len(broken) == 1 else 's'} broken:**\n\n{lines}"
 
 
-def _verdicts(results: Results) -> str:
+def _headlines(results: Results) -> str:
     return "\n".join(
-        f"- **{_plain(scene.name)}** ({_plain(scene.title)}): {_plain(scene.verdict.sentence.replace('mu_', 'μ_'))}"
+        f"- **{_plain(scene.name)}** ({_plain(scene.title)})\n"
+        + "\n".join(f"  - {_plain(headline.sentence.removeprefix(f'{scene.name}, '))}" for headline in scene.headlines)
         for scene in results.scenes
     )
 
@@ -83,17 +84,22 @@ def _budget(results: Results) -> list[str]:
     models = [model for model in results.models[1:] if any(model.key in scene.models for scene in results.scenes)]
     rows = []
     for scene in results.scenes_with("budget"):
-        for bar in scene.bars:
-            sizes = {segment.model: percent(segment.size) for segment in bar.segments}
-            rows.append(
-                [scene.name, str(bar.body), *(sizes.get(model.key, "") for model in models), percent(bar.total)]
-            )
-    names = ["scene", "body", *(model.title for model in models), "total"]
+        for waterfall in scene.waterfalls:
+            sizes = {bar.model: _signed(bar) for bar in waterfall.bars}
+            total, points = _signed(waterfall.total), str(waterfall.points)
+            cells = (sizes.get(model.key, "") for model in models)
+            rows.append([scene.name, str(waterfall.body), *cells, total, points])
+    names = ["scene", "body", *(model.title for model in models), "total", "phase pairs"]
     return [
         "### What makes the difference",
-        "Mean absolute size of every step, by the model it leads to; steps of opposite sign cancel in the total.",
+        "Mean of every step with its sign, by the model it leads to, over the phase pairs that every model has. "
+        "The steps add up to the total. In parentheses: not known to a fifth of itself.",
         _table(names, rows, left=2),
     ]
+
+
+def _signed(bar: WaterfallBar) -> str:
+    return signed(bar.size) if bar.real else f"({signed(bar.size)})"
 
 
 def _lost(results: Results) -> list[str]:

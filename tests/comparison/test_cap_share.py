@@ -9,10 +9,12 @@ import pytest
 
 import multibody
 import reference
-from comparison.analysis.surfaces import labeled_surfaces, largest_cap_share, wide_swings
+from comparison.analysis.surfaces import labeled_surfaces, largest_cap_share
 from comparison.execution.cache import Cache
 from comparison.execution.keys import batch_key, cached_batch
 from comparison.execution.splitting import merge, split_batch
+from comparison.report.alerts import alerts
+from comparison.report.findings import collect_findings
 from comparison.study.batches import execute_batch
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
@@ -84,8 +86,9 @@ def test_the_share_is_stored_joined_labeled_and_said(tmp_path: Path) -> None:
     surfaces = labeled_surfaces(study, batches, answers)
     largest = max(answer.cap_share.max() for answer in answers)
     assert largest_cap_share(surfaces, scene.name, MODEL_HIERARCHY[0].key) == largest > 0.5
-    [line] = wide_swings(study, surfaces)
-    assert f"{100.0 * largest:.1f} % of rho" in line
+    swings = [alert for alert in alerts(collect_findings(study, surfaces, {}, [], {})) if alert.kind == "swing"]
+    assert [alert.level for alert in swings] == ["amber"]
+    assert f"{100.0 * largest:.1f} % of rho" in swings[0].text
 
 
 @pytest.mark.parametrize("scene", [load_scene("fig3-I"), load_scene("synthetic-pair")], ids=["phases", "record"])

@@ -130,11 +130,11 @@ def test_junit_and_summary_are_well_formed_whatever_a_scene_is_called() -> None:
     scene = Scene.model_construct(**{**dict(valid), "name": "a\x00\x01\ud800\ufffe<b>", "title": title})
     study = Study((scene,), 2, 1e-3, fake_hierarchy())
     surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
-    found = collect_findings(study, surfaces, {}, [], RUN)
-    assert found.broken
-    suites = ElementTree.fromstring(junit(assemble(found)).encode())
+    results = assemble(collect_findings(study, surfaces, {}, [], RUN))
+    assert results.broken
+    suites = ElementTree.fromstring(junit(results).encode())
     assert suites[0].get("name") == "a\ufffd\ufffd\ufffd\ufffd<b>"
-    text = summary_text(assemble(found))
+    text = summary_text(results)
     assert r"\[a\](http://b) \#1 \$x\$ \&copy; \~\~c\~\~ \<b\> \| d" in text
     assert "`` run `a` ``" in text
     assert np.unique([line.count("|") for line in text.splitlines() if line.startswith("| a")]).size <= 2

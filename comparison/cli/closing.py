@@ -1,0 +1,139 @@
+"""What the terminal says after a run: one table, what to beware of, the sentences of the page, what to do next."""
+
+from __future__ import annotations
+
+import math
+import shlex
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+
+from comparison.cli.options import Options
+from comparison.cli.terminal import new_table
+from comparison.execution.resume import command_line
+from comparison.report.results import Alert, Headline, Results, SceneResult, Targets
+from reference.problem import builtin_scenes, example_scenes
+
+FILMED = ("translational", "spatial")  # models that multibody.animate knows, by their keys
+LABELS = {
+    "refused": "No answer",
+    "limit": "Limit broken",
+    "lacking": "Values missing",
+    "fault": "solver",
+    "swing": "Wide swing",
+}
+
+
+def print_errors(results: Results, check: bool) -> None:
+    """On standard error: what solvers reported and, with --check, the broken limits and the scenes without limits."""
+    lines = [f"{LABELS['fault']}: {line}" for line in results.faults]
+    if check:
+        lines += [f"limit broken: {alert.scene}: {alert.text}" for alert in results.broken]
+        unlimited = [scene.name for scene in results.scenes if not scene.limits]
+        if len(unlimited) == len(results.scenes):
+            lines.append("--check: no scene states [acceptance] limits: nothing was checked")
+        elif unlimited:
+            lines.append(
+                f"--check: {', '.join(unlimited)}: no limits are stated under [acceptance]: nothing was checked"
+            )
+    for line in lines:
+        print(line, file=sys.stderr)
+
+
+def print_closing(
+    console: Console, results: Results, options: Options, words: Sequence[str], report: Path, seconds: float
+) -> None:
+    """
+    The last lines of a run.
+
+    Parameters
+    ----------
+    words : sequence of str
+        The words of the command line.
+    report : Path
+        Folder of the report.
+    seconds : float
+        Wall time of the whole run, s.
+    """
+    _print_differences(console, results)
+    if results.run.choice:
+        _print_targets_met(console, results.run.choice, seconds)
+    console.print(
+        f"{seconds:.0f} s with {options.jobs} workers: {results.run.compute_seconds} s of compute "
+        f"({results.run.predicted_compute_seconds} s predicted)."
+    )
+    for alert in _shown(results, options.check):
+        color = "red" if alert.level == "red" else "yellow"
+        console.print(f"{LABELS[alert.kind]}: {alert.line}", style=color, soft_wrap=True)
+    for headline in (headline for scene in results.scenes for headline in scene.headlines):
+        console.print(headline.sentence, soft_wrap=True)
+    console.print(f"Report: {report / 'index.html'}", soft_wrap=True)  # a path is copied whole
+    for line in next_commands(results, words):
+        console.print(line, soft_wrap=True)
+
+
+def next_commands(results: Results, words: Sequence[str]) -> list[str]:
+    """What to type next: a film of the largest difference, and what a finer grid would cost."""
+    lines = []
+    filmed = [
+        (headline, source)
+        for scene in results.phased
+        if (source := _source(scene, words))
+        for headline in scene.headlines
+        if headline.maximum_model in FILMED and math.isfinite(headline.maximum)
+    ]
+    if filmed:
+        largest, source = max(filmed, key=lambda pair: abs(pair[0].maximum))
+        lines.append(f"Next: a film of the largest difference: {_film(largest, source)}")
+    if results.phased:
+        finer = command_line([*words, "--grid", str(2 * results.grid), "--plan"])
+        lines.append(f"Next: what a finer grid costs: {finer}")
+    return lines
+
+
+def _film(headline: Headline, source: str) -> str:
+    phases = " ".join(f"{phase:.4f}" for phase in headline.maximum_phases)
+    return f"python -m multibody.animate {shlex.quote(source)} --phases {phases} --model {headline.maximum_model}"
+
+
+def _source(scene: SceneResult, words: Sequence[str]) -> str:
+    """How the scene is named on a command line, "" for one of a family and one whose loading the command changed."""
+    if any(word.startswith("--amplitude") for word in words):
+        return ""
+    if scene.name in (*builtin_scenes(), *example_scenes()):
+        return scene.name
+    return next((word for word in words if word.endswith(".toml") and Path(word).stem == scene.name), "")
+
+
+def _shown(results: Results, check: bool) -> list[Alert]:
+    """The alerts that are not on standard error."""
+    return [alert for alert in results.alerts if alert.kind != "fault" and not (check and alert.kind == "limit")]
+
+
+def _print_differences(console: Console, results: Results) -> None:
+    """Median, 95 % and maximum relative difference, and the points not ok, for every scene, body and pair."""
+    rows = [row for scene in results.scenes_with("differences") for row in scene.differences]
+    if not rows:
+        return
+    console.print(f"Relative differences{' over the phases' if results.phased else ''}, per body:")
+    table = new_table("scene", "body", "difference", "median", "95 %", "maximum", "not ok")
+    for row in rows:
+        sizes = (f"{value:.1e}" for value in (row.median, row.percentile95, row.maximum))
+        table.add_row(row.scene, str(row.body), row.pair.replace("-", " "), *sizes, str(row.not_ok))
+    console.print(table)
+
+
+def _print_targets_met(console: Console, targets: Targets, seconds: float) -> None:
+    """What came of --tolerance and --budget."""
+    for model in targets.models:
+        error = "no value at more than 1 %" if model.error99 is None else f"{100.0 * model.error99:.2g} % of mu at 99 %"
+        console.print(
+            f"{model.title}: {model.tolerance:g} met at {100.0 * model.met:.4g} % of {model.points} points "
+            f"by the error estimates, {error} of them."
+        )
+    console.print(
+        f"{targets.seconds:.1f} s of compute where {targets.predicted_seconds:.1f} s were expected; {seconds:.0f} s "
+        f"in all where {targets.predicted_wall:.0f} s were."
+    )

@@ -1,0 +1,144 @@
+"""The sentence of a body says what is planted: size, direction, phases, cause, and hides no largest difference."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from fake_models import errors_in, fake_hierarchy
+from test_waterfall import KEYS, planted, scattered
+
+from comparison.analysis.differences import differences
+from comparison.analysis.headline import Headline, headline
+from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.unanswered import with_silent_models
+from comparison.analysis.waterfall import waterfall
+from comparison.study.batches import execute_batch
+from comparison.study.study import Study
+from reference.problem import Scene, load_scene
+
+
+def told(study: Study, surfaces: xr.Dataset, body: int = 1) -> Headline:
+    study = with_silent_models(study, surfaces)
+    scene, rows = study.scenes[0], differences(study, surfaces)
+    return headline(study, surfaces, scene, waterfall(study, surfaces, scene, body), rows)
+
+
+def test_the_sentence_has_the_planted_size_direction_phases_and_cause() -> None:
+    later = dict.fromkeys(KEYS[1:], -0.12)
+    study, surfaces = planted({"exact": 0.001, **later})
+    result = told(study, surfaces)
+    assert (result.first, result.second, result.cause) == ("small", "spatial", ("resolved",))
+    assert result.median == pytest.approx(-0.12, rel=1e-9)
+    assert result.sentence.startswith(
+        "fig3-I, platform: the engine gives 12 % less than the paper's equations (median over 4 × 4 initial phases, "
+    )
+    assert "Cause: the instant of stopping, not geometry." in result.sentence
+    assert "the two codes agree to" in result.sentence
+
+
+def test_a_median_above_zero_says_more_and_geometry_may_be_the_cause() -> None:
+    study, surfaces = planted(dict.fromkeys(KEYS, 0.05))
+    result = told(study, surfaces, body=2)
+    assert "body 2: the engine gives 5 % more than the paper's equations" in result.sentence
+    assert "Cause: geometry." in result.sentence
+    assert "not geometry" not in result.sentence
+
+
+def test_two_steps_of_like_size_are_both_named() -> None:
+    study, surfaces = planted({"exact": 0.05, **dict.fromkeys(KEYS[1:4], 0.08), "spatial": 0.13})
+    assert told(study, surfaces).cause == ("exact", "spatial", "resolved")
+
+
+def test_the_numbers_hold_the_largest_difference_of_the_scene_whatever_model_has_it() -> None:
+    for seed in range(10):
+        study, surfaces = planted({})
+        surfaces = scattered(surfaces, seed)
+        mu = surfaces["mu"].sel(scene="fig3-I")
+        engine = mu.sel(model=["translational", "spatial"])
+        largest = float(np.abs(engine / mu.sel(model="small") - 1.0).max())
+        results = [told(study, surfaces, body) for body in (1, 2)]
+        assert max(abs(result.maximum) for result in results) == pytest.approx(largest, rel=1e-12)
+        stated = [float(number) for result in results for number in re.findall(r"up to (\d+) %", result.sentence)]
+        assert round(100.0 * largest) in stated
+
+
+def test_a_largest_difference_of_the_finer_model_names_its_phases_and_what_it_lacks() -> None:
+    study, surfaces = planted({})
+    surfaces["mu"].loc[{"model": "translational", "body": 1, "alpha1": 0.0, "alpha2": surfaces["alpha2"][1]}] *= 1.4
+    result = told(study, surfaces)
+    assert (result.maximum_model, result.maximum_phases_per_axis) == ("translational", 8)
+    assert "up to 40 % more without turning of the bodies, over 8 × 8 phases, at (0°, 45°)" in result.sentence
+    assert "agree at most initial phases" in result.sentence
+
+
+def test_a_difference_within_five_errors_is_no_difference() -> None:
+    study, surfaces = planted({"spatial": 0.01}, {"spatial": 0.004})
+    result = told(study, surfaces)
+    assert result.sentence.startswith("fig3-I, platform: no difference beyond the numerical error: the engine and")
+    assert result.cause == ()
+    assert "Cause" not in result.sentence
+
+
+def test_codes_that_differ_like_for_like_do_not_agree() -> None:
+    study, surfaces = planted({"translational": 0.2, "spatial": 0.2})
+    assert "the two codes differ by up to 20 %" in told(study, surfaces).sentence
+
+
+def test_a_lubricated_scene_has_its_own_cause() -> None:
+    study, surfaces = planted(dict.fromkeys(KEYS, 0.02), scene="fig4-viscous")
+    result = told(study, surfaces)
+    assert result.cause == ("exact",)
+    assert "stopping" not in result.sentence
+
+
+def test_a_record_has_no_phases_and_no_median() -> None:
+    study, surfaces = planted(dict.fromkeys(KEYS[2:], -0.03), scene="synthetic-pair")
+    result = told(study, surfaces)
+    assert "the engine gives 3 % less than the paper's equations under the record." in result.sentence
+    assert "phases" not in result.sentence
+    assert "nan" not in result.sentence
+
+
+def test_a_refused_model_changes_what_is_compared_and_the_sentence_says_so() -> None:
+    study, surfaces = planted(dict.fromkeys(KEYS[1:], 0.1))
+    surfaces["mu"].loc[{"model": "spatial"}] = np.nan
+    result = told(study, surfaces)
+    assert result.second == "translational"
+    assert "the translational engine gives 10 % more than the paper's equations (median over 8 × 8" in result.sentence
+    surfaces["mu"].loc[{"model": "small"}] = np.nan
+    assert "than the exact equations" in told(study, surfaces).sentence
+    surfaces["mu"][:] = np.nan
+    assert told(study, surfaces).sentence == (
+        "fig3-I, platform: the engine and the paper's equations have no value in common at any phase pair."
+    )
+
+
+def test_missing_values_are_counted_in_the_phases() -> None:
+    study, surfaces = planted(dict.fromkeys(KEYS, 0.05))
+    surfaces["mu"].loc[{"model": "spatial", "alpha1": 0.0, "alpha2": 0.0}] = np.nan
+    assert "median over 15 of 4 × 4 initial phases, 15 of them independent" in told(study, surfaces).sentence
+
+
+@pytest.mark.parametrize("bodies", [1, 6])
+def test_any_number_of_bodies_and_a_single_pair_of_models_have_sentences(bodies: int) -> None:
+    text = load_scene("fig3-I").model_dump(exclude_none=True)
+    first, second = text["bodies"]
+    scene = Scene.model_validate({**text, "bodies": [first, *[second] * (bodies - 1)], "name": "tower"})
+    for hierarchy in (errors_in({}), fake_hierarchy()[:1], fake_hierarchy()[:2], fake_hierarchy()[3:5]):
+        study = Study((scene,), 2, 1e-3, hierarchy)
+        batches = study.batches()
+        surfaces = labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
+        for number in range(1, bodies + 1):
+            sentence = told(study, surfaces, number).sentence
+            assert sentence.startswith(f"tower, {'platform' if number == 1 else f'body {number}'}: ")
+            assert "nan" not in sentence
+
+
+def test_a_model_without_words_for_its_effect_is_named_by_its_title() -> None:
+    study, surfaces = planted(dict.fromkeys(KEYS, 0.05))
+    hierarchy = tuple(replace(model, effect="") for model in study.hierarchy)
+    assert "Cause: the step to the exact equations." in told(replace(study, hierarchy=hierarchy), surfaces).sentence
