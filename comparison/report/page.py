@@ -215,7 +215,7 @@ def content_policy(script: str, style: str) -> str:
         return "'sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() + "'"
 
     allowed = {"script-src": digest(script), "style-src": digest(style), "img-src": "data:"}
-    denied = {name: "'none'" for name in ("default-src", "base-uri", "form-action")}
+    denied = dict.fromkeys(("default-src", "base-uri", "form-action"), "'none'")
     return "; ".join(f"{name} {value}" for name, value in (denied | allowed).items())
 
 

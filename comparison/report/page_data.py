@@ -10,7 +10,7 @@ import contourpy
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.analysis.completion import Completion, completions
+from comparison.analysis.completion import Completion
 from comparison.analysis.differences import pair_step
 from comparison.analysis.surfaces import common_phases
 from comparison.report.findings import Findings
@@ -87,7 +87,7 @@ def _surface(found: Findings, scene: Scene, model: Model) -> bool:
 
 
 def _models(found: Findings, scene: Scene) -> dict[str, Any]:
-    completed = {(each.model, each.body): each for each in completions(found.study, found.surfaces, scene)}
+    completed = {(each.model, each.body): each for each in found.completions if each.scene == scene.name}
     return {model.key: _model(found, scene, completed, model) for model in models_of(scene, found.study.hierarchy)}
 
 

@@ -28,14 +28,15 @@ def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
     ordered = sorted(trends, key=lambda trend: (trend.scene, trend.parameter[-1]))
     for (scene, values), group in groupby(ordered, key=lambda trend: (trend.scene, tuple(trend.parameter))):
         rows = list(group)
-        series = []
+        series: list[dict[str, Any]] = []
         for number, trend in enumerate(rows[:MAX_CURVES]):
             slope = f"{trend.exponent:.2f} ± {trend.uncertainty:.2f}" if math.isfinite(trend.exponent) else "none"
             points = {"x": list(values), "y": _plain(trend.medians), "color": number, "marks": True}
             series.append({"name": f"μ_{trend.body}, {trend.what}: slope {slope}", **points})
         axis = parameter or ("penetration, ρ" if "contact" in rows[0].what else "v_reg, m/s")
         plot = {
-            "label": f"{scene}: median relative difference over {axis}; " + "; ".join(line["name"] for line in series),
+            "label": f"{scene}: median relative difference over {axis}; "
+            + "; ".join(str(line["name"]) for line in series),
             "x": {"title": axis, "log": True},
             "y": {"title": "median relative difference", "log": True},
             "series": series,
