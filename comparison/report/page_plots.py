@@ -30,7 +30,8 @@ def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
             series.append({"name": f"μ_{trend.body}, {trend.what}: slope {slope}", **points})
         axis = parameter or ("penetration, ρ" if "contact" in rows[0].what else "v_reg, m/s")
         plot = {
-            "label": f"{scene}: median relative difference over {axis}; " + "; ".join(line["name"] for line in series),
+            "label": f"{scene}: median relative difference over {axis}; "
+            + "; ".join(str(line["name"]) for line in series),
             "x": {"title": axis, "log": True},
             "y": {"title": "median relative difference", "log": True},
             "series": series,
