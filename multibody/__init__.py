@@ -5,6 +5,7 @@ Functions:
     amplification(scene, phases, ...)   amplification factors with an error estimate
     trajectory(scene, phase, ...)       one motion to a tolerance
     single_run(scene, phase, ...)       one run at a level of accuracy or a constant step, without an error estimate
+    demands(trajectory)                 what a motion demands of isolator and structure, with errors
     levels(scene, ...)                  the levels of accuracy (`Level`) that `amplification` goes through
     refusal(scene, ...)                 why a model is refused for a scene, or ""
 
@@ -21,17 +22,19 @@ if TYPE_CHECKING:
     from multibody.integration.work_limit import refusal
     from multibody.motion import single_run, trajectory
     from multibody.surface import amplification
+    from reference.problem import demands
 
 ENGINE = {
     "Level": "multibody.integration.level",
     "amplification": "multibody.surface",
+    "demands": "reference.problem",
     "levels": "multibody.integration.level",
     "refusal": "multibody.integration.work_limit",
     "single_run": "multibody.motion",
     "trajectory": "multibody.motion",
 }
 
-__all__ = ["Level", "amplification", "levels", "refusal", "single_run", "trajectory"]
+__all__ = ["Level", "amplification", "demands", "levels", "refusal", "single_run", "trajectory"]
 
 
 def __getattr__(name: str) -> Any:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -12,7 +14,7 @@ from multibody.integration.one_run import PhasePair
 from multibody.integration.refine import MAX_WORK, refine
 from multibody.models.assembly import assemble
 from multibody.models.system import EngineModel
-from reference.problem import Scene, State, Trajectory, checked_phase, ground_acceleration
+from reference.problem import Accuracy, Scene, State, Trajectory, checked_phase, ground_acceleration
 from reference.problem.ranges import TOLERANCE, Range, checked_choice, checked_number, checked_state
 
 SINGLE_RUN_WORK = 10.0 * MAX_WORK  # nominal microseconds of one run in place of all that refine a point
@@ -49,7 +51,8 @@ def trajectory(
     Trajectory
         With T instants: `position`, `velocity` and `absolute_acceleration` (T, N, 3); `contact_force` (T,), N, the sum
         over the supports; `stick`, the intervals in which every support slips slower than v_reg; `peak` (N,), m/s^2;
-        `status` and `instant` as in `amplification`. A run that ends early is returned up to there.
+        `status` and `instant` as in `amplification`. A run that ends early is returned up to there. `accuracy` has
+        the run at the level before, and one with a softer contact where that was run.
         `extra` has slip_speed (T, K), m/s, and support_force (T, K), N, of K contacts (one in the translational model).
         The spatial model adds yaw and tilt of the platform (T,), rad; turns (T, N, 3), rad, the angles a, b, c of
         every body, which is turned against the plate by Rx(a) Ry(b) Rz(c); and liftoff (L, 3): support, start and
@@ -79,7 +82,13 @@ def trajectory(
     with silence():
         built = assemble(scene, model, regularization, loading=loading, contact_force=True)
         point = refine(scene, built, pair, tolerance, initial=initial, keep=True)
-    return _trajectory(PhasePair(scene, built, pair, initial), point.finest, point.outcome, point.instant)
+    run_of = PhasePair(scene, built, pair, initial)
+    motion = _trajectory(run_of, point.finest, point.outcome, point.instant)
+    if not point.coarser:
+        return motion
+    coarser = tuple(_trajectory(run_of, run, run.outcome, np.nan) for run, _ in point.coarser)
+    shares = tuple(share for _, share in point.coarser)
+    return replace(motion, accuracy=Accuracy(point.errors, coarser, shares, point.floor))
 
 
 def single_run(
@@ -186,6 +195,7 @@ def _trajectory(pair: PhasePair, run: EngineRun, status: str, instant: float) ->
         stick=_intervals(time, (motion.slip < model.corner).all(axis=1) & np.isfinite(model.corner)),
         status=status,
         instant=instant,
+        scene=pair.scene,
         extra=extra,
         peak=run.peaks.value * units.acceleration if len(time) else np.full(len(bodies), np.nan),
     )

@@ -5,6 +5,7 @@ Functions
 ---------
 amplification   factors mu_i of (5.1) for many phase pairs, with errors and outcomes
 trajectory      one motion, sampled in time
+demands         what a motion demands of isolator and structure, with errors
 modes           natural frequencies and modes of the frictionless chain (4.8)-(4.11)
 load_scene      a scene from a built-in name or a TOML file
 builtin_scenes  names of the paper's own cases
@@ -17,6 +18,8 @@ Scene           the system, its loading and the duration
 State           displacement and velocity at the start of a trajectory
 Amplification   what `amplification` returns
 Trajectory      what `trajectory` returns
+Demands         what `demands` returns
+Estimate        a number and its error
 Outcome         how the run of one phase pair ended
 SceneError      a scene that cannot be used, in one line
 
@@ -41,12 +44,15 @@ from typing import TYPE_CHECKING, Any
 
 from reference.problem import (
     Amplification,
+    Demands,
+    Estimate,
     Outcome,
     Scene,
     SceneError,
     State,
     Trajectory,
     builtin_scenes,
+    demands,
     example_scenes,
     load_scene,
     phase_grid,
@@ -65,6 +71,8 @@ LOADED_ON_FIRST_USE = {
 
 __all__ = [
     "Amplification",
+    "Demands",
+    "Estimate",
     "Outcome",
     "Scene",
     "SceneError",
@@ -72,6 +80,7 @@ __all__ = [
     "Trajectory",
     "amplification",
     "builtin_scenes",
+    "demands",
     "example_scenes",
     "load_scene",
     "modes",

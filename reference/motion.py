@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.problem import Outcome, Scene, State, Trajectory, checked_phase, loading_period
+from reference.problem import Accuracy, Outcome, Scene, State, Trajectory, checked_phase, loading_period
 from reference.problem.ranges import checked_array, checked_state
+from reference.solver.error_estimate import (
+    DIFFERENCE_FRACTION,
+    MIN_ERROR_PER_STEP_TOLERANCE,
+    READING_ERROR_FACTOR,
+    ROUNDING_ERROR,
+    TOLERANCE_RATIO,
+)
 from reference.solver.run import runs
-from reference.solver.samples import sampled
+from reference.solver.samples import sampled, step_instants
 from reference.solver.system import Array, Demand, Record, System, record_of
 from reference.surface import OUTCOMES, checked_demand, loads_are_finite
 
 SAMPLES_PER_PERIOD = 64  # of the shorter loading period, when no times are given
+STEP_SAMPLES = 8000  # of the steps, if these are few
 MAX_SAMPLES = 200_000
 FIRST_CAPACITY = 1024  # steps, to begin with
 
@@ -39,7 +50,8 @@ def trajectory(
     tolerance : float
         Relative error of the accelerations inside each step.
     times : array_like, (T,), s, optional
-        Rising instants within the duration. By default 64 per shorter loading period.
+        Rising instants within the duration. By default 64 per shorter loading period, and the solver's own, which are
+        closer at stops.
     initial : State, optional
         Displacement and velocity at t = 0 in the plate's frame. By default at rest in the equilibrium position.
 
@@ -47,7 +59,8 @@ def trajectory(
     -------
     Trajectory
         A motion that ends early has samples up to `instant`, and a status that says why. `stick` holds the intervals of
-        rest, or of creep below v_reg. `peak` has the largest accelerations, which the samples miss.
+        rest, or of creep below v_reg. `peak` has the largest accelerations, which the samples miss. `accuracy` has a
+        second run with a looser tolerance.
 
     Raises
     ------
@@ -63,37 +76,40 @@ def trajectory(
     """
     pair = checked_phase(phase)
     system, demand = checked_demand(scene, equations, regularization, tolerance, None, rest_condition)
-    instants = _checked_times(scene, times)
+    asked = None if times is None else _checked_times(scene, times)
     bodies = len(scene.bodies)
     x, v = np.zeros((bodies, 2)), np.zeros((bodies, 2))
     if initial is not None:
         x, v = checked_state(initial, bodies, system.radius)
         demand = demand._replace(unit=demand.unit + _acceleration(system, x, v))
-    outcome, instant, record = Outcome.NON_FINITE_LOAD, 0.0, record_of(0, bodies)
-    peak = np.full(bodies, np.nan)
-    if loads_are_finite(system):
-        outcome, instant, record, peak = _recorded(system, pair, x, v, demand)
-    instants = instants[instants <= instant] if outcome != Outcome.OK else instants
-    steps, sticks = (int(number) for number in record.made)
-    instants = instants if steps else instants[:0]
-    motion = sampled(record, instants)
-    height, climb = _vertical(motion.x[:, 0], motion.v[:, 0], system)
-    shape = (len(instants), bodies, 1)
-    return Trajectory(
-        time=instants,
-        position=np.concatenate([motion.x, np.broadcast_to(height[:, None, None], shape)], axis=-1),
-        velocity=np.concatenate([motion.v, np.broadcast_to(climb[:, None, None], shape)], axis=-1),
-        absolute_acceleration=motion.total,
-        contact_force=motion.reaction * scene.masses[0],
-        stick=[(float(a), float(b)) for a, b in record.sticks[:sticks]],
-        status=outcome.value,
-        instant=np.nan if outcome == Outcome.OK else instant,
-        peak=peak,
-    )
+    if not loads_are_finite(system):
+        nothing = np.full(bodies, np.nan)
+        return _motion(scene, system, _Run(Outcome.NON_FINITE_LOAD, 0.0, record_of(0, bodies), nothing, nothing), asked)
+    run = _recorded(system, pair, x, v, demand)
+    motion = _motion(scene, system, run, asked)
+    if run.outcome != Outcome.OK:
+        return motion
+    other = _recorded(system, pair, x, v, demand._replace(tolerance=TOLERANCE_RATIO * demand.tolerance))
+    if other.outcome != Outcome.OK:
+        return motion
+    floor = MIN_ERROR_PER_STEP_TOLERANCE * demand.tolerance + ROUNDING_ERROR
+    error = READING_ERROR_FACTOR * run.reading_error + DIFFERENCE_FRACTION * np.abs(run.peak - other.peak)
+    coarser = _motion(scene, system, other, asked)
+    return replace(motion, accuracy=Accuracy(error + floor * run.peak, (coarser,), (DIFFERENCE_FRACTION,), floor))
 
 
-def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) -> tuple[Outcome, float, Record, Array]:
-    """The run with all its steps, however many: (how and when it ended, s, its record, its peaks, m/s^2)."""
+class _Run(NamedTuple):
+    """One run with all its steps."""
+
+    outcome: Outcome
+    instant: float  # s, when it ended
+    record: Record
+    peak: Array  # (N,), m/s^2
+    reading_error: Array  # (N,), m/s^2, of the peaks inside their steps
+
+
+def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) -> _Run:
+    """The run from x, v with all its steps, however many."""
     bodies = len(x)
     capacity = FIRST_CAPACITY
     while True:
@@ -102,8 +118,31 @@ def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) 
         codes, instants, steps, reach = (np.empty(1) for _ in range(4))
         runs(system, phase[None], x, v, demand, record, peaks, reading_errors, codes, instants, steps, reach)
         if record.made.max() <= capacity:
-            return OUTCOMES[int(codes[0])], float(instants[0]), record, peaks[0]
+            return _Run(OUTCOMES[int(codes[0])], float(instants[0]), record, peaks[0], reading_errors[0])
         capacity = int(record.made.max())
+
+
+def _motion(scene: Scene, system: System, run: _Run, asked: Array | None) -> Trajectory:
+    """The run at the instants `asked`, or at those of `_instants`."""
+    record, early = run.record, run.outcome != Outcome.OK
+    steps, sticks = (int(number) for number in record.made)
+    instants = _instants(scene, record) if asked is None else asked
+    instants = instants[instants <= (run.instant if early else scene.duration)] if steps else instants[:0]
+    motion = sampled(record, instants)
+    height, climb = _vertical(motion.x[:, 0], motion.v[:, 0], system)
+    shape = (len(instants), len(scene.bodies), 1)
+    return Trajectory(
+        time=instants,
+        position=np.concatenate([motion.x, np.broadcast_to(height[:, None, None], shape)], axis=-1),
+        velocity=np.concatenate([motion.v, np.broadcast_to(climb[:, None, None], shape)], axis=-1),
+        absolute_acceleration=motion.total,
+        contact_force=motion.reaction * scene.masses[0],
+        stick=[(float(a), float(b)) for a, b in record.sticks[:sticks]],
+        status=run.outcome.value,
+        instant=run.instant if early else np.nan,
+        scene=scene,
+        peak=run.peak,
+    )
 
 
 def _acceleration(system: System, x: Array, v: Array) -> float:
@@ -113,10 +152,14 @@ def _acceleration(system: System, x: Array, v: Array) -> float:
     return float(gravity * float(np.hypot(*x[0])) / system.radius + (v[0] ** 2).sum() / system.radius + links)
 
 
-def _checked_times(scene: Scene, times: ArrayLike | None) -> Array:
-    if times is None:
-        samples = int(np.ceil(scene.duration / loading_period(scene) * SAMPLES_PER_PERIOD)) + 1
-        return np.linspace(0.0, scene.duration, min(samples, MAX_SAMPLES))
+def _instants(scene: Scene, record: Record) -> Array:
+    """SAMPLES_PER_PERIOD, and those of the steps."""
+    samples = int(np.ceil(scene.duration / loading_period(scene) * SAMPLES_PER_PERIOD)) + 1
+    even = np.linspace(0.0, scene.duration, min(samples, MAX_SAMPLES))
+    return np.union1d(even, step_instants(record, STEP_SAMPLES, MAX_SAMPLES))
+
+
+def _checked_times(scene: Scene, times: ArrayLike) -> Array:
     rule = f"must be rising instants (T,) from 0 to the duration, {scene.duration} s"
     instants = checked_array("times", times, rule)
     inside = instants.ndim == 1 and np.all((instants >= 0.0) & (instants <= scene.duration))

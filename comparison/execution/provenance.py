@@ -8,7 +8,7 @@ import subprocess
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-PACKAGES = ("exudyn", "numba", "numpy", "scipy", "xarray", "h5netcdf", "matplotlib", "plotly")
+PACKAGES = ("exudyn", "numba", "numpy", "scipy", "xarray", "h5netcdf", "matplotlib")
 
 
 def provenance() -> dict[str, str]:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from comparison.report.figures.pictures import PAGE
 from comparison.report.findings import Findings
 from comparison.report.junit import junit
 from comparison.report.page import SECTIONS, page
@@ -42,8 +41,7 @@ def write_report(folder: Path, results: Results, found: Findings) -> None:
     figures = folder / "figures"
     figures.mkdir()
     for name, content in found.pictures.items():
-        if not name.endswith(PAGE):
-            (figures / name).write_bytes(content)
+        (figures / name).write_bytes(content)
     for section in SECTIONS:
         if section.draw and section.present(results):
             section.draw(figures, found)

@@ -7,10 +7,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from comparison.report.results import Results, Waterfall, WaterfallBar
-from comparison.wording import percent, signed
+from comparison.wording import signed
 
 MARGIN = 0.03  # of the scale, beyond the longest bar
 MAX_TICKS = 5
+MAX_DECIMALS = 4  # of a percentage: what is smaller is nothing
 SHOWN_ERROR = 0.01  # of a size: a smaller error is not seen in two digits
 
 
@@ -140,11 +141,14 @@ def _bar(bar: WaterfallBar, model: str, start: float, scale: Scale) -> Bar:
 
 
 def _text(size: float, error: float) -> str:
-    """A size with its error where two digits of the size show it."""
+    """A size, with as many digits as its error leaves; with the error where these digits show it."""
     if not error > SHOWN_ERROR * abs(size):
         return signed(size)
-    sign = "0" if abs(size) < 1e-6 else ("−" if size < 0.0 else "+") + f"{100.0 * abs(size):.2g}"
-    return f"{sign} ± " + (f"{100.0 * error:.1g} %" if error >= 1e-6 else percent(error))
+    decimals = max(0, -math.floor(math.log10(100.0 * error)))
+    if decimals > MAX_DECIMALS:
+        return "0 %"
+    sign = "−" if size < 0.0 else "+"
+    return f"{sign}{100.0 * abs(size):.{decimals}f} ± {100.0 * error:.{decimals}f} %"
 
 
 def _ticks(low: float, high: float) -> list[float]:

@@ -24,6 +24,7 @@ from multibody.integration.peak import CANDIDATE_FRACTION, Peaks, kinks
 from multibody.models.recorded import align_steps
 from multibody.models.system import EngineModel, EngineState
 from reference.problem import Outcome
+from reference.problem.demands import largest_displacement
 
 Array = NDArray[np.float64]
 
@@ -152,21 +153,11 @@ def _record(result: EngineRun, motion: Motion, absolute: Array, model: EngineMod
         result.terminated(outcome, float(motion.time[row]))
         return False
     _record_warping(result, motion, model, level)
-    result.max_displacement = max(result.max_displacement, _max_displacement(motion, model.bodies[0, :2]))
+    axes = model.bodies[0, :2]
+    displacement = largest_displacement(motion.time, motion.coordinates[:, axes], motion.velocities[:, axes])
+    result.max_displacement = max(result.max_displacement, displacement)
     result.peaks.add(motion.time, absolute, motion.slip)
     return True
-
-
-def _max_displacement(motion: Motion, axes: NDArray[np.int_]) -> float:
-    """Largest displacement along two coordinates: where its rate changes sign, that is linear in between."""
-    place = motion.coordinates[:, axes]
-    square, rate = (place**2).sum(axis=1), (place * motion.velocities[:, axes]).sum(axis=1)
-    before, behind = rate[:-1], rate[1:]
-    turns = (before > 0.0) & (behind < 0.0)
-    summits = square[:-1] + np.divide(before**2, before - behind, where=turns, out=np.zeros_like(before)) * np.diff(
-        motion.time
-    )
-    return float(np.sqrt(max(square.max(), summits.max(initial=0.0, where=turns))))
 
 
 def _step_ratio(motion: Motion, engine: Engine, absolute: Array, peak: float, per_change: float) -> Array:

@@ -76,6 +76,11 @@ def from_compliance(stiff: Peaks, soft: EngineRun, level: Level, model: EngineMo
     return change + level.penetration * stiff.value
 
 
+def share_of_change(other: Level, model: EngineModel) -> float:
+    """Share of the difference to a run at a coarser or softer level that counts as error, at the lowest rate."""
+    return SAFETY_TWO_LEVELS * (1.0 + lag(other, model)) / (MIN_RATE - 1.0)
+
+
 def lag(level: Level, model: EngineModel) -> float:
     """How slow the contact is beside the relaxation of friction, x."""
     return math.sqrt(level.penetration) / model.relaxation

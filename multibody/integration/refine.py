@@ -21,6 +21,7 @@ from multibody.integration.estimate import (
     from_compliance,
     from_levels,
     from_sharing,
+    share_of_change,
     widened_without_convergence,
 )
 from multibody.integration.level import COMPLIANCE_RATIO, MAX_WARPING_COMPLIANCE, Level, levels_of
@@ -47,6 +48,8 @@ class Refinement:
     outcome: Outcome
     instant: float  # s, when an outcome other than ok arose
     finest: EngineRun  # the last run
+    coarser: tuple[tuple[EngineRun, float], ...] = ()  # runs whose differences to the last, in these shares, are errors
+    floor: float = math.nan  # lower bound of a relative error
 
 
 def work_share(model: EngineModel, end: float, largest: float) -> float:
@@ -72,7 +75,7 @@ def refine(
     """
     Peaks of the absolute accelerations for one phase pair (2,), rad, with a relative error below `tolerance`.
 
-    levels: those of `levels_of` if None. keep: the motion of the last run.
+    levels: those of `levels_of` if None. keep: the motions of the last run and of `coarser`.
     """
     pair = PhasePair(scene, model, phase, initial)
     budget = Budget.of(MAX_WORK, model.coordinates)
@@ -100,13 +103,15 @@ def refine(
             remaining[rest] = [_softer(later, run.warping_load, tolerance) for later in remaining[rest]]
         if number == 0 or runs[-2].outcome != run.outcome:
             continue
-        runs[-2].chunks.clear()
+        for earlier in runs[:-2]:
+            earlier.chunks.clear()
         if run.outcome != Outcome.OK:
             break
         finished = [other.peaks for other in runs[-3:] if other.outcome == Outcome.OK]
         errors = from_levels(finished, remaining[: number + 1], model) + from_sharing(run)
         errors = widened_without_convergence(errors, run)
-        candidate = _Candidate(run, errors, level if shared else None)
+        before = (runs[-2], share_of_change(remaining[number - 1], model))
+        candidate = _Candidate(run, errors, level.error_floor, (before,), level if shared else None)
         if candidate.meets(tolerance):
             candidate = candidate.completed(pair, budget, keep)
         complete = complete if candidate.without_compliance else candidate
@@ -125,6 +130,8 @@ class _Candidate:
 
     run: EngineRun
     errors: Array  # (N,), in units of the model
+    floor: float  # relative error that the level typically has
+    coarser: tuple[tuple[EngineRun, float], ...]  # other runs, and the share of their difference to this one
     without_compliance: Level | None  # the level, if the error that its contact's compliance leaves is still missing
 
     def meets(self, tolerance: float) -> bool:
@@ -137,7 +144,9 @@ class _Candidate:
             return self
         softer = replace(level, penetration=COMPLIANCE_RATIO * level.penetration)
         run = pair.at_level(softer, budget, keep=keep, residual=level.residual)  # nothing but the contact changes
-        return _Candidate(self.run, self.errors + from_compliance(self.run.peaks, run, softer, pair.model), None)
+        errors = self.errors + from_compliance(self.run.peaks, run, softer, pair.model)
+        coarser = (*self.coarser, (run, share_of_change(softer, pair.model)))
+        return replace(self, errors=errors, coarser=coarser, without_compliance=None)
 
 
 def _beyond_tolerance(pair: PhasePair, finest: _Candidate, complete: _Candidate | None) -> Refinement:
@@ -146,7 +155,8 @@ def _beyond_tolerance(pair: PhasePair, finest: _Candidate, complete: _Candidate 
         return _answer(pair.model, finest, Outcome.TOLERANCE_NOT_MET)
     # the run that shows what the compliance leaves has no answer
     if complete is not None:
-        return replace(_answer(pair.model, complete, Outcome.TOLERANCE_NOT_MET), finest=finest.run)
+        answer = _answer(pair.model, complete, Outcome.TOLERANCE_NOT_MET)
+        return replace(answer, finest=finest.run, coarser=finest.coarser[:1], floor=finest.floor)
     return _no_answer(pair.model, finest.run, Outcome.SOLVER_FAILED, pair.scene.duration)
 
 
@@ -169,7 +179,8 @@ def _answer(model: EngineModel, candidate: _Candidate, outcome: Outcome) -> Refi
     peaks, errors, unit = candidate.run.peaks, candidate.errors, model.units.acceleration
     worst = float(peaks.instant[(errors / peaks.value).argmax()]) * model.units.time
     instant = math.nan if outcome == Outcome.OK else worst
-    return Refinement(peaks.value * unit, errors * unit, outcome, instant, candidate.run)
+    answered = Refinement(peaks.value * unit, errors * unit, outcome, instant, candidate.run)
+    return replace(answered, coarser=candidate.coarser, floor=candidate.floor)
 
 
 def _no_answer(model: EngineModel, run: EngineRun, outcome: Outcome, instant: float) -> Refinement:

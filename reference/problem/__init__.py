@@ -8,6 +8,7 @@ builtin_scenes, example_scenes                                  names of the sce
 ground_acceleration, ground_velocity, ground_displacement       motion of the ground (5.2)-(5.4)
 exponents, loading_period                                       of the loading
 ground_peak                                                     denominator of (5.1)
+demands                                                         what a motion demands of isolator and structure
 checked_phase, checked_phases, phase_grid                       phase pairs
 half_turn, own_axes, planar, planar_chain, linear, no_friction,
 untilted, even_ring, unused_harmonics, in_plane                 what a scene does not require
@@ -17,6 +18,7 @@ Classes
 -------
 Scene, Family                       the system with its loading; the scenes of one file
 State, Amplification, Trajectory    arguments and results of both sides
+Demands, Estimate, Accuracy         numbers of one motion, one of them with its error, what errors are made from
 Outcome, Reduction, SceneError      why a point has no answer; why work is left out; what is wrong with a scene
 
 Constants
@@ -27,6 +29,7 @@ ADVICE     what to try, for every `Outcome`
 
 from reference.problem.constants import GRAVITY
 from reference.problem.definition import ground_peak
+from reference.problem.demands import Demands, Estimate, demands
 from reference.problem.excitation import (
     exponents,
     ground_acceleration,
@@ -51,7 +54,7 @@ from reference.problem.reductions import (
     untilted,
     unused_harmonics,
 )
-from reference.problem.result import Amplification, State, Trajectory
+from reference.problem.result import Accuracy, Amplification, State, Trajectory
 from reference.problem.scene import Scene
 from reference.problem.scene_error import SceneError
 from reference.problem.scene_file import builtin_scenes, example_scenes, load_scene, parse_scene
@@ -59,7 +62,10 @@ from reference.problem.scene_file import builtin_scenes, example_scenes, load_sc
 __all__ = [
     "ADVICE",
     "GRAVITY",
+    "Accuracy",
     "Amplification",
+    "Demands",
+    "Estimate",
     "Family",
     "Outcome",
     "Reduction",
@@ -70,6 +76,7 @@ __all__ = [
     "builtin_scenes",
     "checked_phase",
     "checked_phases",
+    "demands",
     "even_ring",
     "example_scenes",
     "exponents",

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.problem.scene import Scene
+
 Array = NDArray[np.float64]
 
 
@@ -63,12 +65,16 @@ class Trajectory:
     status : str
     instant : float, s
         As in `Amplification`.
+    scene : Scene
+        What moves: `demands` takes masses, radius and duration from it.
     extra : dict of str to ndarray
         What only one model has, by name.
     peak : ndarray, (N,), m/s^2
         Largest absolute acceleration of the run, found between the samples and at one-sided limits; mu of (5.1) follows
         from it. The samples of `absolute_acceleration` miss it by some percent at a stop or under a record. NaN if
         nothing was run.
+    accuracy : Accuracy, optional
+        What errors are estimated from. None of a motion that ended early, and of a single run.
     """
 
     time: Array
@@ -79,12 +85,47 @@ class Trajectory:
     stick: list[tuple[float, float]]
     status: str
     instant: float
+    scene: Scene
     extra: dict[str, Array] = field(default_factory=dict)
     peak: Array = field(default_factory=lambda: np.empty(0))
+    accuracy: Accuracy | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         if not len(self.peak):
             object.__setattr__(self, "peak", np.full(self.position.shape[1], np.nan))
+
+    @property
+    def isolator_force(self) -> Array:
+        """
+        Horizontal force of the bodies on the isolator, (T, 2), N: -sum_i m_i a_i, which grows with the displacement.
+
+        Friction and restoring force together, because links act between the bodies.
+        """
+        force: Array = -np.einsum("i,tia->ta", self.scene.masses, self.absolute_acceleration[:, :, :2])
+        return force
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """
+    What the errors of a motion are estimated from: the same motion, computed less accurately.
+
+    Attributes
+    ----------
+    peak_error : ndarray, (N,), m/s^2
+        Estimated error of `Trajectory.peak`.
+    coarser : tuple of Trajectory
+        Runs of the same motion with larger errors.
+    share : tuple of float
+        Part of the difference to each of them that counts as error of the motion. The parts add up.
+    floor : float
+        Lower bound of a relative error: closer agreement is treated as accidental.
+    """
+
+    peak_error: Array
+    coarser: tuple[Trajectory, ...]
+    share: tuple[float, ...]
+    floor: float
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from reference.solver.collocation import MONOMIALS, STAGES, A
 from reference.solver.system import STOPPING, Array, Record
 
 BISECTIONS = 60
+FEWEST_PLACES, MOST_PLACES = 4, 48  # in a step, at which `step_instants` looks at it
 
 
 class Samples(NamedTuple):
@@ -39,6 +40,26 @@ def sampled(record: Record, times: Array) -> Samples:
     x[stretched] = np.einsum("tnas,ts->tna", record.position[row], value)[stretched]
     total = np.einsum("tnas,ts->tna", record.total[row], value)
     return Samples(x, v, total, (record.reaction[row] * value).sum(axis=1))
+
+
+def step_instants(record: Record, count: int, most: int) -> Array:
+    """
+    Rising instants (T,), s, about `count`, at most `most`: some in every step, and one just before its end.
+
+    Where the contact changes, the last one has the limit from the left and the start of the next step that from the
+    right.
+    """
+    steps = int(record.made[0])
+    start = record.start[:steps]
+    places = int(np.clip(count // max(steps, 1), FEWEST_PLACES, MOST_PLACES))
+    theta = np.arange(places) / places
+    inside = start[:, None] + record.length[:steps, None] * theta
+    near = record.contact[:steps] == STOPPING
+    weights = theta[:, None] ** np.arange(STAGES) @ MONOMIALS  # (P, S) of the values at the stages
+    inside[near] = np.maximum(record.clock[:steps][near] @ weights.T, start[near, None])
+    before = np.nextafter(start[1:], -np.inf)
+    instants: Array = np.unique(np.concatenate([inside.ravel(), before]))
+    return instants[:: max(1, -(-len(instants) // most))]
 
 
 def _place(clock: Array, times: Array) -> Array:

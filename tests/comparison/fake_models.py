@@ -98,7 +98,7 @@ def why_refused(scene: Scene, tolerance: float) -> str:
 def unmoved(scene: Scene, phase: Sequence[float], tolerance: float) -> Trajectory:
     """A motion that was never begun."""
     none = np.empty((0, len(scene.bodies), 3))
-    return Trajectory(np.empty(0), none, none, none, np.empty(0), [], Outcome.STEP_LIMIT.value, 0.0)
+    return Trajectory(np.empty(0), none, none, none, np.empty(0), [], Outcome.STEP_LIMIT.value, 0.0, scene)
 
 
 def never_refused(scene: Scene, **settings: object) -> str:
@@ -137,7 +137,7 @@ def sliding(
     total[:, 2] -= GRAVITY
     bodies = len(scene.bodies)
     spread = [np.repeat(part[:, None, :], bodies, axis=1) for part in (place, velocity, total)]
-    return Trajectory(time, *spread, contact_force=force, stick=[], status=status, instant=np.nan)
+    return Trajectory(time, *spread, contact_force=force, stick=[], status=status, instant=np.nan, scene=scene)
 
 
 def known_motions(study: Study, surfaces: xr.Dataset, *rest: object) -> list[StoredMotion]:

@@ -19,7 +19,7 @@ from comparison.execution.cache import Cache
 from comparison.execution.runner import Runner
 from comparison.execution.task_results import TaskResults
 from comparison.registry import ANALYSES, predicted_costs
-from comparison.report.figures.pictures import PAGE, Pictures, for_page
+from comparison.report.figures.pictures import Pictures
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
 from reference.problem import load_scene
@@ -46,12 +46,11 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("quick")
-def test_every_picture_of_the_page_has_its_small_form() -> None:
+def test_every_difference_and_budget_has_a_picture() -> None:
     study, surfaces = _solved()
     files = collected(Pictures(), study, surfaces)
     shown = [name for name in files if name.endswith(".png") and not name.endswith("paper.png")]
     assert len(shown) == 2 * 2 * 4, "three differences and the budget, of two bodies in two scenes"
-    assert {for_page(name) for name in shown} == {name for name in files if name.endswith(PAGE)}
     tasks = Pictures().tasks(study, surfaces)
     assert predicted_costs(study, ANALYSES)["pictures"] == (
         len(tasks),
@@ -79,11 +78,10 @@ def test_pictures_are_stored_and_belong_to_their_numbers(tmp_path: Path) -> None
     assert drawn_anew(*_solved(gap=0.02)) == whole
 
 
-def test_a_real_figure_is_a_file_and_its_small_form() -> None:
+def test_a_real_figure_is_a_file() -> None:
     study, surfaces = _solved()
     budget = next(task for task in Pictures().tasks(study, surfaces) if task.argument.kind == "budget")
     files = budget.function(budget.argument)
     assert [name for name, content in files if len(content) > 1000] == [
         "fig3-I-body1-budget.png",
-        "fig3-I-body1-budget.webp",
     ]

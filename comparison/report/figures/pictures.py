@@ -13,14 +13,12 @@ import xarray as xr
 from comparison.analysis.protocol import Analysis
 from comparison.execution.task import Task, fingerprint
 from comparison.execution.task_results import TaskResults
-from comparison.report.figures.file_names import with_ending
 from comparison.study.models import Pair
 from comparison.study.selection import EVERYTHING
 from comparison.study.study import Study
 from reference.problem import Scene
 
 SECONDS = {"pair": 0.45, "budget": 0.6, "paper": 1.0}  # of drawing one, recorded beside `Model.seconds_per_point`
-PAGE = ".webp"
 SHOWN = ["mu", "error", "stride", "recorded"]  # of the surfaces: what pictures are made of
 
 
@@ -119,20 +117,12 @@ def drawn(picture: Picture) -> Files:
         else:
             assert picture.pair is not None
             pairs.draw_pair(folder / pairs.figure_name(scene, body, picture.pair), surfaces, scene, body, picture.pair)
-        files = [(file.name, file.read_bytes()) for file in sorted(folder.iterdir())]
-    if picture.kind != "paper":  # what the page shows
-        files += [(for_page(name), smaller(content)) for name, content in files]
-    return tuple(files)
-
-
-def for_page(name: str) -> str:
-    """Name of a picture as the page holds it."""
-    return with_ending(Path(name), PAGE).name
+        return tuple((file.name, file.read_bytes()) for file in sorted(folder.iterdir()))
 
 
 def smaller(png: bytes) -> bytes:
     """The same picture to the last dot in half the bytes."""
-    from PIL import Image  # as above
+    from PIL import Image  # as in `drawn`
 
     found = BytesIO()
     with Image.open(BytesIO(png)) as picture:

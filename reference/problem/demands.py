@@ -1,0 +1,241 @@
+"""What a motion demands of isolator and structure: the numbers a design needs, each with its error."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from reference.problem.outcome import Outcome
+from reference.problem.result import Array, Trajectory
+
+ANSWERED = (Outcome.OK, Outcome.TOLERANCE_NOT_MET)  # outcomes of a motion that lasts as long as the scene
+THINNING = 5  # the sampling error is the largest change if only one of so many samples is taken
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """
+    A number and its error.
+
+    Attributes
+    ----------
+    value : float
+        NaN without an answer.
+    error : float
+        Estimated absolute error; NaN where it is not known.
+    """
+
+    value: float
+    error: float
+
+
+UNKNOWN = Estimate(math.nan, math.nan)
+
+
+@dataclass(frozen=True)
+class Demands:
+    """
+    Demands of one motion of N bodies; what `demands` returns.
+
+    Attributes
+    ----------
+    status : str
+        As in `Trajectory`. Every number is NaN if the motion ended early.
+    displacement : Estimate, m
+        Largest horizontal displacement of the isolator.
+    residual : Estimate, m
+        Horizontal displacement at the end of the motion; NaN where the platform is not at rest then.
+    cap_share : Estimate
+        Largest displacement over rho.
+    acceleration : tuple of Estimate, (N,), m/s^2
+        Largest absolute acceleration of every body.
+    base_shear : Estimate, N
+        Largest horizontal force through the isolator.
+    drift : tuple of Estimate, (N - 1,), m
+        Largest horizontal displacement of every body relative to the one below.
+    contact_force_min, contact_force_max : Estimate, N
+        Smallest and largest normal force of the isolator.
+    support_force_min, support_force_max : Estimate or None, N
+        Smallest and largest normal force of a single support. None where the model has no single supports.
+    stops : Estimate
+        Number of intervals of rest after the first slip; with a regularized law of creep below v_reg.
+    """
+
+    status: str
+    displacement: Estimate
+    residual: Estimate
+    cap_share: Estimate
+    acceleration: tuple[Estimate, ...]
+    base_shear: Estimate
+    drift: tuple[Estimate, ...]
+    contact_force_min: Estimate
+    contact_force_max: Estimate
+    support_force_min: Estimate | None
+    support_force_max: Estimate | None
+    stops: Estimate
+
+
+def demands(trajectory: Trajectory) -> Demands:
+    """
+    Demands of one motion, with errors.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        From `reference.trajectory`, `multibody.trajectory` or `multibody.single_run`.
+
+    Returns
+    -------
+    Demands
+
+    Notes
+    -----
+    Links act between the bodies, so the only horizontal force on all of them together is that of the isolator. By
+    Newton's law it is sum_i m_i a_i with the absolute accelerations a_i. It equals friction and restoring force,
+    N (n - mu w) of (3.2).
+
+    An error has two parts. That of sampling is the largest change if only every fifth sample is taken. That of the
+    solution comes from the other runs in `Trajectory.accuracy`. Without these, as for a single run, it is NaN.
+    The samples do not reach the one-sided limits of accelerations at a stop. `acceleration` does: it is
+    `Trajectory.peak`.
+
+    Examples
+    --------
+    >>> import reference
+    >>> motion = reference.trajectory(reference.load_scene("fig3-I"), (0.3, 1.1))
+    >>> found = reference.demands(motion)
+    >>> round(found.displacement.value, 4), found.displacement.error < 1e-5
+    (0.0267, True)
+    """
+    read = _Reading(trajectory)
+    radius, links = trajectory.scene.radius, range(len(trajectory.scene.bodies) - 1)
+    displacement = read.extreme(lambda samples: samples.largest(samples.place[:, 0], samples.velocity[:, 0]))
+    supported = read.samples.support.shape[1] > 1
+    return Demands(
+        status=trajectory.status,
+        displacement=displacement,
+        residual=read.single(_residual),
+        cap_share=Estimate(displacement.value / radius, displacement.error / radius),
+        acceleration=read.peaks(),
+        base_shear=read.extreme(lambda samples: float(np.linalg.norm(samples.isolator, axis=1).max())),
+        drift=tuple(read.extreme(_drift_of(link)) for link in links),
+        contact_force_min=read.extreme(lambda samples: float(samples.contact.min())),
+        contact_force_max=read.extreme(lambda samples: float(samples.contact.max())),
+        support_force_min=read.extreme(lambda samples: float(samples.support.min())) if supported else None,
+        support_force_max=read.extreme(lambda samples: float(samples.support.max())) if supported else None,
+        stops=read.count(_stops),
+    )
+
+
+def largest_displacement(time: Array, place: Array, velocity: Array) -> float:
+    """
+    Largest length of `place` (T, 2), m, also between the instants `time` (T,).
+
+    Where the rate of its square changes sign, that is taken as linear in between.
+    """
+    square, rate = (place**2).sum(axis=1), (place * velocity).sum(axis=1)
+    before, behind = rate[:-1], rate[1:]
+    turns = (before > 0.0) & (behind < 0.0)
+    summits = square[:-1] + np.divide(before**2, before - behind, where=turns, out=np.zeros_like(before)) * np.diff(
+        time
+    )
+    return float(np.sqrt(max(square.max(), summits.max(initial=0.0, where=turns))))
+
+
+class _Samples(NamedTuple):
+    """What extremes are read from, at T instants."""
+
+    time: Array  # (T,)
+    place: Array  # (T, N, 2)
+    velocity: Array  # (T, N, 2)
+    isolator: Array  # (T, 2)
+    contact: Array  # (T,)
+    support: Array  # (T, K); K = 1 in a model without single supports
+
+    @staticmethod
+    def of(motion: Trajectory) -> _Samples:
+        support = motion.extra.get("support_force", motion.contact_force[:, None])
+        place, velocity = motion.position[:, :, :2], motion.velocity[:, :, :2]
+        return _Samples(motion.time, place, velocity, motion.isolator_force, motion.contact_force, support)
+
+    def thinned(self) -> list[_Samples]:
+        """One of THINNING samples, from the first, the second, ... on."""
+        return [_Samples(*(part[first::THINNING] for part in self)) for first in range(min(THINNING, len(self.time)))]
+
+    def largest(self, place: Array, velocity: Array) -> float:
+        """Largest length of a displacement (T, 2)."""
+        return largest_displacement(self.time, place, velocity)
+
+
+Read = Callable[[_Samples], float]
+
+
+class _Reading:
+    """Reads numbers from a motion, and their errors from its thinned samples and from the runs beside it."""
+
+    def __init__(self, motion: Trajectory) -> None:
+        self.motion, self.accuracy = motion, motion.accuracy
+        self.answered = motion.status in ANSWERED and len(motion.time) > 0
+        self.samples = _Samples.of(motion)
+        self.thinned = self.samples.thinned()
+        self.coarser = [_Samples.of(other) for other in self.accuracy.coarser] if self.accuracy else []
+
+    def extreme(self, read: Read) -> Estimate:
+        """A number that is read from samples."""
+        if not self.answered:
+            return UNKNOWN
+        value = read(self.samples)
+        sampling = max(abs(read(samples) - value) for samples in self.thinned)
+        return Estimate(value, sampling + self._of_solution(value, [read(samples) for samples in self.coarser]))
+
+    def single(self, read: Callable[[Trajectory], float]) -> Estimate:
+        """A number that does not depend on the samples."""
+        if not self.answered:
+            return UNKNOWN
+        value = read(self.motion)
+        others = self.accuracy.coarser if self.accuracy else ()
+        return Estimate(value, self._of_solution(value, [read(other) for other in others]))
+
+    def count(self, read: Callable[[Trajectory], float]) -> Estimate:
+        """A number of events: the error is what the runs differ by."""
+        if not self.answered:
+            return UNKNOWN
+        value = read(self.motion)
+        others = self.accuracy.coarser if self.accuracy else ()
+        return Estimate(value, max((abs(value - read(other)) for other in others), default=math.nan))
+
+    def peaks(self) -> tuple[Estimate, ...]:
+        """Largest accelerations."""
+        bodies = len(self.motion.scene.bodies)
+        if not self.answered:
+            return (UNKNOWN,) * bodies
+        errors = self.accuracy.peak_error if self.accuracy else np.full(bodies, np.nan)
+        return tuple(Estimate(float(value), float(error)) for value, error in zip(self.motion.peak, errors))
+
+    def _of_solution(self, value: float, others: list[float]) -> float:
+        if self.accuracy is None:
+            return math.nan
+        changes = (share * abs(value - other) for share, other in zip(self.accuracy.share, others, strict=True))
+        return self.accuracy.floor * abs(value) + sum(changes)
+
+
+def _drift_of(link: int) -> Read:
+    """Largest displacement of the body above a link relative to the one below."""
+    return lambda samples: samples.largest(
+        samples.place[:, link + 1] - samples.place[:, link], samples.velocity[:, link + 1] - samples.velocity[:, link]
+    )
+
+
+def _residual(motion: Trajectory) -> float:
+    """Displacement at the end, where the platform is at rest."""
+    rests = len(motion.stick) > 0 and motion.stick[-1][1] >= motion.time[-1]
+    return float(np.hypot(*motion.position[-1, 0, :2])) if rests else math.nan
+
+
+def _stops(motion: Trajectory) -> float:
+    """Intervals of rest, without the one at the start."""
+    return float(sum(start > 0.0 for start, _ in motion.stick))

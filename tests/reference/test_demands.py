@@ -1,0 +1,217 @@
+"""Demands of a motion: closed forms, the same numbers from both sides, and errors that hold."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import multibody
+import reference
+from reference.problem import GRAVITY, Demands, Estimate, Scene, State, Trajectory, demands, ground_peak
+
+PHASE = (2.0, 0.7)
+RHO = 0.25
+FRAME = {
+    "masses": [50.0, 40.0, 40.0, 40.0, 40.0, 30.0],
+    "period": [0.5, 0.6],
+    "isolator": {"radius": 1.0, "friction": 0.04},
+}
+
+
+def one_body(duration: float = 2.0, **isolator: object) -> Scene:
+    return Scene.model_validate(
+        {
+            "title": "one body",
+            "duration": duration,
+            "isolator": {"radius": RHO, **(isolator or {"friction": 0.0})},
+            "bodies": [{"mass": 3.0}],
+            "excitation": {"amplitudes": [[0.4, 0.0], [0.0, 0.3]], "periods": [0.9, 1.1], "decay": [0.0, 0.0]},
+        }
+    )
+
+
+def frame() -> Scene:
+    return Scene.model_validate(
+        {
+            "title": "six bodies",
+            "duration": 5.0,
+            "isolator": FRAME["isolator"],
+            "bodies": [
+                {"mass": mass, **({"period": FRAME["period"]} if number else {})}
+                for number, mass in enumerate(FRAME["masses"])
+            ],
+            "excitation": {"amplitudes": [[1.5, 0.5], [0.5, 1.5]], "periods": [0.9, 1.3], "decay": [0.2, 0.2]},
+        }
+    )
+
+
+def estimates(answer: Demands) -> dict[str, Estimate]:
+    """Every number of the demands by its name."""
+    named: dict[str, Estimate] = {}
+    for name, value in vars(answer).items():
+        if isinstance(value, Estimate):
+            named[name] = value
+        elif isinstance(value, tuple):
+            named |= {f"{name} {number}": part for number, part in enumerate(value)}
+    return named
+
+
+def test_both_sides_have_the_same_function() -> None:
+    assert reference.demands is multibody.demands is demands
+
+
+def test_a_body_released_in_a_smooth_cap_swings_to_where_it_was_let_go() -> None:
+    """Frictionless plane pendulum on a plate at rest: amplitude A, N = m g (3 cos t - 2 cos A) from the energy."""
+    scene = one_body().with_values({"excitation.amplitudes": [[0.0, 0.0], [0.0, 0.0]]})
+    released = State(position=np.array([[0.6 * RHO, 0.0]]), velocity=np.zeros((1, 2)))
+    answer = demands(reference.trajectory(scene, PHASE, initial=released))
+    cosine = 0.8  # of the angle whose sine is 0.6
+    largest, smallest = 3.0 * GRAVITY * (3.0 - 2.0 * cosine), 3.0 * GRAVITY * cosine
+    angles = np.linspace(0.0, np.arcsin(0.6), 100_001)
+    shear = (3.0 * GRAVITY * (3.0 * np.cos(angles) - 2.0 * cosine) * np.sin(angles)).max()
+    expected = {
+        "displacement": 0.6 * RHO,
+        "cap_share": 0.6,
+        "contact_force_max": largest,
+        "contact_force_min": smallest,
+        "base_shear": shear,
+    }
+    for name, value in expected.items():
+        found = estimates(answer)[name]
+        assert abs(found.value - value) <= found.error + 1e-9 * value, name
+        assert found.error < 1e-3 * value, name
+    assert np.isnan(answer.residual.value), "a frictionless platform never rests"
+    assert answer.stops.value == 0.0
+    assert answer.drift == ()
+
+
+def test_a_platform_that_friction_holds_moves_with_the_ground() -> None:
+    """Base shear m a_g, contact force m g, no displacement, no stop."""
+    scene = one_body(friction=0.3)
+    answer = demands(reference.trajectory(scene, PHASE))
+    shaking = ground_peak(scene, [PHASE])[0]
+    assert answer.base_shear.value == pytest.approx(3.0 * shaking, abs=answer.base_shear.error)
+    assert answer.base_shear.error < 2e-2 * answer.base_shear.value
+    assert answer.acceleration[0].value == pytest.approx(shaking, abs=answer.acceleration[0].error)
+    assert answer.acceleration[0].error < 1e-6
+    assert (answer.displacement.value, answer.residual.value, answer.stops.value) == (0.0, 0.0, 0.0)
+    assert answer.contact_force_min.value == pytest.approx(3.0 * GRAVITY, rel=1e-12)
+
+
+@pytest.mark.parametrize("side", ["equations", "engine"])
+@pytest.mark.parametrize("law", ["friction", "lubrication"])
+def test_the_isolator_force_is_friction_and_restoring_force(law: str, side: str) -> None:
+    """-sum of m a = -N (n - mu w) wherever the platform slides, with the normal force N that the motion has."""
+    scene = frame().with_values({"isolator": {"radius": 1.0, law: 0.05}, "duration": 2.0})
+    trajectory = reference.trajectory if side == "equations" else multibody.trajectory
+    motion = trajectory(scene, PHASE, regularization=1e-3 if law == "friction" else None)
+    place, velocity = motion.position[:, 0], motion.velocity[:, 0]
+    speed = np.linalg.norm(velocity, axis=1)
+    slides = speed > 1e-2
+    assert slides.sum() > 100
+    friction = 0.05 * velocity / (np.maximum(speed, 1e-300)[:, None] if law == "friction" else 1.0)
+    expected = motion.contact_force[:, None] * (place / scene.radius + friction)[:, :2]
+    atol = (1e-5 if side == "equations" else 1e-4) * GRAVITY * scene.total_mass
+    np.testing.assert_allclose(motion.isolator_force[slides], expected[slides], atol=atol)
+
+
+@pytest.mark.parametrize(("name", "regularization"), [("fig3-I", 1e-3), ("fig4-viscous", None)])
+def test_the_two_sides_agree_within_their_errors_in_a_scene_of_the_paper(name, regularization) -> None:
+    agree(reference.load_scene(name), regularization)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["fig3-II", "fig4-dry", "synthetic-pair", "synthetic-triple"])
+def test_the_two_sides_agree_within_their_errors_in_every_scene(name) -> None:
+    agree(reference.load_scene(name), 1e-3)
+
+
+@pytest.mark.long
+def test_the_two_sides_agree_within_their_errors_on_a_frame_of_six_bodies() -> None:
+    agree(frame(), 1e-3)
+    recorded = frame().model_dump(exclude_none=True)
+    recorded["excitation"] = reference.load_scene("synthetic-triple").model_dump(exclude_none=True)["excitation"]
+    agree(Scene.model_validate(recorded), 1e-3)
+
+
+def agree(scene: Scene, regularization: float | None) -> None:
+    ours = demands(reference.trajectory(scene, PHASE, regularization=regularization))
+    theirs = demands(multibody.trajectory(scene, PHASE, regularization=regularization))
+    assert ours.status == theirs.status == "ok"
+    for (name, a), b in zip(estimates(ours).items(), estimates(theirs).values(), strict=True):
+        assert np.isnan(a.value) == np.isnan(b.value)
+        assert not np.isnan(a.value) or name == "residual", "a platform that never rests, or still moves"
+        if not np.isnan(a.value):
+            assert abs(a.value - b.value) <= a.error + b.error, name
+            assert b.error <= 1e-2 * abs(b.value) + 1e-5, f"{name}: an error that large agrees with anything"
+
+
+def test_the_share_of_the_cap_is_that_of_the_surface() -> None:
+    scene = reference.load_scene("fig3-I")
+    found = demands(reference.trajectory(scene, PHASE)).cap_share
+    assert found.value == pytest.approx(reference.amplification(scene, [PHASE]).cap_share[0], rel=1e-6)
+
+
+@pytest.mark.parametrize("count", [150, 400])
+def test_the_error_covers_what_coarse_samples_miss(count: int) -> None:
+    scene = reference.load_scene("fig3-I")
+    truth = estimates(demands(reference.trajectory(scene, PHASE)))
+    coarse = demands(reference.trajectory(scene, PHASE, times=np.linspace(0.0, scene.duration, count)))
+    for name, found in estimates(coarse).items():
+        assert abs(found.value - truth[name].value) <= found.error + truth[name].error, name
+
+
+def test_the_stops_are_the_rests_after_the_first_slip() -> None:
+    motion = reference.trajectory(reference.load_scene("fig3-I"), PHASE)
+    assert motion.stick[0][0] == 0.0, "the motion begins at rest"
+    assert demands(motion).stops == Estimate(len(motion.stick) - 1.0, 0.0)
+    assert motion.stick[-1][1] == motion.time[-1]
+    assert demands(motion).residual.value == pytest.approx(np.hypot(*motion.position[-1, 0, :2]), rel=1e-12)
+
+
+def unknown(answer: Demands) -> bool:
+    return all(np.isnan(found.value) and np.isnan(found.error) for found in estimates(answer).values())
+
+
+def test_a_motion_that_ends_early_has_a_status_and_no_numbers() -> None:
+    beyond = reference.trajectory(reference.load_scene("fig3-I").with_amplitude(60.0), PHASE)
+    assert len(beyond.time) > 0
+    assert demands(beyond).status == beyond.status == "rim reached"
+    assert unknown(demands(beyond))
+    refused = multibody.trajectory(reference.load_scene("fig3-I").with_values({"duration": 1e4}), PHASE)
+    assert len(refused.time) == 0
+    answer = demands(refused)
+    assert (answer.status, len(answer.acceleration), len(answer.drift)) == ("step limit", 2, 1)
+    assert unknown(answer)
+
+
+def test_a_single_run_has_values_and_no_errors() -> None:
+    scene = reference.load_scene("fig3-I").with_values({"duration": 2.0})
+    found = estimates(demands(multibody.single_run(scene, PHASE, step=2e-3)))
+    assert all(np.isnan(number.error) for number in found.values())
+    assert np.isfinite([number.value for name, number in found.items() if name != "residual"]).all()
+
+
+def test_support_forces_are_those_of_the_spatial_model_alone() -> None:
+    scene = reference.load_scene("fig3-I").with_values({"duration": 1.5})
+    answer = demands(multibody.trajectory(scene, PHASE, "spatial"))
+    assert answer.support_force_min is not None
+    assert answer.support_force_max is not None
+    weight = scene.total_mass * GRAVITY
+    assert 0.0 < answer.support_force_min.value < 0.25 * weight < answer.support_force_max.value < 0.5 * weight
+    assert 0.0 < answer.support_force_max.error < 0.02 * weight
+    assert demands(multibody.trajectory(scene, PHASE)).support_force_min is None
+    assert demands(reference.trajectory(scene, PHASE)).support_force_max is None
+
+
+def test_a_motion_survives_copies_and_processes_with_its_scene() -> None:
+    motion = reference.trajectory(reference.load_scene("fig3-I"), PHASE)
+    expected = demands(motion)
+    for other in (pickle.loads(pickle.dumps(motion)), copy.deepcopy(motion), replace(motion, status="ok")):
+        assert isinstance(other, Trajectory)
+        assert other.scene == motion.scene
+        assert demands(other) == expected
