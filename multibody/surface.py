@@ -58,7 +58,8 @@ def amplification(
     loading : {"inertial", "plate"}
         Inertial forces in the plate's frame, or the motion of a plate that carries the supports.
     full : bool
-        Compute the model that is asked for, even where the scene does not require it (reference.problem.reductions).
+        Compute the model that is asked for, even where the scene does not require it (reference.problem.reductions),
+        and every run to the end of the motion.
     levels : sequence of Level, optional
         Levels of accuracy to go through, the coarsest first, in place of those of `multibody.levels`.
 
@@ -118,13 +119,14 @@ class _Reduced:
     scene: Scene
     built: EngineModel
     asked: tuple[Scene, str, float | None, str] | None  # what to assemble where the reduced model has no answer
+    whole: bool  # whether every run goes to the end of the motion
 
     def refined(self, phase: Array, tolerance: float, levels: Sequence[Level] | None) -> Refinement:
-        point = refine(self.scene, self.built, phase, tolerance, levels=levels)
+        point = refine(self.scene, self.built, phase, tolerance, whole=self.whole, levels=levels)
         if self.asked and np.isnan(point.peaks).any():  # off its supports the model that is asked for goes on
             scene, model, regularization, loading = self.asked
-            whole = assemble(scene, model, regularization, loading=loading)
-            point = refine(scene, whole, phase, tolerance, levels=levels)
+            complete = assemble(scene, model, regularization, loading=loading)
+            point = refine(scene, complete, phase, tolerance, whole=self.whole, levels=levels)
         return point
 
 
@@ -136,4 +138,4 @@ def _reduced(scene: Scene, model: str, regularization: float | None, loading: st
     moving = in_plane(scene) if planar else scene
     axes: dict[str, Any] = {"axes": 1} if planar else {}
     built = assemble(moving, chosen, regularization, loading=loading, **axes)
-    return _Reduced(moving, built, (scene, model, regularization, loading) if level else None)
+    return _Reduced(moving, built, (scene, model, regularization, loading) if level else None, full)

@@ -33,6 +33,7 @@ FREE_ITERATIONS = 2  # of Newton's method in a step that costs what `Budget` say
 GAP_RATE_STEPS = 4  # over which the rate of a gap is taken
 KINK_STEP_RATIO = 4.0  # first step behind a kink of the loading over slip_change times the relaxation of friction
 RECENT_ROWS = 8  # at the end of a chunk: they decide whether the step may grow
+SETTLED_FRACTION = 0.9  # of a largest value: later values below it do not reach it in a run of another level either
 WARPING_RELAXATION = 20.0  # time until warping has relaxed, in square roots of the warping compliance
 
 
@@ -65,6 +66,7 @@ class EngineRun:
     """The result of one run from the start of the loading to its end, or to where the run terminates."""
 
     peaks: Peaks  # of each body
+    stop: float  # when it was to stop, in units of time
     outcome: Outcome = Outcome.OK
     instant: float = math.nan  # of a termination, in units of time
     steps: int = 0
@@ -72,6 +74,10 @@ class EngineRun:
     warping_load: float = 0.0  # largest load that warping of the supports takes, in shares of the weight
     last_open: float = -math.inf  # the latest instant at which a support carried no load, in units of time
     max_displacement: float = 0.0  # horizontal, of the platform, in units of length
+    # the last instant at which an acceleration or the displacement of the platform came within SETTLED_FRACTION of its
+    # largest value, in units of time
+    settled: float = 0.0
+    min_load: float = math.inf  # smallest contact force, in weights, of a model that ends where the contact opens
     chunks: list[Motion] = field(default_factory=list)  # the motion, if it is kept
 
     def terminated(self, outcome: Outcome, instant: float) -> EngineRun:
@@ -88,15 +94,20 @@ def run_adaptively(
     level: Level,
     budget: Budget,
     *,
+    stop: float = math.inf,
     keep: bool = False,
 ) -> EngineRun:
-    """Run from `start` at time 0 to `end`; ground: plate's acceleration (T, 3) at times (T,), in units of the model."""
+    """
+    Run from `start` at time 0 to `end`; ground: plate's acceleration (T, 3) at times (T,), in units of the model.
+
+    stop: do not go on after this instant. Up to there the steps are those of a run to `end`.
+    """
     model = engine.model
-    result = EngineRun(Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near))
-    if not budget.allows(end, level):
+    result = EngineRun(Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near), stop)
+    if not budget.allows(min(end, stop), level):
         return result.terminated(Outcome.STEP_LIMIT, 0.0)
     state, time, divisions, next_count = start, 0.0, FIRST_DIVISIONS, MAX_CHUNK_STEPS
-    while time < end * (1.0 - 1e-12):
+    while time < min(end, stop) * (1.0 - 1e-12):
         divisions = max(divisions, level.min_divisions(time))
         step = level.step / STEP_RATIO**divisions
         count = next_count if divisions == 0 else DIVIDED_CHUNK_STEPS
@@ -154,7 +165,20 @@ def _record(result: EngineRun, motion: Motion, absolute: Array, model: EngineMod
     _record_warping(result, motion, model, level)
     result.max_displacement = max(result.max_displacement, _max_displacement(motion, model.bodies[0, :2]))
     result.peaks.add(motion.time, absolute, motion.slip)
+    _record_settling(result, motion, absolute, model)
+    if not model.allows_liftoff:
+        result.min_load = min(result.min_load, -float(motion.gap.max()) / level.penetration)
     return True
+
+
+def _record_settling(result: EngineRun, motion: Motion, absolute: Array, model: EngineModel) -> None:
+    """Record when something that is asked for last came near its largest value so far."""
+    near = (np.linalg.norm(absolute, axis=-1) >= SETTLED_FRACTION * result.peaks.value).any(axis=1)
+    displacement = np.linalg.norm(motion.coordinates[:, model.bodies[0, :2]], axis=-1)
+    near |= displacement >= SETTLED_FRACTION * result.max_displacement
+    rows = np.flatnonzero(near)
+    if len(rows):
+        result.settled = float(motion.time[rows[-1]])
 
 
 def _max_displacement(motion: Motion, axes: NDArray[np.int_]) -> float:
