@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from multibody.integration.constant_step import silence
 from multibody.integration.level import Level
-from multibody.integration.refine import Refinement, refine
+from multibody.integration.refine import MAX_WORK, WORK, Refinement, refine
 from multibody.models.assembly import assemble
 from multibody.models.system import EngineModel
 from reference.problem import (
@@ -39,6 +39,7 @@ def amplification(
     loading: str = "inertial",
     full: bool = False,
     levels: Sequence[Level] | None = None,
+    max_work: float = MAX_WORK,
 ) -> Amplification:
     """
     Compute the dynamic amplification factors mu_i of (5.1) with the engine.
@@ -62,6 +63,8 @@ def amplification(
         and every run to the end of the motion.
     levels : sequence of Level, optional
         Levels of accuracy to go through, the coarsest first, in place of those of `multibody.levels`.
+    max_work : float
+        Steps of the engine that a point may take. A scene that needs more is refused before any step (`refusal`).
 
     Returns
     -------
@@ -90,6 +93,7 @@ def amplification(
     """
     pairs = checked_phases(phases)
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
+    max_work = checked_number("max_work", max_work, WORK)
     clock = time.process_time()
     shape = (len(pairs), len(scene.bodies))
     mu, error = np.full(shape, np.nan), np.full(shape, np.nan)
@@ -104,7 +108,7 @@ def amplification(
             elif not np.isfinite(ground[m]):
                 status[m], instant[m] = Outcome.NON_FINITE_LOAD, 0.0
             else:
-                point = reduced.refined(phase, tolerance, levels)
+                point = reduced.refined(phase, tolerance, levels, max_work)
                 status[m], instant[m] = point.outcome, point.instant
                 mu[m], error[m] = point.peaks / ground[m], point.errors / ground[m]
                 if np.isfinite(point.peaks).all():
@@ -121,12 +125,13 @@ class _Reduced:
     asked: tuple[Scene, str, float | None, str] | None  # what to assemble where the reduced model has no answer
     whole: bool  # whether every run goes to the end of the motion
 
-    def refined(self, phase: Array, tolerance: float, levels: Sequence[Level] | None) -> Refinement:
-        point = refine(self.scene, self.built, phase, tolerance, whole=self.whole, levels=levels)
+    def refined(self, phase: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float) -> Refinement:
+        asked: dict[str, Any] = {"whole": self.whole, "levels": levels, "max_work": max_work}
+        point = refine(self.scene, self.built, phase, tolerance, **asked)
         if self.asked and np.isnan(point.peaks).any():  # off its supports the model that is asked for goes on
             scene, model, regularization, loading = self.asked
             complete = assemble(scene, model, regularization, loading=loading)
-            point = refine(scene, complete, phase, tolerance, whole=self.whole, levels=levels)
+            point = refine(scene, complete, phase, tolerance, **asked)
         return point
 
 

@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 
 FIRST_DIVISIONS = 2  # of the largest step in the first chunk: the contact settles
 MAX_CHUNK_STEPS, DIVIDED_CHUNK_STEPS = 256, 32  # steps in a chunk at the largest step, at smaller ones
-FREE_ITERATIONS = 2  # of Newton's method in a step that costs what `Budget` says
+FREE_ITERATIONS = 2  # of Newton's method in a step; further ones count as steps
 GAP_RATE_STEPS = 4  # over which the rate of a gap is taken
 KINK_STEP_RATIO = 4.0  # first step behind a kink of the loading over slip_change times the relaxation of friction
 RECENT_ROWS = 8  # at the end of a chunk: they decide whether the step may grow
@@ -39,26 +39,13 @@ WARPING_RELAXATION = 20.0  # time until warping has relaxed, in square roots of 
 
 @dataclass
 class Budget:
-    """
-    Work left to all runs of one point: nominal microseconds, so that the answer does not depend on the machine.
-    """
+    """Steps of the engine left to all runs of one point: the answer does not depend on the machine."""
 
-    left: float  # nominal microseconds
-    step: float  # cost of a step
-    run: float  # cost of a run before its first step
-
-    @staticmethod
-    def of(work: float, coordinates: int) -> Budget:
-        """`work` for a model with so many coordinates, whose matrices are dense; coefficients measured."""
-        return Budget(work, 8.0 + 0.6 * coordinates + 0.02 * coordinates**2, 2e-3 * coordinates**3)
-
-    def cost(self, steps: float, runs: float) -> float:
-        """Of so many steps in so many runs."""
-        return self.step * steps + self.run * runs
+    left: float
 
     def allows(self, span: float, level: Level) -> bool:
         """Whether what is left is enough for `span` at the largest step of a level."""
-        return self.cost(span / level.step, span / level.step / MAX_CHUNK_STEPS) <= self.left
+        return span / level.step <= self.left
 
 
 @dataclass
@@ -116,7 +103,7 @@ def run_adaptively(
         motion = engine.run(state, time, step, count)
         result.runs += 1
         result.steps += count if motion is None else len(motion.time) - 1
-        budget.left -= budget.cost(max(count, engine.iterations / FREE_ITERATIONS), 1)
+        budget.left -= max(count, engine.iterations / FREE_ITERATIONS)
         if budget.left < 0.0:
             return result.terminated(Outcome.STEP_LIMIT, time)
         if motion is None or not np.isfinite(motion.accelerations).all():

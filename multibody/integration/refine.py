@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.integration.adaptive import MAX_CHUNK_STEPS, SETTLED_FRACTION, Budget, EngineRun
+from multibody.integration.adaptive import SETTLED_FRACTION, Budget, EngineRun
 from multibody.integration.estimate import (
     ERROR_PER_WARPING_LOAD,
     from_compliance,
@@ -31,12 +31,13 @@ from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import Peaks
 from multibody.models.system import EngineModel
 from reference.problem import Outcome, Scene, State
+from reference.problem.ranges import Range
 
 Array = NDArray[np.float64]
 
-MAX_WORK = 14e6  # nominal microseconds (see `Budget`) of all runs of one point
+MAX_WORK = 2e6  # steps of the engine in all runs of one point, where the caller says nothing else
+WORK = Range(1.0, 1e12, "steps")
 UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
-FIRST_LEVELS_STEPS = 3.0  # steps of the first two levels over those of the first: without both there is no answer
 MAX_WARPING_ERROR_SHARE = 0.2  # of the tolerance, that the load of warped supports may take as an error
 MAX_WORK_GROWTH = 2.0  # steps of a level over those of the level before
 STEPS_AFTER_SETTLING = 20.0  # largest steps from the last large value of a run to the end of the next
@@ -59,14 +60,9 @@ class Refinement:
     finest: EngineRun  # the last run
 
 
-def work_share(model: EngineModel, end: float, largest: float) -> float:
-    """
-    Least work of a point, two levels without a shorter step, as a share of what it may spend.
-
-    end, largest: duration and largest step of the first level, in units of the model.
-    """
-    steps = FIRST_LEVELS_STEPS * end / largest
-    return Budget.of(MAX_WORK, model.coordinates).cost(steps, steps / MAX_CHUNK_STEPS) / MAX_WORK
+def least_work(end: float, largest: float) -> float:
+    """Steps that a point takes at least: one run of duration `end` in the largest steps, both in units of time."""
+    return end / largest
 
 
 def refine(
@@ -79,17 +75,18 @@ def refine(
     keep: bool = False,
     whole: bool = False,
     levels: Sequence[Level] | None = None,
+    max_work: float = MAX_WORK,
 ) -> Refinement:
     """
     Peaks of the absolute accelerations for one phase pair (2,), rad, with a relative error below `tolerance`.
 
     levels: those of `levels_of` if None. keep: the motion of the last run. whole: every run goes to the end of the
-    motion, as it does where the motion is kept.
+    motion, as it does where the motion is kept. max_work: steps that all runs together may take.
     """
     pair = PhasePair(scene, model, phase, initial)
-    budget = Budget.of(MAX_WORK, model.coordinates)
+    budget = Budget(max_work)
     remaining = levels_of(scene, model, tolerance) if levels is None else list(levels)
-    if work_share(model, pair.end, remaining[0].step) > 1.0:
+    if least_work(pair.end, remaining[0].step) > max_work:
         no_run = EngineRun(Peaks(len(model.bodies), model.corner), math.inf, Outcome.STEP_LIMIT, 0.0)
         return _no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
     runs: list[EngineRun] = []
@@ -98,7 +95,7 @@ def refine(
     complete: _Candidate | None = None  # the last candidate whose error lacks nothing
     for number, level in enumerate(remaining):
         shared = number > 0 and level.penetration == remaining[number - 1].penetration
-        if runs and budget.left < _work_of_next(runs[-1], stop, pair.end, budget) * (1.0 + shared):
+        if runs and budget.left < _work_of_next(runs[-1], stop, pair.end) * (1.0 + shared):
             break
         run = pair.at_level(level, budget, stop, keep=keep)
         if stop < pair.end and not _stays_settled(run, runs[-1]):
@@ -137,10 +134,10 @@ def refine(
     return _unfinished(pair, runs)
 
 
-def _work_of_next(run: EngineRun, stop: float, end: float, budget: Budget) -> float:
-    """Work of the run at the level after that of `run`, up to `stop`."""
+def _work_of_next(run: EngineRun, stop: float, end: float) -> float:
+    """Steps of the run at the level after that of `run`, up to `stop`."""
     shorter = min(stop, end) / min(run.stop, end) if run.outcome == Outcome.OK else 1.0
-    return MAX_WORK_GROWTH * shorter * budget.cost(run.steps, run.runs)
+    return MAX_WORK_GROWTH * shorter * run.steps
 
 
 def _settled(run: EngineRun, step: float) -> float:
