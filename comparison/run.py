@@ -36,7 +36,7 @@ from comparison.cli.options import Options, parsed
 from comparison.cli.terminal import print_plan, print_study_plan
 from comparison.execution.cache import Cache, store_beside
 from comparison.execution.executors import Pool
-from comparison.execution.keys import batch_key
+from comparison.execution.keys import batch_key, task_key
 from comparison.execution.output import atomic_replace, clear_dead, on_stderr
 from comparison.execution.processes import process_pool
 from comparison.execution.progress import wide_console
@@ -135,13 +135,15 @@ def _run(
     clear_dead(options.out)
     study = affordable(plan.study, plan.with_analyses)
     analyses = chosen_analyses(study)
+    first = first_tasks(study, analyses)
     keys = [batch_key(batch) for batch in study.batches()]
     store.trim(keys)
-    if options.fresh:
+    if options.fresh:  # gone before anything is computed: what an interrupted run left is new
         store.forget(keys)
+        store.remove(map(task_key, first))
 
     runner = Runner(TaskResults(store, options.fresh), console, options.jobs, executor)
-    computed = runner.run_study(study, first_tasks(study, analyses))
+    computed = runner.run_study(study, first)
     seconds = time.monotonic() - begin
     surfaces = labeled_surfaces(study, computed.batches, computed.answers)
     study = with_silent_models(study, surfaces)
