@@ -18,6 +18,7 @@ from reference.problem import load_scene
 GRID = 4
 PARTS = {
     "index.html",
+    "report.pdf",
     "surfaces.nc",
     "summary.json",
     "summary.schema.json",
