@@ -21,7 +21,6 @@ from reference.problem import Scene
 Array = NDArray[np.float64]
 Rows = list[list[float | None]]
 
-FEW_PER_AXIS = 8  # phases of a spatial model: so few are drawn as points
 DIGITS, ERROR_DIGITS = 7, 2  # significant, of mu and of an error
 
 
@@ -81,9 +80,8 @@ def _pair(found: Findings, scene: Scene, pair: Pair) -> dict[str, Any]:
 
 
 def _surface(found: Findings, scene: Scene, model: Model) -> bool:
-    """Whether the values of a model are drawn as a surface as they are: on all phases, and not few of a spatial one."""
-    few = model.settings.get("model") == "spatial" and len(found.study.axis(model, scene)) <= FEW_PER_AXIS
-    return found.study.stride(model, scene) == 1 and not few
+    """Whether the values of a model are drawn as a surface as they are: what may need completing is not."""
+    return not any((each.scene, each.model) == (scene.name, model.key) for each in found.completions)
 
 
 def _models(found: Findings, scene: Scene) -> dict[str, Any]:

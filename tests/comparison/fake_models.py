@@ -24,7 +24,7 @@ DEADLY = 2.0 * np.pi * 3 / 4  # alpha1, alpha2 of the one point of a 4 x 4 grid 
 
 
 def smooth(
-    scene: Scene, phases: NDArray[np.float64], tolerance: float, gap: float = 0.0, full: bool = False
+    scene: Scene, phases: NDArray[np.float64], tolerance: float, gap: float = 0.0, full: bool = False, model: str = ""
 ) -> Amplification:
     """mu_i = (i + 2 + cos a1 + sin a2) (1 + gap), known to `tolerance`."""
     shape = 2.0 + np.cos(phases[:, 0]) + np.sin(phases[:, 1])

@@ -215,6 +215,7 @@ def test_keys_alone_reach_motions_explanations_and_the_order_of_a_table(visit: V
     for key in ("ArrowRight", "ArrowUp", "Enter"):
         page.keyboard.press(key)
     assert "away" in page.locator("[data-part=distance]").inner_text()
+    page.mouse.move(0, 0)
     page.locator(".term").first.focus()
     assert page.locator("#tip").is_visible()
     assert len(page.locator("#tip").inner_text()) > 20
