@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from comparison.analysis.claims.table import ClaimTable
 from comparison.analysis.errata import ERRATA
 from comparison.analysis.grid_maxima import grid_maxima
 from comparison.analysis.headline import headline
+from comparison.analysis.parameter import family_curves, family_steps
 from comparison.analysis.surfaces import largest_cap_share, outcome_counts
 from comparison.analysis.trends import Trend as FittedTrend
 from comparison.analysis.unanswered import advice
-from comparison.analysis.verdicts import bar, verdict
+from comparison.analysis.waterfall import Waterfall as BodyWaterfall
 from comparison.analysis.waterfall import waterfall
 from comparison.report.alerts import alerts
 from comparison.report.findings import Findings
 from comparison.report.results import (
     Assumptions,
-    Bar,
     BudgetEntry,
     Claim,
     Claims,
@@ -27,22 +27,24 @@ from comparison.report.results import (
     Effect,
     Effective,
     Erratum,
+    FamilyCurve,
     FamilyResult,
+    FamilyStep,
     GridMaximum,
     Headline,
     Limit,
     ModelDescription,
     ModelOutcome,
+    RecordValue,
     Results,
     Run,
     SceneResult,
     Trend,
     Unanswered,
-    Verdict,
     Waterfall,
 )
 from comparison.study.models import Model, models_of
-from reference.problem import Outcome, Scene
+from reference.problem import Family, Outcome, Scene
 from reference.problem.analyses import ANALYSES
 
 
@@ -61,12 +63,16 @@ def assemble(found: Findings) -> Results:
         Everything that summary.json holds; verdicts, bars and limits included.
     """
     study = found.study
+    waterfalls = {
+        scene.name: [waterfall(study, found.surfaces, scene, body) for body in range(1, len(scene.bodies) + 1)]
+        for scene in study.scenes
+    }
     return Results(
         run=Run.model_validate(found.run),
         grid=study.grid,
         tolerance=study.tolerance,
         models=[ModelDescription.model_validate(model) for model in study.hierarchy],
-        scenes=[_scene(found, scene) for scene in study.scenes],
+        scenes=[_scene(found, scene, waterfalls[scene.name]) for scene in study.scenes],
         errata=None if "errata" in study.absent else _errata(found),
         assumptions=None if found.assumptions is None else Assumptions.model_validate(found.assumptions.listed()),
         claims=None if found.claims is None else _claims(found.claims),
@@ -74,28 +80,19 @@ def assemble(found: Findings) -> Results:
         convergence=_trends(found.convergence),
         extremes=found.extremes,
         tradeoff=None if found.tradeoff is None else list(found.tradeoff),
-        families=None if found.families is None else [
-            FamilyResult(
-                name=family.name,
-                key=family.key,
-                values=list(family.values),
-                scenes=[scene.name for scene in family.scenes],
-            )
-            for family in found.families
-        ],
+        families=None if found.families is None else [_family(found, family, waterfalls) for family in found.families],
         unanswered=[Unanswered.model_validate(lacking) for lacking in found.unanswered],
         absent=study.absent,
         alerts=alerts(found),
         faults=list(found.faults),
-    )  # fmt: skip
+    )
 
 
-def _scene(found: Findings, scene: Scene) -> SceneResult:
+def _scene(found: Findings, scene: Scene, waterfalls: Sequence[BodyWaterfall]) -> SceneResult:
     def of_scene(rows: Sequence[Any]) -> list[Any]:
         return [row for row in rows if row.scene == scene.name]
 
     study, surfaces, bodies = found.study, found.surfaces, len(scene.bodies)
-    waterfalls = [waterfall(study, surfaces, scene, body) for body in range(1, bodies + 1)]
     headlines = [headline(study, surfaces, scene, bars, found.rows) for bars in waterfalls]
     return SceneResult(
         name=scene.name,
@@ -106,15 +103,14 @@ def _scene(found: Findings, scene: Scene) -> SceneResult:
         recorded=scene.recorded,
         analyses=[name for name in ANALYSES if study.selection.has(name, scene.name)],
         acceptance=scene.acceptance,
-        verdict=Verdict.model_validate(verdict(study, surfaces, scene)),
         models={model.key: _model(found, scene, model) for model in models_of(scene, study.hierarchy)},
         differences=[Difference.model_validate(row) for row in of_scene(found.rows)],
         budget=[BudgetEntry.model_validate(entry) for entry in of_scene(found.budget)],
-        bars=[Bar.model_validate(bar(study, surfaces, scene, body)) for body in range(1, bodies + 1)],
         headlines=[Headline.model_validate(each) for each in headlines],
         waterfalls=[Waterfall.model_validate(each) for each in waterfalls],
         completions=[Completion.model_validate(surface) for surface in of_scene(found.completions)],
         grid_maxima=[GridMaximum.model_validate(each) for each in grid_maxima(study, surfaces, scene)],
+        values=_values(found, scene) if scene.recorded else [],
         limits=[Limit.model_validate(limit) for limit in of_scene(found.limits)],
         effective=[Effective.model_validate(values) for values in of_scene(found.effective)],
     )
@@ -131,6 +127,33 @@ def _model(found: Findings, scene: Scene, model: Model) -> ModelOutcome:
         advice={outcome: advice(study, scene, model, outcome) for outcome in counts if outcome != Outcome.OK},
         cap_share=largest_cap_share(surfaces, scene.name, model.key),
         cost=float(surfaces["cost"].sel(scene=scene.name, model=model.key)),
+    )
+
+
+def _values(found: Findings, scene: Scene) -> list[RecordValue]:
+    """mu under the record, by model and body."""
+    data = found.surfaces.sel(scene=scene.name).isel(alpha1=0, alpha2=0)
+    return [
+        RecordValue(
+            model=model.key,
+            body=body,
+            mu=float(data["mu"].sel(model=model.key, body=body)),
+            error=float(data["error"].sel(model=model.key, body=body)),
+            status=str(data["status"].sel(model=model.key).item()),
+        )
+        for model in models_of(scene, found.study.hierarchy)
+        for body in range(1, len(scene.bodies) + 1)
+    ]
+
+
+def _family(found: Findings, family: Family, waterfalls: Mapping[str, Sequence[BodyWaterfall]]) -> FamilyResult:
+    return FamilyResult(
+        name=family.name,
+        key=family.key,
+        values=list(family.values),
+        scenes=[scene.name for scene in family.scenes],
+        curves=[FamilyCurve.model_validate(curve) for curve in family_curves(found.study, found.surfaces, family)],
+        steps=[FamilyStep.model_validate(step) for step in family_steps(family, waterfalls)],
     )
 
 

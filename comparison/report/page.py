@@ -29,7 +29,6 @@ from comparison.report.glossary import explained, term
 from comparison.report.motion_data import packed, packed_motions
 from comparison.report.page_data import page_data
 from comparison.report.page_plots import claim_heat, family_panels, tradeoff_answers, tradeoff_panels, trend_panels
-from comparison.report.record_rows import record_rows
 from comparison.report.results import Alert, Claim, ClaimVerdict, Effect, Erratum, Results, SceneResult, Waterfall
 from comparison.report.verification import CHECKS
 from comparison.report.waterfall_chart import Scale, charts, log_scale, scales
@@ -178,14 +177,14 @@ def page(figures: Path, found: Findings, results: Results) -> str:
         cards=[_card(scene, axes, found) for scene in results.scenes],
         scales=axes,
         effects={model.key: model.effect or model.title for model in study.hierarchy},
-        record_tables=_record_tables(found),
+        record_tables=_record_tables(study, results),
         rows=rows,
         dots=log_scale([size for row in rows for size in (row.median, row.maximum)]),
         budget=[entry for scene in results.scenes_with("budget") for entry in scene.budget],
         trend_panels=trend_panels,
         tradeoff_panels=tradeoff_panels,
         tradeoff_answers=tradeoff_answers,
-        family_panels=family_panels(found),
+        family_panels=family_panels(results),
         claim_heat=claim_heat(results),
         claim_findings=_claim_findings,
         hierarchy=hierarchy,
@@ -290,14 +289,20 @@ def _place_of(waterfall: Waterfall) -> str:
     return f"at ({degrees(first)}, {degrees(second)})" if math.isfinite(first) else "no difference is known"
 
 
-def _record_tables(found: Findings) -> list[dict[str, Any]]:
+def _record_tables(study: Study, results: Results) -> list[dict[str, Any]]:
     """What stands in place of surfaces for every body of a scene under a record."""
-    return [
-        {"scene": number, "body": body, "excitation": scene.excitation, "rows": record_rows(found, scene, body)}
-        for number, scene in enumerate(found.study.scenes)
-        if scene.recorded
-        for body in range(1, len(scene.bodies) + 1)
-    ]
+    titles = {model.key: model.title for model in results.models}
+    tables = []
+    for number, (scene, result) in enumerate(zip(study.scenes, results.scenes)):
+        for waterfall in result.waterfalls if result.recorded else ():
+            bars = {bar.model: bar for bar in waterfall.bars}
+            rows = [
+                {"title": titles[value.model], "value": value, "bar": bars.get(value.model)}
+                for value in result.values
+                if value.body == waterfall.body
+            ]
+            tables.append({"scene": number, "body": waterfall.body, "excitation": scene.excitation, "rows": rows})
+    return tables
 
 
 def _assumption_pictures(figures: Path, found: Findings, results: Results) -> list[dict[str, Any]]:

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import groupby
 from typing import Any
 
-import numpy as np
-
 from comparison.analysis.tradeoff.trade import Answered, Entry, Trade
-from comparison.report.findings import Findings
-from comparison.report.results import Results, Trend
-from comparison.study.models import models_of
+from comparison.report.results import FamilyResult, Results, Trend
 from comparison.wording import scientific
-from reference.problem import Family
 
 Panel = dict[str, Any]  # title, and plot: see plot.js
 
@@ -68,15 +63,14 @@ def tradeoff_answers(trade: Trade) -> list[dict[str, str]]:
     return answers
 
 
-def family_panels(found: Findings) -> list[dict[str, Any]]:
+def family_panels(results: Results) -> list[dict[str, Any]]:
     """For each family: mu of every body by every model over the value that runs, and what each effect adds."""
+    scenes = {scene.name: scene for scene in results.scenes}
     listed = []
-    for family in found.families or ():
-        bodies = range(1, family.bodies + 1)
-        panels = [
-            panel for body in bodies for panel in (_family_mu(found, family, body), _family_steps(found, family, body))
-        ]
-        first = family.scenes[0]
+    for family in results.families or ():
+        first = scenes[family.scenes[0]]
+        bodies = range(1, first.bodies + 1)
+        panels = [draw(results, family, body) for body in bodies for draw in (_family_mu, _family_steps)]
         listed.append(
             {
                 "title": first.title,
@@ -153,7 +147,7 @@ def _meets(entry: Entry, target: float) -> bool:
     return complete and not entry.model_error and max(errors) <= target
 
 
-def _axis(family: Family) -> tuple[list[float], dict[str, Any]]:
+def _axis(family: FamilyResult) -> tuple[list[float], dict[str, Any]]:
     """Places of the values on the axis, and the axis: by name where they are no numbers."""
     if any(isinstance(value, str) for value in family.values):
         places = [float(number) for number in range(len(family.values))]
@@ -162,45 +156,33 @@ def _axis(family: Family) -> tuple[list[float], dict[str, Any]]:
     return [float(value) for value in family.values], {"title": family.key}
 
 
-def _family_mu(found: Findings, family: Family, body: int) -> Panel:
+def _family_mu(results: Results, family: FamilyResult, body: int) -> Panel:
     places, axis = _axis(family)
-    mu = found.surfaces["mu"].sel(body=body)
+    titles = {model.key: model.title for model in results.models}
     series = []
-    for number, model in enumerate(models_of(family.scenes[0], found.study.hierarchy)):
-        surfaces = [np.asarray(mu.sel(scene=scene.name, model=model.key)).ravel() for scene in family.scenes]
-        known = [surface[np.isfinite(surface)] for surface in surfaces]
-        line: dict[str, Any] = {"name": model.title, "x": places, "color": number, "marks": True}
-        line["y"] = [float(values.mean()) if values.size else None for values in known]
-        if any(values.size > 1 for values in known):
-            line["low"] = [float(values.min()) if values.size else None for values in known]
-            line["high"] = [float(values.max()) if values.size else None for values in known]
+    for number, curve in enumerate(curve for curve in family.curves if curve.body == body):
+        line: dict[str, Any] = {"name": titles[curve.model], "x": places, "color": number, "marks": True}
+        line["y"] = _plain(curve.mean)
+        if any(low < high for low, high in zip(curve.lowest, curve.highest)):
+            line["low"], line["high"] = _plain(curve.lowest), _plain(curve.highest)
         series.append(line)
-    plot = {
-        "label": f"mu_{body} of every model over {family.key}",
-        "x": axis,
-        "y": {"title": f"μ{body}"},
-        "series": series,
-    }
+    label = f"mu_{body} of every model over {family.key}"
+    plot = {"label": label, "x": axis, "y": {"title": f"μ{body}"}, "series": series}
     return {"title": f"mu_{body}", "plot": plot}
 
 
-def _family_steps(found: Findings, family: Family, body: int) -> Panel:
+def _family_steps(results: Results, family: FamilyResult, body: int) -> Panel:
     places, axis = _axis(family)
-    effects = {model.key: model.effect or model.title for model in found.study.hierarchy} | {"total": "total"}
-    by_step: dict[str, Mapping[str, float]] = {}
-    for entry in found.budget:
-        if entry.body == body and entry.scene in {scene.name for scene in family.scenes}:
-            by_step.setdefault(entry.step, {})
-            by_step[entry.step] = {**by_step[entry.step], entry.scene: 100.0 * entry.mean}
+    effects = {model.key: model.effect or model.title for model in results.models} | {"total": "total"}
     series = [
         {
-            "name": effects[step],
+            "name": effects[step.model],
             "x": places,
-            "y": _plain([sizes.get(scene.name, math.nan) for scene in family.scenes]),
-            "color": "ink" if step == "total" else number,
+            "y": _plain([100.0 * size for size in step.size]),
+            "color": "ink" if step.model == "total" else number,
             "marks": True,
         }
-        for number, (step, sizes) in enumerate(by_step.items(), start=1)
+        for number, step in enumerate((step for step in family.steps if step.body == body), start=1)
     ]
     label = f"what each effect adds to mu_{body} over {family.key}"
     plot = {"label": label, "x": axis, "y": {"title": "% of the first model"}, "series": series}

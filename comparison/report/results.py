@@ -157,41 +157,6 @@ class ModelOutcome(Part):
     """compute time, s"""
 
 
-class Verdict(Part):
-    """The largest real total difference of the scene, and its cause."""
-
-    scene: Text
-    """name of the scene"""
-    size: Number
-    """signed, relative to mu of the first model; null where no difference is real"""
-    body: int
-    """number of the body; 0 where no difference is real"""
-    phases: Phases
-    """(alpha1, alpha2), rad; null under a record"""
-    cause: str
-    """title of the model whose step is largest there"""
-    part: Number
-    """signed size of that step there"""
-    real: Number
-    """fraction of the phase pairs where the total difference of this body is real"""
-    first: str
-    """title of the first model"""
-    second: str
-    """title of the last model"""
-    compared: int
-    """values of both models that were compared: of this body, or of all bodies where no difference is real"""
-    mu: Number
-    """mu of the first model there"""
-    lowest: Number
-    """lowest mu of the first model, of this body"""
-    highest: Number
-    """highest mu of the first model, of this body"""
-    recorded: bool
-    """whether the scene has a recorded motion and so no phases"""
-    sentence: Text
-    """all that in words"""
-
-
 class Difference(Part):
     """The difference of two models in one body: second minus first, relative to the first."""
 
@@ -405,32 +370,19 @@ class GridMaximum(Part):
     """(alpha1, alpha2), rad; null under a record"""
 
 
-class BarSegment(Part):
-    """One step in a bar."""
+class RecordValue(Part):
+    """mu of one model and body under a recorded motion."""
 
     model: str
-    """key of the model that the step leads to"""
-    size: Number
-    """mean absolute size, relative to mu of the first model"""
-    share: Number
-    """fraction of the bar"""
-    real: Number
-    """fraction of the size that is real"""
-
-
-class Bar(Part):
-    """The budget of one surface as one bar, over the phase pairs where every model has a value."""
-
-    scene: Text
-    """name of the scene"""
+    """key of the model"""
     body: int
     """number of the body; 1 is the platform"""
-    total: Number
-    """mean absolute size of the total difference, in which steps of opposite sign cancel"""
-    points: int
-    """phase pairs where every model has a value"""
-    segments: list[BarSegment]
-    """one per step"""
+    mu: Number
+    """value; null without an answer"""
+    error: Number
+    """estimated absolute error of it"""
+    status: str
+    """named outcome"""
 
 
 class Breach(Part):
@@ -497,16 +449,12 @@ class SceneResult(Part):
     """names of the analyses that the report has of the scene"""
     acceptance: Acceptance
     """limits stated by the scene for --check; null where none"""
-    verdict: Verdict
-    """the largest real total difference, and its cause"""
     models: dict[str, ModelOutcome]
     """by key of the model"""
     differences: list[Difference]
     """one per body and pair"""
     budget: list[BudgetEntry]
     """one per body and step, then the total"""
-    bars: list[Bar]
-    """one per body"""
     headlines: list[Headline]
     """one per body"""
     waterfalls: list[Waterfall]
@@ -515,6 +463,8 @@ class SceneResult(Part):
     """one per body of every model that lacks phases of the study"""
     grid_maxima: list[GridMaximum]
     """one per model and body"""
+    values: list[RecordValue]
+    """one per model and body under a recorded motion; empty for a scene with phases"""
     limits: list[Limit]
     """every acceptance limit that the scene states"""
     effective: list[Effective]
@@ -694,6 +644,38 @@ class Trend(Part):
     """what the fit allows to say"""
 
 
+class FamilyCurve(Part):
+    """mu of one model and body over the value that runs; null where it has no value."""
+
+    model: str
+    """key of the model"""
+    body: int
+    """number of the body; 1 is the platform"""
+    mean: list[Number]
+    """mean over the phase pairs that have a value, or the value under the record, one for each scene"""
+    lowest: list[Number]
+    """smallest over the phase pairs"""
+    highest: list[Number]
+    """largest over the phase pairs"""
+    error: list[Number]
+    """mean of the estimated absolute errors"""
+
+
+class FamilyStep(Part):
+    """A bar of the waterfalls of one body over the value that runs; relative to mu of the first model."""
+
+    model: str
+    """key of the model that the step leads to, or total"""
+    body: int
+    """number of the body; 1 is the platform"""
+    size: list[Number]
+    """signed size, one for each scene"""
+    error: list[Number]
+    """error estimate of it"""
+    real: list[bool]
+    """whether the size exceeds five times its error estimate"""
+
+
 class FamilyResult(Part):
     """Scenes of one file in which one value runs."""
 
@@ -705,6 +687,10 @@ class FamilyResult(Part):
     """its values"""
     scenes: list[Text]
     """names of its scenes, in the order of the values"""
+    curves: list[FamilyCurve]
+    """one per model and body"""
+    steps: list[FamilyStep]
+    """one per step of the waterfalls and body, then the total"""
 
 
 class OutcomeNote(Part):

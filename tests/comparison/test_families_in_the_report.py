@@ -12,10 +12,13 @@ from conftest import Run
 from fake_models import fake_hierarchy
 from matplotlib.axes import Axes
 from matplotlib.image import imread
+from test_texts_of_scenes import RUN
 
 from comparison.analysis.budget import budget
 from comparison.analysis.surfaces import labeled_surfaces
+from comparison.report.assemble import assemble
 from comparison.report.figures.families import draw_family, family_figure_name
+from comparison.report.findings import collect_findings
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
 from reference.problem import load_family
@@ -73,3 +76,26 @@ def test_the_figure_shows_mean_and_largest_step_of_every_scene_in_percent(
     np.testing.assert_allclose(largest["translational engine"], 1.0, rtol=1e-9)
     np.testing.assert_array_equal(largest["exact equations"], 0.0)
     assert imread(path).std() > 0.05, "not an empty picture"
+
+
+def test_the_results_have_every_curve_and_step_over_the_value_that_runs(file: Path) -> None:
+    """The smooth fake model: mu_1 = 3 + cos a1 + sin a2, so 1, 3 and 5 on a 4 x 4 grid; the engine 1 % above."""
+    family = load_family(file)
+    study = Study(family.scenes, 4, 1e-3, fake_hierarchy(gap=0.01))
+    surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
+    surfaces["mu"].loc[{"scene": family.scenes[1].name, "model": "translational"}] = np.nan
+    results = assemble(collect_findings(study, surfaces, {}, [], RUN, families=[family]))
+    assert results.families is not None
+    curves = {(curve.model, curve.body): curve for curve in results.families[0].curves}
+    assert len(curves) == 2 * len(study.hierarchy)
+    small, engine = curves["small", 1], curves["translational", 1]
+    assert (small.lowest, small.mean, small.highest) == (
+        pytest.approx([1.0] * 3),
+        pytest.approx([3.0] * 3),
+        pytest.approx([5.0] * 3),
+    )
+    assert np.isnan([engine.mean[1], engine.lowest[1], engine.error[1]]).all()
+    assert [engine.mean[0], engine.mean[2]] == pytest.approx([3.03, 3.03])
+    steps = {(step.model, step.body): step for step in results.families[0].steps}
+    assert [steps["total", 1].size[0], steps["total", 2].size[2]] == pytest.approx([0.01, 0.01])
+    assert steps["translational", 1].real == [True, False, True]

@@ -16,7 +16,7 @@ from comparison.analysis.budget import TOTAL, closure, steps
 from comparison.analysis.surfaces import labeled_surfaces
 from comparison.analysis.trajectories import motion_arguments, moved
 from comparison.analysis.unanswered import unanswered, with_silent_models
-from comparison.analysis.verdicts import bar, verdict
+from comparison.analysis.waterfall import waterfall
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
 from reference.problem import load_scene
@@ -50,8 +50,7 @@ def test_the_total_leads_to_the_most_complete_model_with_values_and_the_steps_ad
         assert (found[-1].key, found[-1].first.key) == (TOTAL, left[0])
         assert found[-1].known.all()
         assert closure(found) < 1e-14
-        assert bar(study, surfaces, scene, body).points > 0
-    assert "no phase pair" not in verdict(study, surfaces, scene).sentence
+        assert waterfall(study, surfaces, scene, body).points > 0
     (lacking,) = unanswered(study, surfaces)
     assert (lacking.model, lacking.used, lacking.points == lacking.asked) == (silent, False, True)
     assert lacking.why == WHY
@@ -70,12 +69,12 @@ def test_the_first_screen_the_summary_and_the_terminal_say_which_model_why_and_w
     command: Callable[..., Run],
 ) -> None:
     run = command("fig3-I", *GRID, hierarchy=silenced("spatial"))
-    line = f"fig3-I: spatial engine: no value at any of 16 phase pairs: {WHY}. Comparisons leave this model out."
+    line = "fig3-I: spatial engine: no value at any of 16 phase pairs: step limit; comparisons leave this model out"
     assert run.code == 0
     page = (run.report / "index.html").read_text(encoding="utf-8")
-    assert page.index(line) < page.index('class="verdicts"') < page.index('class="bars"')
+    assert page.index(line) < page.index('<section id="summary"') < page.index('id="surfaces"')
     assert "no phase pair where every model" not in page
-    assert "No answer: fig3-I: spatial engine: no value at any of 16 phase pairs: step limit" in run.out
+    assert f"No answer: {line}" in run.out
     assert "3 times the work, shorten the duration to 7 s" in (run.report / "summary.md").read_text(encoding="utf-8")
     summary = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))
     assert [(one["scene"], one["model"], one["points"]) for one in summary["unanswered"]] == [("fig3-I", "spatial", 16)]
@@ -172,4 +171,4 @@ def test_a_model_that_answers_somewhere_is_kept_and_named() -> None:
     study = with_silent_models(study, surfaces)
     (lacking,) = unanswered(study, surfaces)
     assert (lacking.points, lacking.asked, lacking.used) == (1, 16, True)
-    assert np.isfinite(bar(study, surfaces, study.scenes[0], 1).total)
+    assert np.isfinite(waterfall(study, surfaces, study.scenes[0], 1).total.size)

@@ -6,6 +6,7 @@ import json
 import math
 import re
 from collections.abc import Callable, Iterator
+from html import unescape
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ import pytest
 from fake_models import errors_in, fake_hierarchy
 from jsonschema import Draft202012Validator
 
-from comparison.report.results import BarSegment, Results
+from comparison.report.results import Results, WaterfallBar
 from reference.problem import load_scene
 
 LIMITS = ("median", "maximum", "ratio", "closure", "failed")
@@ -94,17 +95,16 @@ def test_the_summary_read_back_is_the_results(finished: Path) -> None:
     assert json.loads(Results.model_validate_json(text).as_json()) == json.loads(text)
 
 
-def test_the_page_and_every_text_have_the_verdict_of_the_results(finished: Path) -> None:
+def test_the_page_and_every_text_have_the_sentences_of_the_results(finished: Path) -> None:
     summary = json.loads((finished / "summary.json").read_text(encoding="utf-8"))
-    page = (finished / "index.html").read_text(encoding="utf-8")
-    shown = re.sub("<.*?>", "", page)
+    page, text = ((finished / name).read_text(encoding="utf-8") for name in ("index.html", "summary.md"))
+    shown = unescape(re.sub("<.*?>", "", page))
     for scene in summary["scenes"]:
-        verdict = scene["verdict"]
-        assert verdict["sentence"].startswith(f"body {verdict['body']} differs by +1 % at (")
-        sentence = verdict["sentence"].replace("mu_1", "μ1")
-        assert sentence in shown
-        assert [bar["body"] for bar in scene["bars"]] == [1, 2]
-        assert sum(part["share"] for part in scene["bars"][0]["segments"]) == pytest.approx(1.0)
+        assert [headline["body"] for headline in scene["headlines"]] == [1, 2]
+        for headline in scene["headlines"]:
+            sentence = headline["sentence"].removeprefix(f"{scene['name']}, ")
+            assert sentence in shown
+            assert sentence in text
 
 
 def test_broken_limits_are_numbers_and_the_lines_say_the_same(finished: Path) -> None:
@@ -119,9 +119,9 @@ def test_broken_limits_are_numbers_and_the_lines_say_the_same(finished: Path) ->
 
 
 def test_a_missing_number_is_null_in_one_way() -> None:
-    segment = BarSegment(model="exact", size=math.nan, share=math.inf, real=0.5)
-    assert segment.model_dump(mode="json") == {"model": "exact", "size": None, "share": None, "real": 0.5}
-    assert math.isnan(BarSegment.model_validate(segment.model_dump(mode="json")).size)
+    bar = WaterfallBar(model="exact", size=math.nan, error=math.inf, real=False)
+    assert bar.model_dump(mode="json") == {"model": "exact", "size": None, "error": None, "real": False}
+    assert math.isnan(WaterfallBar.model_validate(bar.model_dump(mode="json")).size)
 
 
 def test_a_point_without_an_answer_is_in_the_summary(command: Callable[..., object]) -> None:
