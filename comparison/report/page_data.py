@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from comparison.analysis.differences import pair_step
 from comparison.analysis.surfaces import common_phases
 from comparison.report.findings import Findings
-from comparison.report.motion_data import Starts, motion_starts, places
+from comparison.report.motion_data import Starts, contact_geometry, places, starts_of
 from comparison.study.models import Pair, models_of
 from comparison.study.study import Study
 from reference.problem import Scene
@@ -27,11 +27,11 @@ def page_data(found: Findings) -> str:
 
     grid; strides, titles: by model. scenes, each: duration, s; pairs (first and second model, by pair); mu (by model,
     per body: rows alpha1, columns alpha2); contours (by pair, per body: polylines [[alpha1, alpha2], ...], rad, on
-    which |D| = u_D); places (row, column, phases or null under a record, why, and motions: model, status, fault, stick,
-    start and count of its instants in the packed numbers).
+    which |D| = u_D); contact (`contact_geometry`); places (row, column, phases or null under a record, why, and
+    motions: model, status, error_message, stick, demands, and where its packed numbers are, see `motion_data`).
     """
     study, surfaces = found.study, found.surfaces
-    starts = motion_starts(found.motions or [])
+    starts = starts_of(found.motions or [])
     data = {
         "grid": study.grid,
         "strides": study.strides,
@@ -69,5 +69,6 @@ def _scene(found: Findings, scene: Scene, surfaces: xr.Dataset, starts: Starts) 
         "pairs": {pair.key: [pair.first.key, pair.second.key] for pair in pairs},
         "mu": {model.key: [listed(model.key, body) for body in bodies] for model in models_of(scene, study.hierarchy)},
         "contours": {pair.key: [contours(pair, body) for body in bodies] for pair in pairs},
+        "contact": contact_geometry(scene),
         "places": list(places(found, scene, starts)),
     }

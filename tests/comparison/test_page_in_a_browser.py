@@ -17,6 +17,7 @@ from matplotlib.image import imread
 from playwright.sync_api import Browser, Locator, Page, sync_playwright
 
 import comparison.run
+from comparison.report.motion_data import ROUNDING
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-sync"]
@@ -125,7 +126,7 @@ def test_a_click_on_a_surface_shows_the_motions_of_the_nearest_stored_phases(vis
     }""")
     assert shown["chosen"] == shown["index"], "the phase pair whose motions are shown is marked on the surface"
     assert shown["names"][0] == "small equations"
-    assert shown["wide"][0] == pytest.approx(10.0, rel=1e-6), "the first model goes in circles of 1 cm: 32-bit numbers"
+    assert shown["wide"][0] == pytest.approx(10.0, rel=ROUNDING), "the first model goes in circles of 1 cm"
     assert shown["rest"][0] == [2.0, 3.0]
 
 

@@ -16,29 +16,31 @@ async function unpacked(id) {
   return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
 }
 let numbers = null;  // unpacked when first asked for
-const motionNumbers = () => numbers ??= unpacked("motions").then(buffer => new Float32Array(buffer));
+const motionNumbers = () => numbers ??= unpacked("motions").then(buffer => new Int32Array(buffer));
 
-function motionOf(all, place, model, bodies) {
+function motionOf(all, place, model) {
   const about = place.motions.find(motion => motion.model === model);
   if (!about || !about.count) return { about, time: [] };
-  const { start, count } = about, time = all.subarray(start, start + count);
-  const column = (block, body, axis, factor) => {
-    const from = start + count * (1 + 2 * bodies * block) + 2 * (body - 1) + axis;
-    return Float32Array.from(time, (_, i) => factor * all[from + 2 * bodies * i]);
+  const { start, count, blocks, exponents } = about;
+  const column = (block, index = 0) => {  // undefined where the motion lacks the block
+    if (!(block in blocks)) return undefined;
+    const number = blocks[block][0] + index, from = start + count * number, unit = 2 ** exponents[number];
+    let sum = 0;
+    return Float64Array.from(all.subarray(from, from + count), change => unit * (sum += change));
   };
   return {
-    about, time,
-    position: (body, axis) => column(0, body, axis, 1000),  // mm
-    acceleration: (body, axis) => column(1, body, axis, 1),
+    about, column, time: column("time"),
+    position: (body, axis) => column("position", 2 * (body - 1) + axis).map(value => 1000 * value),  // mm
+    acceleration: (body, axis) => column("acceleration", 2 * (body - 1) + axis),
   };
 }
 
 const COLORS = ["#0b5394", "#e07b00"];
 async function drawMotions(box, scene, body, place, models, titles) {
-  const all = await motionNumbers(), bodies = scene.mu[models[0]].length;
+  const all = await motionNumbers();
   const traces = [], notes = [], path = [];
   models.forEach((model, k) => {
-    const motion = motionOf(all, place, model, bodies);
+    const motion = motionOf(all, place, model);
     if (!motion.time.length) {
       notes.push(`${titles[model]}: ${motion.about ? motion.about.error_message || motion.about.status : "not asked at this phase pair"}`);
       return;
