@@ -20,6 +20,7 @@ from matplotlib.image import imread
 from playwright.sync_api import Browser, Locator, Page, sync_playwright
 
 import comparison.run
+from comparison.report.motion_data import ROUNDING
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 FLAGS = ["--no-sandbox", "--disable-background-networking", "--disable-sync"]
@@ -188,13 +189,13 @@ def test_a_click_anywhere_shows_the_nearest_stored_motion_and_how_far_away_it_is
 
 
 def test_the_motions_plotted_are_those_stored(visit: Visit) -> None:
-    """The first model goes in circles of 1 cm, kept in numbers of 32 bits, and rests from 2 s to 3 s."""
+    """The first model goes in circles of 1 cm, rounded as they are packed, and rests from 2 s to 3 s."""
     wide, rest = visit.page.evaluate("""() => {
         const plots = [...document.querySelectorAll('[data-part=plots] .plot')].map(box => box.spec);
         const path = plots.find(spec => spec.equal), rest = plots.find(spec => spec.label.includes('rests'));
         return [Math.max(...path.series[0].x), rest.series[0].x.slice(0, 2)];
     }""")
-    assert wide == pytest.approx(10.0, rel=1e-6)
+    assert wide == pytest.approx(10.0, rel=ROUNDING)
     assert rest == [2.0, 3.0]
 
 
