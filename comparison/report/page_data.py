@@ -32,8 +32,8 @@ def page_data(found: Findings) -> str:
     radius (m); pairs, each: key, title, sentence, first, second (models), contours (per body: polylines
     [[alpha1, alpha2], ...], rad, on which |D| = u_D), uncertainty (per body: u_D relative to the first model on the
     phases of both, or null where both are surfaces); models (by key: see `_model`); contact (`contact_geometry`);
-    places (row, column, phases or null under a record, why, and motions: see `motion_data`).
-    A surface is a list of rows, one per alpha1, of values, one per alpha2.
+    places (row, column, phases or null under a record, why, and motions: see `motion_data`). A surface
+    is a list of rows, one per alpha1, of values, one per alpha2.
     """
     study = found.study
     starts = starts_of(found.motions or [])
