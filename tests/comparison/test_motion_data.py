@@ -20,7 +20,7 @@ from comparison.analysis.trajectories import SHARE, Place, StoredMotion, moved, 
 from comparison.execution.cache import Cache, Key
 from comparison.report.motion_data import ROUNDING, contact_geometry, packed_motions, places, starts_of
 from comparison.study.models import REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL, Model
-from multibody.animate import contact_paths
+from multibody.film import contact_paths
 from reference.problem import Scene, builtin_scenes, demands, load_scene
 
 PHASE = (2.0, 0.7)
