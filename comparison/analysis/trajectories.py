@@ -6,7 +6,7 @@ A motion is thinned only as far as straight lines between the instants left repr
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import xarray as xr
@@ -19,14 +19,14 @@ from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, at_samples
 from comparison.study.study import Study
-from reference.problem import Outcome, Scene, Trajectory
+from reference.problem import Demands, Outcome, Scene, Trajectory, demands
 
 Array = NDArray[np.float64]
 
 SPREAD = 5  # phase pairs (k, 2k) 2 pi/5: evenly over the square, and no two of them mirror images of each other
-SECONDS = {"reference": 0.11, "engine": 0.55}  # predicted cost of one motion, s on `study.models.RECORDED_ON`
-SHARE = 0.003  # of the largest value of a component: what a thinned motion may be off by
-STEP = 1e-3  # s, between the instants asked of the reference
+SECONDS = {"reference": 0.08, "engine": 0.55}  # predicted cost of one motion, s on `study.models.RECORDED_ON`
+SHARE = 0.003  # of the swing of a component: what a thinned motion may be off by
+MIN_SWING = 0.01  # of its largest value: a component that changes less is as good as constant
 
 
 @dataclass(frozen=True)
@@ -39,11 +39,39 @@ class Place:
     why: str
 
 
+def _none() -> Array:
+    return np.zeros(0)
+
+
 @dataclass(frozen=True)
 class StoredMotion:
     """
-    One motion at a place. time: (T,), s. position: (T, N, 2), m. acceleration: (T, N, 2), m/s^2, absolute. stick:
-    intervals (start, end), s. status: how it ended. error_message: why there is no motion, or "".
+    One motion at a place, thinned.
+
+    Attributes
+    ----------
+    place : Place
+    model : str
+        Key of the model.
+    time : ndarray, (T,), s
+    position, acceleration : ndarray, (T, N, 2), m and m/s^2
+        Displacement relative to the plate, and absolute acceleration.
+    stick : tuple of (float, float), s
+        Intervals of rest, or of creep below v_reg.
+    status : str
+        How the motion ended.
+    error_message : str
+        Why there is no motion, or "".
+    contact_force : ndarray, (T,), N
+        Normal force of the isolator. This and the arrays below are empty in a motion that lacks them.
+    isolator_force : ndarray, (T, 2), N
+        Horizontal force of the bodies on the isolator.
+    support_force : ndarray, (T, K), N
+        Normal force of every support of the spatial model.
+    yaw : ndarray, (T,), rad
+        Turn of the platform about the vertical, of the spatial model.
+    demands : Demands or None
+        Of the motion before it was thinned. None if it was not computed.
     """
 
     place: Place
@@ -54,12 +82,26 @@ class StoredMotion:
     stick: tuple[tuple[float, float], ...] = ()
     status: str = Outcome.OK.value
     error_message: str = ""
+    contact_force: Array = field(default_factory=_none)
+    isolator_force: Array = field(default_factory=_none)
+    support_force: Array = field(default_factory=_none)
+    yaw: Array = field(default_factory=_none)
+    demands: Demands | None = None
 
     def __post_init__(self) -> None:
         bodies = self.position.shape[1:2]
         shape = (len(self.time), *bodies, 2)
         if self.time.ndim != 1 or self.position.shape != shape or self.acceleration.shape != shape:
             raise ValueError(f"{self.time.shape} instants of {self.position.shape} and {self.acceleration.shape}")
+        for name, values in self.blocks().items():
+            if len(values) != len(self.time):
+                raise ValueError(f"{self.time.shape} instants of {name} {values.shape}")
+
+    def blocks(self) -> dict[str, Array]:
+        """What the motion has, (T, C) each, by name; "time" comes first."""
+        names = ("time", "position", "acceleration", "contact_force", "isolator_force", "support_force", "yaw")
+        arrays = {name: np.asarray(getattr(self, name)) for name in names}
+        return {name: values.reshape(len(values), -1) for name, values in arrays.items() if values.size}
 
 
 Arguments = tuple[Scene, Model, float, Place, tuple[float, float]]
@@ -138,34 +180,58 @@ def moved(task: Arguments) -> StoredMotion:
     """The motion of one task, thinned; what goes wrong is said in `error_message`."""
     scene, model, tolerance, place, phase = task
     settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
-    if model.side == "reference":
-        settings["times"] = np.linspace(0.0, scene.duration, round(scene.duration / STEP) + 1)
     try:
         motion: Trajectory = imported(model.trajectory)(scene, phase, tolerance=tolerance, **settings)
         if len(motion.time) == 0:  # refused before its first step
-            return _nothing(place, model.key, Outcome(motion.status), "")
-        position, acceleration = motion.position[:, :, :2], motion.absolute_acceleration[:, :, :2]
-        size = np.linalg.norm(motion.absolute_acceleration, axis=2)
-        if not np.isfinite(size).all():
-            raise ValueError("the motion holds numbers that are not finite")
-        flat = np.concatenate([position, acceleration], axis=2).reshape(len(motion.time), -1)
-        kept = thinned(motion.time, flat, np.unique(np.argmax(size, axis=0)) if len(size) else np.zeros(0, int))
+            return replace(_nothing(place, model.key, Outcome(motion.status), ""), demands=demands(motion))
+        return _stored(place, model, motion)
     except Exception as error:
         return _nothing(place, model.key, Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}")
-    stick = tuple((float(start), float(end)) for start, end in motion.stick)
-    time, status = motion.time[kept], str(motion.status)
-    return StoredMotion(place, model.key, time, position[kept], acceleration[kept], stick, status)
+
+
+def _stored(place: Place, model: Model, motion: Trajectory) -> StoredMotion:
+    """The motion with its demands, thinned. Raises ValueError for numbers that are not finite."""
+    whole = StoredMotion(
+        place,
+        model.key,
+        motion.time,
+        motion.position[:, :, :2],
+        motion.absolute_acceleration[:, :, :2],
+        tuple((float(start), float(end)) for start, end in motion.stick),
+        str(motion.status),
+        contact_force=motion.contact_force,
+        isolator_force=motion.isolator_force,
+        support_force=motion.support_force,
+        yaw=motion.extra.get("yaw", _none()),
+        demands=demands(motion),
+    )
+    values = np.hstack([block for name, block in whole.blocks().items() if name != "time"])
+    size = np.linalg.norm(motion.absolute_acceleration, axis=2)
+    if not (np.isfinite(size).all() and np.isfinite(values).all()):
+        raise ValueError("the motion holds numbers that are not finite")
+    extremes = [size.argmax(axis=0), values.argmax(axis=0), values.argmin(axis=0)]
+    extremes += [np.linalg.norm(part, axis=1).argmax()[None] for part in (whole.position[:, 0], whole.isolator_force)]
+    kept = thinned(whole.time, values, np.unique(np.concatenate(extremes)))
+    arrays = {name: getattr(whole, name)[kept] for name in whole.blocks()}
+    return replace(whole, **arrays)
+
+
+def swing(values: Array) -> Array:
+    """Half of what each component of `values` (T, C) goes through, (C,), in whose shares thinning is measured."""
+    largest = np.abs(values).max(axis=0, initial=0.0)
+    half = 0.5 * (values.max(axis=0, initial=-np.inf) - values.min(axis=0, initial=np.inf))
+    scale: Array = np.maximum(half, MIN_SWING * largest)
+    return np.where(scale > 0.0, scale, 1.0)
 
 
 def thinned(time: Array, values: Array, peaks: NDArray[np.intp], share: float = SHARE) -> NDArray[np.intp]:
     """
     Indices to keep of `values` (T, C) at `time` (T,): both ends, `peaks`, and as many more as it takes for straight
-    lines between them to miss no value by more than `share` of its component's largest.
+    lines between them to miss no value by more than `share` of its component's `swing`.
     """
     if len(time) < 3:
         return np.arange(len(time))
-    largest = np.abs(values).max(axis=0)
-    scaled = values / np.where(largest > 0.0, largest, 1.0)
+    scaled = values / swing(values)
     kept = np.unique(np.concatenate([[0, len(time) - 1], peaks]))
     spans = list(zip(kept[:-1].tolist(), kept[1:].tolist()))
     found = set(kept.tolist())

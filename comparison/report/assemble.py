@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -17,6 +18,7 @@ from comparison.analysis.waterfall import Waterfall as BodyWaterfall
 from comparison.analysis.waterfall import waterfall
 from comparison.report.alerts import alerts
 from comparison.report.findings import Findings
+from comparison.report.pdf import why_no_pdf
 from comparison.report.results import (
     Assumptions,
     BudgetEntry,
@@ -35,6 +37,7 @@ from comparison.report.results import (
     Limit,
     ModelDescription,
     ModelOutcome,
+    MotionDemands,
     RecordValue,
     Results,
     Run,
@@ -85,6 +88,7 @@ def assemble(found: Findings) -> Results:
         absent=study.absent,
         alerts=alerts(found),
         faults=list(found.faults),
+        no_pdf=why_no_pdf(),
     )
 
 
@@ -113,7 +117,21 @@ def _scene(found: Findings, scene: Scene, waterfalls: Sequence[BodyWaterfall]) -
         values=_values(found, scene) if scene.recorded else [],
         limits=[Limit.model_validate(limit) for limit in of_scene(found.limits)],
         effective=[Effective.model_validate(values) for values in of_scene(found.effective)],
+        demands=_demands(found, scene),
     )
+
+
+def _demands(found: Findings, scene: Scene) -> list[MotionDemands]:
+    """Of every stored motion that was computed."""
+    alpha1, alpha2 = (found.surfaces[name].values for name in ("alpha1", "alpha2"))
+    listed = []
+    for motion in found.motions or []:
+        place = motion.place
+        if place.scene == scene.name and motion.demands is not None:
+            phases = (math.nan, math.nan) if scene.recorded else (alpha1[place.row], alpha2[place.column])
+            about = {"model": motion.model, "phases": phases, "why": place.why}
+            listed.append(MotionDemands.model_validate(about | vars(motion.demands)))
+    return listed
 
 
 def _model(found: Findings, scene: Scene, model: Model) -> ModelOutcome:

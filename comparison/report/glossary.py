@@ -9,6 +9,10 @@ from markupsafe import Markup
 from comparison.wording import symbols
 
 GLOSSARY = {
+    "amplification factors": "Largest absolute acceleration of a body, divided by the largest acceleration of the "
+    "ground, equation (5.1).",
+    "cross-verified": "Two codes that share nothing but the question agree. Whether the question describes a real "
+    "building, only a measurement tells.",
     "phases": "The starting angles alpha_1 and alpha_2 of the two harmonics of the loading. One pair is one motion.",
     "phase pairs": "The starting angles alpha_1 and alpha_2 of the harmonics of the loading. One pair is one motion.",
     "independent": "Not the mirror image of another phase pair: symmetry gives the others without computing them.",

@@ -1,4 +1,35 @@
-"""The motions that the page's script draws: their numbers packed, and where each stands among them."""
+"""
+The motions that the page's script draws: their numbers packed, and where each stands among them.
+
+Packed numbers: 32-bit integers, little-endian, gzip, base64. One motion after the other, each column by column: T
+numbers of one component. A motion in `places` has
+
+    start      index of its first number
+    count      T
+    blocks     by name, the first column and the number of columns; what a motion lacks is not listed
+    exponents  of every column: its unit is 2^exponent
+    demands    by the names of `reference.problem.Demands`: [value, error], null for what is not known, one pair per
+               body or link in a list; null as a whole where the motion was not computed
+
+so that column c of a block begins at `start + count * (blocks[name][0] + c)`. Its first number is a value, those behind
+it are changes: value i is the sum of the numbers up to i, times 2^exponent.
+
+| block | columns | unit |
+|---|---|---|
+| time | 1 | s |
+| position | x and y of body 1, of body 2, ...: relative to the plate | m |
+| acceleration | likewise, absolute | m/s^2 |
+| contact_force | 1, the normal force of the isolator | N |
+| isolator_force | x and y: horizontal force of the bodies on the isolator | N |
+| support_force | one for each support of the spatial model | N |
+| yaw | 1, turn of the platform of the spatial model | rad |
+
+The isolator's loop is `isolator_force` over the position of body 1. The path of the contact point on the sphere of
+support k at (X, Y), from the sphere's top, is -lever (x - yaw Y, y + yaw X), with `lever` and `supports` from
+`contact_geometry`; without yaw it is -lever (x, y) at every support.
+
+A column is rounded to at most ROUNDING of its swing, less than thinning leaves, so that it compresses well.
+"""
 
 from __future__ import annotations
 
@@ -11,16 +42,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.analysis.trajectories import Place, StoredMotion
+from comparison.analysis.trajectories import Place, StoredMotion, swing
 from comparison.report.findings import Findings
-from reference.problem import Scene
+from reference.problem import Demands, Estimate, Scene
 
 Starts = dict[tuple[Place, str], int]
 
+ROUNDING = 7e-4  # of the swing of a column
+TIME_ROUNDING = 1e-6  # of the duration
+
 
 def packed_motions(found: Findings) -> str:
-    """Every motion in order, 32-bit numbers: time (T,), position (T, N, 2), acceleration (T, N, 2)."""
-    return packed(b"".join(_numbers(motion).tobytes() for motion in found.motions or []))
+    """The numbers of every motion, packed."""
+    return packed(b"".join(_numbers(motion) for motion in found.motions or []))
 
 
 def packed(content: bytes) -> str:
@@ -45,19 +79,74 @@ def places(found: Findings, scene: Scene, starts: Starts) -> Iterator[dict[str, 
                     "stick": [[round(start, 4), round(end, 4)] for start, end in motion.stick],
                     "start": starts[place, motion.model],
                     "count": len(motion.time),
+                    "blocks": _blocks(motion),
+                    "exponents": _exponents(motion).tolist(),
+                    "demands": None if motion.demands is None else _listed(motion.demands),
                 }
                 for motion in motions
             ],
         }
 
 
-def _numbers(motion: StoredMotion) -> NDArray[np.float32]:
-    parts = (motion.time, motion.position, motion.acceleration)
-    return np.concatenate([part.ravel() for part in parts]).astype("<f4")
+def contact_geometry(scene: Scene) -> dict[str, Any]:
+    """
+    Where the contact points are.
+
+    lever: radius of the spheres over rho, null where the scene does not state it. supports: [x, y] of each, m, null
+    likewise.
+    """
+    sphere, supports = scene.isolator.sphere_radius, scene.support_places
+    return {
+        "lever": None if sphere is None else sphere / scene.radius,
+        "supports": None if supports is None else supports.tolist(),
+    }
 
 
-def motion_starts(motions: Sequence[StoredMotion]) -> Starts:
+def _exponents(motion: StoredMotion) -> NDArray[np.int_]:
+    """Of the unit that each column is rounded to."""
+    values = _columns(motion)
+    steps = ROUNDING * swing(values)
+    steps[:1] = TIME_ROUNDING * values[-1:, :1].max(initial=1e-300)
+    return np.floor(np.log2(steps)).astype(int)
+
+
+def _columns(motion: StoredMotion) -> NDArray[np.float64]:
+    blocks = list(motion.blocks().values())
+    return np.hstack(blocks) if blocks else np.zeros((0, 0))
+
+
+def _numbers(motion: StoredMotion) -> bytes:
+    """The columns of a motion in their units: the first value, then the changes."""
+    values = np.round(_columns(motion) / 2.0 ** _exponents(motion))
+    return np.diff(values, axis=0, prepend=np.zeros((min(len(values), 1), values.shape[1]))).T.astype("<i4").tobytes()
+
+
+def starts_of(motions: Sequence[StoredMotion]) -> Starts:
     """Where the first number of every motion stands among all of them."""
-    sizes = [motion.time.size + motion.position.size + motion.acceleration.size for motion in motions]
+    sizes = [sum(block.size for block in motion.blocks().values()) for motion in motions]
     keys = [(motion.place, motion.model) for motion in motions]
     return dict(zip(keys, np.concatenate([[0], np.cumsum(sizes)]).astype(int).tolist()))
+
+
+def _blocks(motion: StoredMotion) -> dict[str, list[int]]:
+    """By name, the first column and the number of columns of what the motion has."""
+    widths = {name: block.shape[1] for name, block in motion.blocks().items()}
+    firsts = np.concatenate([[0], np.cumsum(list(widths.values()))]).astype(int).tolist()
+    return {name: [first, width] for (name, width), first in zip(widths.items(), firsts)}
+
+
+def _listed(demands: Demands) -> dict[str, Any]:
+    """The demands as JSON."""
+
+    def pair(estimate: Estimate) -> list[float | None]:
+        return [float(f"{number:.7g}") if np.isfinite(number) else None for number in (estimate.value, estimate.error)]
+
+    listed: dict[str, Any] = {}
+    for name, value in vars(demands).items():
+        if isinstance(value, Estimate):
+            listed[name] = pair(value)
+        elif isinstance(value, tuple):
+            listed[name] = [pair(estimate) for estimate in value]
+        elif name != "status":  # which the motion has, too
+            listed[name] = None
+    return listed

@@ -29,7 +29,7 @@ from comparison.report.glossary import explained, term
 from comparison.report.motion_data import packed, packed_motions
 from comparison.report.page_data import page_data
 from comparison.report.page_plots import claim_heat, family_panels, tradeoff_answers, tradeoff_panels, trend_panels
-from comparison.report.results import Claim, ClaimVerdict, Effect, Erratum, Results, SceneResult, Waterfall
+from comparison.report.results import Alert, Claim, ClaimVerdict, Effect, Erratum, Results, SceneResult, Waterfall
 from comparison.report.verification import CHECKS
 from comparison.report.waterfall_chart import Scale, charts, log_scale, scales
 from comparison.study.study import Study
@@ -168,8 +168,10 @@ def page(figures: Path, found: Findings, results: Results) -> str:
             (section.title, results.absent.get(section.name, section.absent))
             for section in SECTIONS
             if not section.present(results)
-        ],
+        ]
+        + ([("Report as PDF", results.no_pdf)] if results.no_pdf else []),
         results=results,
+        alerts=_alert_groups(results),
         study=study,
         question=_question(study),
         has_surfaces=lambda scene: "surfaces" in scene.analyses,
@@ -233,6 +235,31 @@ def _question(study: Study) -> str:
     if not study.phased:
         return "under a recorded motion" if len(study.scenes) == 1 else "under recorded motions"
     return phases if len(study.phased) == len(study.scenes) else f"{phases}, or under a recorded motion"
+
+
+ALERTS = {
+    "refused": ("model without any value", "models without any value"),
+    "limit": ("acceptance limit broken", "acceptance limits broken"),
+    "lacking": ("model without some of its values", "models without some of their values"),
+    "fault": ("error of a solver", "errors of solvers"),
+    "swing": ("wide swing of the platform", "wide swings of the platform"),
+}  # title of one and of several alerts of a kind
+
+
+def _alert_groups(results: Results) -> list[dict[str, Any]]:
+    """The alerts of one level, kind and remedy together, in their order."""
+    groups: dict[tuple[str, str, str], list[Alert]] = {}
+    for alert in results.alerts:
+        groups.setdefault((alert.level, alert.kind, alert.help), []).append(alert)
+    return [
+        {
+            "level": level,
+            "title": f"{len(alerts)} {ALERTS[kind][len(alerts) > 1]}",
+            "lines": [f"{alert.scene}: {alert.text}" if alert.scene else alert.text for alert in alerts],
+            "help": help_text,
+        }
+        for (level, kind, help_text), alerts in groups.items()
+    ]
 
 
 def _card(scene: SceneResult, axes: dict[str, Scale], found: Findings) -> dict[str, Any]:

@@ -14,14 +14,13 @@ from comparison.analysis.completion import Completion
 from comparison.analysis.differences import pair_step
 from comparison.analysis.surfaces import common_phases
 from comparison.report.findings import Findings
-from comparison.report.motion_data import motion_starts, places
+from comparison.report.motion_data import contact_geometry, places, starts_of
 from comparison.study.models import Model, Pair, models_of
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
 Rows = list[list[float | None]]
 
-FEW_PER_AXIS = 8  # phases of a spatial model: so few are drawn as points
 DIGITS, ERROR_DIGITS = 7, 2  # significant, of mu and of an error
 
 
@@ -32,11 +31,12 @@ def page_data(found: Findings) -> str:
     grid: phases per axis of the study. titles: by model. scenes, each: name, title, bodies, duration (s), recorded,
     radius (m); pairs, each: key, title, sentence, first, second (models), contours (per body: polylines
     [[alpha1, alpha2], ...], rad, on which |D| = u_D), uncertainty (per body: u_D relative to the first model on the
-    phases of both, or null where both are surfaces); models (by key: see `_model`); places (see `motion_data.places`).
-    A surface is a list of rows, one per alpha1, of values, one per alpha2.
+    phases of both, or null where both are surfaces); models (by key: see `_model`); contact (`contact_geometry`);
+    places (row, column, phases or null under a record, why, and motions: see `motion_data`). A surface
+    is a list of rows, one per alpha1, of values, one per alpha2.
     """
     study = found.study
-    starts = motion_starts(found.motions or [])
+    starts = starts_of(found.motions or [])
     data = {
         "grid": study.grid,
         "titles": {model.key: model.title for model in study.hierarchy},
@@ -50,6 +50,7 @@ def page_data(found: Findings) -> str:
                 "radius": scene.radius,
                 "pairs": [_pair(found, scene, pair) for pair in study.pairs(scene)],
                 "models": _models(found, scene),
+                "contact": contact_geometry(scene),
                 "places": list(places(found, scene, starts)),
             }
             for scene in study.scenes
@@ -81,9 +82,8 @@ def _pair(found: Findings, scene: Scene, pair: Pair) -> dict[str, Any]:
 
 
 def _surface(found: Findings, scene: Scene, model: Model) -> bool:
-    """Whether the values of a model are drawn as a surface as they are: on all phases, and not few of a spatial one."""
-    few = model.settings.get("model") == "spatial" and len(found.study.axis(model, scene)) <= FEW_PER_AXIS
-    return found.study.stride(model, scene) == 1 and not few
+    """Whether the values of a model are drawn as a surface as they are: what may need completing is not."""
+    return not any((each.scene, each.model) == (scene.name, model.key) for each in found.completions)
 
 
 def _models(found: Findings, scene: Scene) -> dict[str, Any]:

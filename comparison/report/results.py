@@ -430,6 +430,50 @@ class Effective(Part):
     """why there are no values, or empty"""
 
 
+class UncertainNumber(Part):
+    """A number with its error."""
+
+    value: Number
+    """null without an answer"""
+    error: Number
+    """estimated absolute error; null where it is not known"""
+
+
+class MotionDemands(Part):
+    """What one stored motion demands of isolator and structure; no value where the motion ended early."""
+
+    model: str
+    """key of the model"""
+    phases: Phases
+    """(alpha1, alpha2), rad; null under a record"""
+    why: Text
+    """why this phase pair was chosen; empty for one of an even spread"""
+    status: str
+    """how the motion ended"""
+    displacement: UncertainNumber
+    """largest horizontal displacement of the isolator, m"""
+    residual: UncertainNumber
+    """horizontal displacement at the end, m; null where the platform is not at rest then"""
+    cap_share: UncertainNumber
+    """largest horizontal displacement over rho"""
+    acceleration: list[UncertainNumber]
+    """largest absolute acceleration of every body, m/s^2"""
+    base_shear: UncertainNumber
+    """largest horizontal force through the isolator, N"""
+    drift: list[UncertainNumber]
+    """largest horizontal displacement of every body relative to the one below, from body 2 on, m"""
+    contact_force_min: UncertainNumber
+    """smallest normal force of the isolator, N"""
+    contact_force_max: UncertainNumber
+    """largest normal force of the isolator, N"""
+    support_force_min: UncertainNumber | None
+    """smallest normal force of a single support, N; null in a model without single supports"""
+    support_force_max: UncertainNumber | None
+    """largest normal force of a single support, N; null in a model without single supports"""
+    stops: UncertainNumber
+    """number of intervals of rest, or of creep below v_reg, after the first slip"""
+
+
 class SceneResult(Part):
     """One scene."""
 
@@ -469,6 +513,8 @@ class SceneResult(Part):
     """every acceptance limit that the scene states"""
     effective: list[Effective]
     """the scene, then every model"""
+    demands: list[MotionDemands]
+    """one per stored phase pair and model; empty without stored motions"""
 
 
 class Effect(Part):
@@ -797,6 +843,8 @@ class Results(Part):
     """what a reader must know before trusting a number, the most serious first"""
     faults: list[Text]
     """error messages of the solvers"""
+    no_pdf: Text
+    """why there is no report.pdf and what helps; empty where there is one"""
 
     @property
     def broken(self) -> list[Alert]:

@@ -147,8 +147,9 @@ def _text(size: float, error: float) -> str:
     decimals = max(0, -math.floor(math.log10(100.0 * error)))
     if decimals > MAX_DECIMALS:
         return "0 %"
+    digits = f"{100.0 * abs(size):.{decimals}f}"
     sign = "−" if size < 0.0 else "+"
-    return f"{sign}{100.0 * abs(size):.{decimals}f} ± {100.0 * error:.{decimals}f} %"
+    return f"{sign + digits if float(digits) else '0'} ± {100.0 * error:.{decimals}f} %"
 
 
 def _ticks(low: float, high: float) -> list[float]:

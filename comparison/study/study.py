@@ -86,7 +86,7 @@ class Study:
     def absent(self) -> dict[str, str]:
         """The analyses that are made of no scene, with the reason."""
         return {
-            analysis: "does not fit the budget" if analysis in self.selection.dropped else "not asked for"
+            analysis: self.selection.why_absent(analysis)
             for analysis in ANALYSES
             if not self.selecting(analysis).scenes
         }

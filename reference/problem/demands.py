@@ -114,9 +114,9 @@ def demands(trajectory: Trajectory) -> Demands:
     read = _Reading(trajectory)
     radius, links = trajectory.scene.radius, range(len(trajectory.scene.bodies) - 1)
     displacement = read.extreme(lambda samples: samples.largest(samples.place[:, 0], samples.velocity[:, 0]))
-    supported = read.samples.support.shape[1] > 1
+    supported = read.samples.support.shape[1] > 0
     return Demands(
-        status=trajectory.status,
+        status=str(trajectory.status),
         displacement=displacement,
         residual=read.single(_residual),
         cap_share=Estimate(displacement.value / radius, displacement.error / radius),
@@ -154,13 +154,12 @@ class _Samples(NamedTuple):
     velocity: Array  # (T, N, 2)
     isolator: Array  # (T, 2)
     contact: Array  # (T,)
-    support: Array  # (T, K); K = 1 in a model without single supports
+    support: Array  # (T, K); K = 0 in a model without single supports
 
     @staticmethod
     def of(motion: Trajectory) -> _Samples:
-        support = motion.extra.get("support_force", motion.contact_force[:, None])
         place, velocity = motion.position[:, :, :2], motion.velocity[:, :, :2]
-        return _Samples(motion.time, place, velocity, motion.isolator_force, motion.contact_force, support)
+        return _Samples(motion.time, place, velocity, motion.isolator_force, motion.contact_force, motion.support_force)
 
     def thinned(self) -> list[_Samples]:
         """One of THINNING samples, from the first, the second, ... on."""

@@ -95,6 +95,12 @@ class Trajectory:
             object.__setattr__(self, "peak", np.full(self.position.shape[1], np.nan))
 
     @property
+    def support_force(self) -> Array:
+        """Normal force of every single support, (T, K), N; (T, 0) in a model that has none."""
+        force = self.extra.get("support_force", np.empty((len(self.time), 0)))
+        return force if force.shape[1] > 1 else force[:, :0]  # a single contact is the whole isolator
+
+    @property
     def isolator_force(self) -> Array:
         """
         Horizontal force of the bodies on the isolator, (T, 2), N: -sum_i m_i a_i, which grows with the displacement.

@@ -195,6 +195,15 @@ class Scene(Table):
         return np.array(rows, dtype=float).reshape(-1, 2)
 
     @property
+    def support_places(self) -> NDArray[np.float64] | None:
+        """Places of the supports in the plane, (K, 2), m, evenly spaced on their ring; None if the scene has none."""
+        count, ring = self.isolator.supports, self.isolator.ring
+        if count is None or ring is None:
+            return None
+        angles = 2.0 * np.pi * (np.arange(count) + 0.5) / count
+        return ring * np.column_stack([np.cos(angles), np.sin(angles)])
+
+    @property
     def lubricated(self) -> bool:
         """True for mu = f_c |v| (3.14), False for dry friction."""
         return self.isolator.lubrication is not None

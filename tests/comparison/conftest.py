@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
@@ -70,5 +70,11 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     words = ["fig3-I", "fig4-viscous", "--grid", "4", "--jobs", "2", "--out", str(place)]
     with pytest.MonkeyPatch.context() as patch:
         analyses_are(patch, errata=effects, motions=known_motions, **known_others())
-        assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
+        assert main(words, _spatial_named(fake_hierarchy()), ThreadPoolExecutor) == 0
     return place
+
+
+def _spatial_named(hierarchy: Sequence[Model]) -> list[Model]:
+    """The hierarchy with a spatial model that says so, as the page draws it as points on few phases."""
+    named = {"model": "spatial"}
+    return [replace(m, settings={**m.settings, **named}) if m.key == "spatial" else m for m in hierarchy]

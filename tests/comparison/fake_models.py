@@ -18,13 +18,13 @@ from numpy.typing import NDArray
 from comparison.analysis.trajectories import StoredMotion, chosen_places, shown_models
 from comparison.study.models import MODEL_HIERARCHY, Model, never
 from comparison.study.study import Study
-from reference.problem import GRAVITY, Amplification, Outcome, Scene, Trajectory
+from reference.problem import GRAVITY, Amplification, Demands, Estimate, Outcome, Scene, Trajectory
 
 DEADLY = 2.0 * np.pi * 3 / 4  # alpha1, alpha2 of the one point of a 4 x 4 grid that a failing model fails at
 
 
 def smooth(
-    scene: Scene, phases: NDArray[np.float64], tolerance: float, gap: float = 0.0, full: bool = False
+    scene: Scene, phases: NDArray[np.float64], tolerance: float, gap: float = 0.0, full: bool = False, model: str = ""
 ) -> Amplification:
     """mu_i = (i + 2 + cos a1 + sin a2) (1 + gap), known to `tolerance`."""
     shape = 2.0 + np.cos(phases[:, 0]) + np.sin(phases[:, 1])
@@ -149,8 +149,33 @@ def known_motions(study: Study, surfaces: xr.Dataset, *rest: object) -> list[Sto
         for place in chosen_places(study, surfaces, scene):
             for number, model in enumerate(shown_models(study, scene)):
                 at = 0.01 * (1 + number) * circle
-                found.append(StoredMotion(place, model.key, time, at, -at, ((2.0, 3.0),)))
+                force = np.full((len(time), 4), 0.25 * scene.total_mass * GRAVITY)
+                found.append(
+                    StoredMotion(
+                        place,
+                        model.key,
+                        time,
+                        at,
+                        -at,
+                        ((2.0, 3.0),),
+                        contact_force=force.sum(axis=1),
+                        isolator_force=scene.total_mass * at[:, 0],
+                        support_force=force if model.key == "spatial" else np.zeros(0),
+                        yaw=0.001 * np.sin(time) if model.key == "spatial" else np.zeros(0),
+                        demands=known_demands(scene, model.key == "spatial"),
+                    )
+                )
     return found
+
+
+def known_demands(scene: Scene, supported: bool) -> Demands:
+    """Every number is 1.5 with an error of 0.25, but the residual is not known."""
+    number, bodies = Estimate(1.5, 0.25), len(scene.bodies)
+    support = number if supported else None
+    return Demands(
+        Outcome.OK.value, number, Estimate(np.nan, np.nan), number, (number,) * bodies, number,
+        (number,) * (bodies - 1), number, number, support, support, number,
+    )  # fmt: skip
 
 
 def planted(

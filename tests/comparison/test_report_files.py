@@ -18,6 +18,7 @@ from reference.problem import load_scene
 GRID = 4
 PARTS = {
     "index.html",
+    "report.pdf",
     "surfaces.nc",
     "summary.json",
     "summary.schema.json",
@@ -90,7 +91,7 @@ def test_summary_has_its_schema_and_no_nan(finished: Path) -> None:
     summary = _strict((finished / "summary.json").read_text(encoding="utf-8"))
     assert isinstance(summary, dict)
     assert summary["schema"] == "phase-resonance/summary"
-    assert summary["version"] == 3
+    assert summary["version"] == 4
     assert (summary["grid"], summary["tolerance"]) == (GRID, 1e-3)
     assert {"command", "began", "seconds", "compute_seconds", "jobs", "provenance"} <= set(summary["run"])
     assert [model["key"] for model in summary["models"]] == [model.key for model in MODEL_HIERARCHY]

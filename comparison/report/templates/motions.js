@@ -1,21 +1,27 @@
 "use strict";
 // the stored motions of one phase pair: plots of both models, and the numbers that a designer asks for
 let numbers = null;  // unpacked when first asked for
-const motionNumbers = () => numbers ??= unpacked("motions").then(buffer => new Float32Array(buffer));
+const motionNumbers = () => numbers ??= unpacked("motions").then(buffer => new Int32Array(buffer));
 const MM = 1000;
 
-// one motion out of the packed numbers: time, then position and acceleration of every body in x and y
-function motionOf(all, place, key, bodies) {
+// one motion out of the packed numbers: see motion_data.py
+function motionOf(all, place, key) {
   const about = place.motions.find(motion => motion.model === key);
   if (!about || !about.count) return { about, time: [] };
-  const { start, count } = about, time = all.subarray(start, start + count);
-  const column = (block, body, axis, factor) => {
-    const from = start + count * (1 + 2 * bodies * block) + 2 * (body - 1) + axis;
-    return Float32Array.from(time, (_, i) => factor * all[from + 2 * bodies * i]);
+  const { start, count, blocks, exponents } = about;
+  const column = (block, index = 0) => {  // undefined where the motion lacks the block
+    if (!(block in blocks)) return undefined;
+    const number = blocks[block][0] + index, from = start + count * number, unit = 2 ** exponents[number];
+    let sum = 0;
+    return Float64Array.from(all.subarray(from, from + count), change => unit * (sum += change));
   };
-  return { about, time, position: (body, axis) => column(0, body, axis, MM), acceleration: (body, axis) => column(1, body, axis, 1) };
+  return {
+    about, column, time: column("time"), columns: block => blocks[block]?.[1] ?? 0,
+    position: (body, axis) => column("position", 2 * (body - 1) + axis).map(value => MM * value),
+    acceleration: (body, axis) => column("acceleration", 2 * (body - 1) + axis),
+  };
 }
-const size = (x, y) => Float32Array.from(x, (value, i) => Math.hypot(value, y[i]));
+const sizeOf = (x, y) => x.map((value, i) => Math.hypot(value, y[i]));
 
 async function showMotions() {
   const scene = sceneNow(), place = scene.places[state.place], plots = part("plots");
@@ -25,38 +31,87 @@ async function showMotions() {
     part("demands").replaceChildren();
     return;
   }
-  part("distance").textContent = state.away === null ? place.why : `the nearest stored motion is ${degrees(state.away)} away from where you clicked${place.why ? `: ${place.why}` : ""}`;
+  const why = place.why ? `: ${place.why}` : "";
+  part("distance").textContent = state.away === null ? place.why : `the nearest stored motion is ${degrees(state.away)} away from where you clicked${why}`;
   const all = await motionNumbers(), pair = pairNow(), models = [pair.first, pair.second];
-  const motions = models.map(key => motionOf(all, place, key, scene.bodies));
+  if (scene !== sceneNow() || place !== scene.places[state.place]) return;  // another was chosen meanwhile
+  const motions = models.map(key => motionOf(all, place, key));
   const notes = motions.flatMap((motion, k) => motion.time.length
     ? motion.about.status === "ok" ? [] : [`${study.titles[models[k]]} ended early: ${motion.about.status}`]
     : [`${study.titles[models[k]]}: ${motion.about ? motion.about.error_message || motion.about.status : "no motion is stored at this phase pair"}`]);
   plots.replaceChildren(...notes.map(note => element("p", "note", ...indexed(note))), ...motionFigures(scene, models, motions));
+  part("demands").replaceChildren(...demandsTable(scene, place, models));
   startFilm(scene, models.map(key => study.titles[key]), motions);
 }
 
 // every plot has both models: the first solid, the second dashed
 function motionFigures(scene, models, motions) {
   const { body } = state, shown = motions.map((motion, k) => ({ motion, k })).filter(({ motion }) => motion.time.length);
+  if (!shown.length) return [];
   const line = k => ({ name: study.titles[models[k]], color: k, dash: k ? "5 3" : "", width: k ? 1.4 : 1.8 });
-  const over = (title, unit, pick, extra = {}) => plotFigure(title, {
-    label: `${title} over time, ${scene.title}, ${models.map(key => study.titles[key]).join(" and ")}`, height: 200,
-    x: { title: "t, s", range: [0, scene.duration] }, y: { title: unit }, series: shown.map(({ motion, k }) => ({ ...line(k), x: [...motion.time], y: [...pick(motion)], ...extra })),
-  });
+  const figure = (title, spec) => plotFigure(title, { height: 200, ...spec, label: `${title}, ${scene.title}: ${models.map(key => study.titles[key]).join(" and ")}` });
+  const time = { title: "t, s", range: [0, scene.duration] };
+  const over = (title, unit, pick) => figure(title, { x: time, y: { title: unit }, series: shown.map(({ motion, k }) => ({ ...line(k), x: motion.time, y: pick(motion) })) });
+  const plane = (title, x, y, pick, extra = {}) => {
+    const series = shown.flatMap(({ motion, k }) => (pick(motion) ?? []).map((path, i) => ({ ...line(k), ...path, legend: i === 0 })));
+    return series.length ? [figure(title, { height: 260, x: { title: x }, y: { title: y }, series, ...extra })] : [];
+  };
   const name = body === 1 ? "platform" : `body ${body}`;
-  const figures = [
+  const supports = shown.filter(({ motion }) => motion.columns("support_force"));
+  return [
     over(`displacement of the ${name} in x`, "mm", motion => motion.position(body, 0)),
     over(`displacement of the ${name} in y`, "mm", motion => motion.position(body, 1)),
-    over(`absolute acceleration of the ${name}`, "m/s²", motion => size(motion.acceleration(body, 0), motion.acceleration(body, 1))),
+    over(`absolute acceleration of the ${name}`, "m/s²", motion => sizeOf(motion.acceleration(body, 0), motion.acceleration(body, 1))),
+    ...["x", "y"].flatMap((axis, i) => plane(`loop of the isolator in ${axis}`, `displacement in ${axis}, mm`, "force, N", motion => motion.column("isolator_force", i) && [{ x: motion.position(1, i), y: motion.column("isolator_force", i) }])),
+    ...plane("path of the contact on its sphere", "mm", "mm", motion => contactPaths(scene, motion), { equal: true }),
+    figure("rest of the platform", {
+      height: 130, x: time, y: { title: "", range: [-0.6, 1.6], ticks: [[0, "2nd"], [1, "1st"]] },
+      series: shown.map(({ motion, k }) => ({ ...line(k), dash: "", width: 9, x: motion.about.stick.flatMap(([a, b]) => [a, b, b]), y: motion.about.stick.flatMap(() => [1 - k, 1 - k, null]) })),
+    }),
+    ...(shown.some(({ motion }) => motion.columns("contact_force")) ? [over("contact force of the isolator", "N", motion => motion.column("contact_force") ?? [])] : []),
+    ...supports.map(({ motion, k }) => figure(`support forces, ${study.titles[models[k]]}`, {
+      x: time, y: { title: "N" }, series: Array.from({ length: motion.columns("support_force") }, (_, i) => ({ name: `support ${i + 1}`, color: i % 7, width: 1.1, x: motion.time, y: motion.column("support_force", i) })),
+    })),
   ];
-  figures.push(plotFigure("path of the contact", {
-    label: `path of the contact seen from above, ${scene.title}`, height: 260, equal: true, x: { title: "x₁, mm" }, y: { title: "y₁, mm" },
-    series: shown.map(({ motion, k }) => ({ ...line(k), x: [...motion.position(1, 0)], y: [...motion.position(1, 1)] })),
-  }));
-  figures.push(plotFigure("rest of the platform", {
-    label: `when the platform rests, ${scene.title}`, height: 110, x: { title: "t, s", range: [0, scene.duration] }, legend: true,
-    y: { title: "", range: [-0.6, 1.6], ticks: [[0, "2nd"], [1, "1st"]] },
-    series: shown.map(({ motion, k }) => ({ ...line(k), dash: "", width: 9, x: motion.about.stick.flatMap(([a, b]) => [a, b, b]), y: motion.about.stick.flatMap(() => [1 - k, 1 - k, null]) })),
-  }));
-  return figures;
+}
+
+// where the contact point goes on the sphere of each support, seen from above; of the platform itself without a stated sphere
+function contactPaths(scene, motion) {
+  const { lever, supports } = scene.contact, x = motion.position(1, 0), y = motion.position(1, 1), yaw = motion.column("yaw");
+  const places = yaw && supports ? supports : [[0, 0]], scale = -(lever ?? 1);
+  return places.map(([X, Y]) => ({ x: x.map((value, i) => scale * (value - (yaw ? yaw[i] * Y * MM : 0))), y: y.map((value, i) => scale * (value + (yaw ? yaw[i] * X * MM : 0))) }));
+}
+
+// what the motion demands of isolator and structure: one row per quantity, both models beside each other
+const DEMANDS = [
+  ["displacement", "largest displacement of the isolator, mm", MM], ["residual", "displacement at the end, mm", MM], ["cap_share", "largest displacement, share of ρ", 1],
+  ["acceleration", "largest absolute acceleration, m/s²", 1, i => i ? `body ${i + 1}` : "platform"], ["base_shear", "base shear, N", 1], ["drift", "story drift, mm", MM, i => `body ${i + 2}`],
+  ["contact_force_min", "smallest contact force, N", 1], ["contact_force_max", "largest contact force, N", 1],
+  ["support_force_min", "smallest support force, N", 1], ["support_force_max", "largest support force, N", 1], ["stops", "number of stops", 1],
+];
+function demandsTable(scene, place, models) {
+  const demands = models.map(key => place.motions.find(motion => motion.model === key)?.demands ?? null);
+  if (!demands.some(Boolean)) return [];
+  const rows = DEMANDS.flatMap(([key, title, factor, each]) => {
+    if (!each) return [[title, factor, demands.map(one => one?.[key] ?? null)]];
+    const count = Math.max(...demands.map(one => one?.[key]?.length ?? 0));
+    return Array.from({ length: count }, (_, i) => [`${title}: ${each(i)}`, factor, demands.map(one => one?.[key]?.[i] ?? null)]);
+  }).filter(([, , values]) => values.some(value => known2(value?.[0])));
+  const cell = (value, factor) => {
+    const made = element("td", "number", known2(value?.[0]) ? digits(factor * value[0]) + (value[1] ? ` ± ${digits(factor * value[1], 1)}` : "") : "none");
+    made.dataset.value = known2(value?.[0]) ? factor * value[0] : "";
+    return made;
+  };
+  const head = ["demand", ...models.map(key => study.titles[key]), "difference"].map((text, i) => { const made = element("th", i ? "number" : "", ...indexed(text)); made.scope = "col"; return made; });
+  const body = rows.map(([title, factor, values]) => {
+    const [a, b] = values.map(value => value?.[0]), heading = element("th", "", title), change = known2(a) && known2(b) && a ? 100 * (b - a) / Math.abs(a) : null;
+    heading.scope = "row";
+    const last = element("td", "number", known2(change) ? percentText(change) : "");
+    last.dataset.value = change ?? "";
+    return element("tr", "", heading, ...values.map(value => cell(value, factor)), last);
+  });
+  const table = element("table", "data", element("thead", "", element("tr", "", ...head)), element("tbody", "", ...body)), frame = element("div", "table", table);
+  const holder = element("div", "", element("h3", "", `Demands ${place.phases ? `at ${at(place.phases)}` : "under the record"}`), frame);
+  equipTable(table);
+  return [holder];
 }

@@ -16,8 +16,8 @@ function hush(word) {
 document.querySelectorAll(".term").forEach(word => {
   ["mouseenter", "focus"].forEach(name => word.addEventListener(name, () => explain(word)));
   ["mouseleave", "blur"].forEach(name => word.addEventListener(name, () => hush(word)));
-  word.addEventListener("keydown", event => { if (event.key === "Escape") hush(word); });
 });
+document.addEventListener("keydown", event => { if (event.key === "Escape") tip.hidden = true; });
 
 const bars = [...document.querySelectorAll("button[data-bars]")];
 bars.forEach(button => button.addEventListener("click", () => {

@@ -88,7 +88,7 @@ function drawPlot(box, spec) {
   const drawing = svgElement("g", { "clip-path": `url(#${clip})` });
   svg.append(frame, drawing);
   spec.series.forEach(series => {
-    const look = `c-${series.color ?? 0}`, shown = series.x.map((x, i) => known(x) && known(series.y[i]) && (!spec.x.log || x > 0) && (!spec.y.log || series.y[i] > 0));
+    const look = `c-${series.color ?? 0}`, shown = Array.from(series.x, (x, i) => known(x) && known(series.y[i]) && (!spec.x.log || x > 0) && (!spec.y.log || series.y[i] > 0));
     if (series.line !== false) {
       let path = "", down = false;
       series.x.forEach((x, i) => { path += shown[i] ? `${down ? "L" : "M"}${X(x).toFixed(1)} ${Y(series.y[i]).toFixed(1)}` : ""; down = shown[i]; });
