@@ -48,7 +48,7 @@ from comparison.execution.workers import workers
 from comparison.registry import affordable, analysis_cost, chosen_analyses, first_tasks
 from comparison.report.assemble import assemble
 from comparison.report.findings import collect_findings
-from comparison.study.models import MODEL_HIERARCHY, Model
+from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work
 from comparison.study.planning import BudgetError, StudyPlan, StudyRequest, plan_study
 from comparison.study.study import Study
 from reference.problem import SceneError
@@ -91,6 +91,8 @@ def main(argv: Sequence[str], hierarchy: Sequence[Model] = MODEL_HIERARCHY, exec
 
 def _chosen(options: Options, hierarchy: Sequence[Model]) -> StudyPlan:
     """What is computed. Raises SceneError where no study fits the budget."""
+    if options.max_work is not None:
+        hierarchy = with_max_work(hierarchy, options.max_work)
     asked = (
         options.tolerance,
         options.budget,

@@ -33,6 +33,7 @@ class Options:
     fresh: bool = False
     scheduler: str | None = None
     full: bool = False
+    max_work: float | None = None
     selection: Selection = EVERYTHING
 
     @property
@@ -82,6 +83,7 @@ def parsed(argv: Sequence[str]) -> Options:
         plan=words.plan,
         fresh=words.fresh,
         full=words.full,
+        max_work=_optional("--max-work", words.max_work, 1.0, 1e12, "steps of the engine for a phase pair"),
         scheduler=words.scheduler,
         selection=Selection.of((scene for family in families for scene in family.scenes), only, skip),
     )
@@ -130,6 +132,12 @@ def _parser() -> CommandParser:
         "--full",
         action="store_true",
         help="compute every phase pair and model in full, even what the scene does not require; --plan lists that",
+    )
+    parser.add_argument(
+        "--max-work",
+        metavar="STEPS",
+        help="most steps that the engine may take for a phase pair (default 2e6); a scene that needs more is refused "
+        "before any step",
     )
     names = ", ".join(ANALYSES)
     parser.add_argument("--only", metavar="LIST", help=f"make these analyses only, separated by commas: {names}")

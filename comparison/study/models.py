@@ -101,6 +101,14 @@ class Pair:
     second: Model
 
 
+def with_max_work(hierarchy: Sequence[Model], max_work: float) -> tuple[Model, ...]:
+    """The hierarchy with this many steps of the engine allowed for a phase pair."""
+    return tuple(
+        replace(model, settings={**model.settings, "max_work": max_work}) if model.side == "engine" else model
+        for model in hierarchy
+    )
+
+
 def models_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
     """The models that apply to this scene, in order."""
     return [model for model in hierarchy if model.applies(scene)]

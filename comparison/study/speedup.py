@@ -1,8 +1,9 @@
 """
 What a model leaves out of a scene, and how many times less a point then costs.
 
-What may be left out is decided in reference.problem.reductions, by the scene alone. Here stands what that was measured
-to save (tests/benchmarks/test_reductions.py): it sets the size of a batch and the cost that is predicted.
+What may be left out is decided in reference.problem.reductions, by the scene alone, and the end of a run by the
+engine. Here stands what that was measured to save (tests/benchmarks/test_reductions.py): it sets the size of a batch
+and the cost that is predicted.
 """
 
 from __future__ import annotations
@@ -16,17 +17,25 @@ from reference.problem import Reduction, Scene, linear, planar, planar_chain, un
 
 @dataclass(frozen=True)
 class RecordedReduction:
-    """name: what is left out. models: models with this setting can do without it. factor: recorded saving per point."""
+    """
+    name: what is left out. decided: whether a scene lets it be. models: a setting, and the values of the models that can
+    do without it. factor: recorded saving per point.
+    """
 
     name: str
     decided: Callable[[Scene], Reduction]
-    models: tuple[str, object]
+    models: tuple[str, ...]
     factor: float
 
     def concerns(self, model: Model) -> bool:
         """Whether the model may leave it out of some scene."""
-        key, value = self.models
-        return model.settings.get(key) == value
+        key, *values = self.models
+        return model.settings.get(key) in values
+
+
+def _always(_scene: Scene) -> Reduction:
+    """Of every scene: where a run may stop, the run before it has shown."""
+    return Reduction(True, "the first run shows when the last large value comes; the others stop soon after it")
 
 
 REDUCTIONS: tuple[RecordedReduction, ...] = (
@@ -34,6 +43,7 @@ REDUCTIONS: tuple[RecordedReduction, ...] = (
     RecordedReduction("motion across its plane", planar, ("equations", "small"), 1.15),
     RecordedReduction("motion across its plane", planar, ("equations", "exact"), 1.2),
     RecordedReduction("motion across its plane, of the bodies", planar_chain, ("model", "translational"), 1.15),
+    RecordedReduction("end of all runs but the first", _always, ("model", "translational", "spatial"), 1.7),
     RecordedReduction("rotations, all supports but one", untilted, ("model", "spatial"), 1.7),
 )
 

@@ -62,7 +62,7 @@ def refusal(
     return (
         f"refused before any step: it needs {needed:.2g} steps of the engine or more, and a phase pair may take "
         f"{max_work:.2g} ({built.coordinates} coordinates in steps of {step:.2g} s over {scene.duration:g} s; the "
-        f"fastest period is {STEPS_PER_PERIOD * step:.2g} s). Allow more work (max_work, about "
+        f"fastest period is {STEPS_PER_PERIOD * step:.2g} s). Allow more work (max_work or --max-work, about "
         f"{_two_digits(WHOLE_POINT * needed, math.ceil):g} steps), shorten the duration to about "
         f"{_two_digits(enough, math.floor):g} s (above {_two_digits(tried, math.ceil):g} s no step is taken), "
         "or take a longer period; a looser tolerance does not help"

@@ -8,6 +8,7 @@ import pytest
 from conftest import Run
 from fake_models import fake_hierarchy
 
+from comparison.study.models import MODEL_HIERARCHY
 from reference.problem import builtin_scenes
 
 SMALL = ["fig3-I", "--grid", "2"]
@@ -50,6 +51,13 @@ def test_plan_computes_and_writes_nothing(command: Callable[..., Run]) -> None:
     for scene in builtin_scenes():
         assert scene in run.out
     assert "Nothing was computed." in run.out
+
+
+def test_plan_refuses_what_takes_more_work_than_is_allowed(command: Callable[..., Run]) -> None:
+    run = command(*SMALL, "--plan", "--max-work", "1000", hierarchy=MODEL_HIERARCHY)
+    assert "translational engine: refused before any step" in run.out
+    assert "a phase pair may take 1e+03" in run.out
+    assert "refused" not in command(*SMALL, "--plan", hierarchy=MODEL_HIERARCHY).out
 
 
 def test_plan_predicts_in_proportion_to_the_points(command: Callable[..., Run]) -> None:

@@ -133,14 +133,20 @@ def test_a_full_study_asks_both_sides_for_all_of_it() -> None:
 def test_what_is_left_out_is_listed_with_its_saving() -> None:
     scene = alone(short(isolator={"friction": 0.0}, bodies={"height": 0.0}))
     rows = {row.what: row for row in reductions(Study((scene,), GRID, 1e-3))}
-    assert [row.models for row in rows.values()] == ["all", "regularised, resolved", "small", "spatial"]
+    assert [row.models for row in rows.values()] == [
+        "all",
+        "regularised, resolved",
+        "small",
+        "translational, spatial",
+        "spatial",
+    ]
     assert rows["mirrored phases"].cost == "1/4"
     study, full = Study((scene,), GRID, 1e-3), Study((scene,), GRID, 1e-3, full=True)
     assert reductions(full) == []
     for model in (SMALL, SPATIAL):
         points = len(study.solved(scene, model)) / len(full.solved(scene, model))
         assert study.seconds(model) == pytest.approx(full.seconds(model) * points / speedup(scene, model))
-        assert speedup(scene, model) > 1.0 == speedup(load_scene("fig3-I"), model)
+        assert speedup(scene, model) > speedup(load_scene("fig3-I"), model)
 
 
 def test_just_outside_the_condition_nothing_is_saved() -> None:

@@ -55,7 +55,7 @@ def test_a_refusal_tells_by_how_much_and_the_durations_that_it_names_are_true() 
 def test_at_the_duration_and_with_the_work_that_a_refusal_names_there_are_values() -> None:
     said = multibody.refusal(_frame(20.0), "translational", max_work=WORK)
     enough = re.search(r"duration to about (\S+) s", said)
-    work = re.search(r"max_work, about (\S+) steps", said)
+    work = re.search(r"max_work or --max-work, about (\S+) steps", said)
     assert enough is not None
     assert work is not None
     shorter = multibody.amplification(_frame(float(enough[1])), [(0.1, 0.2)], max_work=WORK)

@@ -27,6 +27,7 @@ def amplification(
     tolerance: float = 1e-2,
     contact_stiffness: float | None = None,
     step: float | None = None,
+    max_work: float = 2e6,
 ) -> Amplification:
     """
     As `multibody.amplification`, without reductions and with few levels.
@@ -46,6 +47,8 @@ def amplification(
         N/m, the same at all levels.
     step : float, optional
         s, the largest at the first level, halved from level to level.
+    max_work : float
+        Steps of the engine that a point may take.
 
     Returns
     -------
@@ -58,7 +61,9 @@ def amplification(
     if step is not None:
         factor = step / math.sqrt(scene.radius / GRAVITY) / levels[0].step
         levels = [_with_longer_step(level, factor) for level in levels]
-    return multibody.amplification(scene, phases, model, regularization, tolerance, full=True, levels=levels)
+    return multibody.amplification(
+        scene, phases, model, regularization, tolerance, full=True, levels=levels, max_work=max_work
+    )
 
 
 def _with_longer_step(level: multibody.Level, factor: float) -> multibody.Level:

@@ -64,8 +64,9 @@ def _column(key: str, title: str, equations: str, regularization: float | None) 
 
 V_REG = 1e-3  # m/s, where it is not the extreme
 _REGULARIZED = {"equations": "exact", "regularization": V_REG}
-_TRANSLATIONAL = {"model": "translational", "regularization": V_REG}
-_SPATIAL = {"model": "spatial", "regularization": V_REG}
+MAX_WORK = 1e6  # steps of the engine for a phase pair: a cell ends within the limit of its processor time
+_TRANSLATIONAL = {"model": "translational", "regularization": V_REG, "max_work": MAX_WORK}
+_SPATIAL = {"model": "spatial", "regularization": V_REG, "max_work": MAX_WORK}
 STATED = "comparison.analysis.extremes.engine:amplification"  # the engine at a step or a contact stiffness of the row
 
 COLUMNS = (
