@@ -19,7 +19,19 @@ from reference.problem.analyses import ANALYSES
 
 
 def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
-    """Refuse a name of a scene or family that is there twice. names: each with its source. Raises SceneError."""
+    """
+    Refuse a name of a scene or family that is there twice.
+
+    Parameters
+    ----------
+    names : iterable of tuple
+        Source and name.
+
+    Raises
+    ------
+    SceneError
+        One line.
+    """
     seen: dict[str, str] = {}
     for source, name in names:
         if name in seen:

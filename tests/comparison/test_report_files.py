@@ -59,8 +59,8 @@ def test_every_value_stands_at_its_own_phases(surfaces: xr.Dataset) -> None:
     assert surfaces["scene"].values.tolist() == ["fig3-I", "fig4-viscous"]
     for scene in surfaces["scene"].values:
         for model, factor in (("small", 1.0), ("exact", 1.0), ("translational", 1.01)):
-            found = surfaces["mu"].sel(scene=scene, model=model)
-            np.testing.assert_allclose(found, factor * expected.transpose(*found.dims), rtol=1e-14)  # rounding
+            mu = surfaces["mu"].sel(scene=scene, model=model)
+            np.testing.assert_allclose(mu, factor * expected.transpose(*mu.dims), rtol=1e-14)  # rounding
 
 
 def test_a_model_that_does_not_apply_is_nan_and_says_so(surfaces: xr.Dataset) -> None:
