@@ -18,7 +18,7 @@ from reference.problem import Reduction, Scene, linear, planar, planar_chain, un
 @dataclass(frozen=True)
 class RecordedReduction:
     """
-    name: what is left out. decided: whether a scene lets it be. models: a setting, and the values of the models that can
+    name: what is left out. decided: whether a scene lets it be. models: a setting, and the values of models that can
     do without it. factor: recorded saving per point.
     """
 
