@@ -31,18 +31,51 @@ ANALYSES: tuple[Analysis[Any], ...] = (
 
 
 def affordable(study: Study, with_analyses: bool = True) -> Study:
-    """The study itself, or, not `with_analyses`, the same with the essential analyses only."""
+    """
+    A study with all that was asked for, or with the essential analyses only.
+
+    Parameters
+    ----------
+    study : Study
+    with_analyses : bool
+        Whether all of them fit the budget.
+
+    Returns
+    -------
+    Study
+    """
     expensive = [analysis.key for analysis in ANALYSES if not analysis.essential]
     return study if with_analyses else replace(study, selection=study.selection.without(expensive))
 
 
 def chosen_analyses(study: Study) -> list[Analysis[Any]]:
-    """Those of ANALYSES that are made of a scene of the study."""
+    """
+    Those of ANALYSES that are made of a scene of the study.
+
+    Parameters
+    ----------
+    study : Study
+
+    Returns
+    -------
+    list of Analysis
+    """
     return [analysis for analysis in ANALYSES if study.selecting(analysis.key).scenes]
 
 
 def first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:
-    """What can be computed without knowing the surfaces."""
+    """
+    What can be computed without knowing the surfaces.
+
+    Parameters
+    ----------
+    study : Study
+    analyses : sequence of Analysis
+
+    Returns
+    -------
+    list of Task
+    """
     return [
         task
         for analysis in analyses
@@ -52,12 +85,37 @@ def first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:
 
 
 def predicted_costs(study: Study, analyses: Sequence[Analysis[Any]]) -> dict[str, tuple[int, float]]:
-    """Tasks and s on one core of each analysis, by stage."""
+    """
+    What each analysis costs.
+
+    Parameters
+    ----------
+    study : Study
+    analyses : sequence of Analysis
+
+    Returns
+    -------
+    dict of str to tuple
+        By stage: number of tasks, s on one core.
+    """
     seconds = {analysis.stage: analysis.predicted_seconds(study.selecting(analysis.key)) for analysis in analyses}
     return {stage: (len(costs), sum(costs)) for stage, costs in seconds.items()}
 
 
 def analysis_cost(study: Study, with_analyses: bool) -> float:
-    """s on one core of all that is computed beside the surfaces."""
+    """
+    What is computed beside the surfaces costs.
+
+    Parameters
+    ----------
+    study : Study
+    with_analyses : bool
+        Whether all of them, not only the essential ones.
+
+    Returns
+    -------
+    float
+        s on one core.
+    """
     chosen = affordable(study, with_analyses)
     return sum(seconds for _, seconds in predicted_costs(chosen, chosen_analyses(chosen)).values())

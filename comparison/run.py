@@ -13,7 +13,6 @@ if __name__ == "__main__":
 
     start("comparison.run")  # does not return: the module is loaded once, under its own name
 
-import signal
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -32,15 +31,17 @@ from comparison.analysis.tradeoff.trade import load as stored_trades
 from comparison.analysis.unanswered import with_silent_models
 from comparison.cli.arguments import command, writing
 from comparison.cli.closing import print_closing, print_errors
+from comparison.cli.computing import ending_early
 from comparison.cli.options import Options, parsed
 from comparison.cli.terminal import print_plan, print_study_plan
-from comparison.execution.cache import Cache, StoreError, store_beside
-from comparison.execution.executors import ExecutorLostError, Pool, process_pool
-from comparison.execution.keys import batch_key
+from comparison.execution.cache import Cache, store_beside
+from comparison.execution.executors import Pool
+from comparison.execution.keys import batch_key, task_key
 from comparison.execution.output import atomic_replace, clear_dead, on_stderr
+from comparison.execution.processes import process_pool
 from comparison.execution.progress import wide_console
 from comparison.execution.provenance import provenance
-from comparison.execution.resume import command_line, resume_hint, without_scheduler
+from comparison.execution.resume import command_line, resume_hint
 from comparison.execution.runner import Computed, Runner
 from comparison.execution.task_results import TaskResults
 from comparison.execution.workers import workers
@@ -109,19 +110,15 @@ def _ended(plan: StudyPlan, options: Options, console: Console, words: Sequence[
     """The exit code; whatever ends the run early, what is finished is kept, and the line printed says how to go on."""
     study, store = plan.study, Cache(store_beside(options.out))
     models = {model.amplification for model in study.hierarchy}
-    try:
-        with workers(options.jobs, options.scheduler, models, executor) as (width, make):
-            return _run(plan, replace(options, jobs=width), console, words, make, store)
-    except KeyboardInterrupt as stop:
-        print(f"interrupted: {resume_hint(store, study, words)}", file=sys.stderr)
-        return 128 + getattr(stop, "number", signal.SIGINT)
-    except ExecutorLostError as error:
-        where = "" if options.scheduler is None else f"--scheduler {options.scheduler}: "
-        print(f"{where}{error}: {resume_hint(store, study, without_scheduler(words))}", file=sys.stderr)
-        return 4
-    except StoreError as error:
-        print(f"{error}; {resume_hint(store, study, words)}", file=sys.stderr)
-        return 3
+
+    def hint(rest: Sequence[str]) -> str:
+        return resume_hint(store, rest, batches=len(study.batches()))
+
+    with (
+        ending_early(hint, words, options.scheduler),
+        workers(options.jobs, options.scheduler, models, executor) as (width, make),
+    ):
+        return _run(plan, replace(options, jobs=width), console, words, make, store)
 
 
 def _run(
@@ -138,13 +135,15 @@ def _run(
     clear_dead(options.out)
     study = affordable(plan.study, plan.with_analyses)
     analyses = chosen_analyses(study)
+    first = first_tasks(study, analyses)
     keys = [batch_key(batch) for batch in study.batches()]
     store.trim(keys)
-    if options.fresh:
+    if options.fresh:  # gone before anything is computed: what an interrupted run left is new
         store.forget(keys)
+        store.remove(map(task_key, first))
 
     runner = Runner(TaskResults(store, options.fresh), console, options.jobs, executor)
-    computed = runner.run_study(study, first_tasks(study, analyses))
+    computed = runner.run_study(study, first)
     seconds = time.monotonic() - begin
     surfaces = labeled_surfaces(study, computed.batches, computed.answers)
     study = with_silent_models(study, surfaces)

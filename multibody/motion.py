@@ -11,14 +11,13 @@ from multibody.integration.adaptive import Budget, EngineRun
 from multibody.integration.constant_step import INTEGRATORS, Motion, silence
 from multibody.integration.level import Level
 from multibody.integration.one_run import PhasePair
-from multibody.integration.refine import MAX_WORK, refine
+from multibody.integration.refine import MAX_WORK, WORK, refine
 from multibody.models.assembly import assemble
 from multibody.models.system import EngineModel
 from reference.problem import Accuracy, Scene, State, Trajectory, checked_phase, ground_acceleration
 from reference.problem.ranges import TOLERANCE, Range, checked_choice, checked_number, checked_state
 
-SINGLE_RUN_WORK = 10.0 * MAX_WORK  # nominal microseconds of one run in place of all that refine a point
-MAX_STEPS = 1e7  # of a run at constant step, which is held in memory whole
+MAX_STEPS = 1e7  # of a single run, which is held in memory whole
 PENETRATION = Range(1e-14, 0.1, "of rho")
 NEWTON = Range(1e-14, 1.0)
 
@@ -31,13 +30,14 @@ def trajectory(
     tolerance: float = 1e-3,
     initial: State | None = None,
     loading: str = "inertial",
+    max_work: float = MAX_WORK,
 ) -> Trajectory:
     """
     Compute one motion in the plate's frame with the engine, to a tolerance.
 
     Parameters
     ----------
-    scene, model, regularization, loading
+    scene, model, regularization, loading, max_work
         As in `amplification`.
     phase : array_like, shape (2,)
         Initial phases of the two harmonics, rad.
@@ -77,11 +77,12 @@ def trajectory(
     """
     pair = checked_phase(phase)
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
+    max_work = checked_number("max_work", max_work, WORK)
     if initial is not None:
         initial = State(*checked_state(initial, len(scene.bodies), scene.radius))
     with silence():
         built = assemble(scene, model, regularization, loading=loading, contact_force=True)
-        point = refine(scene, built, pair, tolerance, initial=initial, keep=True)
+        point = refine(scene, built, pair, tolerance, initial=initial, keep=True, max_work=max_work)
     run_of = PhasePair(scene, built, pair, initial)
     motion = _trajectory(run_of, point.finest, point.outcome, point.instant)
     if not point.coarser:
@@ -163,7 +164,7 @@ def single_run(
         built = assemble(scene, model, regularization, contact_force=True)
         point = PhasePair(scene, built, pair)
         if level is not None:
-            run = point.at_level(level, Budget.of(SINGLE_RUN_WORK, built.coordinates), keep=True)
+            run = point.at_level(level, Budget(MAX_STEPS), keep=True)
         else:
             allowed = Range(scene.duration / MAX_STEPS, scene.duration, "s")
             count = round(scene.duration / checked_number("step", step, allowed))

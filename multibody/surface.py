@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from multibody.integration.constant_step import silence
 from multibody.integration.level import Level
-from multibody.integration.refine import Refinement, refine
+from multibody.integration.refine import MAX_WORK, WORK, Refinement, refine
 from multibody.models.assembly import assemble
 from multibody.models.system import EngineModel
 from reference.problem import (
@@ -39,6 +39,7 @@ def amplification(
     loading: str = "inertial",
     full: bool = False,
     levels: Sequence[Level] | None = None,
+    max_work: float = MAX_WORK,
 ) -> Amplification:
     """
     Compute the dynamic amplification factors mu_i of (5.1) with the engine.
@@ -58,9 +59,12 @@ def amplification(
     loading : {"inertial", "plate"}
         Inertial forces in the plate's frame, or the motion of a plate that carries the supports.
     full : bool
-        Compute the model that is asked for, even where the scene does not require it (reference.problem.reductions).
+        Compute the model that is asked for, even where the scene does not require it (reference.problem.reductions),
+        and every run to the end of the motion.
     levels : sequence of Level, optional
         Levels of accuracy to go through, the coarsest first, in place of those of `multibody.levels`.
+    max_work : float
+        Steps of the engine that a point may take. A scene that needs more is refused before any step (`refusal`).
 
     Returns
     -------
@@ -89,6 +93,7 @@ def amplification(
     """
     pairs = checked_phases(phases)
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
+    max_work = checked_number("max_work", max_work, WORK)
     clock = time.process_time()
     shape = (len(pairs), len(scene.bodies))
     mu, error = np.full(shape, np.nan), np.full(shape, np.nan)
@@ -103,7 +108,7 @@ def amplification(
             elif not np.isfinite(ground[m]):
                 status[m], instant[m] = Outcome.NON_FINITE_LOAD, 0.0
             else:
-                point = reduced.refined(phase, tolerance, levels)
+                point = reduced.refined(phase, tolerance, levels, max_work)
                 status[m], instant[m] = point.outcome, point.instant
                 mu[m], error[m] = point.peaks / ground[m], point.errors / ground[m]
                 if np.isfinite(point.peaks).all():
@@ -118,13 +123,15 @@ class _Reduced:
     scene: Scene
     built: EngineModel
     asked: tuple[Scene, str, float | None, str] | None  # what to assemble where the reduced model has no answer
+    whole: bool  # whether every run goes to the end of the motion
 
-    def refined(self, phase: Array, tolerance: float, levels: Sequence[Level] | None) -> Refinement:
-        point = refine(self.scene, self.built, phase, tolerance, levels=levels)
+    def refined(self, phase: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float) -> Refinement:
+        asked: dict[str, Any] = {"whole": self.whole, "levels": levels, "max_work": max_work}
+        point = refine(self.scene, self.built, phase, tolerance, **asked)
         if self.asked and np.isnan(point.peaks).any():  # off its supports the model that is asked for goes on
             scene, model, regularization, loading = self.asked
-            whole = assemble(scene, model, regularization, loading=loading)
-            point = refine(scene, whole, phase, tolerance, levels=levels)
+            complete = assemble(scene, model, regularization, loading=loading)
+            point = refine(scene, complete, phase, tolerance, **asked)
         return point
 
 
@@ -136,4 +143,4 @@ def _reduced(scene: Scene, model: str, regularization: float | None, loading: st
     moving = in_plane(scene) if planar else scene
     axes: dict[str, Any] = {"axes": 1} if planar else {}
     built = assemble(moving, chosen, regularization, loading=loading, **axes)
-    return _Reduced(moving, built, (scene, model, regularization, loading) if level else None)
+    return _Reduced(moving, built, (scene, model, regularization, loading) if level else None, full)

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from comparison.analysis.protocol import Analysis
 from comparison.analysis.trends import Trend, trend
-from comparison.execution.task import Task
+from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.models import has_spatial_data
 from comparison.study.study import Study
@@ -192,27 +192,24 @@ class Convergence(Analysis[list[Trend]]):
         """The trends, in the order of the tasks; None for a study without phases."""
         if not study.phased:
             return None
-        return [one for task in self.tasks(study) for one in results.value(task, _lost)]
+        return [one for task in self.tasks(study) for one in results.value(task, _without_value)]
 
 
 def limit_trends(task: Arguments) -> list[Trend]:
     """One limit in one scene. Runs inside a worker process."""
     scene, number = task
     limit = LIMITS[number]
-    try:
-        sizes, errors = limit.measure(scene)
-    except Exception as error:
-        return _lost(task, Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}")
+    sizes, errors = limit.measure(scene)
     return [
         trend(scene.name, body + 1, limit.what, limit.parameter, sizes[..., body], errors[..., body], limit.expected)
         for body in range(len(scene.bodies))
     ]
 
 
-def _lost(task: Arguments, outcome: Outcome, error_message: str) -> list[Trend]:
+def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
     scene, number = task
     limit = LIMITS[number]
     return [
-        Trend(scene.name, body + 1, limit.what, limit.parameter, (), (), limit.expected, f"{outcome}: {error_message}")
+        Trend(scene.name, body + 1, limit.what, limit.parameter, (), (), limit.expected, failed.reason)
         for body in range(len(scene.bodies))
     ]

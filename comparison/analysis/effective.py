@@ -15,7 +15,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from comparison.analysis.protocol import Analysis
-from comparison.execution.task import Task
+from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, at_samples, models_of
@@ -80,7 +80,7 @@ class EffectiveValues(Analysis[list[Effective]]):
         return [
             value
             for scene in study.scenes
-            for value in (stated(scene), *(results.value(task, _lost) for task in self._of(study, scene)))
+            for value in (stated(scene), *(results.value(task, _without_value) for task in self._of(study, scene)))
         ]
 
     def _of(self, study: Study, scene: Scene) -> list[Task]:
@@ -106,9 +106,9 @@ def read_back(task: tuple[Scene, Model]) -> Effective:
         return replace(nothing, error_message=f"{type(error).__name__}: {error}")
 
 
-def _lost(task: tuple[Scene, Model], outcome: Outcome, error_message: str) -> Effective:
+def _without_value(task: tuple[Scene, Model], failed: TaskResult) -> Effective:
     scene, model = task
-    return Effective(scene.name, model.key, error_message=f"{outcome}: {error_message}")
+    return Effective(scene.name, model.key, error_message=failed.reason)
 
 
 def _measured(scene: Scene, motion: Trajectory) -> dict[str, Any]:

@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from comparison.analysis.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
 from comparison.analysis.protocol import Analysis
-from comparison.execution.task import Task
+from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.study import Study
 from reference import amplification
-from reference.problem import Outcome, Scene
+from reference.problem import Scene
 
 Array = NDArray[np.float64]
 
@@ -180,7 +180,7 @@ class Errata(Analysis[list[Effect]]):
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Effect]:
         """The effects, in the order of the tasks."""
-        return [results.value(task, _lost) for task in self.tasks(study)]
+        return [results.value(task, _without_value) for task in self.tasks(study)]
 
 
 def measured(task: tuple[Scene, int]) -> Effect:
@@ -195,5 +195,5 @@ def measured(task: tuple[Scene, int]) -> Effect:
     return Effect(scene.name, number, () if change is None else tuple(tuple(map(float, row)) for row in change))
 
 
-def _lost(task: tuple[Scene, int], outcome: Outcome, error_message: str) -> Effect:
-    return Effect(task[0].name, task[1], error_message=f"{outcome}: {error_message}")
+def _without_value(task: tuple[Scene, int], failed: TaskResult) -> Effect:
+    return Effect(task[0].name, task[1], error_message=failed.reason)

@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from comparison.analysis.protocol import Analysis
 from comparison.analysis.trends import Trend, trend
-from comparison.execution.task import Task
+from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.study import Study
 from reference import amplification
-from reference.problem import Outcome, Scene
+from reference.problem import Scene
 
 Array = NDArray[np.float64]
 
@@ -62,16 +62,13 @@ class Scaling(Analysis[list[Trend]]):
         """The trends, in the order of the tasks; None for a study without phases."""
         if not study.phased:
             return None
-        return [one for task in self.tasks(study) for one in results.value(task, _lost)]
+        return [one for task in self.tasks(study) for one in results.value(task, _without_value)]
 
 
 def scene_trends(task: Arguments) -> list[Trend]:
     """Both trends of one scene for each body. Runs inside a worker process."""
     scene, supremum = task
-    try:
-        answers = [_both(scaled(scene, s), supremum, s) for s in SCALES]
-    except Exception as exception:
-        return _lost(task, Outcome.SOLVER_FAILED, f"{type(exception).__name__}: {exception}")
+    answers = [_both(scaled(scene, s), supremum, s) for s in SCALES]
     mu, error = (np.array([answer[part] for answer in answers]) for part in (0, 1))  # (S, 2, P, N)
     (small, exact), (small_error, exact_error) = np.moveaxis(mu, 1, 0), np.moveaxis(error, 1, 0)
     step, step_error = exact / small - 1.0, np.hypot(exact_error, small_error) / small
@@ -103,13 +100,10 @@ def _both(scene: Scene, supremum: bool, s: float) -> tuple[Array, Array]:
     return np.array([answer.mu for answer in answers]), np.array([answer.error for answer in answers])
 
 
-def _lost(task: Arguments, outcome: Outcome, error_message: str) -> list[Trend]:
+def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
     scene, supremum = task
     what = f"{STEP}, {_peak(scene, supremum)}"
-    return [
-        Trend(scene.name, body + 1, what, SCALES, (), (), 2.0, f"{outcome}: {error_message}")
-        for body in range(len(scene.bodies))
-    ]
+    return [Trend(scene.name, body + 1, what, SCALES, (), (), 2.0, failed.reason) for body in range(len(scene.bodies))]
 
 
 def _peak(scene: Scene, supremum: bool) -> str:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from comparison.analysis.differences import pair_step
 from comparison.analysis.protocol import Analysis
-from comparison.execution.task import Task
+from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, at_samples
@@ -153,7 +153,7 @@ class Motions(Analysis[list[StoredMotion]]):
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[StoredMotion]:
         """The motions, in the order of the tasks."""
-        return [results.value(task, _lost) for task in self.tasks(study, surfaces)]
+        return [results.value(task, _without_value) for task in self.tasks(study, surfaces)]
 
     def predicted_seconds(self, study: Study) -> list[float]:
         """Before the surfaces are known that choose the places."""
@@ -256,5 +256,5 @@ def _nothing(place: Place, model: str, outcome: Outcome, error_message: str) -> 
     )
 
 
-def _lost(task: Arguments, outcome: Outcome, error_message: str) -> StoredMotion:
-    return _nothing(task[3], task[1].key, outcome, error_message)
+def _without_value(task: Arguments, failed: TaskResult) -> StoredMotion:
+    return _nothing(task[3], task[1].key, failed.outcome, failed.error_message)

@@ -15,16 +15,26 @@ from functools import wraps
 from pathlib import Path
 from typing import Concatenate, ParamSpec
 
-from comparison.execution.executors import ExecutorLostError, cores
+from comparison.execution.executors import cores
 from comparison.execution.resume import invocation
 from reference.problem import SceneError
 from reference.problem.command import OneLineParser, UsageError
 
 Rest = ParamSpec("Rest")
 
+STORED_RESULTS = "report whose stored results, in DIR.tiles, are used and added to"  # --out of what writes nothing else
+
 
 class WriteError(RuntimeError):
     """A file of the user that could not be written. `str(error)` is one line."""
+
+
+class EndedEarlyError(RuntimeError):
+    """A command that ended with `code` before its work was done. `str(error)` is one line that says how to go on."""
+
+    def __init__(self, code: int, line: str) -> None:
+        super().__init__(line)
+        self.code = code
 
 
 class CommandParser(OneLineParser):
@@ -44,13 +54,15 @@ class CommandParser(OneLineParser):
             "--out", default=Path("report"), type=Path, metavar="DIR", help=f"{content} (default %(default)s)"
         )
 
-    def add_jobs(self, cluster: bool = False) -> None:
-        """The number of worker processes; cluster: whether a Dask cluster may take their place."""
+    def add_computing(self) -> None:
+        """Where is computed, and whether what is stored is computed anew."""
         self.add_argument("--jobs", metavar="N", help=f"worker processes of this machine (default {cores()})")
-        if cluster:
-            self.add_argument("--scheduler", metavar="ADDRESS", help="compute on the Dask cluster with this scheduler")
-        else:
-            self.set_defaults(scheduler=None)
+        self.add_argument("--scheduler", metavar="ADDRESS", help="compute on the Dask cluster with this scheduler")
+        self.add_argument(
+            "--fresh",
+            action="store_true",
+            help="compute everything anew; without it what an earlier run left in DIR.tiles, finished or not, is used",
+        )
 
 
 def jobs(options: argparse.Namespace) -> int:
@@ -60,7 +72,7 @@ def jobs(options: argparse.Namespace) -> int:
     Parameters
     ----------
     options : argparse.Namespace
-        Parsed by a `CommandParser` with `add_jobs`.
+        Parsed by a `CommandParser` with `add_computing`.
 
     Returns
     -------
@@ -78,7 +90,27 @@ def jobs(options: argparse.Namespace) -> int:
 
 
 def whole_number(option: str, text: str, least: int, most: int) -> int:
-    """The value of an option that takes a whole number from `least` to `most`. Raises SceneError."""
+    """
+    The value of an option that takes a whole number.
+
+    Parameters
+    ----------
+    option : str
+        Its name, for the message.
+    text : str
+        As it was typed.
+    least, most : int
+        Range.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    SceneError
+        One line.
+    """
     rule = f"must be a whole number from {least} to {most}"
     try:
         value = int(text)
@@ -90,7 +122,29 @@ def whole_number(option: str, text: str, least: int, most: int) -> int:
 
 
 def number(option: str, text: str, least: float, most: float, unit: str) -> float:
-    """The value of an option that takes a number from `least` to `most` in `unit`. Raises SceneError."""
+    """
+    The value of an option that takes a number.
+
+    Parameters
+    ----------
+    option : str
+        Its name, for the message.
+    text : str
+        As it was typed.
+    least, most : float
+        Range.
+    unit : str
+        For the message.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    SceneError
+        One line.
+    """
     rule = f"must be a number from {least:g} to {most:g}, {unit}"
     try:
         value = float(text)
@@ -116,7 +170,8 @@ def command(
     """
     Give a command its exit codes and take its words from the command line where a program gives none.
 
-    2: wrong input. 3: something could not be written. 4: the cluster was lost. Each is explained by one line.
+    2: wrong input. 3: something could not be written. 4: the cluster was lost. 128 + number: a signal, 130 for Ctrl-C.
+    Each is explained by one line.
     """
 
     @wraps(main)
@@ -129,8 +184,8 @@ def command(
         except WriteError as error:
             print(error, file=sys.stderr)
             return 3
-        except ExecutorLostError as error:
+        except EndedEarlyError as error:
             print(error, file=sys.stderr)
-            return 4
+            return error.code
 
     return ended

@@ -17,13 +17,12 @@ from rich.table import Table
 
 from comparison.analysis.assumptions.validity import Assumptions, describe
 from comparison.analysis.assumptions.variations import DURATION, MANY, PHASES, Cell, ranges
-from comparison.cli.arguments import CommandParser, command, jobs, writing
-from comparison.cli.stored import OUT_HELP, results_beside
-from comparison.execution.executors import Pool, process_pool
+from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, jobs, writing
+from comparison.cli.computing import computed
+from comparison.execution.executors import Pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
+from comparison.execution.processes import process_pool
 from comparison.execution.progress import wide_console
-from comparison.execution.runner import Runner
-from comparison.execution.workers import workers
 from comparison.report.figures.file_names import figure_file
 from comparison.study.models import has_spatial_data
 from comparison.study.study import Study, refuse_same_names
@@ -40,28 +39,31 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         "assumptions", "How far mu_i of the spatial model is from the translational one, over the ring and the heights."
     )
     parser.add_scenes("the paper's")
-    parser.add_jobs(cluster=True)
+    parser.add_out(STORED_RESULTS)
+    parser.add_computing()
     parser.add_argument("--figures", type=Path, metavar="DIR", help="write one picture per scene into this directory")
-    parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help=OUT_HELP)
     options = parser.parse_args(argv)
+    jobs(options)  # refused before anything else is looked at
     names = options.scenes or builtin_scenes()
     scenes = [_spatial(name) for name in names]
     refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
-    results = results_beside(options.out)
     figures = destination(options.figures, "--figures") if options.figures else None
     if figures:
         pictures = [figure_file(s.name, "assumptions", ending=end) for s in scenes for end in (".png", ".pdf")]
         refuse_foreign_files(figures, pictures, "--figures")
-    with workers(jobs(options), options.scheduler, {ENGINE}, executor) as (width, make):
-        console = wide_console()
-        about = f"{len(MANY)} variations at {len(PHASES)} phase pairs over {DURATION:g} s of motion"
-        console.print(f"{about}: minutes for each scene.")
-        for scene in scenes:
-            cells = _computed(Runner(results, console, width, make), scene)
-            _print(console, scene, cells)
-            if figures:
-                with writing(figures, "--figures"):
-                    _draw(figures, scene, cells)
+    console = wide_console()
+    about = f"{len(MANY)} variations at {len(PHASES)} phase pairs over {DURATION:g} s of motion"
+    console.print(f"{about}: minutes for each scene.")
+    assumptions, study = Assumptions(MANY), Study(tuple(scenes), 1, TOLERANCE)
+    results = computed("assumptions", options, argv, assumptions.tasks(study), {ENGINE}, console, executor)
+    validity = assumptions.collect(study, None, results)
+    assert validity is not None, "every scene has both models of the engine"
+    for scene in scenes:
+        cells = [cell for cell in validity.cells if cell.scene == scene.name]
+        _print(console, scene, cells)
+        if figures:
+            with writing(figures, "--figures"):
+                _draw(figures, scene, cells)
     return 0
 
 
@@ -89,15 +91,6 @@ def _spatial(name: str) -> Scene:
     return scene
 
 
-def _computed(runner: Runner, scene: Scene) -> Sequence[Cell]:
-    """Every variation of a scene."""
-    study, assumptions = Study((scene,), 1, TOLERANCE), Assumptions(MANY)
-    runner.run_tasks(assumptions.tasks(study))
-    found = assumptions.collect(study, None, runner.results)
-    assert found is not None, "the scene has both models of the engine"
-    return found.cells
-
-
 def _print(console: Console, scene: Scene, cells: Sequence[Cell]) -> None:
     console.print(f"{scene.title} ({scene.name}): largest change of mu_i against the translational model, per body")
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
@@ -105,16 +98,16 @@ def _print(console: Console, scene: Scene, cells: Sequence[Cell]) -> None:
         table.add_column(heading, justify="right", no_wrap=True)
     bodies = range(1, len(scene.bodies) + 1)
     for cell in cells:
-        own = cell.variation.of(scene).isolator
+        isolator = cell.variation.of(scene).isolator
         table.add_row(
-            f"{own.ring:g}",
+            f"{isolator.ring:g}",
             f"{cell.variation.height:g}",
-            str(own.supports),
+            str(isolator.supports),
             "  ".join(f"{100.0 * cell.largest(body):.3f}" for body in bodies),
             "  ".join(f"{100.0 * cell.error_estimate(body):.3f}" for body in bodies),
             ", ".join(sorted(set(cell.status))),
         )
     console.print(table)
     console.print(f"{sum(cell.cost for cell in cells):.0f} s of compute")
-    for found in ranges([scene], cells):
-        console.print(describe(found))
+    for line in ranges([scene], cells):
+        console.print(describe(line))

@@ -7,19 +7,17 @@ Every case is stored as it is finished: the same command goes on where it stoppe
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 
 from comparison.analysis.claims.readings import EVERY_READING, READINGS
 from comparison.analysis.claims.table import GRID, SIGNS, Claims, ClaimTable
-from comparison.cli.arguments import CommandParser, command, jobs, whole_number
-from comparison.cli.stored import OUT_HELP, results_beside
-from comparison.execution.executors import Pool, process_pool
+from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, whole_number
+from comparison.cli.computing import computed
+from comparison.execution.executors import Pool
+from comparison.execution.processes import process_pool
 from comparison.execution.progress import wide_console
-from comparison.execution.runner import Runner
-from comparison.execution.workers import workers
 from comparison.study.study import Study
 from reference.problem import builtin_scenes, load_scene
 
@@ -32,17 +30,16 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     """Print the table of claims against readings; the exit code."""
     parser = CommandParser("claims", "The claims of section 5 of the paper against readings of it.")
     parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {GRID})")
-    parser.add_jobs(cluster=True)
     parser.add_argument("--all", action="store_true", help="every reading: more amplitudes, durations and f_c")
-    parser.add_argument("--out", default=Path("report"), type=Path, metavar="DIR", help=OUT_HELP)
+    parser.add_out(STORED_RESULTS)
+    parser.add_computing()
     parser.add_argument("--words", action="store_true", help="print what every check found, too")
     options = parser.parse_args(argv)
     grid = GRID if options.grid is None else whole_number("--grid", options.grid, 8, 512)
-    claims, results = Claims(grid, EVERY_READING if options.all else READINGS), results_beside(options.out)
+    claims = Claims(grid, EVERY_READING if options.all else READINGS)
     study = Study(tuple(map(load_scene, builtin_scenes())), grid, TOLERANCE)
     console = wide_console()
-    with workers(jobs(options), options.scheduler, {SURFACES}, executor) as (width, make):
-        Runner(results, console, width, make).run_tasks(claims.tasks(study), compile_first=True)
+    results = computed("claims", options, argv, claims.tasks(study), {SURFACES}, console, executor)
     table = claims.collect(study, None, results)
     assert table is not None, "the study has every scene of the paper"
     print_claims(console, table, options.words)
@@ -50,10 +47,19 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 
 
 def print_claims(console: Console, table: ClaimTable, words: bool = False) -> None:
-    """The table, a line for every claim; then the reading that reproduces most and the claims that none reproduces."""
-    own = sum(not claim.weaker for claim in table.claims)
+    """
+    Print the table: a line for every claim; the reading that reproduces most; the claims that none reproduces.
+
+    Parameters
+    ----------
+    console : Console
+    table : ClaimTable
+    words : bool
+        Print what every check found, too.
+    """
+    stated = sum(not claim.weaker for claim in table.claims)  # by the paper
     for number, reading in enumerate(table.readings, start=1):
-        console.print(f"{number:2d}: {reading.name}: {table.held(number - 1)} of {own}")
+        console.print(f"{number:2d}: {reading.name}: {table.held(number - 1)} of {stated}")
     grid = Table("about", "claim", *map(str, range(1, len(table.readings) + 1)), box=None, pad_edge=False)
     for claim, row in zip(table.claims, table.verdicts):
         grid.add_row(claim.figure, claim.says, *(SIGNS[verdict.finding] for verdict in row))

@@ -70,6 +70,7 @@ def print_closing(
     for headline in (headline for scene in results.scenes for headline in scene.headlines):
         console.print(headline.sentence, soft_wrap=True)
     console.print(f"Report: {report / 'index.html'}", soft_wrap=True)  # a path is copied whole
+    console.print(f"In print: {results.no_pdf or report / 'report.pdf'}", soft_wrap=True)
     for line in next_commands(results, words):
         console.print(line, soft_wrap=True)
 

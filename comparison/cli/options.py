@@ -47,34 +47,50 @@ class Options:
 
 
 def parsed(argv: Sequence[str]) -> Options:
-    """Options of `python -m comparison.run`. Raises SceneError or UsageError: one line, file, key, value, rule."""
-    given = _parser().parse_args(argv)
-    names: list[str] = given.scenes or builtin_scenes()
-    amplitude = None if given.amplitude is None else number("--amplitude", given.amplitude, 1e-12, 1e6, "m/s^2")
+    """
+    Options of `python -m comparison.run`, all checked.
+
+    Parameters
+    ----------
+    argv : sequence of str
+        Words of the command line.
+
+    Returns
+    -------
+    Options
+
+    Raises
+    ------
+    SceneError, UsageError
+        One line: file or option, key, value, rule.
+    """
+    words = _parser().parse_args(argv)
+    names: list[str] = words.scenes or builtin_scenes()
+    amplitude = None if words.amplitude is None else number("--amplitude", words.amplitude, 1e-12, 1e6, "m/s^2")
     families = tuple(load_family(name, amplitude) for name in names)
-    only, skip = _analyses("--only", given.only), _analyses("--skip", given.skip)
+    only, skip = _analyses("--only", words.only), _analyses("--skip", words.skip)
     if only is not None and skip is not None:
-        raise SceneError("command line", "--skip", given.skip, "names what --only leaves out anyway: give one of them")
+        raise SceneError("command line", "--skip", words.skip, "names what --only leaves out anyway: give one of them")
     options = Options(
         families=families,
-        grid=None if given.grid is None else whole_number("--grid", given.grid, 2, 512),
-        out=destination(given.out),
-        jobs=jobs(given),
-        tolerance=_optional("--tolerance", given.tolerance, tightest(), 0.1, "relative error of mu"),
-        budget=_optional("--budget", given.budget, 1.0, 1e7, "s of the whole run"),
-        check=given.check,
-        plan=given.plan,
-        fresh=given.fresh,
-        full=given.full,
-        scheduler=given.scheduler,
+        grid=None if words.grid is None else whole_number("--grid", words.grid, 2, 512),
+        out=destination(words.out),
+        jobs=jobs(words),
+        tolerance=_optional("--tolerance", words.tolerance, tightest(), 0.1, "relative error of mu"),
+        budget=_optional("--budget", words.budget, 1.0, 1e7, "s of the whole run"),
+        check=words.check,
+        plan=words.plan,
+        fresh=words.fresh,
+        full=words.full,
+        scheduler=words.scheduler,
         selection=Selection.of((scene for family in families for scene in family.scenes), only, skip),
     )
     sources = list(zip(names, options.families))
     refuse_same_names((source, family.name) for source, family in sources)
     refuse_same_names((source, scene.name) for source, family in sources for scene in family.scenes)
-    if given.scheduler is not None and options.budget is not None:
+    if words.scheduler is not None and options.budget is not None:
         rule = "is kept by what this machine is measured to do, --scheduler computes on others: give one of the two"
-        raise SceneError("command line", "--budget", given.budget, rule)
+        raise SceneError("command line", "--budget", words.budget, rule)
     if not options.plan:
         try:
             stored_extremes(options.out)
@@ -96,12 +112,7 @@ def _parser() -> CommandParser:
     )
     parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {STUDY_PRESETS[DEFAULT_PRESET].grid})")
     parser.add_out("report")
-    parser.add_jobs(cluster=True)
-    parser.add_argument(
-        "--fresh",
-        action="store_true",
-        help="compute everything anew; without it what an earlier run left in DIR.tiles, finished or not, is reused",
-    )
+    parser.add_computing()
     parser.add_argument(
         "--tolerance",
         metavar="X",

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.analysis.tradeoff.measure import Found, Task, sample, solve
+from comparison.analysis.tradeoff.measure import Measured, Measurement, measure, sample
 from comparison.analysis.tradeoff.settings import SPATIAL_TIGHT, TIGHT
 from comparison.cli.arguments import CommandParser, command
 from comparison.execution.provenance import provenance
@@ -41,15 +41,15 @@ def main(argv: Sequence[str]) -> int:
     took = [machine_benchmark()]  # again after every model: what else the machine does falls on both alike
     seconds: dict[str, dict[str, float]] = {scene.digest(): {} for scene in scenes}
     for model in MODEL_HIERARCHY:
-        own = [scene for scene in scenes if model.applies(scene)]
-        rows, costs = _rows(model, own)
+        applying = [scene for scene in scenes if model.applies(scene)]
+        rows, costs = _rows(model, applying)
         record["models"][model.key] = {"usual": _usual(model), "tolerances": rows}
         took.append(machine_benchmark())
-        for scene, cost in zip(own, costs):
+        for scene, cost in zip(applying, costs):
             seconds[scene.digest()][model.key] = float(f"{cost:.4g}")
         print(model.key, *(f"{row['tolerance']:.0e}: {row['cost']:.2f}, {row['met']:.3f}" for row in rows), sep="  ")
     record["seconds"] = seconds
-    record["machine_benchmark"] = {side: float(np.median([one[side] for one in took])) for side in took[0]}
+    record["machine_benchmark"] = {side: float(np.median([benchmark[side] for benchmark in took])) for side in took[0]}
     write_atomically(FILE, (json.dumps(record, indent=1) + "\n").encode())
     print(f"{ENGINE_POINTS} point(s) of the engine in the machine benchmark: {record['machine_benchmark']}; {FILE}")
     return 0
@@ -64,19 +64,19 @@ def _rows(model: Model, scenes: list[Scene]) -> tuple[list[dict[str, Any]], list
     phases = sample(POINTS.get(model.key, POINTS["reference"]))
     tolerances = REFERENCE_TOLERANCES if model.side == "reference" else ENGINE_TOLERANCES
     reference_solutions = [_reference_solution(model, scene, phases) for scene in scenes]
-    found = {tolerance: [_answer(model, scene, phases, tolerance) for scene in scenes] for tolerance in tolerances}
-    usual = found[_usual(model)]
+    measured = {tolerance: [_answer(model, scene, phases, tolerance) for scene in scenes] for tolerance in tolerances}
+    usual = measured[_usual(model)]
     rows = []
-    for tolerance, answers in found.items():
+    for tolerance, answers in measured.items():
         errors = np.concatenate(
             [
-                np.abs(one.mu / reference_solution - 1.0).max(axis=1)
-                for one, reference_solution in zip(answers, reference_solutions)
+                np.abs(answer.mu / reference_solution - 1.0).max(axis=1)
+                for answer, reference_solution in zip(answers, reference_solutions)
                 if reference_solution is not None
             ]
         )
-        claims = np.concatenate([(one.error_estimate / one.mu).max(axis=1) for one in answers])
-        cost = sum(one.seconds for one in answers) / sum(one.seconds for one in usual)
+        claims = np.concatenate([(answer.error_estimate / answer.mu).max(axis=1) for answer in answers])
+        cost = sum(answer.seconds for answer in answers) / sum(answer.seconds for answer in usual)
         rows.append(
             {
                 "tolerance": tolerance,
@@ -88,11 +88,11 @@ def _rows(model: Model, scenes: list[Scene]) -> tuple[list[dict[str, Any]], list
                 "reference_tolerance": SPATIAL_TIGHT if model.key == "spatial" else TIGHT,
             }
         )
-    return rows, [one.seconds / len(phases) for one in usual]
+    return rows, [answer.seconds / len(phases) for answer in usual]
 
 
-def _answer(model: Model, scene: Scene, phases: Array, tolerance: float) -> Found:
-    return solve(Task(scene, (model.amplification, {**model.settings, "tolerance": tolerance}), 0, phases))
+def _answer(model: Model, scene: Scene, phases: Array, tolerance: float) -> Measured:
+    return measure(Measurement(scene, (model.amplification, {**model.settings, "tolerance": tolerance}), 0, phases))
 
 
 def _reference_solution(model: Model, scene: Scene, phases: Array) -> Array:

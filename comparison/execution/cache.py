@@ -102,6 +102,15 @@ class Cache:
             raise StoreError(f"{str(self.folder)!r}: a result could not be stored: {error.strerror}") from None
         self.kept[key.kind] += 1
 
+    def remove(self, keys: Iterable[Key]) -> None:
+        """Drop these results and no others."""
+        wanted = {key.name for key in keys}
+        for group in {Path(name).parent.name for name in wanted}:
+            with suppress(OSError):
+                for entry in os.scandir(self.folder / group):
+                    if f"{group}/{entry.name}" in wanted and _is_result(entry):
+                        os.unlink(entry.path)
+
     def forget(self, keys: Iterable[Key]) -> None:
         """Drop the groups of these results."""
         for group in {key.group for key in keys}:
@@ -121,12 +130,40 @@ class Cache:
 
 
 def store_beside(out: Path) -> Path:
-    """Where the results of the report `out` are kept."""
+    """
+    Where the results of a report are kept.
+
+    Parameters
+    ----------
+    out : Path
+        Folder of the report.
+
+    Returns
+    -------
+    Path
+
+    Examples
+    --------
+    >>> store_beside(Path("report")).name
+    'report.tiles'
+    """
     return out.with_name(f"{out.name}.tiles")
 
 
 def refuse_foreign_store(out: Path) -> None:
-    """Raise SceneError, one line, if something that is not a folder of results is where that of `out` belongs."""
+    """
+    Refuse to keep results where something else is.
+
+    Parameters
+    ----------
+    out : Path
+        Folder of the report.
+
+    Raises
+    ------
+    SceneError
+        One line, if something that is not a folder of results is where that of `out` belongs.
+    """
 
     def refusal(rule: str) -> SceneError:
         return SceneError("command line", "--out", str(out), f"{folder.name!r} beside it {rule}")

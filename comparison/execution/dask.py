@@ -9,17 +9,20 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import multiprocessing
 import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, Executor, Future
 from contextlib import contextmanager
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numba
 
 from comparison.execution.environment import environment_fingerprint
 from comparison.execution.executors import ExecutorLostError, WorkerDiedError
+from comparison.execution.processes import Workers
 from reference.problem import SceneError
 
 if TYPE_CHECKING:
@@ -88,12 +91,19 @@ class ClusterExecutor(Executor):
         return max(self._count, 1)
 
     def submit(self, solve: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        return self._submit(_one_at_a_time, solve, args, kwargs)
+
+    def submit_within(self, seconds: float, solve: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """As `submit`, in a process of its own beside the worker, which lives on when the limit ends the call."""
+        return self._submit(_in_a_child, seconds, solve, args, kwargs)
+
+    def _submit(self, call: Callable[..., Any], *arguments: Any) -> Future[Any]:
         if self._client.status != "running":
             raise ExecutorLostError(GONE)
         answer: Future[Any] = Future()
         answer.set_running_or_notify_cancel()
-        future = self._inner.submit(_one_at_a_time, solve, args, kwargs)
-        future.add_done_callback(lambda found: _arrived(found, answer))
+        remote = self._inner.submit(call, *arguments)
+        remote.add_done_callback(lambda arrived: _arrived(arrived, answer))
         return answer
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
@@ -112,17 +122,30 @@ def _one_at_a_time(solve: Callable[..., Any], args: tuple[Any, ...], kwargs: dic
         return solve(*args, **kwargs)
 
 
-def _arrived(found: Future[Any], answer: Future[Any]) -> None:
+def _in_a_child(seconds: float, solve: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
+    """Run beside a worker process, in one that can be ended without it."""
+    with _ONE:
+        multiprocessing.current_process().daemon = False  # a worker under a nanny may not start processes otherwise
+        return _child().submit_within(seconds, solve, *args, **kwargs).result()
+
+
+@cache
+def _child() -> Workers:
+    """The process of this worker for calls with a limit."""
+    return Workers(1)
+
+
+def _arrived(remote: Future[Any], answer: Future[Any]) -> None:
     from distributed import KilledWorker
 
     try:
-        error = found.exception()
+        error = remote.exception()
     except CancelledError:
         error = ExecutorLostError(GONE)  # nobody else cancels
     if isinstance(error, KilledWorker):
         error = WorkerDiedError(str(error), error.allowed_failures + 1)
     if error is None:
-        answer.set_result(found.result())
+        answer.set_result(remote.result())
     else:
         answer.set_exception(error)
 
@@ -148,14 +171,14 @@ def _same_code(client: Client, models: set[str], refusal: Callable[[str], SceneE
     except OSError as error:
         raise refusal(f"{GONE}: {' '.join(str(error).split())}") from None
     ours = _all_fingerprints(sorted(models))
-    for worker, found in theirs.items():
-        if isinstance(found, OSError):
+    for worker, versions in theirs.items():
+        if isinstance(versions, OSError):
             continue  # it died or left meanwhile
-        if isinstance(found, Exception):
-            raise refusal(f"worker {worker} cannot import this project ({found}): install it there")
+        if isinstance(versions, Exception):
+            raise refusal(f"worker {worker} cannot import this project ({versions}): install it there")
         for name, value in ours.items():
-            if found.get(name) != value:
-                raise refusal(f"worker {worker} has {name} {found.get(name)}, here it is {value}: install the same")
+            if versions.get(name) != value:
+                raise refusal(f"worker {worker} has {name} {versions.get(name)}, here it is {value}: install the same")
 
 
 def _all_fingerprints(models: list[str]) -> dict[str, str]:

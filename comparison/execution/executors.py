@@ -1,35 +1,34 @@
 """
-Where tasks run: processes of this machine, or any executor that is lent.
+Where tasks run: what `sweep` asks of an executor beyond `concurrent.futures`, all of it optional.
 
-`sweep` asks three things of an executor beyond `concurrent.futures`, all optional: `width`, how many tasks to keep in
-flight; `WorkerDiedError` from a future, when the death of a process is known to be the doing of that task and harmed no
-other; `ExecutorLostError` when there is no going on.
+`width`: how many tasks to keep at work. `submit_within`: a call with a limit on its processor time, which ends as
+`TimeLimitError`. `WorkerDiedError` from a future: the death of a process is known to be the doing of that task and
+harmed no other. `ExecutorLostError`: there is no going on. `abandon`: end at once.
 """
 
 from __future__ import annotations
 
-import multiprocessing
 import os
-import signal
-import threading
-from collections.abc import Callable, Iterator
-from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
-from contextlib import contextmanager
-from multiprocessing import resource_tracker
-from multiprocessing.process import BaseProcess
-from typing import Any
-
-import numba
+from collections.abc import Callable
+from concurrent.futures import BrokenExecutor, Executor, Future
+from typing import Any, TypeVar
 
 Pool = Executor | Callable[[int], Executor]  # an executor that somebody else ends, or what makes one for N jobs
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
 
 
 class WorkerDiedError(Exception):
     """The process that ran this task died, `times` in a row. The executor goes on, and no other task was harmed."""
 
-    def __init__(self, message: str, times: int = 1) -> None:
+    def __init__(self, message: str, times: int = 1, exit_code: int | None = None) -> None:
         super().__init__(message)
-        self.times = times
+        self.times, self.exit_code = times, exit_code
+
+
+class TimeLimitError(Exception):
+    """The process that ran this task was ended, because the task took longer than it may. `str(error)`: how long."""
 
 
 class ExecutorLostError(RuntimeError):
@@ -42,13 +41,61 @@ def cores() -> int:
 
 
 def factory(pool: Pool) -> Callable[[int], Executor]:
-    """What makes an executor for N jobs. One that was lent is given every time, and not shut down."""
+    """
+    What makes an executor for a number of workers.
+
+    Parameters
+    ----------
+    pool : Executor or callable
+        One that was lent is given every time, and not shut down.
+
+    Returns
+    -------
+    callable
+    """
     return (lambda jobs: Lent(pool)) if isinstance(pool, Executor) else pool
 
 
 def width(executor: Executor, jobs: int) -> int:
-    """How many tasks to keep in flight: no more than workers, so that few are in doubt when one dies."""
+    """
+    How many tasks to keep at work: no more than workers, so that few are suspected when one dies.
+
+    Parameters
+    ----------
+    executor : Executor
+    jobs : int
+        For an executor that does not state its `width`.
+
+    Returns
+    -------
+    int
+    """
     return int(getattr(executor, "width", jobs))
+
+
+def start(executor: Executor, solve: Callable[[Task], Result], task: Task, seconds: float | None) -> Future[Result]:
+    """
+    `solve(task)` on the executor.
+
+    Parameters
+    ----------
+    executor : Executor
+        Where it runs.
+    solve : callable
+        Function of the task.
+    task : object
+        Its argument.
+    seconds : float or None
+        Most processor time, s. An executor without `submit_within`, such as threads, cannot keep to it.
+
+    Returns
+    -------
+    Future
+    """
+    within: Callable[..., Future[Result]] | None = getattr(executor, "submit_within", None)
+    if seconds is None or within is None:
+        return executor.submit(solve, task)
+    return within(seconds, solve, task)
 
 
 def abandon(executor: Executor) -> None:
@@ -74,97 +121,9 @@ class Lent(Executor):
 
     def __getattr__(self, name: str) -> Any:
         """What the executor has beyond the usual, if it has it."""
-        if name in ("abandon", "width"):
+        if name in ("abandon", "submit_within", "width"):
             return getattr(self._executor, name)
         raise AttributeError(name)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Nothing: whoever lent it ends it."""
-
-
-class Workers(Executor):
-    """
-    `jobs` fresh processes, each a pool of its own: one that dies takes its own task along, is replaced, and the rest
-    does not notice. In one common pool a single death ends every task in flight.
-    """
-
-    def __init__(self, jobs: int) -> None:
-        self.width = jobs
-        self._idle: list[ProcessPoolExecutor] = []
-        self._all: set[ProcessPoolExecutor] = set()
-        self._processes: set[BaseProcess] = set()
-        self._lock = threading.Lock()
-
-    def submit(self, solve: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        with self._lock:
-            pool = self._idle.pop() if self._idle else None
-        answer: Future[Any] = Future()
-        answer.set_running_or_notify_cancel()
-        if pool is None:
-            pool = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), _begin_worker)
-            self._all.add(pool)
-        before = set(multiprocessing.active_children())
-        with _deaf_to_ctrl_c():
-            future = pool.submit(solve, *args, **kwargs)
-        self._processes |= set(multiprocessing.active_children()) - before
-        future.add_done_callback(lambda found: self._arrived(pool, found, answer))
-        return answer
-
-    def _arrived(self, pool: ProcessPoolExecutor, found: Future[Any], answer: Future[Any]) -> None:
-        if found.cancelled():
-            return  # the sweep has been given up, and nobody waits for the answer
-        error = found.exception()
-        if isinstance(error, BrokenExecutor):
-            error = WorkerDiedError(str(error))
-        else:
-            with self._lock:
-                self._idle.append(pool)
-        if error is None:
-            answer.set_result(found.result())
-        else:
-            answer.set_exception(error)
-
-    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        for pool in self._all:
-            pool.shutdown(wait=wait, cancel_futures=cancel_futures)
-
-    def abandon(self) -> None:
-        """End the processes in the middle of their tasks."""
-        for process in self._processes:
-            process.kill()
-        self.shutdown(wait=False, cancel_futures=True)
-
-
-def process_pool(jobs: int) -> Executor:
-    """`jobs` fresh processes, each with one thread: the tasks are the parallelism."""
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(name, "1")  # read by the libraries of the worker when it starts
-    return Workers(jobs)
-
-
-def _begin_worker() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to the whole group; the parent alone decides
-    threading.Thread(target=_end_with_parent, daemon=True).start()
-    numba.set_num_threads(1)
-
-
-def _end_with_parent() -> None:
-    """A worker whose parent was killed waits for tasks for ever, unless it looks."""
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)
-
-
-@contextmanager
-def _deaf_to_ctrl_c() -> Iterator[None]:
-    """A process started meanwhile does not hear Ctrl-C even while it imports; here it is heard afterwards."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    resource_tracker.ensure_running()  # its own start would end the deafness
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -16,7 +16,17 @@ BATCH, ANALYSIS = "tile", "answer"  # kinds of results
 
 
 def batch_key(batch: Batch) -> Key:
-    """Scene (not its name or title), model, settings, versions and the models' source; and the phases."""
+    """
+    What a batch is found by: scene (not its name or title), model, settings, versions, the models' source, phases.
+
+    Parameters
+    ----------
+    batch : Batch
+
+    Returns
+    -------
+    Key
+    """
     about = {
         "scene": batch.scene.digest(),
         "model": batch.amplification,
@@ -28,7 +38,17 @@ def batch_key(batch: Batch) -> Key:
 
 
 def task_key(task: Task) -> Key:
-    """Function, what the task is about, versions and the source of all that computes it; and its task."""
+    """
+    What a task is found by: function, argument, versions and the source of all that computes it.
+
+    Parameters
+    ----------
+    task : Task
+
+    Returns
+    -------
+    Key
+    """
     about = {
         "answers of": named(task.function),
         "about": fingerprint(task.about),
@@ -38,10 +58,22 @@ def task_key(task: Task) -> Key:
 
 
 def cached_batch(cache: Cache, batch: Batch) -> BatchResult | None:
-    """The stored answer to a batch, None if there is none that fits its phases and bodies."""
+    """
+    The stored answer to a batch.
+
+    Parameters
+    ----------
+    cache : Cache
+    batch : Batch
+
+    Returns
+    -------
+    BatchResult or None
+        None if there is none that fits its phases and bodies.
+    """
     answer = cache.get(batch_key(batch), BatchResult)
     if answer is None:
         return None
     points, bodies = len(batch.phases), len(batch.scene.bodies)
-    shapes = answer.mu.shape, answer.error.shape, (len(answer.status),), answer.instant.shape
-    return answer if shapes == ((points, bodies), (points, bodies), (points,), (points,)) else None
+    shapes = answer.mu.shape, answer.error.shape, (len(answer.status),), answer.instant.shape, answer.cap_share.shape
+    return answer if shapes == ((points, bodies), (points, bodies), (points,), (points,), (points,)) else None

@@ -55,9 +55,20 @@ class Own:
     hashes: tuple[str, ...]
 
 
-def destination(given: Path, option: str = "--out") -> Path:
+def destination(path: Path, option: str = "--out") -> Path:
     """
     The folder that a path of the command line means, with no symbolic link or ".." left in it.
+
+    Parameters
+    ----------
+    path : Path
+        As it was typed.
+    option : str
+        Option that it belongs to, for the message.
+
+    Returns
+    -------
+    Path
 
     Raises
     ------
@@ -66,12 +77,12 @@ def destination(given: Path, option: str = "--out") -> Path:
     """
 
     def refusal(rule: str) -> SceneError:
-        return SceneError("command line", option, str(given), rule)
+        return SceneError("command line", option, str(path), rule)
 
-    if given.name == ".." and set(given.parts) != {".."}:
+    if path.name == ".." and set(path.parts) != {".."}:
         raise refusal("ends in '..': give the directory by its name")
     try:
-        place = given.resolve()
+        place = path.resolve()
         str(place).encode()
         if place.is_symlink():  # no older version of Python gets this far
             raise RuntimeError
@@ -89,7 +100,7 @@ def destination(given: Path, option: str = "--out") -> Path:
     except OSError as error:
         raise refusal(f"cannot be used: {error.strerror}: give another directory") from None
     # a path that means what it says stays as it was typed, for the messages
-    return given if Path(os.path.abspath(given)) == place and ".." not in given.parts else place
+    return path if Path(os.path.abspath(path)) == place and ".." not in path.parts else place
 
 
 def refuse_foreign_report(out: Path) -> None:
@@ -116,10 +127,26 @@ def refuse_foreign_report(out: Path) -> None:
 
 
 def refuse_foreign_files(out: Path, names: Sequence[str], option: str = "--out") -> None:
-    """Raise SceneError, one line, if files of these names cannot be written into `out`, a `destination`."""
-    own = read_manifest(out)
-    for name in names if own else (MANIFEST, *names):
-        if os.path.lexists(out / name) and not _is_own(out / name, own.get(name)):
+    """
+    Refuse a folder where files of the user would be replaced.
+
+    Parameters
+    ----------
+    out : Path
+        A `destination`.
+    names : sequence of str
+        Files that are to be written.
+    option : str
+        Option that `out` belongs to, for the message.
+
+    Raises
+    ------
+    SceneError
+        One line.
+    """
+    manifest = read_manifest(out)
+    for name in names if manifest else (MANIFEST, *names):
+        if os.path.lexists(out / name) and not _is_own(out / name, manifest.get(name)):
             rule = f"holds {name!r}, which this study did not write: move it away, or give another directory"
             raise SceneError("command line", option, str(out), rule)
     refuse_unwritable(out, out, option)
@@ -195,39 +222,54 @@ def publish(
     """
     Write files of a command into a folder, which is made if there is none.
 
-    A file of the same name is replaced if the study wrote it; otherwise the new one gets another name, and `say` is
+    A file of the same name is replaced if the study wrote it. Otherwise the new one gets another name, and `say` is
     told.
+
+    Parameters
+    ----------
+    folder : Path
+    files : mapping of str to bytes
+        Contents by name.
+    command : str
+        Full name of the module of the command, for the manifest.
+    say : callable
+        Takes a line for people.
 
     Returns
     -------
     list of Path
-        The files written, in the order given. Raises OSError.
+        The files written, in the order given.
+
+    Raises
+    ------
+    OSError
+        If a file cannot be written.
     """
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     with locked(folder.resolve().parent):
         for name, content in files.items():
             file, digest = folder / name, _hash(content)
-            own = read_manifest(folder)
-            mine = own.get(name) if _is_own(file, own.get(name)) else None
-            if mine or not os.path.lexists(file):
+            manifest = read_manifest(folder)
+            ours = manifest.get(name) if _is_own(file, manifest.get(name)) else None
+            if ours or not os.path.lexists(file):
                 # with the old hash, too, while it is being replaced: whatever ends that, the file remains ours
-                _note(folder, own | {name: Own(command, (*(mine.hashes if mine else ()), digest))}, say)
-            if mine:
+                _note(folder, manifest | {name: Own(command, (*(ours.hashes if ours else ()), digest))}, say)
+            if ours:
                 write_atomically(file, content)
             else:
                 file = write_new(file, content)
             if file.name != name:
                 say(f"{str(folder / name)!r} is not a file of this study and stays: see {file.name!r} beside it")
-            _note(folder, own | {file.name: Own(command, (digest,))}, say)
+            _note(folder, manifest | {file.name: Own(command, (digest,))}, say)
             written.append(file)
     return written
 
 
-def _note(folder: Path, own: Mapping[str, Own], say: Callable[[str], None]) -> None:
+def _note(folder: Path, manifest: Mapping[str, Own], say: Callable[[str], None]) -> None:
     """Write the manifest, unless something else has its name."""
     try:
-        write_manifest(folder, own)
+        write_manifest(folder, manifest)
     except FileExistsError:
         say(f"{str(folder / MANIFEST)!r} is not a file of this study and stays: the next run does not know these files")
 
@@ -242,14 +284,14 @@ def made_by(*writers: Callable[[Path], object]) -> dict[str, bytes]:
 
 def foreign(folder: Path) -> list[str]:
     """What is in a folder and is not the study's own, as paths below it, sorted. Raises OSError."""
-    own = read_manifest(folder)
-    if not own:
+    manifest = read_manifest(folder)
+    if not manifest:
         return sorted(os.listdir(folder))
-    folders = {str(parent) for name in own for parent in Path(name).parents}
+    folders = {str(parent) for name in manifest for parent in Path(name).parents}
     foreign_files = []
     for path, is_folder in _inside(folder):
         name = path.relative_to(folder).as_posix()
-        if name != MANIFEST and not (name in folders if is_folder else _is_own(path, own.get(name))):
+        if name != MANIFEST and not (name in folders if is_folder else _is_own(path, manifest.get(name))):
             foreign_files.append(name)
     # of a folder that is not ours the files in it say more
     return sorted(name for name in foreign_files if not any(other.startswith(f"{name}/") for other in foreign_files))
@@ -266,13 +308,15 @@ def read_manifest(folder: Path) -> dict[str, Own]:
         return {}
 
 
-def write_manifest(folder: Path, own: Mapping[str, Own]) -> None:
+def write_manifest(folder: Path, manifest: Mapping[str, Own]) -> None:
     """
     Say which files of a folder are the study's own. Raises OSError, FileExistsError over a manifest that is not ours.
     """
     if os.path.lexists(folder / MANIFEST) and not read_manifest(folder):
         raise FileExistsError(errno.EEXIST, "not a manifest of this study", str(folder / MANIFEST))
-    files = {name: {"command": own[name].command, "sha256": list(own[name].hashes)} for name in sorted(own)}
+    files = {
+        name: {"command": manifest[name].command, "sha256": list(manifest[name].hashes)} for name in sorted(manifest)
+    }
     text = json.dumps({"schema": SCHEMA, "files": files, "checksum": _checksum(files)}, indent=1)
     write_atomically(folder / MANIFEST, text.encode())
 
@@ -293,8 +337,12 @@ def _put(staging_folder: Path, place: Path, say: Callable[[str], None]) -> Path:
                 why = f"{foreign_files[0]!r} there is not a file of this study"
                 _put_back(old, place)
             else:
-                own = read_manifest(old)
-                kept = {name: own[name] for name, _ in _files(old) if name in own and own[name].command != REPORT}
+                manifest = read_manifest(old)
+                kept = {
+                    name: manifest[name]
+                    for name, _ in _files(old)
+                    if name in manifest and manifest[name].command != REPORT
+                }
         for name in kept:
             shutil.copy2(old / name, new / name)
         _prune(new)
@@ -339,17 +387,17 @@ def _renamed_to_free(new: Path, there: Path) -> bool:
 
 def _remove_own(old: Path, place: Path, say: Callable[[str], None]) -> None:
     """Remove a report that was replaced: file by file what is ours; if anything else is in it, it stays beside."""
-    own = read_manifest(old)
+    manifest = read_manifest(old)
     folders = []
     for path, is_folder in _inside(old):
         if is_folder:
             folders.append(path)
-        elif _is_own(path, own.get(path.relative_to(old).as_posix())):
+        elif _is_own(path, manifest.get(path.relative_to(old).as_posix())):
             path.unlink()
     for folder in reversed(folders):
         with suppress(OSError):
             folder.rmdir()
-    if [entry.name for entry in old.iterdir()] == [MANIFEST] and own:
+    if [entry.name for entry in old.iterdir()] == [MANIFEST] and manifest:
         (old / MANIFEST).unlink()
     with suppress(OSError):
         old.rmdir()
@@ -373,11 +421,11 @@ def _inside(folder: Path) -> Iterator[tuple[Path, bool]]:
             yield from _inside(Path(entry.path))
 
 
-def _is_own(file: Path, own: Own | None) -> bool:
-    if own is None or file.is_symlink() or not file.is_file():
+def _is_own(file: Path, entry: Own | None) -> bool:
+    if entry is None or file.is_symlink() or not file.is_file():
         return False
     try:
-        return _hash(file.read_bytes()) in own.hashes
+        return _hash(file.read_bytes()) in entry.hashes
     except OSError:
         return False
 

@@ -48,7 +48,22 @@ class Display(Protocol):
 
 @contextmanager
 def progress(console: Console, stages: Mapping[str, Stage], jobs: int) -> Iterator[Display]:
-    """Live bars on a terminal, plain lines elsewhere."""
+    """
+    Show what is done and left: live bars on a terminal, plain lines elsewhere.
+
+    Parameters
+    ----------
+    console : Console
+    stages : mapping of str to Stage
+        The parts of the work by name.
+    jobs : int
+        Number of workers.
+
+    Yields
+    ------
+    Display
+        To be told of every finished piece of work.
+    """
     if not console.is_terminal:
         yield Lines(console, stages, jobs)
         return

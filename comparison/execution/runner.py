@@ -70,16 +70,15 @@ class Runner:
             If the cache cannot be written, or the executor cannot go on.
         """
         cache, batches = self.results.cache, study.batches()
-        stored = {} if cache is None else {place: cached_batch(cache, batch) for place, batch in enumerate(batches)}
-        found = {place: answer for place, answer in stored.items() if answer is not None}
-        missing = [place for place in range(len(batches)) if place not in found]
+        stored = [None if cache is None else cached_batch(cache, batch) for batch in batches]
+        answers = {place: answer for place, answer in enumerate(stored) if answer is not None}
+        missing = [place for place in range(len(batches)) if place not in answers]
         left = self.results.missing(tasks)
-        if found and cache is not None:
+        if answers and cache is not None:
             others = f", {len(tasks) - len(left)} of {len(tasks)} analyses" if tasks else ""
-            there = (
-                f"{len(found)} of {len(batches)} batches{others} are in {cache.folder}: only the others are computed."
-            )
-            self.console.print(there, soft_wrap=True)  # a path is copied whole
+            count = f"{len(answers)} of {len(batches)} batches{others}"
+            # a path is copied whole
+            self.console.print(f"{count} are in {cache.folder}: only the others are computed.", soft_wrap=True)
         if missing or left:
             stages = (
                 {COMPILING: Stage(1, START_UP)} | _batch_stages(study, batches, missing) | _task_stages(tasks, left)
@@ -87,11 +86,11 @@ class Runner:
             titles = {WARM_UP: COMPILING, **{model.key: model.title for model in study.hierarchy}}
             compiled = {model.key for model in study.hierarchy if model.side == "reference"}
             self.console.print(COMPILED_ONCE)
-            rest = [batches[place] for place in missing]
-            pieces: list[Piece] = [warm_up(study), *rest, *_longest_first(left)]
-            answers = self._sweep(pieces, stages, titles, compiled, pending=True)
-            found |= zip(missing, [answer for answer in answers if isinstance(answer, BatchResult)][1:])  # not warm-up
-        return Computed(batches, [found[place] for place in range(len(batches))], len(batches) - len(missing))
+            pieces: list[Piece] = [warm_up(study), *(batches[place] for place in missing), *_longest_first(left)]
+            results = self._sweep(pieces, stages, titles, compiled, pending=True)
+            _, *computed = [result for result in results if isinstance(result, BatchResult)]  # the first is the warm-up
+            answers |= zip(missing, computed)
+        return Computed(batches, [answers[place] for place in range(len(batches))], len(batches) - len(missing))
 
     def run_tasks(self, tasks: Sequence[Task], compile_first: bool = False) -> None:
         """
@@ -153,10 +152,10 @@ def _longest_first(tasks: Sequence[Task]) -> list[Task]:
 def _batch_stages(study: Study, batches: Sequence[Batch], missing: Sequence[int]) -> dict[str, Stage]:
     stages = {}
     for model in study.hierarchy:
-        own = {place: len(batch.phases) for place, batch in enumerate(batches) if batch.model == model.key}
-        if own:
-            points = sum(own.values())
-            left = sum(own[place] for place in missing if place in own)
+        points_by_place = {place: len(batch.phases) for place, batch in enumerate(batches) if batch.model == model.key}
+        if points_by_place:
+            points = sum(points_by_place.values())
+            left = sum(points_by_place[place] for place in missing if place in points_by_place)
             stages[model.title] = Stage(points, study.seconds(model), points - left)
     return stages
 
@@ -164,8 +163,8 @@ def _batch_stages(study: Study, batches: Sequence[Batch], missing: Sequence[int]
 def _task_stages(tasks: Sequence[Task], left: Sequence[Task]) -> dict[str, Stage]:
     stages = {}
     for name in dict.fromkeys(task.stage for task in tasks):
-        own = [task.seconds for task in tasks if task.stage == name]
-        stages[name] = Stage(len(own), sum(own), len(own) - sum(task.stage == name for task in left))
+        seconds = [task.seconds for task in tasks if task.stage == name]
+        stages[name] = Stage(len(seconds), sum(seconds), len(seconds) - sum(task.stage == name for task in left))
     return stages
 
 

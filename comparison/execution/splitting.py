@@ -11,7 +11,18 @@ from comparison.study.batches import Batch, BatchResult
 
 
 def split_batch(batch: Batch) -> list[Batch]:
-    """The two halves of the batch's phases; nothing for a single point."""
+    """
+    The two halves of a batch's phases.
+
+    Parameters
+    ----------
+    batch : Batch
+
+    Returns
+    -------
+    list of Batch
+        Empty for a single point.
+    """
     middle = len(batch.phases) // 2
     if not middle:
         return []
@@ -20,7 +31,20 @@ def split_batch(batch: Batch) -> list[Batch]:
 
 
 def merge(batch: Batch, answers: Sequence[BatchResult]) -> BatchResult:
-    """The answer of the batch from those of its parts, in order; costs add up, complaints are kept once each."""
+    """
+    The answer of a batch from those of its parts.
+
+    Parameters
+    ----------
+    batch : Batch
+    answers : sequence of BatchResult
+        In the order of their phases.
+
+    Returns
+    -------
+    BatchResult
+        Costs added up; each error message once.
+    """
     mu, error, instant, cap_share = (
         np.concatenate([getattr(answer, name) for answer in answers])
         for name in ("mu", "error", "instant", "cap_share")

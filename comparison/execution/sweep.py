@@ -15,12 +15,14 @@ from typing import Generic, TypeVar
 from comparison.execution.executors import (
     ExecutorLostError,
     Pool,
+    TimeLimitError,
     WorkerDiedError,
     abandon,
     factory,
-    process_pool,
+    start,
     width,
 )
+from comparison.execution.processes import process_pool
 from reference.problem import Outcome
 
 Task = TypeVar("Task")
@@ -62,16 +64,44 @@ def sweep(
     join: Callable[[Task, Sequence[Result]], Result] | None = None,
 ) -> list[Result]:
     """
-    `solve` every task on `executor`, an Executor or what makes one for `jobs` workers; `done` is called here as results
-    arrive, in any order.
+    Run every task on an executor and lose none.
 
-    A task that is not `ready` lets others pass; it is asked again whenever a result has arrived, and starts in any
-    case when nothing else is left to wait for.
+    A task that raises is answered by `on_failure(task, Outcome.SOLVER_FAILED, message)`. One that has a `timeout`, s of
+    processor time, and takes longer, by `on_failure(task, Outcome.TIME_LIMIT, message)`. One whose worker dies is tried
+    once more, then `split` into parts, until a part that cannot be split has killed two workers: that one alone is
+    answered by `on_failure(part, Outcome.WORKER_DIED, message)`, and `join` puts the task together again.
 
-    A task that raises is answered by `lost(task, Outcome.SOLVER_FAILED, message)`. One whose worker dies is tried once
-    more, then `split` into parts, until a part that cannot be split has killed two workers: that one alone is answered
-    by `lost(part, Outcome.WORKER_DIED, message)`, and `join(task, results of its parts)` puts the task together again.
-    Raises ExecutorLostError when the executor cannot go on; results that `done` has seen are the caller's to keep.
+    Parameters
+    ----------
+    tasks : sequence
+        What is computed.
+    solve : callable
+        Function of a task, importable by its name.
+    on_failure : callable
+        The result of a task that `solve` gave none, from task, `Outcome` and message.
+    done : callable
+        Called here with a task and its result as results arrive, in any order.
+    jobs : int
+        Number of workers, for an executor that does not state its `width`.
+    executor : Executor or callable
+        What runs the tasks, or what makes it for a number of workers.
+    ready : callable
+        Whether a task may start. Others pass it meanwhile; it is asked again whenever a result has arrived, and the
+        task starts in any case when nothing else is left to wait for.
+    split : callable
+        The parts of a task; empty if it cannot be split.
+    join : callable
+        The result of a task from those of its parts.
+
+    Returns
+    -------
+    list
+        Results in the order of the tasks.
+
+    Raises
+    ------
+    ExecutorLostError
+        If the executor cannot go on; results that `done` has seen are the caller's to keep.
     """
     return _Sweep(tasks, solve, on_failure, done, ready, split, join).run(factory(executor), jobs)
 
@@ -90,7 +120,7 @@ class _Sweep(Generic[Task, Result]):
         self._solve, self._on_failure, self._done = solve, on_failure, done
         self._ready, self._split, self._join = ready, split, join
         self._queue: deque[_Work[Task, Result]] = deque(_Work(task, place) for place, task in enumerate(tasks))
-        self._flying: dict[Future[Result], _Work[Task, Result]] = {}
+        self._at_work: dict[Future[Result], _Work[Task, Result]] = {}
         self._results: dict[int, Result] = {}
 
     def run(self, make: Callable[[int], Executor], jobs: int) -> list[Result]:
@@ -101,22 +131,24 @@ class _Sweep(Generic[Task, Result]):
             except BaseException:
                 abandon(pool)
                 raise
-            self._flying.clear()
+            self._at_work.clear()
             pool.shutdown(cancel_futures=True)
         return [self._results[place] for place in range(len(self._results))]
 
     def _drain(self, pool: Executor, jobs: int) -> None:
         """Work until nothing is left, or until the pool breaks, with its tasks queued again."""
-        while self._queue or self._flying:
+        while self._queue or self._at_work:
             if not self._fill(pool, jobs):
                 return
             arrived = [
-                (self._flying.pop(future), future)
-                for future in wait(self._flying, LOOK, return_when=FIRST_COMPLETED).done
+                (self._at_work.pop(future), future)
+                for future in wait(self._at_work, LOOK, return_when=FIRST_COMPLETED).done
             ]
             broken = [work for work, future in arrived if isinstance(_error(future), BrokenExecutor)]
             try:
-                unbroken = not broken and self._fill(pool, jobs, more=True)  # workers go on while results are stored
+                unbroken = not broken and self._fill(
+                    pool, jobs, arriving=True
+                )  # workers go on while results are stored
             finally:
                 for work, future in arrived:
                     self._take(work, future)
@@ -133,48 +165,51 @@ class _Sweep(Generic[Task, Result]):
         if error is None:
             self._keep(work, future.result())
         elif isinstance(error, WorkerDiedError):
-            self._died(work, error.times)
+            self._died(work, error.times, error.exit_code)
+        elif isinstance(error, TimeLimitError):
+            self._keep(work, self._on_failure(work.task, Outcome.TIME_LIMIT, str(error)))
         elif not isinstance(error, BrokenExecutor | ExecutorLostError):
             message = f"{type(error).__name__}: {error}"
             self._keep(work, self._on_failure(work.task, Outcome.SOLVER_FAILED, message))
 
-    def _fill(self, pool: Executor, jobs: int, more: bool = False) -> bool:
+    def _fill(self, pool: Executor, jobs: int, arriving: bool = False) -> bool:
         """
-        As many tasks in flight as the executor has workers; False if it is found broken.
+        As many tasks at work as the executor has workers; False if it is found broken.
 
-        more: results have arrived that may make tasks ready, so that none is passed over yet.
+        arriving: results have arrived that may make tasks ready, so that none is passed over yet.
         """
-        while len(self._flying) < width(pool, jobs) and (work := self._next(more)) is not None:
+        while len(self._at_work) < width(pool, jobs) and (work := self._next(arriving)) is not None:
             try:
-                self._flying[pool.submit(self._solve, work.task)] = work
+                future = start(pool, self._solve, work.task, getattr(work.task, "timeout", None))
             except BrokenExecutor:
-                if self._flying:
+                if self._at_work:
                     self._queue.appendleft(work)
-                self._broken([] if self._flying else [work])
+                self._broken([] if self._at_work else [work])
                 return False
+            self._at_work[future] = work
         return True
 
-    def _next(self, more: bool) -> _Work[Task, Result] | None:
-        """What to submit now, taken from the queue; a suspect flies alone."""
-        flying = list(self._flying.values())
-        if any(work.alone for work in flying):
+    def _next(self, arriving: bool) -> _Work[Task, Result] | None:
+        """What to submit now, taken from the queue; a suspect runs alone."""
+        at_work = list(self._at_work.values())
+        if any(work.alone for work in at_work):
             return None
         for work in self._queue:
-            if not (work.alone and flying) and self._ready(work.task):
+            if not (work.alone and at_work) and self._ready(work.task):
                 break
-            if more:
+            if arriving:
                 return None
         else:
-            if flying or not self._queue:
+            if at_work or not self._queue:
                 return None
             work = self._queue[0]
         self._queue.remove(work)
         return work
 
     def _broken(self, suspects: Sequence[_Work[Task, Result]]) -> None:
-        """The suspects or any task in flight did it. If there was only one it did; of several each is tried alone."""
-        suspects = sorted([*suspects, *self._flying.values()], key=lambda work: work.place)
-        self._flying.clear()
+        """The suspects or any task at work did it. If there was only one it did; of several each is tried alone."""
+        suspects = sorted([*suspects, *self._at_work.values()], key=lambda work: work.place)
+        self._at_work.clear()
         if len(suspects) == 1:
             self._died(suspects[0])
         else:
@@ -182,7 +217,7 @@ class _Sweep(Generic[Task, Result]):
                 work.alone = True
                 self._queue.appendleft(work)
 
-    def _died(self, work: _Work[Task, Result], times: int = 1) -> None:
+    def _died(self, work: _Work[Task, Result], times: int = 1, exit_code: int | None = None) -> None:
         work.deaths += times
         parts = self._split(work.task)
         if work.deaths < 2 and (work.parent is None or not parts):
@@ -192,9 +227,9 @@ class _Sweep(Generic[Task, Result]):
             children = [_Work(part, place, work, alone=work.alone) for place, part in enumerate(parts)]
             self._queue.extendleft(reversed(children))
         else:
-            self._keep(
-                work, self._on_failure(work.task, Outcome.WORKER_DIED, f"the worker process died {work.deaths} times")
-            )
+            ending = "" if exit_code is None else f" (exit code {exit_code})"
+            message = f"the worker process died {work.deaths} times{ending}"
+            self._keep(work, self._on_failure(work.task, Outcome.WORKER_DIED, message))
 
     def _keep(self, work: _Work[Task, Result], result: Result) -> None:
         parent = work.parent

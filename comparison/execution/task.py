@@ -33,6 +33,7 @@ class Task:
     seconds: float  # predicted cost, as `Model.seconds_per_point`
     about: Any = None  # what its directory in the cache belongs to
     needs_compiled_reference: bool = True  # on a new installation it waits until one worker has compiled the reference
+    timeout: float | None = None  # most processor time, s, rounded up; what takes longer is ended: Outcome.TIME_LIMIT
 
     @cached_property
     def key(self) -> str:
@@ -50,16 +51,45 @@ class TaskResult:
     outcome: Outcome = Outcome.OK
     error_message: str = ""
 
+    @property
+    def reason(self) -> str:
+        """Why there is no value, in one line."""
+        return f"{self.outcome}: {self.error_message}"
+
 
 def execute(task: Task) -> TaskResult:
-    """Runs inside a worker process."""
+    """
+    Call the function of a task. Runs inside a worker process.
+
+    Parameters
+    ----------
+    task : Task
+
+    Returns
+    -------
+    TaskResult
+        With processor time. What the function raises is not caught here: the sweep answers for it.
+    """
     clock = time.process_time()
     value = task.function(task.argument)
     return TaskResult(value, time.process_time() - clock)
 
 
 def unfinished(task: Task, outcome: Outcome, error_message: str) -> TaskResult:
-    """The result of a task that raised or whose worker died."""
+    """
+    The result of a task that raised, took too long or whose worker died.
+
+    Parameters
+    ----------
+    task : Task
+    outcome : Outcome
+    error_message : str
+        One line.
+
+    Returns
+    -------
+    TaskResult
+    """
     return TaskResult(None, 0.0, outcome, error_message)
 
 
@@ -69,7 +99,30 @@ def named(function: Callable[..., Any]) -> str:
 
 
 def fingerprint(value: Any) -> Any:
-    """All that `value` holds as plain JSON, arrays as hashes; a model also by its source. Raises TypeError."""
+    """
+    All that a value holds, as plain JSON: what distinguishes one task from another.
+
+    Parameters
+    ----------
+    value : object
+        Numbers, texts, scenes, arrays (by hash), models (also by their source), functions (by name), and lists,
+        mappings and dataclasses of these.
+
+    Returns
+    -------
+    object
+        What `json.dumps` takes.
+
+    Raises
+    ------
+    TypeError
+        For anything else.
+
+    Examples
+    --------
+    >>> fingerprint({"b": (1, 2.5), "a": None})
+    [['a', None], ['b', [1, 2.5]]]
+    """
     if value is None or isinstance(value, bool | int | str | float):
         return value.value if isinstance(value, Enum) else value
     if isinstance(value, Scene):

@@ -9,7 +9,7 @@ from typing import Any, get_type_hints
 
 from comparison.execution.cache import Cache
 from comparison.execution.keys import task_key
-from comparison.execution.task import Task, TaskResult
+from comparison.execution.task import Task, TaskResult, unfinished
 from reference.problem import Outcome
 
 
@@ -20,6 +20,14 @@ class Part:
     tasks: int = 0
     stored: int = 0
     seconds: float = 0.0
+
+
+@dataclass(frozen=True)
+class Overrun:
+    """Stored in place of a result: the task took longer than its timeout, s of processor time; how it ended."""
+
+    timeout: float
+    ending: str  # in words
 
 
 class TaskResults:
@@ -47,12 +55,23 @@ class TaskResults:
     def __getitem__(self, task: Task) -> TaskResult:
         return self._results[task.key]
 
-    def value(self, task: Task, on_failure: Callable[[Any, Outcome, str], Any]) -> Any:
-        """What the task returned; `on_failure(argument, outcome, error message)` if it returned nothing."""
+    def value(self, task: Task, on_failure: Callable[[Any, TaskResult], Any]) -> Any:
+        """
+        What a task returned, or what stands in its place.
+
+        Parameters
+        ----------
+        task : Task
+            One that was executed or read.
+        on_failure : callable
+            Makes the value of a task that returned nothing, from its argument and the result that says why.
+
+        Returns
+        -------
+        object
+        """
         result = self[task]
-        if result.outcome == Outcome.OK:
-            return result.value
-        return on_failure(task.argument, result.outcome, result.error_message)
+        return result.value if result.outcome == Outcome.OK else on_failure(task.argument, result)
 
     def missing(self, tasks: Iterable[Task]) -> list[Task]:
         """The tasks that must be computed; the results of the others are read."""
@@ -66,10 +85,15 @@ class TaskResults:
         """
         Keep a result. Raises StoreError.
 
-        One that names an error is not stored in the cache: the next run tries it again.
+        One that names an error is not stored in the cache: the next run tries it again. That a task took longer than
+        its `timeout` is stored: only a run that allows more tries it again.
         """
         self._remember(task, result)
-        if self.cache is not None and not result.error_message:
+        if self.cache is None:
+            return
+        if result.outcome == Outcome.TIME_LIMIT and task.timeout is not None:
+            self.cache.put(task_key(task), Overrun(task.timeout, result.error_message))
+        elif not result.error_message:
             self.cache.put(task_key(task), (result.value, result.cost))
 
     def _remember(self, task: Task, result: TaskResult) -> None:
@@ -81,9 +105,14 @@ class TaskResults:
         if self.cache is None or self._fresh:
             return False
         declared: Any = get_type_hints(task.function)["return"]
-        stored = self.cache.get(task_key(task), tuple[declared, float])
-        if stored is None:
+        stored = self.cache.get(task_key(task), tuple[declared, float] | Overrun)
+        if isinstance(stored, Overrun):
+            if task.timeout is None or task.timeout > stored.timeout:
+                return False
+            self._remember(task, unfinished(task, Outcome.TIME_LIMIT, stored.ending))
+        elif stored is not None:
+            self._remember(task, TaskResult(*stored))
+        else:
             return False
-        self._remember(task, TaskResult(*stored))
         self.parts[task.stage].stored += 1
         return True

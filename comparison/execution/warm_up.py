@@ -33,7 +33,18 @@ def warm_up(study: Study) -> Batch:
 
 
 def compiling_task(stage: str) -> Task:
-    """The same for tasks without a study: one phase pair of a built-in scene."""
+    """
+    A task that compiles the reference, for commands without a study: one phase pair of a built-in scene.
+
+    Parameters
+    ----------
+    stage : str
+        Stage of the task.
+
+    Returns
+    -------
+    Task
+    """
     return Task(_first_call, load_scene("fig3-I").with_values({"duration": DURATION}), stage, 0.0, None, False)
 
 

@@ -7,7 +7,8 @@ from concurrent.futures import Executor
 from contextlib import contextmanager
 
 from comparison.execution.dask import cluster
-from comparison.execution.executors import Pool, factory, process_pool
+from comparison.execution.executors import Pool, factory
+from comparison.execution.processes import process_pool
 
 
 @contextmanager

@@ -18,6 +18,7 @@ from comparison.analysis.waterfall import Waterfall as BodyWaterfall
 from comparison.analysis.waterfall import waterfall
 from comparison.report.alerts import alerts
 from comparison.report.findings import Findings
+from comparison.report.pdf import why_no_pdf
 from comparison.report.results import (
     Assumptions,
     BudgetEntry,
@@ -87,6 +88,7 @@ def assemble(found: Findings) -> Results:
         absent=study.absent,
         alerts=alerts(found),
         faults=list(found.faults),
+        no_pdf=why_no_pdf(),
     )
 
 

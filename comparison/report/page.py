@@ -168,7 +168,8 @@ def page(figures: Path, found: Findings, results: Results) -> str:
             (section.title, results.absent.get(section.name, section.absent))
             for section in SECTIONS
             if not section.present(results)
-        ],
+        ]
+        + ([("Report as PDF", results.no_pdf)] if results.no_pdf else []),
         results=results,
         alerts=_alert_groups(results),
         study=study,

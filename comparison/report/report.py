@@ -1,6 +1,6 @@
 """
-Writes the report: index.html, which needs none of the others; surfaces.nc; summary.json with its schema and summary.md;
-junit.xml; figures/.
+Writes the report: index.html, which needs none of the others; report.pdf; surfaces.nc; summary.json with its schema
+and summary.md; junit.xml; figures/.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from pathlib import Path
 from comparison.report.findings import Findings
 from comparison.report.junit import junit
 from comparison.report.page import SECTIONS, page
+from comparison.report.pdf import write_pdf
 from comparison.report.results import Results, schema_json
 from comparison.report.summary_text import summary_text
 
@@ -45,4 +46,6 @@ def write_report(folder: Path, results: Results, found: Findings) -> None:
     for section in SECTIONS:
         if section.draw and section.present(results):
             section.draw(figures, found)
+    if not results.no_pdf:
+        write_pdf(folder / "report.pdf", results, found)
     (folder / "index.html").write_text(page(figures, found, results), encoding="utf-8")

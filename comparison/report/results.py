@@ -843,6 +843,8 @@ class Results(Part):
     """what a reader must know before trusting a number, the most serious first"""
     faults: list[Text]
     """error messages of the solvers"""
+    no_pdf: Text
+    """why there is no report.pdf and what helps; empty where there is one"""
 
     @property
     def broken(self) -> list[Alert]:

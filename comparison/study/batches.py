@@ -46,13 +46,40 @@ class BatchResult:
 
 
 def imported(path: str) -> Any:
-    """The object named "package.module:name"."""
+    """
+    An object by its name.
+
+    Parameters
+    ----------
+    path : str
+        "package.module:name".
+
+    Returns
+    -------
+    object
+    """
     module, name = path.split(":")
     return getattr(import_module(module), name)
 
 
 def refusal_of(scene: Scene, model: Model, tolerance: float, full: bool = False) -> str:
-    """Why a model would refuse every phase pair of a scene, told without computing one; "" if it would not."""
+    """
+    Why a model would refuse every phase pair of a scene, told without computing one.
+
+    Parameters
+    ----------
+    scene : Scene
+    model : Model
+    tolerance : float
+        Relative error asked of every mu.
+    full : bool
+        Whether nothing is reduced.
+
+    Returns
+    -------
+    str
+        Empty if it would not.
+    """
     if model.refusal is None or not model.applies(scene):
         return ""
     asked = {"full": True} if full else {}
@@ -60,7 +87,18 @@ def refusal_of(scene: Scene, model: Model, tolerance: float, full: bool = False)
 
 
 def execute_batch(batch: Batch) -> BatchResult:
-    """Ask the batch's model. What raises or answers in a wrong shape becomes points without an answer, and is named."""
+    """
+    Ask the batch's model. Runs inside a worker process.
+
+    Parameters
+    ----------
+    batch : Batch
+
+    Returns
+    -------
+    BatchResult
+        What raises or answers in a wrong shape becomes points without an answer, and is named.
+    """
     points, bodies = len(batch.phases), len(batch.scene.bodies)
     try:
         result = imported(batch.amplification)(batch.scene, batch.phases, **batch.settings)
@@ -81,7 +119,21 @@ def execute_batch(batch: Batch) -> BatchResult:
 
 
 def unanswered(batch: Batch, outcome: Outcome, error_message: str) -> BatchResult:
-    """NaN for every point of the batch, with the outcome that explains it."""
+    """
+    NaN for every point of a batch.
+
+    Parameters
+    ----------
+    batch : Batch
+    outcome : Outcome
+        Why, for every point.
+    error_message : str
+        One line.
+
+    Returns
+    -------
+    BatchResult
+    """
     points, bodies = len(batch.phases), len(batch.scene.bodies)
     nothing = np.full((points, bodies), np.nan)
     return BatchResult(nothing, nothing.copy(), [outcome.value] * points, np.full(points, np.nan), 0.0, error_message)

@@ -25,8 +25,8 @@ SEED = 4
 def is_recorded(model: Model) -> bool:
     """Whether the model is the one of the record, and not another under its name."""
     return any(
-        (own.key, own.amplification, own.settings) == (model.key, model.amplification, model.settings)
-        for own in MODEL_HIERARCHY
+        (entry.key, entry.amplification, entry.settings) == (model.key, model.amplification, model.settings)
+        for entry in MODEL_HIERARCHY
     )
 
 
@@ -50,25 +50,42 @@ class Costs:
 
 def costs(scenes: Sequence[Scene], hierarchy: Sequence[Model], measure: bool, full: bool = False) -> Costs:
     """
-    Seconds per point of every model on every scene; `measure`: of this machine, which takes a second or two.
+    Seconds per point of every model on every scene.
 
     A scene of the record costs what was recorded, times what a fixed piece of work takes here beside what it took then.
     Another is tried at a few phase pairs if `measure`, and else in proportion to its duration.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+    hierarchy : sequence of Model
+    measure : bool
+        Whether this machine is measured, which takes a second or two.
+    full : bool
+        Whether nothing is reduced.
+
+    Returns
+    -------
+    Costs
     """
     record, models = recorded(), [model for model in hierarchy if is_recorded(model)]
     now = machine_benchmark() if measure and models else record.machine_benchmark
     speed = {side: now[side] / record.machine_benchmark[side] for side in now}
-    found: dict[tuple[str, str], float] = {}
+    seconds: dict[tuple[str, str], float] = {}
     uncalibrated: list[Scene] = []
     for scene in scenes:
-        own = record.seconds.get(scene.digest())
-        if own is None or full:
+        recorded_seconds = record.seconds.get(scene.digest())
+        if recorded_seconds is None or full:
             uncalibrated.append(scene)
             continue
-        found |= {(scene.name, r.key): own[r.key] * speed[r.side] for r in models if r.key in own and r.applies(scene)}
+        seconds |= {
+            (scene.name, r.key): recorded_seconds[r.key] * speed[r.side]
+            for r in models
+            if r.key in recorded_seconds and r.applies(scene)
+        }
     if uncalibrated and models:
-        found |= _uncalibrated(uncalibrated, models, speed, measure, full)
-    return Costs(found, measure and bool(models), float(np.mean(list(speed.values()))))
+        seconds |= _uncalibrated(uncalibrated, models, speed, measure, full)
+    return Costs(seconds, measure and bool(models), float(np.mean(list(speed.values()))))
 
 
 def _uncalibrated(
@@ -106,7 +123,7 @@ def _uncalibrated(
 
 def _typical(model: Model) -> float:
     """Mean over the recorded scenes."""
-    return float(np.mean([own[model.key] for own in recorded().seconds.values() if model.key in own]))
+    return float(np.mean([seconds[model.key] for seconds in recorded().seconds.values() if model.key in seconds]))
 
 
 def _trial_run(scene: Scene, model: Model, points: int, full: bool) -> float:

@@ -26,16 +26,13 @@ DEFAULT_TOLERANCE = 1e-3
 
 @dataclass(frozen=True)
 class StudyPreset:
-    """
-    A study that a budget may buy. grid: phases per axis of the equations. translational, spatial: the most of the
-    engine's models, 0 without. whole: with all that the report tells beside the surfaces. tolerance: asked.
-    """
+    """A study that a budget may buy."""
 
-    grid: int
-    translational: int
+    grid: int  # phases per axis of the equations
+    translational: int  # most phases per axis of the engine's models, 0 without them
     spatial: int
-    with_analyses: bool
-    tolerance: float = DEFAULT_TOLERANCE
+    with_analyses: bool  # all that the report tells beside the surfaces
+    tolerance: float = DEFAULT_TOLERANCE  # relative error asked
 
 
 STUDY_PRESETS = (  # each costs more than the one before
@@ -85,17 +82,13 @@ class StudyRequest:
 
 @dataclass(frozen=True)
 class StudyPlan:
-    """
-    study: what is computed. whole: whether with all that the report tells beside the surfaces. left_out: models that
-    cannot meet the tolerance or do not fit, a line each. compute: processor time of the surfaces expected, s; wall: of
-    the whole run with all workers.
-    """
+    """What is computed, and what it is expected to cost."""
 
     study: Study
-    with_analyses: bool
-    omitted: tuple[str, ...]
-    compute: float
-    wall: float
+    with_analyses: bool  # all that the report tells beside the surfaces
+    omitted: tuple[str, ...]  # models that cannot meet the tolerance or do not fit, a line each
+    compute: float  # expected processor time of the surfaces, s
+    wall: float  # expected time of the whole run with all workers, s
 
 
 class BudgetError(ValueError):
@@ -104,18 +97,31 @@ class BudgetError(ValueError):
 
 def plan_study(request: StudyRequest) -> StudyPlan:
     """
-    The cheapest study that meets the tolerance asked, or the most ambitious that fits the budget. Raises BudgetError.
+    The cheapest study that meets the tolerance asked, or the last preset that fits the budget.
+
+    Parameters
+    ----------
+    request : StudyRequest
+
+    Returns
+    -------
+    StudyPlan
+
+    Raises
+    ------
+    BudgetError
+        If nothing fits.
     """
     begin = time.monotonic()
     measured = costs(request.scenes, request.hierarchy, request.measures_machine, request.full)
     if request.budget is None:
         return _plan(STUDY_PRESETS[DEFAULT_PRESET], request, measured)
-    allowed = [one for one in STUDY_PRESETS if request.tolerance is None or one.tolerance == DEFAULT_TOLERANCE]
+    allowed = [preset for preset in STUDY_PRESETS if request.tolerance is None or preset.tolerance == DEFAULT_TOLERANCE]
     spent = time.monotonic() - begin
-    made = [_plan(one, request, measured) for one in allowed]
-    fitting = [one for one in made if one.wall + spent <= request.budget]
+    plans = [_plan(preset, request, measured) for preset in allowed]
+    fitting = [plan for plan in plans if plan.wall + spent <= request.budget]
     if not fitting:
-        least = made[0].wall + spent
+        least = plans[0].wall + spent
         raise BudgetError(
             f"the smallest study of {_count(request.scenes)} takes about {least:.0f} s here with {request.jobs} "
             f"worker{'' if request.jobs == 1 else 's'}: give that, or fewer scenes"
@@ -128,7 +134,7 @@ def _count(scenes: Sequence[Scene]) -> str:
 
 
 def _plan(preset: StudyPreset, request: StudyRequest, measured: Costs) -> StudyPlan:
-    """The study of one ambition, with what it costs."""
+    """The study of one preset, with what it costs."""
     tolerance = preset.tolerance if request.tolerance is None else request.tolerance
     grid = request.grid or preset.grid
     models, omitted = [], []
@@ -161,11 +167,24 @@ def _plan(preset: StudyPreset, request: StudyRequest, measured: Costs) -> StudyP
 
 
 def setting(model: Model, tolerance: float) -> float:
-    """What to ask of a model so that `tolerance` is met: the cheapest, or a tighter one that is hardly dearer."""
+    """
+    What to ask of a model so that a tolerance is met.
+
+    Parameters
+    ----------
+    model : Model
+    tolerance : float
+        Relative error that 99 % of the points are to meet.
+
+    Returns
+    -------
+    float
+        The cheapest tolerance that was recorded to meet it, or a tighter one that costs hardly more.
+    """
     accuracy = recorded().accuracy[model.key]
-    able = [tolerance] + [one for one, met in zip(accuracy.tolerances, accuracy.met) if met and one < tolerance]
-    cheapest = min(accuracy.cost(one) for one in able)
-    return min(one for one in able if accuracy.cost(one) <= HARDLY_MORE * cheapest)
+    able = [tolerance] + [asked for asked, met in zip(accuracy.tolerances, accuracy.met) if met and asked < tolerance]
+    cheapest = min(accuracy.cost(asked) for asked in able)
+    return min(asked for asked in able if accuracy.cost(asked) <= HARDLY_MORE * cheapest)
 
 
 def tightest() -> float:

@@ -29,10 +29,10 @@ def reductions(study: Study) -> list[Row]:
 def _of(study: Study, scene: Scene) -> list[Row]:
     models = [model for model in study.hierarchy if model.applies(scene)]
     rows = []
-    for factor, some in _by_factor(
+    for factor, concerned in _by_factor(
         [(study.points(model, scene) / len(study.solved(scene, model)), model) for model in models]
     ):
-        rows.append(Row("mirrored phases", scene.name, _titles(some, models), f"1/{factor:.3g}", _mirror(scene)))
+        rows.append(Row("mirrored phases", scene.name, _titles(concerned, models), f"1/{factor:.3g}", _mirror(scene)))
     if no_friction(scene):
         alike = [
             model
@@ -43,15 +43,15 @@ def _of(study: Study, scene: Scene) -> list[Row]:
         if alike:
             rows.append(Row("laws of friction", scene.name, _titles(alike, models), "none", no_friction(scene).reason))
     for part in REDUCTIONS:
-        some = [model for model in models if part.concerns(model)]
-        if some and (decided := part.decided(scene)):
-            rows.append(Row(part.name, scene.name, _titles(some, models), f"1/{part.factor:.3g}", decided.reason))
+        concerned = [model for model in models if part.concerns(model)]
+        if concerned and (decided := part.decided(scene)):
+            rows.append(Row(part.name, scene.name, _titles(concerned, models), f"1/{part.factor:.3g}", decided.reason))
     return rows
 
 
-def _by_factor(found: Sequence[tuple[float, Model]]) -> list[tuple[float, list[Model]]]:
-    factors = sorted({factor for factor, _ in found if factor > 1.0}, reverse=True)
-    return [(factor, [model for own, model in found if own == factor]) for factor in factors]
+def _by_factor(models_by_factor: Sequence[tuple[float, Model]]) -> list[tuple[float, list[Model]]]:
+    factors = sorted({factor for factor, _ in models_by_factor if factor > 1.0}, reverse=True)
+    return [(factor, [model for its_factor, model in models_by_factor if its_factor == factor]) for factor in factors]
 
 
 def _mirror(scene: Scene) -> str:
@@ -60,5 +60,5 @@ def _mirror(scene: Scene) -> str:
     return (own_axes(scene) or half_turn(scene)).reason
 
 
-def _titles(some: Sequence[Model], models: Sequence[Model]) -> str:
-    return "all" if len(some) == len(models) else ", ".join(model.key for model in some)
+def _titles(concerned: Sequence[Model], models: Sequence[Model]) -> str:
+    return "all" if len(concerned) == len(models) else ", ".join(model.key for model in concerned)

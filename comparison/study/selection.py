@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from reference.problem import Scene
+from reference.problem import Scene, builtin_scenes
 from reference.problem.analyses import ANALYSES, selected
+
+OF_THE_PAPER = ("claims", "errata")  # analyses that concern the paper's own scenes
 
 
 @dataclass(frozen=True)
@@ -15,18 +17,40 @@ class Selection:
     The analyses of every scene.
 
     by_scene: those asked for, by name of the scene; a scene that is not in it has all. dropped: those that are left out
-    of every scene because they do not fit the budget.
+    of every scene because they do not fit the budget. of_the_paper: those that are made of the paper's scenes unless
+    they are asked for by name, and that no scene here has for this reason.
     """
 
     by_scene: Mapping[str, Sequence[str]] = field(default_factory=dict)
     dropped: tuple[str, ...] = ()
+    of_the_paper: tuple[str, ...] = ()
 
     @staticmethod
     def of(scenes: Iterable[Scene], only: Sequence[str] | None, skip: Sequence[str] | None) -> Selection:
-        """What the command line asks for, and where it asks for nothing, what each scene file does."""
-        if only is not None or skip is not None:
-            return Selection({scene.name: selected(only, skip) for scene in scenes})
-        return Selection({scene.name: selected(scene.analyses.only, scene.analyses.skip) for scene in scenes})
+        """
+        What the command line asks for, and where it asks for nothing, what each scene file does.
+
+        A scene that is not the paper's has the paper's claims and errata only where `only` names them.
+        """
+        by_scene, unnamed = {}, set(OF_THE_PAPER)
+        for scene in scenes:
+            asked = (only, skip) if (only, skip) != (None, None) else (scene.analyses.only, scene.analyses.skip)
+            names = selected(*asked)
+            if asked[0] is None and scene.name not in builtin_scenes():
+                by_scene[scene.name] = tuple(name for name in names if name not in OF_THE_PAPER)
+            else:
+                by_scene[scene.name] = names
+                unnamed.clear()
+            unnamed -= set(asked[1] or ())
+        return Selection(by_scene, of_the_paper=tuple(sorted(unnamed)))
+
+    def why_absent(self, analysis: str) -> str:
+        """Why an analysis that no scene has is not made."""
+        if analysis in self.dropped:
+            return "does not fit the budget"
+        if analysis in self.of_the_paper:
+            return f"of the paper's scenes; --only {analysis} makes it of others"
+        return "not asked for"
 
     def without(self, analyses: Collection[str]) -> Selection:
         """The same, with these analyses dropped."""

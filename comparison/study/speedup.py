@@ -39,7 +39,19 @@ REDUCTIONS: tuple[RecordedReduction, ...] = (
 
 
 def speedup(scene: Scene, model: Model) -> float:
-    """Recorded cost of a point in full over that of one from which all is left out that the scene does not require."""
+    """
+    How many times less a point costs for what the scene does not require.
+
+    Parameters
+    ----------
+    scene : Scene
+    model : Model
+
+    Returns
+    -------
+    float
+        Recorded cost of a point in full over that of one from which all of it is left out.
+    """
     factor = 1.0
     for part in REDUCTIONS:
         if part.concerns(model) and part.decided(scene):

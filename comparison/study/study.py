@@ -19,7 +19,19 @@ from reference.problem.analyses import ANALYSES
 
 
 def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
-    """Refuse a name of a scene or family that is there twice. names: each with its source. Raises SceneError."""
+    """
+    Refuse a name of a scene or family that is there twice.
+
+    Parameters
+    ----------
+    names : iterable of tuple
+        Source and name.
+
+    Raises
+    ------
+    SceneError
+        One line.
+    """
     seen: dict[str, str] = {}
     for source, name in names:
         if name in seen:
@@ -74,7 +86,7 @@ class Study:
     def absent(self) -> dict[str, str]:
         """The analyses that are made of no scene, with the reason."""
         return {
-            analysis: "does not fit the budget" if analysis in self.selection.dropped else "not asked for"
+            analysis: self.selection.why_absent(analysis)
             for analysis in ANALYSES
             if not self.selecting(analysis).scenes
         }

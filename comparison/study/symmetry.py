@@ -18,9 +18,20 @@ Array = NDArray[np.float64]
 
 def sources(scene: Scene, grid: int) -> NDArray[np.intp]:
     """
-    For every pair of phases 2 pi k / grid, alpha2 running fastest, the pair that is solved for it: (grid^2,).
+    For every pair of phases on a grid the pair that is solved for it.
 
     An odd grid has no points that are mirror images of each other.
+
+    Parameters
+    ----------
+    scene : Scene
+    grid : int
+        Phases 2 pi k / grid per axis.
+
+    Returns
+    -------
+    ndarray, (grid^2,)
+        Places, alpha2 running fastest.
     """
     place: list[NDArray[np.intp]] = list(np.divmod(np.arange(grid**2), grid))
     half, unused = grid // 2, unused_harmonics(scene)
@@ -34,7 +45,23 @@ def sources(scene: Scene, grid: int) -> NDArray[np.intp]:
 
 
 def surface(scene: Scene, grid: int, solve: Callable[[Scene, Array], Amplification]) -> tuple[Array, Array, list[str]]:
-    """mu and error, (grid, grid, N), and every status met, on phases 2 pi k / grid; `solve` is asked for few."""
+    """
+    The surface of a scene from the fewest phase pairs.
+
+    Parameters
+    ----------
+    scene : Scene
+    grid : int
+        Phases 2 pi k / grid per axis.
+    solve : callable
+        Amplification of the scene at phases (M, 2), rad.
+
+    Returns
+    -------
+    mu, error : ndarray, (grid, grid, N)
+    status : list of str
+        Every status met.
+    """
     solved, taken = np.unique(sources(scene, grid), return_inverse=True)
     answer = solve(scene, phase_grid(grid)[solved])
     mu, error = (values[taken].reshape(grid, grid, -1) for values in (answer.mu, answer.error))

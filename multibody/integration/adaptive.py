@@ -30,35 +30,23 @@ Array = NDArray[np.float64]
 
 FIRST_DIVISIONS = 2  # of the largest step in the first chunk: the contact settles
 MAX_CHUNK_STEPS, DIVIDED_CHUNK_STEPS = 256, 32  # steps in a chunk at the largest step, at smaller ones
-FREE_ITERATIONS = 2  # of Newton's method in a step that costs what `Budget` says
+FREE_ITERATIONS = 2  # of Newton's method in a step; further ones count as steps
 GAP_RATE_STEPS = 4  # over which the rate of a gap is taken
 KINK_STEP_RATIO = 4.0  # first step behind a kink of the loading over slip_change times the relaxation of friction
 RECENT_ROWS = 8  # at the end of a chunk: they decide whether the step may grow
+SETTLED_FRACTION = 0.9  # of a largest value: later values below it do not reach it in a run of another level either
 WARPING_RELAXATION = 20.0  # time until warping has relaxed, in square roots of the warping compliance
 
 
 @dataclass
 class Budget:
-    """
-    Work left to all runs of one point: nominal microseconds, so that the answer does not depend on the machine.
-    """
+    """Steps of the engine left to all runs of one point: the answer does not depend on the machine."""
 
-    left: float  # nominal microseconds
-    step: float  # cost of a step
-    run: float  # cost of a run before its first step
-
-    @staticmethod
-    def of(work: float, coordinates: int) -> Budget:
-        """`work` for a model with so many coordinates, whose matrices are dense; coefficients measured."""
-        return Budget(work, 8.0 + 0.6 * coordinates + 0.02 * coordinates**2, 2e-3 * coordinates**3)
-
-    def cost(self, steps: float, runs: float) -> float:
-        """Of so many steps in so many runs."""
-        return self.step * steps + self.run * runs
+    left: float
 
     def allows(self, span: float, level: Level) -> bool:
         """Whether what is left is enough for `span` at the largest step of a level."""
-        return self.cost(span / level.step, span / level.step / MAX_CHUNK_STEPS) <= self.left
+        return span / level.step <= self.left
 
 
 @dataclass
@@ -66,6 +54,7 @@ class EngineRun:
     """The result of one run from the start of the loading to its end, or to where the run terminates."""
 
     peaks: Peaks  # of each body
+    stop: float  # when it was to stop, in units of time
     outcome: Outcome = Outcome.OK
     instant: float = math.nan  # of a termination, in units of time
     steps: int = 0
@@ -73,6 +62,10 @@ class EngineRun:
     warping_load: float = 0.0  # largest load that warping of the supports takes, in shares of the weight
     last_open: float = -math.inf  # the latest instant at which a support carried no load, in units of time
     max_displacement: float = 0.0  # horizontal, of the platform, in units of length
+    # the last instant at which an acceleration or the displacement of the platform came within SETTLED_FRACTION of its
+    # largest value, in units of time
+    settled: float = 0.0
+    min_load: float = math.inf  # smallest contact force, in weights, of a model that ends where the contact opens
     chunks: list[Motion] = field(default_factory=list)  # the motion, if it is kept
 
     def terminated(self, outcome: Outcome, instant: float) -> EngineRun:
@@ -89,15 +82,20 @@ def run_adaptively(
     level: Level,
     budget: Budget,
     *,
+    stop: float = math.inf,
     keep: bool = False,
 ) -> EngineRun:
-    """Run from `start` at time 0 to `end`; ground: plate's acceleration (T, 3) at times (T,), in units of the model."""
+    """
+    Run from `start` at time 0 to `end`; ground: plate's acceleration (T, 3) at times (T,), in units of the model.
+
+    stop: do not go on after this instant. Up to there the steps are those of a run to `end`.
+    """
     model = engine.model
-    result = EngineRun(Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near))
-    if not budget.allows(end, level):
+    result = EngineRun(Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near), stop)
+    if not budget.allows(min(end, stop), level):
         return result.terminated(Outcome.STEP_LIMIT, 0.0)
     state, time, divisions, next_count = start, 0.0, FIRST_DIVISIONS, MAX_CHUNK_STEPS
-    while time < end * (1.0 - 1e-12):
+    while time < min(end, stop) * (1.0 - 1e-12):
         divisions = max(divisions, level.min_divisions(time))
         step = level.step / STEP_RATIO**divisions
         count = next_count if divisions == 0 else DIVIDED_CHUNK_STEPS
@@ -106,7 +104,7 @@ def run_adaptively(
         motion = engine.run(state, time, step, count)
         result.runs += 1
         result.steps += count if motion is None else len(motion.time) - 1
-        budget.left -= budget.cost(max(count, engine.iterations / FREE_ITERATIONS), 1)
+        budget.left -= max(count, engine.iterations / FREE_ITERATIONS)
         if budget.left < 0.0:
             return result.terminated(Outcome.STEP_LIMIT, time)
         if motion is None or not np.isfinite(motion.accelerations).all():
@@ -157,7 +155,20 @@ def _record(result: EngineRun, motion: Motion, absolute: Array, model: EngineMod
     displacement = largest_displacement(motion.time, motion.coordinates[:, axes], motion.velocities[:, axes])
     result.max_displacement = max(result.max_displacement, displacement)
     result.peaks.add(motion.time, absolute, motion.slip)
+    _record_settling(result, motion, absolute, model)
+    if not model.allows_liftoff:
+        result.min_load = min(result.min_load, -float(motion.gap.max()) / level.penetration)
     return True
+
+
+def _record_settling(result: EngineRun, motion: Motion, absolute: Array, model: EngineModel) -> None:
+    """Record when something that is asked for last came near its largest value so far."""
+    near = (np.linalg.norm(absolute, axis=-1) >= SETTLED_FRACTION * result.peaks.value).any(axis=1)
+    displacement = np.linalg.norm(motion.coordinates[:, model.bodies[0, :2]], axis=-1)
+    near |= displacement >= SETTLED_FRACTION * result.max_displacement
+    rows = np.flatnonzero(near)
+    if len(rows):
+        result.settled = float(motion.time[rows[-1]])
 
 
 def _step_ratio(motion: Motion, engine: Engine, absolute: Array, peak: float, per_change: float) -> Array:

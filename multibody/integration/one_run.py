@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,12 +38,19 @@ class PhasePair:
         units = self.model.units
         return ground_acceleration(self.scene, self.phase, time * units.time) / units.acceleration
 
-    def at_level(self, level: Level, budget: Budget, *, keep: bool = False, residual: float | None = None) -> EngineRun:
-        """Run with the steps that `level` allows. residual: of Newton's iteration, if not that of the level."""
+    def at_level(
+        self, level: Level, budget: Budget, stop: float = math.inf, *, keep: bool = False, residual: float | None = None
+    ) -> EngineRun:
+        """
+        Run with the steps that `level` allows.
+
+        stop: do not go on after this instant, in units of time. residual: of Newton's iteration, if not that of the
+        level.
+        """
         engine = Engine(self.model, level.newton, level.residual if residual is None else residual)
         self.model.set_contact(level.penetration, level.warping_compliance)
         start = self._start(engine, level.penetration)
-        return run_adaptively(engine, start, self.end, self.ground, level, budget, keep=keep)
+        return run_adaptively(engine, start, self.end, self.ground, level, budget, stop=stop, keep=keep)
 
     def at_constant_step(
         self,
@@ -58,7 +66,7 @@ class PhasePair:
         model.set_contact(penetration)
         start = self._start(engine, penetration)
         motion = engine.run(start, 0.0, self.end / count, count)
-        result = EngineRun(Peaks(len(model.bodies), model.corner), steps=count, runs=1)
+        result = EngineRun(Peaks(len(model.bodies), model.corner), math.inf, steps=count, runs=1)
         if motion is None or not np.isfinite(motion.accelerations).all():
             return result.terminated(Outcome.SOLVER_FAILED, 0.0)
         outcome, row = termination(motion, model)

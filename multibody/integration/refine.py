@@ -4,6 +4,9 @@ One phase pair to a tolerance: the whole run at successive levels of accuracy, a
 The difference of two levels, at the rate that is seen or at two, is the error of the finer one from step, contact and
 Newton's iteration together. Where rounding forbids a stiffer contact the levels share one. One more run with a softer
 contact then shows the error that its compliance leaves.
+
+A run to the end shows when the last large value comes. Runs at further levels stop soon after it, as long as they
+differ from the run before by much less than what separates later values from the largest.
 """
 
 from __future__ import annotations
@@ -15,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.integration.adaptive import MAX_CHUNK_STEPS, Budget, EngineRun
+from multibody.integration.adaptive import SETTLED_FRACTION, Budget, EngineRun
 from multibody.integration.estimate import (
     ERROR_PER_WARPING_LOAD,
     from_compliance,
@@ -29,14 +32,22 @@ from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import Peaks
 from multibody.models.system import EngineModel
 from reference.problem import Outcome, Scene, State
+from reference.problem.ranges import Range
 
 Array = NDArray[np.float64]
 
-MAX_WORK = 14e6  # nominal microseconds (see `Budget`) of all runs of one point
+MAX_WORK = 2e6  # steps of the engine in all runs of one point, where the caller says nothing else
+WORK = Range(1.0, 1e12, "steps")
 UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
-FIRST_LEVELS_STEPS = 3.0  # steps of the first two levels over those of the first: without both there is no answer
 MAX_WARPING_ERROR_SHARE = 0.2  # of the tolerance, that the load of warped supports may take as an error
 MAX_WORK_GROWTH = 2.0  # steps of a level over those of the level before
+STEPS_AFTER_SETTLING = 20.0  # largest steps from the last large value of a run to the end of the next
+MAX_EARLY_CHANGE = (
+    0.2  # between two levels, over what separates later values from the largest, of a run that stops early
+)
+MIN_END_MARGIN = (
+    0.1  # distance from the rim, of rho, and contact force, in weights, of a run that others may stop before
+)
 
 
 @dataclass(frozen=True)
@@ -52,14 +63,9 @@ class Refinement:
     floor: float = math.nan  # lower bound of a relative error
 
 
-def work_share(model: EngineModel, end: float, largest: float) -> float:
-    """
-    Least work of a point, two levels without a shorter step, as a share of what it may spend.
-
-    end, largest: duration and largest step of the first level, in units of the model.
-    """
-    steps = FIRST_LEVELS_STEPS * end / largest
-    return Budget.of(MAX_WORK, model.coordinates).cost(steps, steps / MAX_CHUNK_STEPS) / MAX_WORK
+def least_work(end: float, largest: float) -> float:
+    """Steps that a point takes at least: one run of duration `end` in the largest steps, both in units of time."""
+    return end / largest
 
 
 def refine(
@@ -70,28 +76,37 @@ def refine(
     *,
     initial: State | None = None,
     keep: bool = False,
+    whole: bool = False,
     levels: Sequence[Level] | None = None,
+    max_work: float = MAX_WORK,
 ) -> Refinement:
     """
     Peaks of the absolute accelerations for one phase pair (2,), rad, with a relative error below `tolerance`.
 
-    levels: those of `levels_of` if None. keep: the motions of the last run and of `coarser`.
+    levels: those of `levels_of` if None. keep: the motions of the last run and of `coarser`. whole: every run goes to
+    the end of the motion, as it does where the motion is kept. max_work: steps that all runs together may take.
     """
     pair = PhasePair(scene, model, phase, initial)
-    budget = Budget.of(MAX_WORK, model.coordinates)
+    budget = Budget(max_work)
     remaining = levels_of(scene, model, tolerance) if levels is None else list(levels)
-    if work_share(model, pair.end, remaining[0].step) > 1.0:
-        no_run = EngineRun(Peaks(len(model.bodies), model.corner), Outcome.STEP_LIMIT, 0.0)
+    if least_work(pair.end, remaining[0].step) > max_work:
+        no_run = EngineRun(Peaks(len(model.bodies), model.corner), math.inf, Outcome.STEP_LIMIT, 0.0)
         return _no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
     runs: list[EngineRun] = []
+    stop = math.inf  # of the next run, where nothing later can matter
     candidate: _Candidate | None = None
     complete: _Candidate | None = None  # the last candidate whose error lacks nothing
     for number, level in enumerate(remaining):
         shared = number > 0 and level.penetration == remaining[number - 1].penetration
-        if runs and budget.left < MAX_WORK_GROWTH * budget.cost(runs[-1].steps, runs[-1].runs) * (1.0 + shared):
+        if runs and budget.left < _work_of_next(runs[-1], stop, pair.end) * (1.0 + shared):
             break
-        run = pair.at_level(level, budget, keep=keep)
+        run = pair.at_level(level, budget, stop, keep=keep)
+        if stop < pair.end and not _stays_settled(run, runs[-1]):
+            stop = math.inf
+            run = pair.at_level(level, budget, keep=keep)
         runs.append(run)
+        if run.outcome == Outcome.OK and run.stop == math.inf and not (keep or whole):
+            stop = _settled(run, remaining[0].step)
         if run.outcome in UNFINISHED:
             if candidate is not None or sum(other.outcome in UNFINISHED for other in runs) > 1:
                 break
@@ -124,6 +139,28 @@ def refine(
     return _unfinished(pair, runs)
 
 
+def _work_of_next(run: EngineRun, stop: float, end: float) -> float:
+    """Steps of the run at the level after that of `run`, up to `stop`."""
+    shorter = min(stop, end) / min(run.stop, end) if run.outcome == Outcome.OK else 1.0
+    return MAX_WORK_GROWTH * shorter * run.steps
+
+
+def _settled(run: EngineRun, step: float) -> float:
+    """When runs at further levels may stop, after one to the end of the motion; step: the largest of any level."""
+    if run.max_displacement > 1.0 - MIN_END_MARGIN or run.min_load < MIN_END_MARGIN:
+        return math.inf
+    return run.settled + STEPS_AFTER_SETTLING * step
+
+
+def _stays_settled(run: EngineRun, before: EngineRun) -> bool:
+    """Whether a run that stopped early agrees so well with the one before that nothing later can matter."""
+    if run.outcome != Outcome.OK:
+        return False
+    largest = np.array([*run.peaks.value, run.max_displacement])
+    change = np.abs(largest - [*before.peaks.value, before.max_displacement])
+    return bool((change <= MAX_EARLY_CHANGE * (1.0 - SETTLED_FRACTION) * largest).all())
+
+
 @dataclass(frozen=True)
 class _Candidate:
     """The answer of one level."""
@@ -143,7 +180,8 @@ class _Candidate:
         if level is None:
             return self
         softer = replace(level, penetration=COMPLIANCE_RATIO * level.penetration)
-        run = pair.at_level(softer, budget, keep=keep, residual=level.residual)  # nothing but the contact changes
+        # nothing but the contact changes
+        run = pair.at_level(softer, budget, self.run.stop, keep=keep, residual=level.residual)
         errors = self.errors + from_compliance(self.run.peaks, run, softer, pair.model)
         coarser = (*self.coarser, (run, share_of_change(softer, pair.model)))
         return replace(self, errors=errors, coarser=coarser, without_compliance=None)

@@ -7,9 +7,12 @@ from collections.abc import Callable
 
 from multibody.integration.constant_step import silence
 from multibody.integration.level import STEPS_PER_PERIOD, levels_of
-from multibody.integration.refine import FIRST_LEVELS_STEPS, MAX_WORK_GROWTH, work_share
+from multibody.integration.refine import MAX_WORK, MAX_WORK_GROWTH, least_work
 from multibody.models.assembly import assemble
 from reference.problem import Scene, untilted
+
+# work of two levels and of the compliance of the second over a first level in its largest steps: stops take as many
+WHOLE_POINT = 2.0 * (1.0 + 2.0 * MAX_WORK_GROWTH)
 
 
 def refusal(
@@ -18,13 +21,14 @@ def refusal(
     regularization: float | None = 1e-3,
     tolerance: float = 1e-3,
     full: bool = False,
+    max_work: float = MAX_WORK,
 ) -> str:
     """
     Predict whether `amplification` refuses every phase pair of a scene because of its work.
 
     Parameters
     ----------
-    scene, model, regularization, tolerance, full
+    scene, model, regularization, tolerance, full, max_work
         As in `amplification`.
 
     Returns
@@ -49,19 +53,19 @@ def refusal(
         built = assemble(scene, chosen, regularization)
     largest = levels_of(scene, built, tolerance)[0].step
     end = scene.duration / built.units.time
-    needed = work_share(built, end, largest)
-    if needed <= 1.0:
+    needed = least_work(end, largest)
+    if needed <= max_work:
         return ""
     step = largest * built.units.time
-    tried = scene.duration / needed
-    # for two levels and the compliance of the second
-    enough = tried * FIRST_LEVELS_STEPS / (1.0 + 2.0 * MAX_WORK_GROWTH)
+    tried = scene.duration * max_work / needed
+    enough = tried / WHOLE_POINT
     return (
-        f"refused before any step: it needs {needed:.2g} times the work that a phase pair may take "
-        f"({built.coordinates} coordinates in steps of {step:.2g} s over {scene.duration:g} s; the fastest period is "
-        f"{STEPS_PER_PERIOD * step:.2g} s). Shorten the duration to about {_two_digits(enough, math.floor):g} s "
-        f"(above {_two_digits(tried, math.ceil):g} s no step is taken), or take fewer bodies or a longer period; "
-        "a looser tolerance does not help"
+        f"refused before any step: it needs {needed:.2g} steps of the engine or more, and a phase pair may take "
+        f"{max_work:.2g} ({built.coordinates} coordinates in steps of {step:.2g} s over {scene.duration:g} s; the "
+        f"fastest period is {STEPS_PER_PERIOD * step:.2g} s). Allow more work (max_work, about "
+        f"{_two_digits(WHOLE_POINT * needed, math.ceil):g} steps), shorten the duration to about "
+        f"{_two_digits(enough, math.floor):g} s (above {_two_digits(tried, math.ceil):g} s no step is taken), "
+        "or take a longer period; a looser tolerance does not help"
     )
 
 

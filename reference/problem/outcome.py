@@ -27,6 +27,7 @@ class Outcome(StrEnum):
     STEP_LIMIT = "step limit"
     SOLVER_FAILED = "solver failed"
     WORKER_DIED = "worker died"
+    TIME_LIMIT = "time limit"
 
 
 ADVICE: dict[Outcome, str] = {
@@ -41,4 +42,5 @@ ADVICE: dict[Outcome, str] = {
     "help the equations, not the engine",
     Outcome.SOLVER_FAILED: "the equations of a step could not be solved: loosen the tolerance or change v_reg",
     Outcome.WORKER_DIED: "the process that computed this point died: run the point alone",
+    Outcome.TIME_LIMIT: "the processor time that one task may take was spent: allow more, or shorten the duration",
 }

@@ -2,8 +2,8 @@
 What is saved where a scene does not require all of a model: processor time in full over that of the reduced one.
 
 Run with `python -m pytest tests/benchmarks/test_reductions.py -m long -s`; reference/README.md has the figures, and
-comparison/study/speedup.py predicts with them. Both of a ratio are measured in turn, so that the load of others falls
-on both.
+comparison/study/speedup.py predicts with them. Full and reduced runs alternate, and the fastest of each are compared:
+other work on the machine only ever slows a run down.
 """
 
 from __future__ import annotations
@@ -24,16 +24,19 @@ from reference.problem import Scene, load_scene, phase_grid
 ROUNDS = 3
 
 
-def scene_of(name: str, *more: dict[str, Any], height: float | None = None, **tables: Any) -> Scene:
-    """`name` with the tables changed, every center of mass at `height`, and further bodies."""
+def scene_of(name: str, *bodies: dict[str, Any], **tables: Any) -> Scene:
+    """`name` with the tables changed, and further bodies."""
     table = load_scene(name).model_dump(exclude_none=True)
     for key, change in tables.items():
         table[key] |= change
-    table["bodies"] += more
-    if height is not None:
-        for body in table["bodies"]:
-            body["height"] = height
+    table["bodies"] += bodies
     return Scene.model_validate(table)
+
+
+def level_platform(name: str) -> Scene:
+    """The platform of `name` alone, its center of mass in the plane of the contacts' centers: it cannot turn."""
+    table = load_scene(name).model_dump(exclude_none=True)
+    return Scene.model_validate(table | {"bodies": [table["bodies"][0] | {"height": 0.0}]})
 
 
 def seconds_per_point(answer: Callable[..., Any], scene: Scene, phases: np.ndarray, **options: Any) -> float:
@@ -43,14 +46,21 @@ def seconds_per_point(answer: Callable[..., Any], scene: Scene, phases: np.ndarr
 
 
 def measured(answer: Callable[..., Any], scene: Scene, many: np.ndarray, few: np.ndarray, **options: Any) -> float:
-    """Cost of a point of `few` in full over that of one of `many` reduced: the median of ROUNDS."""
+    """Cost of a point of `few` in full over that of one of `many` reduced: the fastest of ROUNDS each."""
     answer(scene, few[:1], **options, full=True)  # compiled and loaded
-    ratios = [
-        seconds_per_point(answer, scene, few, **options, full=True) / seconds_per_point(answer, scene, many, **options)
-        for _ in range(ROUNDS)
-    ]
-    print(f"\n{scene.title}, {options}: {np.median(ratios):.2f} times less, rounds {np.round(ratios, 2)}")
-    return float(np.median(ratios))
+    seconds = np.array(
+        [
+            [
+                seconds_per_point(answer, scene, few, **options, full=True),
+                seconds_per_point(answer, scene, many, **options),
+            ]
+            for _ in range(ROUNDS)
+        ]
+    )
+    full, reduced = seconds.min(axis=0)
+    rounds = np.round(seconds[:, 0] / seconds[:, 1], 2)
+    print(f"\n{scene.title}, {options}: {full / reduced:.2f} times less, rounds {rounds}")
+    return float(full / reduced)
 
 
 FREE = {"friction": 0.0}
@@ -66,8 +76,8 @@ SUPERPOSED = {
 @pytest.mark.parametrize("name", SUPERPOSED)
 def test_a_sum_of_motions_costs_a_small_part_of_the_runs(name: str) -> None:
     scene = SUPERPOSED[name]
-    found = measured(reference.amplification, scene, phase_grid(48), phase_grid(12), equations="small")
-    assert found > 0.25 * speedup(scene, SMALL)  # threads of a linear algebra library that wait count as processor time
+    ratio = measured(reference.amplification, scene, phase_grid(48), phase_grid(12), equations="small")
+    assert ratio > 0.25 * speedup(scene, SMALL)  # threads of a linear algebra library that wait count as processor time
 
 
 @pytest.mark.long
@@ -75,8 +85,8 @@ def test_a_sum_of_motions_costs_a_small_part_of_the_runs(name: str) -> None:
     "scene", [scene_of("fig4-dry"), scene_of("fig4-viscous"), scene_of("fig4-dry", *([LINK] * 4))], ids=str
 )
 def test_a_plane_costs_less_than_space(scene: Scene) -> None:
-    found = measured(multibody.amplification, scene, RANDOM, RANDOM, model="translational")
-    assert found > 1.0
+    ratio = measured(multibody.amplification, scene, RANDOM, RANDOM, model="translational")
+    assert ratio > 1.0
     assert speedup(scene, TRANSLATIONAL) > 1.0
 
 
@@ -88,11 +98,11 @@ def test_solving_in_a_plane_costs_less_than_in_space(scene: Scene, law: dict[str
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", ["fig3-I", "fig4-viscous"])
-def test_level_bodies_cost_less_than_bodies_that_turn(name: str) -> None:
-    scene = scene_of(name, height=0.0)
-    found = measured(multibody.amplification, scene, RANDOM, RANDOM, model="spatial")
-    assert found > 0.6 * speedup(scene, SPATIAL) > 0.6
+@pytest.mark.parametrize("name", ["fig3-I", "fig4-dry"])
+def test_a_level_platform_costs_less_than_one_that_turns(name: str) -> None:
+    scene = level_platform(name)
+    ratio = measured(multibody.amplification, scene, RANDOM, RANDOM, model="spatial")
+    assert ratio > 0.6 * speedup(scene, SPATIAL) > 0.6
 
 
 @pytest.mark.long

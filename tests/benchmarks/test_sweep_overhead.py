@@ -26,7 +26,8 @@ from local_cluster import LocalCluster
 
 from comparison.execution.cache import Cache
 from comparison.execution.dask import cluster
-from comparison.execution.executors import Pool, process_pool
+from comparison.execution.executors import Pool
+from comparison.execution.processes import process_pool
 from comparison.execution.runner import Runner
 from comparison.execution.task_results import TaskResults
 from comparison.study.study import Study

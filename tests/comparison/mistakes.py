@@ -64,9 +64,9 @@ def misspelt(
             env={**os.environ, "PYTHONPATH": folder, "NUMBA_DISABLE_JIT": "1"},
         )
     assert done.returncode == 0, done.stderr
-    found = json.loads(done.stdout)
-    arrays = {name: np.array(found[name]) for name in ("mu", "error", "status", "instant")}
-    return Amplification(**arrays, cost=found["cost"])
+    answer = json.loads(done.stdout)
+    arrays = {name: np.array(answer[name]) for name in ("mu", "error", "status", "instant")}
+    return Amplification(**arrays, cost=answer["cost"])
 
 
 def misread(

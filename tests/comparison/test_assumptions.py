@@ -31,19 +31,19 @@ excitation = {amplitudes = [[1.0, 0.0], [0.0, 1.0]], periods = [0.9, 1.1], decay
 )
 
 
-def _cell(variation: Variation, one: float, other: float, uncertainty: float = 0.0) -> Cell:
+def _cell(variation: Variation, first: float, second: float, uncertainty: float = 0.0) -> Cell:
     """mu_1 changes by `one` and `other` at two phase pairs, mu_2 not at all."""
-    doubt = ((uncertainty, 0.0),) * 2
-    return Cell("fig3-I", variation, ((one, 0.0), (other, 0.0)), doubt, ("ok", "ok"))
+    estimate = ((uncertainty, 0.0),) * 2
+    return Cell("fig3-I", variation, ((first, 0.0), (second, 0.0)), estimate, ("ok", "ok"))
 
 
 def _said(cells: Sequence[Cell], key: str, share: float = 0.01) -> tuple[float | None, float | None]:
-    found = next(one for one in ranges([STATED], cells) if (one.body, one.key, one.share) == (1, key, share))
-    return found.holds, found.fails
+    validity = next(line for line in ranges([STATED], cells) if (line.body, line.key, line.share) == (1, key, share))
+    return validity.holds, validity.fails
 
 
 def test_there_are_the_papers_six_assumptions_in_order() -> None:
-    assert [one.number for one in ASSUMPTIONS] == ["(i)", "(ii)", "(iii)", "(iv)", "(v)", "(vi)"]
+    assert [assumption.number for assumption in ASSUMPTIONS] == ["(i)", "(ii)", "(iii)", "(iv)", "(v)", "(vi)"]
 
 
 def test_a_variation_changes_ring_heights_and_supports_and_nothing_else() -> None:
@@ -58,8 +58,9 @@ def test_a_variation_changes_ring_heights_and_supports_and_nothing_else() -> Non
 @pytest.mark.parametrize("variations", [FEW, MANY])
 def test_ring_and_heights_are_both_varied_about_what_the_scene_states(variations: Sequence[Variation]) -> None:
     assert Variation() in variations
-    assert len({one.ring for one in variations if one.height == 1.0 and one.supports is None}) >= 4
-    assert len({one.height for one in variations if one.ring == 1.0 and one.supports is None}) >= 4
+    usual = [variation for variation in variations if variation.supports is None]
+    assert len({variation.ring for variation in usual if variation.height == 1.0}) >= 4
+    assert len({variation.height for variation in usual if variation.ring == 1.0}) >= 4
 
 
 def test_a_ring_holds_only_if_every_wider_one_tried_does() -> None:
@@ -86,7 +87,7 @@ def test_the_uncertainty_counts_against_the_range_and_a_missing_value_ends_it() 
 
 def test_the_sentences_name_what_holds_and_what_was_tried_next() -> None:
     cells = [_cell(Variation(ring=2.0), 0.0, 0.0), _cell(Variation(), 0.02, 0.0)]
-    lines = [describe(found) for found in ranges([STATED], cells) if found.body == 1]
+    lines = [describe(validity) for validity in ranges([STATED], cells) if validity.body == 1]
     assert "mu_1 stays within 1 % with rings from 2 m, no longer at 1 m" in lines
     assert "mu_1 stays within 5 % with rings from 1 m, every smaller one tried too" in lines
     assert "mu_1 stays within 1 % at no heights tried" in lines

@@ -34,21 +34,21 @@ def _table(study: Study, surfaces: xr.Dataset, body: int = 1) -> dict[str, Entry
 def test_the_steps_add_up_to_the_total_at_every_point(scene: str) -> None:
     study, surfaces = _solved(errors_in({"small": 0.02, "exact": -0.03, "regularised": 0.005}), scene)
     for body in (1, 2):
-        found = steps(study, surfaces, scene, body)
-        assert found[-1].key == TOTAL
-        assert np.abs(found[-1].size).max() > 1e-3, "there is something to add up"
-        assert closure(found) < 1e-14  # rounding of a handful of numbers near 1
+        steps_and_total = steps(study, surfaces, scene, body)
+        assert steps_and_total[-1].key == TOTAL
+        assert np.abs(steps_and_total[-1].size).max() > 1e-3, "there is something to add up"
+        assert closure(steps_and_total) < 1e-14  # rounding of a handful of numbers near 1
 
 
 def test_a_budget_with_a_step_left_out_or_counted_twice_does_not_close() -> None:
     study, surfaces = _solved(errors_in({"exact": 0.02, "resolved": 0.02}))
-    found = steps(study, surfaces, "fig3-I", 1)
-    assert closure(found[1:]) == pytest.approx(0.02)
-    assert closure([found[0], *found]) == pytest.approx(0.02)
+    steps_and_total = steps(study, surfaces, "fig3-I", 1)
+    assert closure(steps_and_total[1:]) == pytest.approx(0.02)
+    assert closure([steps_and_total[0], *steps_and_total]) == pytest.approx(0.02)
 
 
 @pytest.mark.parametrize("culprit", ["exact", "resolved", "regularised", "translational", "spatial"])
-def test_an_error_planted_from_one_rung_on_is_blamed_on_that_rung(culprit: str) -> None:
+def test_an_error_planted_from_one_model_on_is_blamed_on_that_model(culprit: str) -> None:
     """A wrong stiffness, sign or mass stays in every model above the one that introduced it."""
     keys = [model.key for model in fake_hierarchy()]
     wrong = keys[keys.index(culprit) :]
@@ -65,7 +65,7 @@ def test_an_error_planted_from_one_rung_on_is_blamed_on_that_rung(culprit: str) 
 
 
 @pytest.mark.parametrize("culprit", ["exact", "resolved", "regularised", "translational"])
-def test_an_error_in_one_rung_alone_shows_in_both_its_steps_and_cancels_in_the_total(culprit: str) -> None:
+def test_an_error_in_one_model_alone_shows_in_both_its_steps_and_cancels_in_the_total(culprit: str) -> None:
     study, surfaces = _solved(errors_in({culprit: 0.02}))
     table = _table(study, surfaces)
     keys = list(table)
@@ -99,7 +99,7 @@ def test_a_step_known_to_less_than_a_fifth_is_counted_apart_and_not_as_real() ->
         assert (entry.real, entry.unresolved) == expected, "u_D is 1e-3, up to the 0.5 % that the step itself adds"
 
 
-def test_a_coarse_step_with_a_false_error_is_blamed_on_the_engine_rung_like_for_like() -> None:
+def test_a_coarse_step_with_a_false_error_is_blamed_on_the_engine_like_for_like() -> None:
     """The like-for-like step must vanish: one far above its u_D is an error error_estimates too small, not physics."""
     study, surfaces = _solved(errors_in({"translational": 0.02}, error_estimates={"translational": 1e-6}))
     table = _table(study, surfaces)
@@ -107,7 +107,7 @@ def test_a_coarse_step_with_a_false_error_is_blamed_on_the_engine_rung_like_for_
     assert table["translational"].median > 100.0 * table["translational"].error_estimate
 
 
-def test_uncertainties_of_the_two_rungs_add_in_quadrature() -> None:
+def test_uncertainties_of_the_two_models_add_in_quadrature() -> None:
     study, surfaces = _solved(errors_in({}, error_estimates={"exact": 3e-3, "small": 4e-3}))
     np.testing.assert_allclose(steps(study, surfaces, "fig3-I", 1)[0].uncertainty, 5e-3, rtol=1e-12)
 
@@ -191,8 +191,8 @@ def test_distances_on_the_square_are_those_of_a_torus() -> None:
     assert torus_distance((0.0, 0.0), (np.pi, np.pi)) == pytest.approx(np.sqrt(2.0) * np.pi)
 
 
-def test_a_rung_more_is_a_step_more_and_nothing_else() -> None:
+def test_a_model_more_is_a_step_more_and_nothing_else() -> None:
     longer = errors_in({"translational": 0.02, "spatial": 0.02})
-    short, long = (_table(*_solved(one)) for one in (longer[:-1], longer))
+    short, long = (_table(*_solved(hierarchy)) for hierarchy in (longer[:-1], longer))
     assert long[TOTAL].mean == pytest.approx(short[TOTAL].mean)
     assert (list(long), long["spatial"].real) == ([*list(short)[:-1], "spatial", TOTAL], 0.0)

@@ -32,9 +32,9 @@ def test_the_budget_closes_and_no_like_for_like_step_exceeds_twice_its_uncertain
     assert len(limits) == 5
     assert [line for limit in limits for line in limit.broken] == []
     for body in range(1, len(scene.bodies) + 1):
-        found = steps(study, surfaces, name, body)
-        assert closure(found) < 1e-14  # rounding of a handful of numbers near 1
-        like_for_like = next(step for step in found if step.key == "translational")
+        steps_and_total = steps(study, surfaces, name, body)
+        assert closure(steps_and_total) < 1e-14  # rounding of a handful of numbers near 1
+        like_for_like = next(step for step in steps_and_total if step.key == "translational")
         assert like_for_like.known.all()
         assert like_for_like.ratio.max() <= 2.0
     rows = [entry for entry in budget(study, surfaces) if entry.step == "exact"]

@@ -29,8 +29,8 @@ def _study(grid: int = 4) -> Study:
 
 def _computed(study: Study, store: Cache) -> tuple[list[BatchResult], int]:
     """The answers, and how many batches were there before."""
-    found = Runner(TaskResults(store), Console(quiet=True), 2, ThreadPoolExecutor).run_study(study)
-    return list(found.answers), found.stored
+    computed = Runner(TaskResults(store), Console(quiet=True), 2, ThreadPoolExecutor).run_study(study)
+    return list(computed.answers), computed.stored
 
 
 def _bytes(answers: list[BatchResult]) -> list[object]:
@@ -92,10 +92,10 @@ def test_a_damaged_tile_is_computed_again(tmp_path: Path, damage: Callable[[byte
 
 
 def test_the_file_of_another_tile_is_not_taken_for_this_one(tmp_path: Path) -> None:
-    one, other = _study().batches()[:2]
+    stored, other = _study().batches()[:2]
     store = Cache(tmp_path)
-    store.put(batch_key(one), execute_batch(one))
-    (tmp_path / batch_key(one).name).rename(tmp_path / batch_key(other).name)
+    store.put(batch_key(stored), execute_batch(stored))
+    (tmp_path / batch_key(stored).name).rename(tmp_path / batch_key(other).name)
     assert cached_batch(store, other) is None
 
 

@@ -166,13 +166,16 @@ def test_a_case_that_fails_or_dies_is_named_and_the_others_answered(monkeypatch:
     assert findings["mu_1 has two peaks separated by a valley"].finding.holds
 
 
-def test_what_a_solver_complains_about_becomes_the_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_a_solver_complains_about_is_why_a_claim_is_open(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(*args: object, **kwargs: object) -> None:
         raise ZeroDivisionError("no ground")
 
     monkeypatch.setattr(evidence, "amplification", broken)
-    found = evidence.gathered(Question("fig3-I", Reading(), 4))
-    assert (found.error_message, found.complete) == ("ZeroDivisionError: no ground", False)
+    table = collected(Claims(4, READINGS[:1]), PAPERS)
+    assert not any(row[0].finding.holds for row in table.verdicts)
+    reasons = [row[0].found for row in table.verdicts if row[0].finding == Finding.OPEN]
+    assert len(reasons) > 10
+    assert all("solver failed: ZeroDivisionError: no ground" in reason for reason in reasons)
 
 
 def test_the_command_prints_the_table(

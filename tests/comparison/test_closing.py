@@ -37,7 +37,7 @@ def test_the_next_commands_work_as_they_are_printed(
     command: Callable[..., Run], capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     run = command("fig3-I", "--grid", "2", hierarchy=errors_in({"translational": 0.01, "spatial": 0.1}))
-    film, finer = after_report(run)[1:]
+    film, finer = after_report(run)[2:]
     words = shlex.split(film.split("difference: ")[1])
     assert words[:3] == ["python", "-m", "multibody.animate"]
     assert (words[3], words[4], words[7:]) == ("fig3-I", "--phases", ["--model", "spatial"])
@@ -61,4 +61,4 @@ def test_a_scene_of_a_file_is_filmed_from_its_file(command: Callable[..., Run], 
 
 
 def test_a_record_has_no_grid_to_refine(command: Callable[..., Run]) -> None:
-    assert after_report(command("synthetic-pair", hierarchy=fake_hierarchy()))[1:] == []
+    assert after_report(command("synthetic-pair", hierarchy=fake_hierarchy()))[2:] == []

@@ -11,12 +11,17 @@ import pytest
 from conftest import Run
 from fake_models import fake_hierarchy
 from local_cluster import LocalCluster
+from rich.console import Console
+from test_time_limit import doubled, hangs_in_compiled_code
 
 from comparison.execution.cache import Cache, Key
 from comparison.execution.dask import cluster
 from comparison.execution.keys import BATCH, batch_key
+from comparison.execution.runner import Runner
 from comparison.execution.splitting import merge, split_batch
 from comparison.execution.sweep import sweep
+from comparison.execution.task import Task
+from comparison.execution.task_results import TaskResults
 from comparison.study.batches import Batch, BatchResult, execute_batch, unanswered
 from comparison.study.study import Study
 from reference.problem import load_scene
@@ -27,18 +32,18 @@ def _answers(
 ) -> list[BatchResult]:
     """The engine's surface; `done` is told how many batches are."""
     study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(model, batch=batch))
-    batches = [one for one in study.batches() if one.model == "translational"]
+    batches = [piece for piece in study.batches() if piece.model == "translational"]
     count = iter(range(1, len(batches) + 1))
 
-    def arrived(one: Batch, answer: BatchResult) -> None:
+    def arrived(piece: Batch, answer: BatchResult) -> None:
         done(next(count))
 
     return sweep(batches, execute_batch, unanswered, arrived, 2, executor, split=split_batch, join=merge)  # type: ignore[arg-type]
 
 
-def _same(one: list[BatchResult], other: list[BatchResult]) -> None:
-    assert len(one) == len(other) > 0
-    for a, b in zip(one, other):
+def _same(answers: list[BatchResult], expected: list[BatchResult]) -> None:
+    assert len(answers) == len(expected) > 0
+    for a, b in zip(answers, expected):
         for name in ("mu", "error", "instant", "status"):
             np.testing.assert_array_equal(getattr(a, name), getattr(b, name))  # to the last bit
 
@@ -94,6 +99,25 @@ def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on_in_process(
     assert not set(names[:before]) & set(names[before:]), "only what was missing was computed"
     batches = {key.name for key in stored if key.kind == BATCH}
     assert batches == {batch_key(batch).name for batch in study.batches()}
+
+
+@pytest.mark.parametrize("nanny", [False, True])
+def test_a_hang_ends_at_its_limit_and_costs_no_worker_of_the_cluster(tmp_path: Path, nanny: bool) -> None:
+    started = LocalCluster(tmp_path, workers=1, nanny=nanny)
+    tasks = [
+        Task(hangs_in_compiled_code, str(tmp_path / "hanging"), "test", 2.0, timeout=1.0),
+        Task(doubled, str(tmp_path / "other"), "test", 1.0, timeout=60.0),
+        Task(doubled, str(tmp_path / "without a limit"), "test", 0.5),
+    ]
+    results = TaskResults()
+    try:
+        with cluster(started.address, {"fake_models:uneven"}) as there:
+            Runner(results, Console(quiet=True), 1, there).run_tasks(tasks)
+    finally:
+        started.end()
+    assert results[tasks[0]].reason == "time limit: no answer within 1 s of processor time"
+    assert [results[task].value for task in tasks[1:]] == [2, 2]
+    assert len(list(tmp_path.glob("hanging-*"))) == 1, "not tried again on another worker"
 
 
 @pytest.mark.parametrize("address", ["nowhere", "tls://127.0.0.1:1", "ucx://127.0.0.1:1"])

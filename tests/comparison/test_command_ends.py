@@ -32,17 +32,17 @@ run_command(main)
 POSIX = pytest.mark.skipif(sys.platform == "win32", reason="pipes and devices")
 
 
-def ended(body: str, **more: object) -> subprocess.CompletedProcess[str]:
+def ended(body: str, **options: object) -> subprocess.CompletedProcess[str]:
     """A command whose main does `body`."""
     script = BEGIN.format(root=str(ROOT), body=body)
-    more = {"stdout": subprocess.PIPE, **more}
-    return subprocess.run([sys.executable, "-c", script], stderr=subprocess.PIPE, text=True, check=False, **more)  # type: ignore[call-overload, no-any-return]
+    options = {"stdout": subprocess.PIPE, **options}
+    return subprocess.run([sys.executable, "-c", script], stderr=subprocess.PIPE, text=True, check=False, **options)  # type: ignore[call-overload, no-any-return]
 
 
-def begun(module: str, *words: str, **more: object) -> subprocess.Popen[str]:
+def begun(module: str, *words: str, **options: object) -> subprocess.Popen[str]:
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     command = [sys.executable, "-m", module, *words]
-    return subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True, **more)  # type: ignore[call-overload, no-any-return]
+    return subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True, **options)  # type: ignore[call-overload, no-any-return]
 
 
 def test_an_unexpected_error_is_exit_3_and_one_line_that_says_where_the_details_are(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 import tomllib
@@ -47,7 +48,7 @@ def called(script: Path, *words: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_the_modules_beside_a_user_are_not_imported_by_the_script_or_its_workers(script: Path) -> None:
-    run = called(script, "extremes", "--models", "small", "--only", "outside the rules", "--jobs", "2")
+    run = called(script, "extremes", "--models", "small", "--rows", "outside the rules", "--jobs", "2")
     assert run.returncode == 0, run.stderr
     matrix = json.loads((script.parent.parent / "work/report/extremes.json").read_text(encoding="utf-8"))
     assert matrix["run"]["command"].startswith("phase-resonance extremes --models small")
@@ -81,3 +82,19 @@ def test_a_wrong_option_of_every_command_is_one_line_and_exit_code_2(
     out, err = capsys.readouterr()
     assert (out, err.count("\n")) == ("", 1), err
     assert err.startswith("command line: ")
+
+
+COMPUTING = tuple(name for name in COMMANDS if name != "animate")
+
+
+def test_the_shared_options_are_the_same_in_every_command_that_computes(capsys: pytest.CaptureFixture[str]) -> None:
+    helps = set()
+    for name in COMPUTING:
+        with pytest.raises(SystemExit):
+            import_module(COMMANDS[name][0]).main(["--help"])
+        text = " ".join(capsys.readouterr().out.split())
+        options = text[text.index("--jobs N worker") :]
+        helps.add(options[: options.index("is used") + len("is used")])
+        assert re.search(r"--out DIR .*\(default report\)", text), name
+    (shared,) = helps
+    assert re.match(r"--jobs N .* --scheduler ADDRESS .* --fresh .*", shared)

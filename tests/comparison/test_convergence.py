@@ -31,12 +31,12 @@ def test_every_limit_comes_in_order_and_a_lubricated_scene_has_only_the_contact(
 
     limits = [replace(limit, parameter=PENETRATIONS, expected=1.0, measure=planted) for limit in LIMITS]
     monkeypatch.setattr(convergence, "LIMITS", limits)
-    found = collected(Convergence(), _study("fig3-I", "fig4-viscous"))
-    assert [(one.scene, one.body) for one in found] == [("fig3-I", 1), ("fig3-I", 2)] * 5 + [
+    trends = collected(Convergence(), _study("fig3-I", "fig4-viscous"))
+    assert [(trend.scene, trend.body) for trend in trends] == [("fig3-I", 1), ("fig3-I", 2)] * 5 + [
         ("fig4-viscous", 1),
         ("fig4-viscous", 2),
     ]
-    assert {one.verdict for one in found} == {"like the power 1"}
+    assert {trend.verdict for trend in trends} == {"like the power 1"}
 
 
 def test_every_limit_has_a_predicted_cost() -> None:
@@ -64,9 +64,9 @@ def test_the_order_in_v_reg_is_that_of_the_law(monkeypatch: pytest.MonkeyPatch, 
     for number in (0, 2):  # the equations and the engine, against the resolved peak
         trends = list(limit_trends((load_scene("fig3-I"), number)))
         assert trends
-        for found in trends:
-            assert found.verdict == says
-            assert found.slope.exponent == pytest.approx(power, abs=1e-6)
+        for trend in trends:
+            assert trend.verdict == says
+            assert trend.slope.exponent == pytest.approx(power, abs=1e-6)
 
 
 def test_a_limit_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -74,24 +74,23 @@ def test_a_limit_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
         raise RuntimeError("no engine")
 
     monkeypatch.setattr(convergence, "LIMITS", [replace(LIMITS[4], measure=broken)])
-    assert [one.verdict for one in limit_trends((load_scene("fig3-I"), 0))] == [
-        "solver failed: RuntimeError: no engine"
-    ] * 2
+    trends = collected(Convergence(), _study("fig3-I"))
+    assert [trend.verdict for trend in trends] == ["solver failed: RuntimeError: no engine"] * 2
 
 
 def test_a_contact_ten_times_stiffer_is_ten_times_closer(monkeypatch: pytest.MonkeyPatch) -> None:
     """Second body of fig3-II: 8e-5 of mu at 3e-3 of rho; what is of higher order there is a tenth of it."""
     monkeypatch.setattr(convergence, "FEWEST_PERIODS", 2.0)
-    found = limit_trends((load_scene("fig3-II"), 4))[1]
-    assert found.verdict == "like the power 1"
-    assert found.medians[0] == pytest.approx(8.4e-5, rel=0.2)
-    assert found.slope.exponent == pytest.approx(1.0, abs=0.15)
+    trend = limit_trends((load_scene("fig3-II"), 4))[1]
+    assert trend.verdict == "like the power 1"
+    assert trend.medians[0] == pytest.approx(8.4e-5, rel=0.2)
+    assert trend.slope.exponent == pytest.approx(1.0, abs=0.15)
 
 
 @pytest.mark.long
 def test_regularization_is_of_first_order_and_the_supremum_is_not_reached() -> None:
     scene = load_scene("fig3-II")
     resolved, supremum = (limit_trends((scene, number)) for number in (0, 1))
-    assert [one.verdict for one in resolved] == ["like the power 1"] * 2
+    assert [trend.verdict for trend in resolved] == ["like the power 1"] * 2
     assert supremum[0].verdict.startswith("hardly falls")
     assert supremum[1].verdict == "falls"

@@ -20,22 +20,22 @@ from reference.problem import ground_acceleration, load_scene
 TRUE = {"radius": 0.31, "friction": 0.123, "mass": 2.2}  # the scene says 0.248 m, 0.1 and 2 kg
 
 
-def _rung(**settings: object) -> Model:
+def _model(**settings: object) -> Model:
     return replace(fake_hierarchy()[-1], trajectory="fake_models:sliding", settings=settings)
 
 
 def test_what_the_model_really_computed_with_is_read_from_its_motion() -> None:
-    found = read_back((load_scene("fig3-I"), _rung(**TRUE)))
-    assert found.error_message == ""
-    assert found.radius == pytest.approx(TRUE["radius"], rel=1e-12)
-    assert found.mass == pytest.approx(TRUE["mass"], rel=1e-12)
-    assert found.contact == pytest.approx(TRUE["mass"] * 9.81, rel=1e-12)
-    assert found.friction == pytest.approx(TRUE["friction"], rel=1e-9)
+    values = read_back((load_scene("fig3-I"), _model(**TRUE)))
+    assert values.error_message == ""
+    assert values.radius == pytest.approx(TRUE["radius"], rel=1e-12)
+    assert values.mass == pytest.approx(TRUE["mass"], rel=1e-12)
+    assert values.contact == pytest.approx(TRUE["mass"] * 9.81, rel=1e-12)
+    assert values.friction == pytest.approx(TRUE["friction"], rel=1e-9)
 
 
 def test_in_a_lubricated_scene_friction_is_read_per_speed() -> None:
-    found = read_back((load_scene("fig4-viscous"), _rung(**{**TRUE, "friction": 0.7})))
-    assert found.friction == pytest.approx(0.7, rel=1e-9)
+    values = read_back((load_scene("fig4-viscous"), _model(**{**TRUE, "friction": 0.7})))
+    assert values.friction == pytest.approx(0.7, rel=1e-9)
 
 
 def test_the_scene_states_what_the_motion_is_held_against() -> None:
@@ -48,30 +48,30 @@ def test_the_scene_states_what_the_motion_is_held_against() -> None:
 
 
 def test_a_model_whose_motion_fails_says_why_and_has_no_value() -> None:
-    found = read_back((load_scene("fig3-I"), fake_hierarchy()[-1]))
-    assert found.error_message == "AssertionError: nothing should have been computed"
-    assert np.isnan([found.radius, found.friction, found.contact, found.mass]).all()
+    values = read_back((load_scene("fig3-I"), fake_hierarchy()[-1]))
+    assert values.error_message == "AssertionError: nothing should have been computed"
+    assert np.isnan([values.radius, values.friction, values.contact, values.mass]).all()
 
 
 def test_a_motion_that_ended_early_has_no_value() -> None:
-    found = read_back((load_scene("fig3-I"), _rung(**TRUE, status="rim reached")))
-    assert found.error_message == "the motion ended: rim reached"
-    assert np.isnan(found.radius)
+    values = read_back((load_scene("fig3-I"), _model(**TRUE, status="rim reached")))
+    assert values.error_message == "the motion ended: rim reached"
+    assert np.isnan(values.radius)
 
 
 def test_a_platform_that_never_moves_has_no_radius_and_no_friction() -> None:
-    found = read_back((load_scene("fig3-I"), _rung(**TRUE, swing=0.0)))
-    assert np.isnan(found.radius)
-    assert np.isnan(found.friction)
-    assert found.mass == pytest.approx(TRUE["mass"], rel=1e-12)
+    values = read_back((load_scene("fig3-I"), _model(**TRUE, swing=0.0)))
+    assert np.isnan(values.radius)
+    assert np.isnan(values.friction)
+    assert values.mass == pytest.approx(TRUE["mass"], rel=1e-12)
 
 
 def test_every_scene_has_its_own_statement_and_its_models_below_it() -> None:
     study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), 2, 1e-3, fake_hierarchy())
-    found = collected(EffectiveValues(), study)
+    rows = collected(EffectiveValues(), study)
     dry = ["scene", "small", "exact", "resolved", "regularised", "translational", "spatial"]
-    assert [one.model for one in found if one.scene == "fig3-I"] == dry
-    assert [one.model for one in found if one.scene == "fig4-viscous"] == ["scene", "small", "exact", *dry[-2:]]
+    assert [row.model for row in rows if row.scene == "fig3-I"] == dry
+    assert [row.model for row in rows if row.scene == "fig4-viscous"] == ["scene", "small", "exact", *dry[-2:]]
 
 
 def test_the_summary_carries_them_with_null_for_what_is_not_known(command: Callable[..., Run]) -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import re
 from collections import Counter
+from concurrent.futures import Executor
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,13 +13,18 @@ import pytest
 from rich.console import Console
 
 import reference
-from comparison.analysis.extremes.cells import Cell, _scene, cells, solve_cell
+from comparison.analysis.extremes.analysis import Extremes, reduced
+from comparison.analysis.extremes.cells import Cell, cells, read_scene, solve_cell
 from comparison.analysis.extremes.engine import amplification
-from comparison.analysis.extremes.matrix import FILE, Entry, Matrix, as_json, load
+from comparison.analysis.extremes.matrix import FILE, Entry, Extreme, Matrix, as_json, load
 from comparison.analysis.extremes.rows import COLUMNS, Column, Row, rows, scene
 from comparison.analysis.extremes.verdicts import Verdict
-from comparison.cli.extremes import main, reduced, run
-from comparison.report.figures.extremes import draw_extremes
+from comparison.cli.extremes import main
+from comparison.execution.cache import Cache
+from comparison.execution.processes import process_pool
+from comparison.execution.runner import Runner
+from comparison.execution.task_results import TaskResults
+from comparison.report.figures.extremes import describe, draw_extremes
 
 PLAIN = Row("anything", "plain", scene(), ("fake",))
 FAILING = {
@@ -38,12 +45,15 @@ def fake(model: str, finer: str = "") -> Column:
     return Column("fake", model, path, {}, 1e-3, ((f"extreme_models:{finer or model}", {}, 1e-5),))
 
 
-def computed(chosen: list[Row], *columns: Column, limit: float = 60.0) -> Matrix:
-    return run(chosen, 1, limit, Console(quiet=True), "a test", columns or COLUMNS)
+def computed(extremes: Extremes, results: TaskResults | None = None) -> Matrix:
+    """The matrix, by one worker process."""
+    results = results or TaskResults()
+    Runner(results, Console(quiet=True), 1, process_pool).run_tasks(extremes.tasks())
+    return extremes.collect(None, None, results)
 
 
-def entry(column: Column, row: Row = PLAIN, limit: float = 60.0) -> Entry:
-    return computed([row], column, limit=limit).rows[0].entries["fake"]
+def entry(column: Column) -> Entry:
+    return computed(Extremes([PLAIN], [column])).rows[0].entries["fake"]
 
 
 def named(group: str) -> list[Row]:
@@ -52,50 +62,47 @@ def named(group: str) -> list[Row]:
 
 @pytest.mark.parametrize("model", FAILING)
 def test_a_model_that_is_wrong_fails_and_is_told_why(model):
-    found = entry(fake(model))
-    assert found.verdict == Verdict.FAILED
-    assert FAILING[model] in found.reason
+    cell = entry(fake(model))
+    assert cell.verdict == Verdict.FAILED
+    assert FAILING[model] in cell.reason
 
 
-def test_a_model_that_hangs_is_killed_and_the_next_cell_is_solved():
+def test_a_model_that_hangs_costs_its_cell_and_neither_another_one_nor_the_next_run(tmp_path):
     other = replace(fake("honest"), key="other")
-    found = computed([replace(PLAIN, columns=("fake", "other"))], fake("hangs"), other, limit=2.0)
-    assert found.rows[0].entries["fake"].reason == "hangs: no answer within 2 s of processor time"
-    assert found.rows[0].entries["other"].verdict == Verdict.CONVERGED
-
-
-def test_a_model_that_a_busy_machine_keeps_waiting_does_not_hang():
-    """Two runs of 2.5 s each, which compute next to nothing, under a limit of 1 s."""
-    assert entry(fake("is_kept_waiting"), limit=1.0).verdict == Verdict.CONVERGED
-
-
-def test_a_model_that_computes_nothing_any_more_is_killed_in_the_end(monkeypatch):
-    monkeypatch.setattr("comparison.analysis.extremes.worker.STALLED", 4.0)
-    assert entry(fake("waits_for_ever"), limit=1.0).reason == "hangs: no answer within 4 s"
+    extremes = Extremes([replace(PLAIN, columns=("fake", "other"))], [fake("hangs"), other], 2.0)
+    (row,) = computed(extremes, TaskResults(Cache(tmp_path))).rows
+    hanging = row.entries["fake"]
+    assert (hanging.verdict, hanging.status) == ("FAILED", "time limit")
+    assert hanging.reason == "hangs: no answer within 2 s of processor time"
+    assert row.entries["other"].verdict == Verdict.CONVERGED
+    results = TaskResults(Cache(tmp_path))
+    assert results.missing(extremes.tasks()) == []
+    assert extremes.collect(None, None, results).rows == [row]
+    assert len(TaskResults(Cache(tmp_path)).missing(replace(extremes, limit=3.0).tasks())) == 1, "allowed more"
 
 
 def test_a_model_that_is_right_converges_or_refuses_or_says_what_it_cannot():
-    assert solve_cell(Cell(PLAIN, fake("honest"))).judged.verdict == Verdict.CONVERGED
-    assert solve_cell(Cell(PLAIN, fake("at_the_rim"))).judged.verdict == Verdict.REFUSED
-    assert solve_cell(Cell(PLAIN, fake("unable"))).judged.verdict == Verdict.LIMIT
+    assert solve_cell(Cell(PLAIN, fake("honest"))).verdict == Verdict.CONVERGED
+    assert solve_cell(Cell(PLAIN, fake("at_the_rim"))).verdict == Verdict.REFUSED
+    assert solve_cell(Cell(PLAIN, fake("unable"))).verdict == Verdict.LIMIT
 
 
 def test_a_value_that_no_finer_run_confirms_fails():
-    found = solve_cell(Cell(PLAIN, fake("honest", finer="unable"))).judged
-    assert found.verdict == Verdict.FAILED
-    assert "no finer run confirms it: step limit" in found.reason
+    cell = solve_cell(Cell(PLAIN, fake("honest", finer="unable")))
+    assert cell.verdict == Verdict.FAILED
+    assert "no finer run confirms it: step limit" in cell.reason
 
 
 def test_a_refusal_must_be_the_right_one_where_the_row_says_which():
     row = replace(PLAIN, right=("contact lost",))
-    assert "instead of contact lost" in solve_cell(Cell(row, fake("at_the_rim"))).judged.reason
+    assert "instead of contact lost" in solve_cell(Cell(row, fake("at_the_rim"))).reason
 
 
 def test_an_input_against_the_rules_must_be_refused_and_no_other_may_be():
     wrong = replace(PLAIN, scene=scene(friction=-0.1))
-    assert solve_cell(Cell(replace(wrong, invalid=True), fake("honest"))).judged.verdict == Verdict.REFUSED
-    assert solve_cell(Cell(wrong, fake("honest"))).judged.verdict == Verdict.FAILED
-    assert solve_cell(Cell(replace(PLAIN, invalid=True), fake("honest"))).judged.verdict == Verdict.FAILED
+    assert solve_cell(Cell(replace(wrong, invalid=True), fake("honest"))).verdict == Verdict.REFUSED
+    assert solve_cell(Cell(wrong, fake("honest"))).verdict == Verdict.FAILED
+    assert solve_cell(Cell(replace(PLAIN, invalid=True), fake("honest"))).verdict == Verdict.FAILED
 
 
 def test_the_matrix_has_every_extreme_and_at_least_120_cells():
@@ -116,64 +123,92 @@ def test_the_equations_fail_at_no_extreme(group):
     tasks = cells(named(group))
     assert tasks
     for cell in tasks:
-        found = solve_cell(cell).judged
-        assert found.verdict != Verdict.FAILED, (cell.row.title, cell.column.key, found.reason)
+        entry = solve_cell(cell)
+        assert entry.verdict != Verdict.FAILED, (cell.row.title, cell.column.key, entry.reason)
 
 
 def test_a_motion_of_a_millisecond_converges_though_rounding_bounds_its_second_factor():
     """mu_2 is 5e-6, a difference of accelerations near 1: no run knows it better than 2e-7 of itself."""
     for row in rows():
         if (row.group, row.title) == ("duration, s", "0.001"):
-            found = [solve_cell(Cell(row, column)).judged for column in COLUMNS[:3]]
-    assert [one.verdict for one in found] == [Verdict.CONVERGED] * 3, [one.reason for one in found]
-    assert 1e-7 < found[2].error < 1e-6
+            entries = [solve_cell(Cell(row, column)) for column in COLUMNS[:3]]
+    assert [entry.verdict for entry in entries] == [Verdict.CONVERGED] * 3, [entry.reason for entry in entries]
+    assert 1e-7 < entries[2].error < 1e-6
 
 
 @pytest.mark.long
 def test_the_equations_fail_at_none_of_the_extremes():
-    found = computed(reduced(list(rows())), limit=120.0)
-    assert [(row.group, row.title, title, cell.reason) for row, title, cell in found.listed(Verdict.FAILED)] == []
-    assert sum(found.counts().values()) >= 120
+    matrix = computed(Extremes(reduced(list(rows())), limit=120.0))
+    assert [(row.group, row.title, title, cell.reason) for row, title, cell in matrix.listed(Verdict.FAILED)] == []
+    assert sum(matrix.counts().values()) >= 120
 
 
-def test_the_command_writes_the_matrix_and_its_picture(tmp_path, capsys):
-    code = main(["--models", "small", "--only", "amplitude", "--jobs", "1", "--out", str(tmp_path)])
+def test_the_command_writes_the_matrix_and_its_picture_and_computes_nothing_twice(tmp_path, capsys):
+    words = ["--models", "small", "--rows", "amplitude, m/s^2 1e", "--jobs", "1", "--out", str(tmp_path / "report")]
+    assert main(words) == 0
     out = capsys.readouterr().out
-    assert code == 0
-    assert "0 FAILED" in out
-    found = load(tmp_path)
-    assert found is not None
-    assert found.run["command"].startswith("python -m comparison.extremes --models small ")
-    assert {row.group for row in found.rows} == {"amplitude, m/s^2", "outside the rules"} - {"outside the rules"}
-    assert (tmp_path / "extremes.png").read_bytes().startswith(b"\x89PNG")
+    assert re.search(
+        r"^3 cells in .* s of processor time: \d+ converged, \d+ refused, \d+ limit, 0 FAILED\.$", out, re.M
+    )
+    matrix = load(tmp_path / "report")
+    assert matrix is not None
+    assert matrix.run["command"].startswith("python -m comparison.extremes --models small ")
+    assert {row.group for row in matrix.rows} == {"amplitude, m/s^2"}
+    assert (tmp_path / "report" / "extremes.png").read_bytes().startswith(b"\x89PNG")
+    assert main(words, forbidden) == 0
+    assert f"3 of 3 tasks are in {tmp_path / 'report'}.tiles: only the others are computed." in capsys.readouterr().out
+    again = load(tmp_path / "report")
+    assert (again.rows, again.run["stored_before"]) == (matrix.rows, 3)
+    with pytest.raises(AssertionError, match="computed"):
+        main([*words, "--fresh"], forbidden)
+    capsys.readouterr()
+    assert main(words) == 0
+    assert "tasks are in" not in capsys.readouterr().out, "what --fresh dropped is computed by the next run"
+
+
+def forbidden(jobs: int) -> Executor:
+    raise AssertionError("nothing should have been computed")
 
 
 def test_a_failed_cell_is_an_exit_code_and_in_the_picture(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr("comparison.cli.extremes.COLUMNS", (fake("calls_nan_ok"),))
     monkeypatch.setattr("comparison.cli.extremes.rows", lambda: iter([PLAIN]))
-    assert main(["--jobs", "1", "--out", str(tmp_path)]) == 1
+    assert main(["--jobs", "1", "--out", str(tmp_path / "report")]) == 1
     assert "FAILED: anything plain" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("words", [["--jobs", "0"], ["--limit", "-1"], ["--only", "no such extreme"]])
+@pytest.mark.parametrize("words", [["--jobs", "0"], ["--limit", "-1"], ["--rows", "no such extreme"]])
 def test_a_wrong_option_is_one_line(words, tmp_path, capsys):
-    assert main([*words, "--out", str(tmp_path)]) == 2
+    assert main([*words, "--out", str(tmp_path / "report")], forbidden) == 2
     assert capsys.readouterr().err.count("\n") == 1
 
 
+def test_the_selection_of_analyses_is_not_that_of_the_extremes(tmp_path, capsys):
+    assert main(["--only", "friction", "--out", str(tmp_path / "report")], forbidden) == 2
+    line = "--only = 'friction': selects analyses of a study; the extremes are chosen with --rows TEXT\n"
+    assert capsys.readouterr().err == f"command line: {line}"
+
+
 def test_the_file_is_read_back_as_it_was_and_another_file_is_refused(tmp_path: Path):
-    found = Matrix(
+    matrix = Matrix(
         {"fake": "a fake"},
         [_extreme("converged", 1e-7), _extreme("FAILED", None)],
         {"command": "a test", "seconds": 1.0, "cpu_seconds": 2.0},
     )
     assert load(tmp_path) is None
-    (tmp_path / FILE).write_bytes(as_json(found))
-    assert load(tmp_path) == found
-    draw_extremes(tmp_path / "picture.png", found)
+    (tmp_path / FILE).write_bytes(as_json(matrix))
+    assert load(tmp_path) == matrix
+    draw_extremes(tmp_path / "picture.png", matrix)
     (tmp_path / "extremes.json").write_text(json.dumps({"rows": []}), encoding="utf-8")
     with pytest.raises(ValueError, match="not a matrix of extremes"):
         load(tmp_path)
+
+
+def test_a_field_shows_the_error_or_the_outcome_whatever_the_reason_says():
+    assert describe(Entry("converged", "a reason", "ok", 2e-7, 0.1, 0.1)) == "2e-07"
+    assert describe(Entry("limit", "a reason: 1e-3", "tolerance not met", 1e-3, 0.1, 0.1)) == "tolerance not met"
+    assert describe(Entry("refused", "rim reached: a rule of the scene", "", None, 0.1, 0.1)) == "against a rule"
+    assert describe(Entry("FAILED", "hangs: a reason", "time limit", None, None, None)) == "FAILED"
 
 
 @pytest.mark.parametrize(
@@ -194,23 +229,21 @@ def test_a_matrix_of_an_earlier_version_is_refused_in_one_line(content: str, rea
 
 
 def test_a_matrix_with_a_verdict_that_is_none_is_refused(tmp_path: Path):
-    found = Matrix({"fake": "a fake"}, [_extreme("fine", 1e-7)], {"command": "a test"})
-    (tmp_path / FILE).write_bytes(as_json(found))
+    matrix = Matrix({"fake": "a fake"}, [_extreme("fine", 1e-7)], {"command": "a test"})
+    (tmp_path / FILE).write_bytes(as_json(matrix))
     with pytest.raises(ValueError, match="'fine' is not a valid Verdict"):
         load(tmp_path)
 
 
-def _extreme(verdict: str, error: float | None):
-    from comparison.analysis.extremes.matrix import Extreme
-
-    return Extreme("a group", verdict, {"fake": Entry(verdict, "a reason", error, 0.25, 0.5)})
+def _extreme(verdict: str, error: float | None) -> Extreme:
+    return Extreme("a group", verdict, {"fake": Entry(verdict, "a reason", "ok", error, 0.25, 0.5)})
 
 
-@pytest.mark.parametrize("given", [{"contact_stiffness": 1e4}, {"contact_stiffness": 1e6}, {"step": 0.1}])
-def test_the_error_knows_what_a_bad_choice_of_stiffness_or_step_costs(given):
-    written = _scene(scene(duration=0.5))
-    engine = amplification(written, [(0.3, 1.1)], tolerance=1e-2, **given)
-    exact = reference.amplification(written, [(0.3, 1.1)], equations="exact", regularization=1e-3)
+@pytest.mark.parametrize("choice", [{"contact_stiffness": 1e4}, {"contact_stiffness": 1e6}, {"step": 0.1}])
+def test_the_error_knows_what_a_bad_choice_of_stiffness_or_step_costs(choice):
+    brief = read_scene(scene(duration=0.5))
+    engine = amplification(brief, [(0.3, 1.1)], tolerance=1e-2, **choice)
+    exact = reference.amplification(brief, [(0.3, 1.1)], equations="exact", regularization=1e-3)
     assert engine.status[0] in ("ok", "tolerance not met")
     assert (abs(engine.mu - exact.mu) <= engine.error + exact.error).all()
 

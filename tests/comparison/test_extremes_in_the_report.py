@@ -18,9 +18,9 @@ RUN = {"command": "made by a test", "began": "then", "seconds": 1.0, "cpu_second
 FOUND = Matrix(
     {"small": "small equations", "spatial": "spatial engine"},
     [
-        Extreme("friction", "1e-9", {"small": Entry("converged", "error 2e-07 confirmed", 2e-7, 0.25, 0.5)}),
-        Extreme("friction", "10", {"spatial": Entry("limit", "step limit", None, 0.25, 0.5)}),
-        Extreme("rho, m", "1e3", {"small": Entry("FAILED", "hangs: <forever>", None, None, None)}),
+        Extreme("friction", "1e-9", {"small": Entry("converged", "error 2e-07 confirmed", "ok", 2e-7, 0.25, 0.5)}),
+        Extreme("friction", "10", {"spatial": Entry("limit", "step limit", "step limit", None, 0.25, 0.5)}),
+        Extreme("rho, m", "1e3", {"small": Entry("FAILED", "hangs: <forever>", "time limit", None, None, None)}),
     ],
     {**RUN, "limit": 90.0, "reduced": False, "provenance": {"commit": "abc"}},
 )

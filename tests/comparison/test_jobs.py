@@ -18,7 +18,7 @@ def test_results_are_the_same_to_the_last_bit_for_any_number_of_jobs() -> None:
     study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy("uneven", batch=1))
     batches = study.batches()
     order: list[int] = []
-    found = []
+    surfaces = []
     for jobs in (1, 3):
         order.clear()
         answers = sweep(
@@ -29,9 +29,9 @@ def test_results_are_the_same_to_the_last_bit_for_any_number_of_jobs() -> None:
             jobs,
             ThreadPoolExecutor,
         )
-        found.append(labeled_surfaces(study, batches, answers).drop_vars("cost"))
+        surfaces.append(labeled_surfaces(study, batches, answers).drop_vars("cost"))
     assert order != [batch.first for batch in batches], "the second time they finished in another order"
-    xr.testing.assert_equal(*found)  # values, not only close ones
+    xr.testing.assert_equal(*surfaces)  # values, not only close ones
 
 
 def test_the_cut_into_tiles_covers_every_phase_once() -> None:

@@ -20,7 +20,7 @@ from comparison.analysis.trajectories import SHARE, Place, StoredMotion, moved, 
 from comparison.execution.cache import Cache, Key
 from comparison.report.motion_data import ROUNDING, contact_geometry, packed_motions, places, starts_of
 from comparison.study.models import REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL, Model
-from multibody.animate import contact_paths
+from multibody.film import contact_paths
 from reference.problem import Scene, builtin_scenes, demands, load_scene
 
 PHASE = (2.0, 0.7)
@@ -122,7 +122,7 @@ def test_the_path_of_the_contact_point_follows_from_position_and_yaw_as_the_layo
 
 
 def test_a_refused_motion_has_no_numbers_and_unknown_demands() -> None:
-    long = load_scene("fig3-I").with_values({"duration": 1e4})
+    long = load_scene("fig3-I").with_values({"duration": 1e5})
     motion = stored(long, TRANSLATIONAL)
     [place] = places(found(motion), long, starts_of([motion]))
     [about] = place["motions"]

@@ -62,11 +62,11 @@ def test_the_summary_has_them_without_nan(finished: Path) -> None:
 def test_claims_are_tested_only_where_every_scene_of_the_paper_is_studied() -> None:
     every = Study(tuple(load_scene(name) for name in builtin_scenes()), 4, 1e-3)
     assert Claims().tasks(every)
-    one = Study((load_scene("fig3-I"),), 4, 1e-3)
-    assert Claims().tasks(one) == []
-    assert Claims().collect(one, None, TaskResults()) is None
+    study = Study((load_scene("fig3-I"),), 4, 1e-3)
+    assert Claims().tasks(study) == []
+    assert Claims().collect(study, None, TaskResults()) is None
     for analysis in (Scaling(), Convergence()):
-        assert {task.about.name for task in analysis.tasks(one)} == {"fig3-I"}
+        assert {task.about.name for task in analysis.tasks(study)} == {"fig3-I"}
 
 
 def test_a_report_without_them_says_which_command_makes_them(command: Callable[..., Any]) -> None:

@@ -16,8 +16,8 @@ N = 16
 
 def _phases(points: int = N) -> tuple[Array, Array]:
     axis = 2.0 * np.pi * np.arange(points) / points
-    one, other = np.meshgrid(axis, axis, indexing="ij")
-    return one, other
+    alpha1, alpha2 = np.meshgrid(axis, axis, indexing="ij")
+    return alpha1, alpha2
 
 
 A1, A2 = _phases()
@@ -69,9 +69,9 @@ def test_a_plateau_is_one_peak_however_wide() -> None:
 
 def test_regions_belong_to_the_peak_across_the_saddle() -> None:
     heights = np.array([[9.0, 0.0, 5.0, 4.0, 4.5, 1.0, 8.0]])  # the peak of 4.5 is lesser: it hangs on the one of 5
-    found = relief(heights, share=0.3, closed=False)
-    assert found.tops == [(0, 0), (0, 6), (0, 2)]
-    assert found.regions[0, 4] == 2
+    peaks = relief(heights, share=0.3, closed=False)
+    assert peaks.tops == [(0, 0), (0, 6), (0, 2)]
+    assert peaks.regions[0, 4] == 2
 
 
 @st.composite

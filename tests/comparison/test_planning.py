@@ -44,14 +44,14 @@ def accuracy(tolerances: tuple[float, ...], costs: tuple[float, ...], met: tuple
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 @pytest.mark.parametrize("model", MODEL_HIERARCHY, ids=lambda model: model.key)
 def test_no_recorded_setting_that_meets_the_tolerance_is_cheaper(model: object, tolerance: float) -> None:
-    own = recorded().accuracy[model.key]
-    able = [cost for one, cost, met in zip(own.tolerances, own.costs, own.met) if met and one <= tolerance]
-    if tolerance < own.tightest:
+    record = recorded().accuracy[model.key]
+    able = [cost for asked, cost, met in zip(record.tolerances, record.costs, record.met) if met and asked <= tolerance]
+    if tolerance < record.tightest:
         assert not able
         return
     chosen = setting(model, tolerance)
     assert chosen <= tolerance
-    assert own.cost(chosen) <= planning.HARDLY_MORE * min(able, default=own.cost(tolerance))
+    assert record.cost(chosen) <= planning.HARDLY_MORE * min(able, default=record.cost(tolerance))
 
 
 def test_the_cheapest_wins_and_a_tighter_one_for_nearly_the_same_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -71,9 +71,9 @@ def test_a_setting_that_missed_its_tolerance_in_the_record_is_not_taken(monkeypa
 
 
 def test_between_recorded_tolerances_the_cost_lies_between_theirs() -> None:
-    own = AccuracyRecord((1e-2, 1e-4), (1.0, 4.0), (True, True))
-    assert own.cost(1e-3) == pytest.approx(2.0)
-    assert (own.cost(1e-1), own.cost(1e-9)) == pytest.approx((1.0, 4.0))
+    record = AccuracyRecord((1e-2, 1e-4), (1.0, 4.0), (True, True))
+    assert record.cost(1e-3) == pytest.approx(2.0)
+    assert (record.cost(1e-1), record.cost(1e-9)) == pytest.approx((1.0, 4.0))
 
 
 def test_what_is_recorded_as_met_was_met_at_99_percent_in_truth_and_by_the_estimates() -> None:
@@ -88,11 +88,11 @@ def test_what_is_recorded_as_met_was_met_at_99_percent_in_truth_and_by_the_estim
             )
 
 
-def test_models_that_cannot_meet_the_tolerance_are_left_out_and_named() -> None:
-    found = plan_study(StudyRequest((SCENE,), tolerance=1e-6))
-    assert [model.key for model in found.study.hierarchy] == ["small", "exact", "resolved", "regularised"]
-    assert len(found.omitted) == 2
-    assert found.omitted[0].startswith("translational engine: cannot meet 1e-06, the tightest it is known to meet is")
+def test_models_that_cannot_meet_the_tolerance_are_omitted_and_named() -> None:
+    plan = plan_study(StudyRequest((SCENE,), tolerance=1e-6))
+    assert [model.key for model in plan.study.hierarchy] == ["small", "exact", "resolved", "regularised"]
+    assert len(plan.omitted) == 2
+    assert plan.omitted[0].startswith("translational engine: cannot meet 1e-06, the tightest it is known to meet is")
 
 
 def test_without_an_option_the_study_is_the_default_one_and_nothing_is_measured(
@@ -102,12 +102,12 @@ def test_without_an_option_the_study_is_the_default_one_and_nothing_is_measured(
         raise AssertionError("nothing should be measured")
 
     monkeypatch.setattr(cost_of, "machine_benchmark", forbidden)
-    found = plan_study(StudyRequest((SCENE, NEW.with_values({"name": "new"}))))
-    assert found.study.grid == 48
-    assert [(model.key, model.tolerance(1e-3), model.most) for model in found.study.hierarchy] == [
+    plan = plan_study(StudyRequest((SCENE, NEW.with_values({"name": "new"}))))
+    assert plan.study.grid == 48
+    assert [(model.key, model.tolerance(1e-3), model.most) for model in plan.study.hierarchy] == [
         (model.key, 1e-6 if model.side == "reference" else 1e-3, model.most) for model in MODEL_HIERARCHY
     ]
-    assert found.with_analyses
+    assert plan.with_analyses
 
 
 def analysis_cost(study: Study, with_analyses: bool) -> float:
@@ -115,19 +115,19 @@ def analysis_cost(study: Study, with_analyses: bool) -> float:
     return 40.0 if with_analyses else 10.0
 
 
-def test_no_ambition_asks_for_what_a_model_cannot_do() -> None:
+def test_no_preset_asks_for_what_a_model_cannot_do() -> None:
     measured = cost_of.costs((SCENE,), MODEL_HIERARCHY, False)
     assert len(STUDY_PRESETS) > DEFAULT_PRESET
-    for one in STUDY_PRESETS[DEFAULT_PRESET:]:
-        assert planning._plan(one, StudyRequest((SCENE,), budget=1.0), measured).omitted == ()
+    for preset in STUDY_PRESETS[DEFAULT_PRESET:]:
+        assert planning._plan(preset, StudyRequest((SCENE,), budget=1.0), measured).omitted == ()
 
 
-def test_every_ambition_costs_more_than_the_one_before() -> None:
+def test_every_preset_costs_more_than_the_one_before() -> None:
     scenes = tuple(load_scene(name) for name in ("fig3-I", "fig4-viscous"))
     measured = cost_of.costs(scenes, MODEL_HIERARCHY, False)
     wall = [
-        planning._plan(one, StudyRequest(scenes, budget=1.0, analysis_cost=analysis_cost), measured).wall
-        for one in STUDY_PRESETS
+        planning._plan(preset, StudyRequest(scenes, budget=1.0, analysis_cost=analysis_cost), measured).wall
+        for preset in STUDY_PRESETS
     ]
     assert wall == sorted(wall)
     assert len(set(wall)) == len(wall)
@@ -137,13 +137,13 @@ def test_every_ambition_costs_more_than_the_one_before() -> None:
 def test_a_budget_takes_the_last_study_that_fits(jobs: int) -> None:
     asked = StudyRequest((SCENE,), budget=1e6, jobs=jobs, analysis_cost=analysis_cost)
     measured = cost_of.costs(asked.scenes, MODEL_HIERARCHY, True)
-    walls = [planning._plan(one, asked, measured).wall for one in STUDY_PRESETS]
+    walls = [planning._plan(preset, asked, measured).wall for preset in STUDY_PRESETS]
     for number, wall in enumerate(walls):
-        found = plan_study(replace(asked, budget=1.001 * wall + 0.5))
+        plan = plan_study(replace(asked, budget=1.001 * wall + 0.5))
         last = max(planning for planning, other in enumerate(walls) if other <= 1.001 * wall + 0.5)
         assert last >= number
-        assert found.wall == pytest.approx(walls[last])
-        assert found.wall <= 1.001 * wall + 0.5
+        assert plan.wall == pytest.approx(walls[last])
+        assert plan.wall <= 1.001 * wall + 0.5
 
 
 def test_a_budget_that_nothing_fits_says_what_the_least_costs() -> None:
@@ -152,9 +152,9 @@ def test_a_budget_that_nothing_fits_says_what_the_least_costs() -> None:
 
 
 def test_tolerance_and_grid_that_are_given_stay_as_they_are_under_a_budget() -> None:
-    found = plan_study(StudyRequest((SCENE,), tolerance=1e-4, budget=1e6, grid=20))
-    assert (found.study.grid, found.study.tolerance) == (20, 1e-4)
-    assert {model.key: model.asks for model in found.study.hierarchy}["translational"] == pytest.approx(1e-4)
+    plan = plan_study(StudyRequest((SCENE,), tolerance=1e-4, budget=1e6, grid=20))
+    assert (plan.study.grid, plan.study.tolerance) == (20, 1e-4)
+    assert {model.key: model.asks for model in plan.study.hierarchy}["translational"] == pytest.approx(1e-4)
     assert plan_study(StudyRequest((SCENE,), budget=1e6)).study.tolerance == STUDY_PRESETS[-1].tolerance
 
 
@@ -168,18 +168,18 @@ def test_a_slower_machine_and_a_longer_motion_are_expected_to_take_longer(monkey
 
 def test_a_scene_that_is_not_in_the_record_is_tried_and_others_of_its_family_go_by_that() -> None:
     family = tuple(NEW.with_values({"name": f"new[{n}]", "duration": 5.0 + n}) for n in range(4))
-    found = cost_of.costs(family, MODEL_HIERARCHY, True).seconds
-    assert found["new[0]", "translational"] == found["new[3]", "translational"] == 0.1
-    assert found["new[0]", "exact"] == 0.1
+    seconds = cost_of.costs(family, MODEL_HIERARCHY, True).seconds
+    assert seconds["new[0]", "translational"] == seconds["new[3]", "translational"] == 0.1
+    assert seconds["new[0]", "exact"] == 0.1
     # the two that were tried cost 0.1 s for 5 and 8 s of motion: between them in proportion to the duration
-    assert found["new[2]", "translational"] == pytest.approx(0.5 * (0.1 / 5.0 + 0.1 / 8.0) * 7.0)
+    assert seconds["new[2]", "translational"] == pytest.approx(0.5 * (0.1 / 5.0 + 0.1 / 8.0) * 7.0)
 
 
-def test_models_under_another_name_keep_what_their_rung_says() -> None:
+def test_models_under_another_name_keep_their_own_cost() -> None:
     other = replace(TRANSLATIONAL, amplification="somewhere:else", seconds_per_point=3.0)
-    found = plan_study(StudyRequest((SCENE,), (EXACT, other), tolerance=1e-7))
-    assert found.study.hierarchy[1] is other
-    assert found.study.seconds_of(SCENE, other) == pytest.approx(3.0 * len(found.study.solved(SCENE, other)))
+    plan = plan_study(StudyRequest((SCENE,), (EXACT, other), tolerance=1e-7))
+    assert plan.study.hierarchy[1] is other
+    assert plan.study.seconds_of(SCENE, other) == pytest.approx(3.0 * len(plan.study.solved(SCENE, other)))
 
 
 def test_the_run_says_what_it_chose_and_what_it_got(command: Callable[..., Run]) -> None:
@@ -217,10 +217,10 @@ def test_a_budget_leaves_out_what_a_report_can_do_without(command: Callable[...,
 
 
 def test_the_tightest_tolerance_is_one_that_some_model_meets() -> None:
-    assert tightest() == min(own.tightest for own in recorded().accuracy.values())
+    assert tightest() == min(record.tightest for record in recorded().accuracy.values())
 
 
-def test_the_default_ambition_is_the_default_ladder() -> None:
+def test_the_default_preset_is_the_default_hierarchy() -> None:
     most = {model.key: model.most for model in MODEL_HIERARCHY}
     assert (STUDY_PRESETS[DEFAULT_PRESET].translational, STUDY_PRESETS[DEFAULT_PRESET].spatial) == (
         most["translational"],

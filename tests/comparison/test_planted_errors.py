@@ -96,16 +96,16 @@ def _with(sound: Solved, mistake: Mistake) -> Solved:
         for model in MODEL_HIERARCHY
         if model.key in mistake.models
     )
-    found = Solved.by(wrong).surfaces
+    altered = Solved.by(wrong).surfaces
     surfaces = sound.surfaces.copy(deep=True)
     for name in ("mu", "error"):
-        surfaces[name].loc[{"model": list(mistake.models)}] = found[name].sel(model=list(mistake.models))
+        surfaces[name].loc[{"model": list(mistake.models)}] = altered[name].sel(model=list(mistake.models))
     return Solved(sound.study, surfaces)
 
 
 def _moved(sound: Solved, wrong: Solved, body: int) -> dict[str, float]:
     """Mean change of every step that changed by more than its uncertainties allow at any phase, by the step's key."""
-    pairs = zip(*(steps(one.study, one.surfaces, SCENE, body) for one in (sound, wrong)))
+    pairs = zip(*(steps(solved.study, solved.surfaces, SCENE, body) for solved in (sound, wrong)))
     moved = {}
     for before, after in pairs:
         change = after.size - before.size
@@ -126,7 +126,7 @@ ALONE = {
 
 
 @pytest.mark.parametrize(("mistake", "blamed"), ALONE.values(), ids=ALONE.keys())
-def test_a_mistake_moves_the_steps_to_and_from_its_rung_and_no_other(
+def test_a_mistake_moves_the_steps_to_and_from_its_model_and_no_other(
     sound: Solved, mistake: Mistake, blamed: list[str]
 ) -> None:
     wrong = _with(sound, mistake)
@@ -157,7 +157,7 @@ def test_a_mistake_on_either_side_of_the_like_for_like_step_breaks_the_limit_of_
 
 
 @pytest.mark.long
-def test_a_mistake_in_a_program_that_three_rungs_run_enters_with_the_first_and_leaves_with_the_engine(
+def test_a_mistake_in_a_program_that_three_models_run_enters_with_the_first_and_leaves_with_the_engine(
     sound: Solved,
 ) -> None:
     wrong = _with(sound, IN_ALL)

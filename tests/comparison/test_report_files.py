@@ -18,6 +18,7 @@ from reference.problem import load_scene
 GRID = 4
 PARTS = {
     "index.html",
+    "report.pdf",
     "surfaces.nc",
     "summary.json",
     "summary.schema.json",
@@ -58,8 +59,8 @@ def test_every_value_stands_at_its_own_phases(surfaces: xr.Dataset) -> None:
     assert surfaces["scene"].values.tolist() == ["fig3-I", "fig4-viscous"]
     for scene in surfaces["scene"].values:
         for model, factor in (("small", 1.0), ("exact", 1.0), ("translational", 1.01)):
-            found = surfaces["mu"].sel(scene=scene, model=model)
-            np.testing.assert_allclose(found, factor * expected.transpose(*found.dims), rtol=1e-14)  # rounding
+            mu = surfaces["mu"].sel(scene=scene, model=model)
+            np.testing.assert_allclose(mu, factor * expected.transpose(*mu.dims), rtol=1e-14)  # rounding
 
 
 def test_a_model_that_does_not_apply_is_nan_and_says_so(surfaces: xr.Dataset) -> None:
@@ -90,7 +91,7 @@ def test_summary_has_its_schema_and_no_nan(finished: Path) -> None:
     summary = _strict((finished / "summary.json").read_text(encoding="utf-8"))
     assert isinstance(summary, dict)
     assert summary["schema"] == "phase-resonance/summary"
-    assert summary["version"] == 3
+    assert summary["version"] == 4
     assert (summary["grid"], summary["tolerance"]) == (GRID, 1e-3)
     assert {"command", "began", "seconds", "compute_seconds", "jobs", "provenance"} <= set(summary["run"])
     assert [model["key"] for model in summary["models"]] == [model.key for model in MODEL_HIERARCHY]

@@ -41,24 +41,24 @@ def _found(monkeypatch: pytest.MonkeyPatch, step: Callable[[float], float], name
 
 
 def test_a_geometric_step_has_the_exponent_two(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = _found(monkeypatch, lambda s: 0.03 * s**2)
-    assert len(found) == 2 * 2 * 2, "supremum and resolved, two bodies, two trends"
-    assert {one.verdict for one in found} == {"like the power 2"}
-    assert {round(one.slope.exponent, 2) for one in found if one.what.startswith(STEP)} == {2.0}
+    trends = _found(monkeypatch, lambda s: 0.03 * s**2)
+    assert len(trends) == 2 * 2 * 2, "supremum and resolved, two bodies, two trends"
+    assert {trend.verdict for trend in trends} == {"like the power 2"}
+    assert {round(trend.slope.exponent, 2) for trend in trends if trend.what.startswith(STEP)} == {2.0}
 
 
 @pytest.mark.parametrize("step", [lambda s: 0.03 * s, lambda s: 0.03, lambda s: 0.03 * s**3])
 def test_a_step_that_is_no_geometry_is_found_out(
     monkeypatch: pytest.MonkeyPatch, step: Callable[[float], float]
 ) -> None:
-    verdicts = {one.what.split(",")[0]: one.verdict for one in _found(monkeypatch, step)}
+    verdicts = {trend.what.split(",")[0]: trend.verdict for trend in _found(monkeypatch, step)}
     assert verdicts[STEP] == "not like the power 2"
     assert verdicts[PRINTED.split(",")[0]] == "like the power 2", "the small equations alone are untouched"
 
 
 def test_a_step_that_jumps_has_no_exponent(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = _found(monkeypatch, lambda s: 0.2 if s == 0.25 else -0.03 * s**2)
-    assert {one.verdict[:15] for one in found if one.what.startswith(STEP)} == {"no single slope"}
+    trends = _found(monkeypatch, lambda s: 0.2 if s == 0.25 else -0.03 * s**2)
+    assert {trend.verdict[:15] for trend in trends if trend.what.startswith(STEP)} == {"no single slope"}
 
 
 def test_a_lubricated_scene_has_one_peak_and_one_that_fails_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -68,22 +68,22 @@ def test_a_lubricated_scene_has_one_peak_and_one_that_fails_says_why(monkeypatch
         raise RuntimeError("singular")
 
     monkeypatch.setattr(scaling, "amplification", broken)
-    found = collected(Scaling(), _study("fig4-viscous"))
-    assert [one.body for one in found] == [1, 2]
-    assert {one.verdict for one in found} == {"solver failed: RuntimeError: singular"}
+    trends = collected(Scaling(), _study("fig4-viscous"))
+    assert [trend.body for trend in trends] == [1, 2]
+    assert {trend.verdict for trend in trends} == {"solver failed: RuntimeError: singular"}
 
 
 @pytest.mark.parametrize("name", ["fig3-II", "fig4-viscous"])
 def test_the_scaled_scene_moves_as_the_scene_scaled(name: str) -> None:
     """Small equations without the kept terms would do so exactly; with them to s^2 of the swing, 1e-2 here."""
     scene = load_scene(name).with_values({"duration": 2.0})
-    one, other = (trajectory(scaled(scene, s), (2.0, 0.7), equations="small").position for s in (0.25, 0.125))
-    np.testing.assert_allclose(one, 2.0 * other, atol=1e-2 * np.abs(one).max())
+    larger, smaller = (trajectory(scaled(scene, s), (2.0, 0.7), equations="small").position for s in (0.25, 0.125))
+    np.testing.assert_allclose(larger, 2.0 * smaller, atol=1e-2 * np.abs(larger).max())
 
 
 @pytest.mark.long
 def test_the_step_to_the_exact_equations_is_geometry() -> None:
     """fig3-II: every trend like s^2, with an uncertainty below 0.1."""
-    found = collected(Scaling(), _study("fig3-II"))
-    assert {one.verdict for one in found} == {"like the power 2"}
-    assert max(one.slope.uncertainty for one in found) < 0.1
+    trends = collected(Scaling(), _study("fig3-II"))
+    assert {trend.verdict for trend in trends} == {"like the power 2"}
+    assert max(trend.slope.uncertainty for trend in trends) < 0.1

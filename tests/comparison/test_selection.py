@@ -158,3 +158,21 @@ def test_a_wrong_selection_of_a_scene_is_one_line_with_the_nearest_name(
 def test_motions_bring_the_surfaces_below_which_they_are_shown() -> None:
     assert set(selected(["motions"], None)) == {"motions", "surfaces"}
     assert {"motions", "surfaces"}.isdisjoint(selected(None, ["surfaces"]))
+
+
+def test_a_scene_of_the_users_has_the_papers_claims_and_errata_only_if_it_names_them(
+    command: Callable[..., Run], tmp_path: Path
+) -> None:
+    text = (SCENES / "fig3-I.toml").read_text(encoding="utf-8")
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    (tmp_path / "named.toml").write_text(text + '[analyses]\nonly = ["errata", "surfaces"]\n', encoding="utf-8")
+    mine, named, paper = (load_scene(place) for place in (tmp_path / "mine.toml", tmp_path / "named.toml", "fig3-I"))
+    selection = Selection.of([mine, named, paper], None, None)
+    assert [selection.has("errata", scene.name) for scene in (mine, named, paper)] == [False, True, True]
+    assert [selection.has("claims", scene.name) for scene in (mine, named, paper)] == [False, False, True]
+    assert selection.has("differences", "mine")
+    assert Selection.of([mine], ["errata"], None).has("errata", "mine")
+    assert not Selection.of([mine], None, ["motions"]).has("errata", "mine")
+    run = command(str(tmp_path / "mine.toml"), *GRID)
+    absent = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))["absent"]
+    assert absent == {name: f"of the paper's scenes; --only {name} makes it of others" for name in ("claims", "errata")}

@@ -39,8 +39,9 @@ def test_the_exponent_is_that_of_the_shape(kind: str) -> None:
 def test_every_body_is_judged_by_its_own_surface_and_where_it_bends() -> None:
     smooth, fold = bends(_both(phase_grid(16)).reshape(16, 16, 2), _both)
     assert (smooth.kind, fold.kind) == ("smooth", "fold")
-    one, other = fold.phases
-    assert np.cos(one - other) == pytest.approx(np.cos(one + other + 0.3), abs=0.03), "on the fold, to the last step"
+    alpha1, alpha2 = fold.phases
+    other_side = np.cos(alpha1 + alpha2 + 0.3)
+    assert np.cos(alpha1 - alpha2) == pytest.approx(other_side, abs=0.03), "on the fold, to the last step"
 
 
 def test_a_place_without_a_value_is_no_answer() -> None:

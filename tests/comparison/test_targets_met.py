@@ -29,14 +29,14 @@ def tower() -> Scene:
 
 def chosen(scene: Scene, tolerance: float, grid: int, most: int) -> StudyPlan:
     """What is chosen on a small grid, the engine on a smaller one."""
-    found = plan_study(StudyRequest((scene,), tolerance=tolerance, grid=grid))
-    models = [replace(model, most=most) if model.side == "engine" else model for model in found.study.hierarchy]
-    return replace(found, study=replace(found.study, hierarchy=models))
+    plan = plan_study(StudyRequest((scene,), tolerance=tolerance, grid=grid))
+    models = [replace(model, most=most) if model.side == "engine" else model for model in plan.study.hierarchy]
+    return replace(plan, study=replace(plan.study, hierarchy=models))
 
 
-def share_met(found: StudyPlan, scene: Scene, model: Model) -> tuple[float, int]:
+def share_met(plan: StudyPlan, scene: Scene, model: Model) -> tuple[float, int]:
     """Share of the points of one model that are as accurate as asked, against a run TIGHTER; and their number."""
-    met, study = [], found.study
+    met, study = [], plan.study
     for batch in study.batches():
         if batch.model == model.key:
             answer = execute_batch(batch)
@@ -51,11 +51,11 @@ def share_met(found: StudyPlan, scene: Scene, model: Model) -> tuple[float, int]
 
 def test_the_accuracy_asked_is_met_on_a_scene_that_was_never_recorded() -> None:
     scene = tower().with_values({"duration": 3.0})
-    found = chosen(scene, 1e-3, 6, 2)
-    assert {model.side for model in found.study.hierarchy} == {"reference", "engine"}
-    for model in found.study.hierarchy:
+    plan = chosen(scene, 1e-3, 6, 2)
+    assert {model.side for model in plan.study.hierarchy} == {"reference", "engine"}
+    for model in plan.study.hierarchy:
         if model.key != "spatial":
-            share, points = share_met(found, scene, model)
+            share, points = share_met(plan, scene, model)
             assert share >= 0.99, (model.key, points)
 
 
@@ -65,11 +65,11 @@ def test_the_accuracy_asked_is_met_on_a_scene_that_was_never_recorded() -> None:
 def test_the_accuracy_asked_is_met_at_99_percent_of_the_points(name: str, tolerance: float) -> None:
     scene = tower() if name == "tower" else load_scene(name)
     # the engine is held against runs a hundred times tighter: few phases but at the usual tolerance
-    found = chosen(scene, tolerance, 16, 4 if tolerance == 1e-3 else 2)
-    assert found.study.hierarchy
-    for model in found.study.hierarchy:
+    plan = chosen(scene, tolerance, 16, 4 if tolerance == 1e-3 else 2)
+    assert plan.study.hierarchy
+    for model in plan.study.hierarchy:
         if model.applies(scene):
-            share, points = share_met(found, scene, model)
+            share, points = share_met(plan, scene, model)
             print(f"{name} {model.key} {tolerance:.0e}: {100.0 * share:.1f} % of {points}")
             assert share >= 0.99, (model.key, points)
 
@@ -89,18 +89,18 @@ def test_the_cost_is_within_a_factor_1_5_of_what_was_expected(names: list[str], 
     def foreseen(scene: Scene) -> StudyPlan:
         return chosen(scene, tolerance, 24, 4)
 
-    def seconds(found: StudyPlan) -> float:
-        return sum(found.study.seconds(model) for model in found.study.hierarchy)
+    def seconds(plan: StudyPlan) -> float:
+        return sum(plan.study.seconds(model) for model in plan.study.hierarchy)
 
     expected, spent = [], []
     for name in names:
         scene = tower() if name == "tower" else load_scene(name)
-        found = foreseen(scene)
+        expected_plan = foreseen(scene)
         begin = time.process_time()
-        for batch in found.study.batches():
+        for batch in expected_plan.study.batches():
             execute_batch(batch)
         spent.append(time.process_time() - begin)
-        expected.append(0.5 * (seconds(found) + seconds(foreseen(scene))))
+        expected.append(0.5 * (seconds(expected_plan) + seconds(foreseen(scene))))
         print(f"{name} {tolerance:.0e}: {spent[-1]:.2f} s where {expected[-1]:.2f} s were expected")
     ratio = np.divide(spent, expected)
     assert 1.0 / 1.5 <= sum(spent) / sum(expected) <= 1.5

@@ -24,7 +24,7 @@ from comparison.analysis.effective import Effective
 from comparison.analysis.errata import Effect
 from comparison.analysis.trajectories import Place, StoredMotion
 from comparison.execution.cache import Cache
-from comparison.execution.executors import process_pool
+from comparison.execution.processes import process_pool
 from comparison.execution.runner import Runner
 from comparison.execution.task import Task, TaskResult, fingerprint
 from comparison.execution.task_results import TaskResults
@@ -42,7 +42,7 @@ def motion(task: tuple[object, ...]) -> StoredMotion:
     return StoredMotion(Place("s", 1, 2, ""), "small", two, numbers.reshape(2, 1, 2), numbers.reshape(2, 1, 2))
 
 
-def another(task: tuple[object, ...]) -> StoredMotion:
+def another_motion(task: tuple[object, ...]) -> StoredMotion:
     return motion(task)
 
 
@@ -80,9 +80,9 @@ def _run(task: Task, folder: Path, make: Callable[[int], Executor] = ThreadPoolE
 
 def test_an_answer_comes_back_to_the_last_bit_and_is_not_computed_twice(tmp_path: Path) -> None:
     task = _task()
-    found = [_run(task, tmp_path), _run(task, tmp_path, forbidden)]
-    assert [results.parts["motions"].stored for results in found] == [0, 1]
-    first, second = (results[task].value for results in found)
+    runs = [_run(task, tmp_path), _run(task, tmp_path, forbidden)]
+    assert [results.parts["motions"].stored for results in runs] == [0, 1]
+    first, second = (results[task].value for results in runs)
     assert pickle.dumps(first) == pickle.dumps(second) == pickle.dumps(motion(task.argument))
     assert TaskResults(Cache(tmp_path)).holds(task)
     assert not TaskResults(Cache(tmp_path), fresh=True).holds(task)
@@ -94,7 +94,7 @@ def test_it_belongs_to_function_task_versions_and_source(tmp_path: Path, monkeyp
     _run(task, tmp_path)
     scene, *rest = task.argument
     others = {
-        "function": replace(task, function=another),
+        "function": replace(task, function=another_motion),
         "scene": _task((scene.with_values({"duration": 3.0}), *rest)),
         "name, which the answer may hold": _task((scene.with_values({"name": "other"}), *rest)),
         "number": _task((scene, 2, *rest[1:])),
@@ -145,15 +145,15 @@ def test_what_is_damaged_or_would_run_foreign_code_is_computed_again(tmp_path: P
 def test_a_task_that_raises_or_whose_worker_dies_is_a_result_with_its_reason_and_the_others_are_computed(
     tmp_path: Path,
 ) -> None:
-    def on_failure(argument: object, outcome: Outcome, error_message: str) -> object:
-        return argument, outcome, error_message
+    def on_failure(argument: object, failed: TaskResult) -> object:
+        return argument, failed.outcome, failed.error_message
 
     tasks = [Task(raises, 1, "errata", 0.3), Task(dies, 2, "errata", 0.2), Task(doubled, 3, "errata", 0.1)]
     results = TaskResults(Cache(tmp_path))
     Runner(results, QUIET, 2, process_pool).run_tasks(tasks)
     assert [results.value(task, on_failure) for task in tasks] == [
         (1, Outcome.SOLVER_FAILED, "RuntimeError: singular"),
-        (2, Outcome.WORKER_DIED, "the worker process died 2 times"),
+        (2, Outcome.WORKER_DIED, "the worker process died 2 times (exit code -9)"),
         6,
     ]
     assert TaskResults(Cache(tmp_path)).missing(tasks) == tasks[:2], "the next run tries them again"
@@ -175,10 +175,10 @@ def test_collecting_computes_nothing_and_looks_every_result_up(monkeypatch: pyte
 
 def test_every_task_of_a_study_has_a_place_of_its_own() -> None:
     study = Study(tuple(map(load_scene, builtin_scenes())), 6, 1e-3)
-    found = first_tasks(study, ANALYSES)
+    tasks = first_tasks(study, ANALYSES)
     assert paper_complete(study)
-    assert len({task.key for task in found}) == len(found)
-    assert {task.stage for task in found} == {
+    assert len({task.key for task in tasks}) == len(tasks)
+    assert {task.stage for task in tasks} == {
         "effective values", "errata", "scaling test", "convergence", "claims", "assumptions",
     }  # fmt: skip
     assert not paper_complete(Study(study.scenes[:1], 6, 1e-3))

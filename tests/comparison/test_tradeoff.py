@@ -7,19 +7,23 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from known_analyses import collected
 
-from comparison.analysis.tradeoff import measure
-from comparison.analysis.tradeoff.measure import Found, entry, measured, sample
-from comparison.analysis.tradeoff.settings import QUESTIONS, RUN, Setting, settings
+from comparison.analysis.tradeoff import analysis, measure
+from comparison.analysis.tradeoff.analysis import MeasuredTrade, TradeOff, entry
+from comparison.analysis.tradeoff.measure import Measured, Measurement, sample
+from comparison.analysis.tradeoff.settings import QUESTIONS, RUN, Question, Setting, settings
 from comparison.analysis.tradeoff.trade import FILE, Trade, as_json, load, on_pareto_front, quantile, with_pareto_fronts
 from comparison.cli import tradeoff as command
-from reference.problem import Scene, load_scene
+from comparison.study.study import Study
+from reference.problem import Amplification, Scene, load_scene
 
 SECONDS = 2.0  # of motion: a few slides and stops
 
@@ -33,15 +37,17 @@ def scene() -> Scene:
 def trade(scene: Scene) -> Trade:
     """The quick trade, without what is dear, in this process."""
     dear = "Exudyn", "Radau", "DOP853"
-    kept = [one for one in settings(scene, quick=True) if not any(name in one.method for name in dear)]
-    kept = [one for one in kept if one.question != "spatial"]
-    patch = pytest.MonkeyPatch()
-    patch.setattr(measure, "settings", lambda scene, quick: kept)
-    patch.setattr(measure, "asked", lambda scene: [one for one in QUESTIONS if one.key != "spatial"])
-    patch.setattr(measure, "sweep", lambda work, solve, *rest: [solve(task) for task in work])
-    found, _ = measured(scene, True, 1, {"command": "here", "provenance": {}})
-    patch.undo()
-    return found
+    planar = [setting for setting in settings(scene, quick=True) if setting.question != "spatial"]
+    cheap = [setting for setting in planar if not any(name in setting.method for name in dear)]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(analysis, "settings", lambda scene, quick: cheap)
+        patch.setattr(
+            analysis, "asked", lambda scene: [question for question in QUESTIONS if question.key != "spatial"]
+        )
+        (measured,) = collected(
+            TradeOff(quick=True), Study((scene,), 1, 1e-3), executor=lambda jobs: ThreadPoolExecutor(1)
+        )
+    return measured.trade
 
 
 def test_nothing_on_the_front_is_beaten_and_all_else_is() -> None:
@@ -61,61 +67,67 @@ def test_the_share_of_points_is_met_by_a_value_that_occurred() -> None:
 def test_a_setting_that_leaves_points_without_a_value_or_solves_another_model_is_not_on_the_front() -> None:
     setting = Setting("exact", "one", "step", "", 1.0, RUN, {}, 1.0)
     reference_solution = np.ones((3, 1))
-    good = entry(setting, Found(reference_solution * 1.1, reference_solution * np.nan, 3.0, np.nan), reference_solution)
+    good = entry(
+        setting, Measured(reference_solution * 1.1, reference_solution * np.nan, 3.0, np.nan), reference_solution
+    )
     lost = entry(
         setting,
-        Found(reference_solution * [[1.0], [np.nan], [1.0]], reference_solution * np.nan, 1.0, np.nan),
+        Measured(reference_solution * [[1.0], [np.nan], [1.0]], reference_solution * np.nan, 1.0, np.nan),
         reference_solution,
     )
     other = replace(
-        entry(setting, Found(reference_solution, reference_solution, 0.1, np.nan), reference_solution), model_error=True
+        entry(setting, Measured(reference_solution, reference_solution, 0.1, np.nan), reference_solution),
+        model_error=True,
     )
-    assert [one.pareto_front for one in with_pareto_fronts([good, lost, other], 1)] == [(True,), (False,), (False,)]
+    assert [setting.pareto_front for setting in with_pareto_fronts([good, lost, other], 1)] == [
+        (True,),
+        (False,),
+        (False,),
+    ]
     assert lost.answered == 2
 
 
 @pytest.mark.parametrize("question", ["exact", "small", "regularised"])
 def test_the_error_of_the_reference_falls_with_its_tolerance(trade: Trade, question: str) -> None:
     for method in ("reference, one run", "reference, two runs and an estimate"):
-        errors = np.array([one.most for one in trade.methods(question)[method]], dtype=float)
+        errors = np.array([setting.most for setting in trade.methods(question)[method]], dtype=float)
         # from 1e-1 to 1e-8: a method of order 13 with steps of order 7 gains far more than a thousand
         assert (errors[-1] < 1e-8).all()
 
 
 def test_every_error_estimate_of_the_reference_holds_at_95_percent_of_the_points(trade: Trade) -> None:
-    own = [one for one in trade.entries if one.controlled and one.method.startswith("reference")]
-    assert own
-    for one in own:
-        for error, error_estimate in zip(one.most, one.error_estimate, strict=True):
-            assert error <= max(error_estimate, 1e-10), one  # the reference solution is not known better
+    controlled = [setting for setting in trade.entries if setting.controlled and setting.method.startswith("reference")]
+    assert controlled
+    for setting in controlled:
+        for error, error_estimate in zip(setting.most, setting.error_estimate, strict=True):
+            assert error <= max(error_estimate, 1e-10), setting  # the reference solution is not known better
 
 
 def test_scipy_and_the_engine_tend_to_the_truth_of_the_reference(trade: Trade) -> None:
     """The check that the diagram states: codes and methods with little in common meet."""
     for method, within in (("SciPy LSODA", 1e-7), ("translational engine, two levels", 1e-5)):
-        own = [one for one in trade.of("regularised") if one.method.startswith(method)]
-        assert max(own[-1].most) < within
-        assert max(own[-1].most) < 0.1 * max(own[0].most)
-    checks = next(one.checks for one in trade.questions if one.key == "regularised")
+        curve = [setting for setting in trade.of("regularised") if setting.method.startswith(method)]
+        assert max(curve[-1].most) < within
+        assert max(curve[-1].most) < 0.1 * max(curve[0].most)
+    checks = next(question.checks for question in trade.questions if question.key == "regularised")
     assert any("SciPy LSODA" in line for line in checks)
     assert any("translational engine" in line for line in checks)
 
 
 def test_v_reg_is_a_model_error_that_falls_towards_the_peak_that_motion_resolves(trade: Trade) -> None:
-    own = [one for one in trade.of("exact") if "faster than v_reg" in one.method]
-    errors = np.array([one.most for one in own], dtype=float)
-    assert len(own) > 2
-    assert all(one.model_error and not any(one.pareto_front) for one in own)
+    curve = [setting for setting in trade.of("exact") if "faster than v_reg" in setting.method]
+    errors = np.array([setting.most for setting in curve], dtype=float)
+    assert len(curve) > 2
+    assert all(setting.model_error and not any(setting.pareto_front) for setting in curve)
     assert (np.diff(errors[:, 1]) < 0.0).all(), "mu_2 is well conditioned: in proportion to v_reg"
 
 
 def test_truths_are_a_hundred_times_tighter_than_every_tolerance_held_against_them() -> None:
-    own = settings(load_scene("fig3-I"))
     for question in QUESTIONS:
-        asked = [one.value for one in own if one.question == question.key and one.parameter == "tolerance of mu"]
+        of_question = [setting for setting in settings(load_scene("fig3-I")) if setting.question == question.key]
         side = "multibody" if question.key == "spatial" else "reference"
-        held = [one.value for one in own if one.question == question.key and one.controlled and side in one.function]
-        assert asked
+        held = [setting.value for setting in of_question if setting.controlled and side in setting.function]
+        assert any(setting.parameter == "tolerance of mu" for setting in of_question)
         assert question.reference_solution[1]["tolerance"] <= 1.0001e-2 * min(held)
 
 
@@ -123,7 +135,7 @@ def test_the_command_writes_what_the_report_reads(
     trade: Trade, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     data = xr.Dataset({"mu": ("point", [1.0])})
-    monkeypatch.setattr(command, "watched", lambda *arguments: (trade, data))
+    monkeypatch.setattr(command, "measured_trades", lambda *arguments: [MeasuredTrade(trade, data)])
     assert command.main(["fig3-I", "--quick", "--out", str(tmp_path / "out")]) == 0
     names = {file.name for file in (tmp_path / "out").iterdir()}
     assert names == {FILE, "fig3-I-tradeoff.nc", "fig3-I-tradeoff.png", "fig3-I-tradeoff.pdf", "manifest.json"}
@@ -167,7 +179,40 @@ def test_a_model_that_raises_leaves_points_without_a_value(monkeypatch: pytest.M
         raise RuntimeError("the matrix is singular")
 
     monkeypatch.setattr(measure, "imported", broken)
-    task = measure.Task(load_scene("fig3-I"), ("anything:at all", {}), 0, sample(2))
-    found = measure.solve(task)
-    assert np.isnan(found.mu).all()
-    assert "the matrix is singular" in found.error_message
+    measured = measure.measure(Measurement(load_scene("fig3-I"), ("anything:at all", {}), 0, sample(2)))
+    assert np.isnan(measured.mu).all()
+    assert "the matrix is singular" in measured.error_message
+
+
+def _known(scene: Scene, phases: np.ndarray, gap: float, tolerance: float = 1e-6) -> Amplification:
+    """mu = 1 + gap at every phase pair."""
+    mu = np.full((len(phases), 2), 1.0 + gap)
+    nothing = np.full(len(phases), np.nan)
+    return Amplification(mu, 1e-3 * mu, np.full(len(phases), "ok"), nothing, 0.0)
+
+
+def test_the_command_measures_nothing_twice_and_its_values_come_back_to_the_last_bit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = f"{__name__}:_known"
+    question = Question("exact", "known", (path, {"gap": 0.0, "tolerance": 1e-9}), 5, 3, 100.0)
+    known = [Setting("exact", "one", "gap", "", gap, path, {"gap": gap}, 100.0) for gap in (1e-3, 1e-2)]
+    monkeypatch.setattr(analysis, "settings", lambda scene, quick: known)
+    monkeypatch.setattr(analysis, "asked", lambda scene: [question])
+    words = ["fig3-I", "--quick", "--jobs", "1", "--out", str(tmp_path / "out")]
+    assert command.main(words, ThreadPoolExecutor) == 0
+    first = load(tmp_path / "out")
+    assert first is not None
+    assert [entry.most for entry in first[0].entries] == [pytest.approx([gap, gap]) for gap in (1e-3, 1e-2)]
+    values = xr.load_dataset(tmp_path / "out" / "fig3-I-tradeoff.nc", engine="h5netcdf")
+    assert dict(values.sizes) == {"setting": 2, "point": 3, "body": 2}
+    capsys.readouterr()
+    monkeypatch.setattr(measure, "imported", lambda path: pytest.fail("it was measured again"))
+    assert command.main(words, ThreadPoolExecutor) == 0
+    assert "9 of 9 tasks are in" in capsys.readouterr().out
+    again = load(tmp_path / "out")
+    assert again is not None
+    assert (again[0].entries, again[0].questions) == (first[0].entries, first[0].questions)
+    assert again[0].run["stored_before"] == 9
+    again_values = xr.load_dataset(tmp_path / "out" / "fig3-I-tradeoff.nc", engine="h5netcdf")
+    xr.testing.assert_equal(again_values, values)  # to the last bit, processor time included

@@ -12,6 +12,7 @@ import xarray as xr
 from conftest import Run
 from jsonschema import Draft202012Validator
 
+from comparison.analysis.tradeoff.analysis import MeasuredTrade
 from comparison.analysis.tradeoff.trade import FILE, Answered, Entry, Trade, with_pareto_fronts
 from comparison.cli import tradeoff as tradeoff
 from reference.problem import load_scene
@@ -37,7 +38,7 @@ def measure(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path, str], int]:
 
     def run(report: Path, name: str) -> int:
         data = xr.Dataset({"mu": ("point", [1.0])})
-        monkeypatch.setattr(tradeoff, "watched", lambda *arguments: (trade(name), data))
+        monkeypatch.setattr(tradeoff, "measured_trades", lambda *arguments: [MeasuredTrade(trade(name), data)])
         return tradeoff.main([name, "--out", str(report)])
 
     return run

@@ -48,8 +48,8 @@ def test_values_within_their_error_bars_are_not_fitted() -> None:
     sizes = _power(2.0, 1e-3)
     errors = np.full_like(sizes, 1e-4)  # the last two sizes, 6e-5 and 1.6e-5, drown, and 2.5e-4 is not known to a fifth
     assert np.isnan(fitted(SCALES, sizes, errors).exponent)
-    found = trend("s", 1, "w", SCALES, sizes, errors, 2.0)
-    assert found.verdict == "within the error bars: no slope can be told"
+    noise = trend("s", 1, "w", SCALES, sizes, errors, 2.0)
+    assert noise.verdict == "within the error bars: no slope can be told"
 
 
 def test_points_without_a_value_are_left_out() -> None:
@@ -77,6 +77,6 @@ def test_the_verdict_says_what_the_fit_allows(sizes: Array, expected: float | No
 
 
 def test_medians_are_of_the_absolute_size_of_what_is_known() -> None:
-    found = trend("s", 1, "w", (1.0, 0.5), np.array([[-4.0, 1.0], [2.0, np.nan], [3.0, np.nan]]), np.ones((3, 2)), None)
-    assert found.medians == [3.0, 1.0]
+    sizes = trend("s", 1, "w", (1.0, 0.5), np.array([[-4.0, 1.0], [2.0, np.nan], [3.0, np.nan]]), np.ones((3, 2)), None)
+    assert sizes.medians == [3.0, 1.0]
     assert Slope(1.0, 0.1, 2, 1).points == 2

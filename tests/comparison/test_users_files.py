@@ -88,10 +88,10 @@ def test_a_study_whose_out_was_used_meanwhile_says_where_its_report_is(
 ) -> None:
     write = comparison.run.collect_findings
 
-    def meanwhile(*arguments: object, **more: object) -> object:
+    def meanwhile(*arguments: object, **options: object) -> object:
         (tmp_path / "report").mkdir()
         (tmp_path / "report" / "thesis.txt").write_text("years of work", encoding="utf-8")
-        return write(*arguments, **more)
+        return write(*arguments, **options)
 
     monkeypatch.setattr(comparison.run, "collect_findings", meanwhile)
     run = command(*SMALL)
@@ -207,8 +207,8 @@ def test_a_manifest_that_was_tampered_with_proves_nothing(tmp_path: Path) -> Non
     assert read_manifest(tmp_path / "report") == {}
     assert put(tmp_path / "report")[0].name == "report-2"
     # one with a right checksum that names a file outside
-    own = read_manifest(tmp_path / "report-2")
-    write_manifest(tmp_path / "report-2", own | {"../thesis.txt": Own("comparison.extremes", ("0" * 64,))})
+    manifest = read_manifest(tmp_path / "report-2")
+    write_manifest(tmp_path / "report-2", manifest | {"../thesis.txt": Own("comparison.extremes", ("0" * 64,))})
     assert put(tmp_path / "report-2")[0].name == "report-2"
     assert (tmp_path / "thesis.txt").read_text(encoding="utf-8") == "mine"
     assert (tmp_path / "report" / "notes.txt").read_text(encoding="utf-8") == "mine"
@@ -240,7 +240,7 @@ def test_a_foreign_folder_in_the_store_is_refused_at_the_start(command: Callable
     assert "it holds 'my-photos-of-summer-2024': move it away" in run.err
 
 
-EXTREMES = ["--only", "amplitude", "--models", "small", "--jobs", "1"]
+EXTREMES = ["--rows", "amplitude", "--models", "small", "--jobs", "1"]
 
 
 @pytest.mark.parametrize("name", ["extremes.json", "extremes.png", MANIFEST])
@@ -248,7 +248,7 @@ def test_a_foreign_file_where_the_extremes_go_is_refused_at_the_start(
     tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / name).write_text("mine", encoding="utf-8")
-    monkeypatch.setattr(extremes, "run", lambda *rest: pytest.fail("it was computed"))
+    monkeypatch.setattr(extremes, "judged_matrix", lambda *rest: pytest.fail("it was computed"))
     assert extremes.main([*EXTREMES, "--out", str(tmp_path)]) == 2
     assert f"holds {name!r}, which this study did not write" in capsys.readouterr().err
     assert (tmp_path / name).read_text(encoding="utf-8") == "mine"
@@ -264,7 +264,7 @@ def test_a_foreign_file_that_appears_meanwhile_stays_and_the_extremes_go_beside(
             file.write_text("mine", encoding="utf-8")
         return FOUND
 
-    monkeypatch.setattr(extremes, "run", meanwhile)
+    monkeypatch.setattr(extremes, "judged_matrix", meanwhile)
     extremes.main([*EXTREMES, "--out", str(tmp_path)])
     assert [file.read_text(encoding="utf-8") for file in mine] == ["mine"] * 3
     assert {"extremes-2.json", "extremes-2.png"} <= {entry.name for entry in tmp_path.iterdir()}
@@ -272,7 +272,7 @@ def test_a_foreign_file_that_appears_meanwhile_stays_and_the_extremes_go_beside(
 
 
 def test_the_extremes_replace_their_own_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(extremes, "run", lambda *rest: FOUND)
+    monkeypatch.setattr(extremes, "judged_matrix", lambda *rest: FOUND)
     for _ in range(2):
         extremes.main([*EXTREMES, "--out", str(tmp_path)])
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["extremes.json", "extremes.png", MANIFEST]
@@ -282,7 +282,7 @@ def test_a_foreign_diagram_is_refused_before_anything_is_measured(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "fig3-I-tradeoff.pdf").write_text("mine", encoding="utf-8")
-    monkeypatch.setattr(tradeoff, "watched", lambda *rest: pytest.fail("it was measured"))
+    monkeypatch.setattr(tradeoff, "measured_trades", lambda *rest: pytest.fail("it was measured"))
     assert tradeoff.main(["fig3-I", "--out", str(tmp_path)]) == 2
     assert "holds 'fig3-I-tradeoff.pdf', which this study did not write" in capsys.readouterr().err
 

@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 from fake_models import fake_hierarchy
 
-from comparison.execution.executors import ExecutorLostError, process_pool
+from comparison.execution.executors import ExecutorLostError
+from comparison.execution.processes import process_pool
 from comparison.execution.splitting import merge, split_batch
 from comparison.execution.sweep import sweep
 from comparison.study.batches import Batch, BatchResult, execute_batch, unanswered
@@ -54,7 +55,7 @@ def _calls(folder: Path) -> dict[str, int]:
 def test_a_death_costs_its_own_task_one_retry_and_no_other(tmp_path: Path) -> None:
     tasks = [tmp_path / name for name in ("one", "kills", "two", "kills always", "three", "four")]
     results = sweep(tasks, counted, _lost, _done, 2, process_pool)
-    died = "worker died: the worker process died 2 times"
+    died = "worker died: the worker process died 2 times (exit code -9)"
     assert results == ["one", "kills", "two", died, "three", "four"]
     assert _calls(tmp_path) == {"one": 1, "kills": 2, "two": 1, "kills always": 2, "three": 1, "four": 1}
 
@@ -73,16 +74,17 @@ def test_splitting_finds_the_one_point_that_kills(batch: int) -> None:
     batches = Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy).batches()
     seen: list[Batch] = []
 
-    def done(one: Batch, answer: BatchResult) -> None:
-        seen.append(one)
+    def done(piece: Batch, answer: BatchResult) -> None:
+        seen.append(piece)
 
     answers = sweep(batches, execute_batch, unanswered, done, 2, process_pool, split=split_batch, join=merge)
     assert [outcome for answer in answers for outcome in answer.status] == ["ok"] * 15 + ["worker died"]
     mu = np.concatenate([answer.mu for answer in answers])
-    whole = [execute_batch(one) for one in Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(gap=0.0)).batches()]
-    np.testing.assert_array_equal(mu[:15], np.concatenate([answer.mu for answer in whole])[:15])
+    whole = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(gap=0.0)).batches()
+    expected = np.concatenate([execute_batch(batch).mu for batch in whole])
+    np.testing.assert_array_equal(mu[:15], expected[:15])
     assert len(seen) == len(batches), "told of whole batches, once each"
-    assert [answer.error_message for answer in answers][-1] == "the worker process died 2 times"
+    assert [answer.error_message for answer in answers][-1] == "the worker process died 2 times (exit code -9)"
 
 
 def test_halves_of_a_tile_are_its_points_in_order() -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+import io
 import sys
+import time
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -18,8 +20,10 @@ from scipy.spatial import ConvexHull
 
 import multibody
 from multibody import animate
-from multibody.animate import box_corners, contact_paths, draw, frames, magnified, main
-from reference.problem import load_scene
+from multibody import film as film_module
+from multibody.animate import main
+from multibody.film import Look, box_corners, contact_paths, drawing, film, frames, magnified
+from reference.problem import Scene, Trajectory, load_scene
 
 SHORT = """
 title = "short"
@@ -130,7 +134,7 @@ def test_without_a_screen_the_viewer_is_refused_in_one_line(
 
 def test_frames_follow_the_motion() -> None:
     motion = multibody.trajectory(one_body(amplitudes=[[3.0, 0.0], [0.0, 0.0]]), (0.0, 0.0))
-    shown = frames(motion.time, motion.position, 10.0)
+    shown = frames(motion.time, motion.position, 11)
     assert shown.shape == (11, 1, 3)
     np.testing.assert_allclose(shown[-1], motion.position[-1])
     middle = np.array([np.interp(0.5, motion.time, motion.position[:, 0, axis]) for axis in range(3)])
@@ -150,7 +154,7 @@ def test_the_drawn_corners_turn_with_the_body() -> None:
     np.testing.assert_allclose(turned, straight @ RotXYZ2RotationMatrix(angles).T, atol=1e-14)
 
 
-def test_the_film_of_the_spatial_model_shows_its_turns(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_film_of_the_spatial_model_shows_its_turns(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = changed(load_scene("fig3-I"), duration=1.5)
     motion = multibody.trajectory(scene, (2.0, 0.7), model="spatial")
     turns = motion.extra["turns"]
@@ -158,14 +162,84 @@ def test_the_film_of_the_spatial_model_shows_its_turns(tmp_path: Path, monkeypat
     assert np.abs(turns[:, 1, 2]).max() > 1e-5  # the body above turns too
 
     seen: list[NDArray[np.float64]] = []
-    monkeypatch.setattr(animate, "ConvexHull", lambda flat: seen.append(flat) or ConvexHull(flat))
-    draw(scene, motion, tmp_path / "run.gif", stretch=1.0, speed=15.0)
+    monkeypatch.setattr(film_module, "ConvexHull", lambda flat: seen.append(flat) or ConvexHull(flat))
+    film(scene, motion, "spatial", Look(stretch=1.0), 4)
     from_above = np.array(seen[-6])  # three views of two bodies in the last frame: the platform in the first
     edge = from_above[4] - from_above[0]  # along the box's own x
-    yaw, factor = motion.extra["yaw"][-1], magnified(frames(motion.time, turns, 25.0 / 15.0)[..., 2], 0.3)
+    yaw, factor = motion.extra["yaw"][-1], magnified(frames(motion.time, turns, 4)[..., 2], 0.3)
     assert factor >= 10.0
     # to the square of the tilt drawn, which is 0.3 at most
     assert np.arctan2(edge[1], edge[0]) == pytest.approx(factor * yaw, rel=0.1)
+
+
+def tall(heights: list[float] | None = None) -> Scene:
+    """Six bodies on a cap whose radius is as large as a story."""
+    bodies: list[dict[str, Any]] = [{"mass": 40.0, **({"period": [0.5, 0.6]} if body else {})} for body in range(6)]
+    isolator: dict[str, Any] = {"radius": 2.24, "friction": 0.05}
+    if heights:
+        isolator |= {"supports": 4, "ring": 4.0, "sphere_radius": 0.05}
+        bodies = [body | {"height": height, "size": [8.0, 8.0, 0.6]} for body, height in zip(bodies, heights)]
+    return Scene.model_validate(
+        {
+            "title": "tall",
+            "duration": 2.0,
+            "isolator": isolator,
+            "bodies": bodies,
+            "excitation": {"amplitudes": [[1.5, 0.5], [0.5, 1.5]], "periods": [0.9, 1.3], "decay": [0.2, 0.2]},
+        }
+    )
+
+
+EVEN, UNEVEN = [2.4, 5.4, 8.4, 11.4, 14.4, 17.4], [2.4, 3.1, 3.8, 4.5, 5.2, 30.0]
+
+
+@pytest.mark.parametrize("heights", [None, EVEN, UNEVEN], ids=["none", "even", "uneven"])
+def test_boxes_of_a_tall_frame_stay_apart_and_above_their_poles(heights: list[float] | None) -> None:
+    """Under tilts of every body that would be drawn as large as allowed, and of opposite signs."""
+    scene = tall(heights)
+    instants = np.linspace(0.0, 2.0, 21)
+    swing = np.sin(3.0 * instants)[:, None, None] * np.ones((1, 6, 3))
+    turns = 1e-3 * swing * np.array([1.0, -1.0] * 3)[None, :, None]
+    extra = {"turns": turns} if heights else {}
+    motion = Trajectory(
+        instants, swing * [0.1, 0.1, 0.0], swing, swing, swing[:, 0, 0], [], "ok", np.nan, scene, extra=extra
+    )
+    drawn = drawing(scene, motion, 5.0, 21)
+    lowest, highest = drawn.corners[..., 2].min(axis=(0, 2)), drawn.corners[..., 2].max(axis=(0, 2))
+    assert (lowest[1:] > highest[:-1]).all(), "no two boxes touch in any frame"
+    assert (highest[-1] - lowest[0]) < 1.5 * 2.0 * drawn.reach, "the frame is not a needle"
+    content = film(scene, motion, "spatial" if heights else "translational", Look(size=(800, 400)), 2)
+    with Image.open(io.BytesIO(content)) as written:
+        assert written.size == (800, 400)
+
+
+def test_the_picture_names_the_model_and_the_factors(monkeypatch: pytest.MonkeyPatch) -> None:
+    titles: list[str] = []
+    monkeypatch.setattr(film_module.Figure, "suptitle", lambda figure, text, **style: titles.append(text))
+    scene = changed(load_scene("fig3-I"), duration=0.5)
+    film(scene, multibody.trajectory(scene, (2.0, 0.7), tolerance=1e-2), "translational", Look(), 2)
+    assert "translational model of the engine" in titles[0]
+    assert "displacements x 5" in titles[0]
+
+
+def test_size_and_rate_are_those_asked_for(tmp_path: Path) -> None:
+    (tmp_path / "short.toml").write_text(SHORT)
+    out = tmp_path / "run.gif"
+    words = [str(tmp_path / "short.toml"), "--phases", "0.3", "1.1", "--out", str(out)]
+    assert main([*words, "--rate", "50", "--size", "640", "400"]) == 0
+    with Image.open(out) as film:
+        assert film.n_frames == 11
+        assert film.size == (640, 400)
+        assert film.info["duration"] == 20  # ms
+
+
+@pytest.mark.long
+def test_twenty_seconds_of_motion_are_drawn_in_less_than_a_minute_of_processor_time() -> None:
+    scene = load_scene("fig3-I")
+    motion = multibody.trajectory(scene, (2.0, 0.7), model="spatial", tolerance=1e-2)
+    begin = time.process_time()
+    film(scene, motion, "spatial", Look(), 501)
+    assert time.process_time() - begin < 60.0
 
 
 def test_contact_points_move_against_the_platform_and_around_with_its_yaw() -> None:
@@ -196,6 +270,8 @@ def test_turns_are_magnified_by_round_factors_and_never_reduced(largest: float, 
         (["fig3-I", "--phases", "0", "0", "--speed", "1e-9"], "--speed"),
         (["fig3-I", "--phases", "0", "0", "--speed", "1e9"], "--speed"),
         (["fig3-I", "--phases", "0", "0", "--stretch", "1e300"], "--stretch"),
+        (["fig3-I", "--phases", "0", "0", "--rate", "30"], "--rate"),
+        (["fig3-I", "--phases", "0", "0", "--size", "10", "10"], "--size"),
         (["fig3-I", "--phases", "0", "0", "--out", "/nowhere/run.gif"], "--out"),
         (["fig3-I", "--phases", "0", "0", "--out", "run.mp4"], "must end in .gif"),
         (["fig3-I", "--phases", "0", "0", "--out", "run"], "must end in .gif"),

@@ -100,16 +100,16 @@ class ValidityRanges:
 
     def lines(self, scene: Scene) -> list[str]:
         """One line per body, share and direction."""
-        return [describe(found) for found in ranges([scene], self.cells)]
+        return [describe(validity) for validity in ranges([scene], self.cells)]
 
     def listed(self) -> dict[str, Any]:
         """For summary.json: assumptions, phase pairs, duration, every cell and every range."""
         return {
-            "assumptions": [asdict(one) for one in self.assumptions],
+            "assumptions": [asdict(assumption) for assumption in self.assumptions],
             "phases": [list(pair) for pair in self.phases],
             "duration": self.duration,
             "cells": [asdict(cell) for cell in self.cells],
-            "ranges": [asdict(found) for found in ranges(self.scenes, self.cells)],
+            "ranges": [asdict(validity) for validity in ranges(self.scenes, self.cells)],
         }
 
 
@@ -131,15 +131,25 @@ class Assumptions(Analysis[ValidityRanges]):
         return ValidityRanges([scene for scene in study.scenes if scene.name in names], cells) if cells else None
 
 
-def describe(found: Range) -> str:
-    """One line for people: where mu_i stays within a share of the translational result."""
-    what = f"mu_{found.body} stays within {100.0 * found.share:g} %"
-    if found.key == "ring":
-        if found.holds is None:
-            return f"{what} at no ring tried, up to {found.fails:g} m"
-        fails = "every smaller one tried too" if found.fails is None else f"no longer at {found.fails:g} m"
-        return f"{what} with rings from {found.holds:g} m, {fails}"
-    if found.holds is None:
+def describe(validity: Range) -> str:
+    """
+    One line for people: where mu_i stays within a share of the translational result.
+
+    Parameters
+    ----------
+    validity : Range
+
+    Returns
+    -------
+    str
+    """
+    what = f"mu_{validity.body} stays within {100.0 * validity.share:g} %"
+    if validity.key == "ring":
+        if validity.holds is None:
+            return f"{what} at no ring tried, up to {validity.fails:g} m"
+        fails = "every smaller one tried too" if validity.fails is None else f"no longer at {validity.fails:g} m"
+        return f"{what} with rings from {validity.holds:g} m, {fails}"
+    if validity.holds is None:
         return f"{what} at no heights tried"
-    fails = "the largest tried" if found.fails is None else f"no longer at {found.fails:g} times"
-    return f"{what} with heights up to {found.holds:g} times the stated ones, {fails}"
+    fails = "the largest tried" if validity.fails is None else f"no longer at {validity.fails:g} times"
+    return f"{what} with heights up to {validity.holds:g} times the stated ones, {fails}"

@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.execution.task import Task
+from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
-from reference.problem import Outcome, Scene, untilted
+from reference.problem import Scene, untilted
 
 Array = NDArray[np.float64]
 
@@ -125,7 +125,20 @@ class Solved:
 
 
 def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> list[Arguments]:
-    """The translational model and every variation of the spatial one, for every scene to which both apply."""
+    """
+    What has to be computed: the translational model and every variation of the spatial one.
+
+    Parameters
+    ----------
+    study : Study
+        Every scene with phases to which both models of the engine apply.
+    variations : sequence of Variation
+
+    Returns
+    -------
+    list of tuple
+        Scene, model, variation (None: the scene itself), tolerance.
+    """
     asked: list[Arguments] = []
     for scene in study.phased:
         engines = [model for model in models_of(scene, study.hierarchy) if model.side == "engine"]
@@ -138,7 +151,20 @@ def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> 
 
 
 def variation_tasks(study: Study, stage: str, variations: Sequence[Variation] = FEW) -> list[Task]:
-    """`variation_arguments` as tasks."""
+    """
+    `variation_arguments` as tasks.
+
+    Parameters
+    ----------
+    study : Study
+    stage : str
+        Stage of the tasks.
+    variations : sequence of Variation
+
+    Returns
+    -------
+    list of Task
+    """
     return [
         Task(
             varied,
@@ -153,8 +179,21 @@ def variation_tasks(study: Study, stage: str, variations: Sequence[Variation] = 
 
 
 def assumption_cells(tasks: Sequence[Task], results: TaskResults) -> list[Cell]:
-    """Every variation of every scene to which both engine models apply, from the results of `variation_tasks`."""
-    answers = [(task.argument, results.value(task, _lost)) for task in tasks]
+    """
+    Every variation against the translational model of its scene.
+
+    Parameters
+    ----------
+    tasks : sequence of Task
+        `variation_tasks`.
+    results : TaskResults
+        Their results.
+
+    Returns
+    -------
+    list of Cell
+    """
+    answers = [(task.argument, results.value(task, _without_value)) for task in tasks]
     held_against = {scene.name: answer for (scene, _, variation, _), answer in answers if variation is None}
     return [
         _cell(scene, variation, answer, held_against[scene.name])
@@ -164,21 +203,29 @@ def assumption_cells(tasks: Sequence[Task], results: TaskResults) -> list[Cell]:
 
 
 def varied(task: Arguments) -> Solved:
-    """One task at PHASES."""
+    """
+    One variation at PHASES. Runs inside a worker process.
+
+    Parameters
+    ----------
+    task : tuple
+        As in `variation_arguments`.
+
+    Returns
+    -------
+    Solved
+    """
     scene, model, variation, tolerance = task
     short = scene.with_values({"duration": min(scene.duration, DURATION)})
     changed = short if variation is None else variation.of(short)
     whole = {"full": True} if untilted(changed) else {}  # a check of assumption (vi) must not make use of it
-    try:
-        found = imported(model.amplification)(changed, PHASES, **model.settings, tolerance=tolerance, **whole)
-    except Exception as error:
-        return _lost(task, Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}")
-    return Solved(found.mu, found.error, tuple(str(one) for one in found.status), "", float(found.cost))
+    result = imported(model.amplification)(changed, PHASES, **model.settings, tolerance=tolerance, **whole)
+    return Solved(result.mu, result.error, tuple(map(str, result.status)), "", float(result.cost))
 
 
-def _lost(task: Arguments, outcome: Outcome, error_message: str) -> Solved:
+def _without_value(task: Arguments, failed: TaskResult) -> Solved:
     nothing = np.full((len(PHASES), len(task[0].bodies)), np.nan)
-    return Solved(nothing, nothing, (outcome.value,) * len(PHASES), error_message, 0.0)
+    return Solved(nothing, nothing, (failed.outcome.value,) * len(PHASES), failed.error_message, 0.0)
 
 
 def _cell(scene: Scene, variation: Variation, spatial: Solved, plain: Solved) -> Cell:
@@ -193,20 +240,33 @@ def _rows(array: Array) -> tuple[tuple[float, ...], ...]:
 
 
 def ranges(scenes: Sequence[Scene], cells: Sequence[Cell]) -> list[Range]:
-    """For every scene, body and share of WITHIN: over rings at the stated heights, over heights at the stated ring."""
-    found = []
+    """
+    Where every mu_i stays within each share of WITHIN.
+
+    Over rings at the stated heights, and over heights at the stated ring.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+    cells : sequence of Cell
+
+    Returns
+    -------
+    list of Range
+    """
+    validity = []
     for scene in scenes:
-        own = [cell for cell in cells if cell.scene == scene.name and cell.variation.supports is None]
+        usual = [cell for cell in cells if cell.scene == scene.name and cell.variation.supports is None]
         for body in range(1, len(scene.bodies) + 1):
             for share in WITHIN:
-                wide = [cell for cell in own if cell.variation.height == 1.0]
-                low = [cell for cell in own if cell.variation.ring == 1.0]
-                own_ring = scene.isolator.ring or float("nan")
-                rings = sorted(((cell.variation.ring * own_ring, cell) for cell in wide), key=lambda pair: -pair[0])
+                wide = [cell for cell in usual if cell.variation.height == 1.0]
+                low = [cell for cell in usual if cell.variation.ring == 1.0]
+                ring = scene.isolator.ring or float("nan")
+                rings = sorted(((cell.variation.ring * ring, cell) for cell in wide), key=lambda pair: -pair[0])
                 heights = sorted(((cell.variation.height, cell) for cell in low), key=lambda pair: pair[0])
                 for key, line in (("ring", rings), ("height", heights)):
-                    found.append(Range(scene.name, body, share, key, *_bracket(line, body, share)))
-    return found
+                    validity.append(Range(scene.name, body, share, key, *_bracket(line, body, share)))
+    return validity
 
 
 def _bracket(line: Sequence[tuple[float, Cell]], body: int, share: float) -> tuple[float | None, float | None]:

@@ -47,8 +47,8 @@ class Verdict:
 Check = Callable[[Mapping[str, Evidence]], Verdict]
 
 
-def judged(holds: bool, found: str) -> Verdict:
-    return Verdict(Finding.REPRODUCED if holds else Finding.NOT, found)
+def judged(holds: bool, words: str) -> Verdict:
+    return Verdict(Finding.REPRODUCED if holds else Finding.NOT, words)
 
 
 def counted(case: str, body: int, peaks: int, valleys: int) -> Check:
@@ -96,9 +96,9 @@ def more_complex(case: str) -> Check:
     def check(evidence: Mapping[str, Evidence]) -> Verdict:
         first, second = (periodic(evidence[case].mu[..., body], evidence[case].error, LEAST_SHARE) for body in (0, 1))
         several = second.peaks > 1 and second.valleys > 1
-        more = second.peaks + second.valleys > first.peaks + first.valleys
+        exceeds = second.peaks + second.valleys > first.peaks + first.valleys
         words = f"mu_2 {second.peaks} and {second.valleys}, mu_1 {first.peaks} and {first.valleys}"
-        return judged(several and more, words)
+        return judged(several and exceeds, words)
 
     return check
 
@@ -122,13 +122,13 @@ def similar(case: str, body: int, other: str, other_body: int) -> Check:
     """Correlation over the phases that both surfaces have."""
 
     def check(evidence: Mapping[str, Evidence]) -> Verdict:
-        one, two = evidence[case], evidence[other]
-        if one.flat(body) or two.flat(other_body):
+        surfaces = (evidence[case], body), (evidence[other], other_body)
+        if any(surface.flat(number) for surface, number in surfaces):
             return judged(False, "one of them is flat")
-        points = min(len(one.mu), len(two.mu))
+        points = min(len(surface.mu) for surface, _ in surfaces)
         pair = [
-            item.mu[:: len(item.mu) // points, :: len(item.mu) // points, number - 1].ravel()
-            for item, number in ((one, body), (two, other_body))
+            surface.mu[:: len(surface.mu) // points, :: len(surface.mu) // points, number - 1].ravel()
+            for surface, number in surfaces
         ]
         correlation = float(np.corrcoef(pair[0], pair[1])[0, 1])
         return judged(correlation >= SIMILAR, f"correlation {correlation:.2f}")
@@ -164,9 +164,10 @@ def smoother(case: str, other: str) -> Check:
     """A weaker form of smooth: every surface bends less than that of another case, each in parts of its own range."""
 
     def check(evidence: Mapping[str, Evidence]) -> Verdict:
-        one, two = ([_bend(mu) for mu in np.moveaxis(evidence[name].mu, -1, 0)] for name in (case, other))
-        words = [f"mu_{body} {mine:.2f}, dry {dry:.2f}" for body, (mine, dry) in enumerate(zip(one, two), start=1)]
-        return judged(all(mine < dry for mine, dry in zip(one, two)), "; ".join(words))
+        surfaces = (np.moveaxis(evidence[name].mu, -1, 0) for name in (case, other))
+        bends = [(_bend(mu), _bend(dry)) for mu, dry in zip(*surfaces)]
+        words = [f"mu_{body} {bend:.2f}, dry {dry:.2f}" for body, (bend, dry) in enumerate(bends, start=1)]
+        return judged(all(bend < dry for bend, dry in bends), "; ".join(words))
 
     return check
 

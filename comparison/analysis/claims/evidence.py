@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from comparison.analysis.claims.readings import CASES, Reading, settings
 from comparison.analysis.claims.smoothness import Bend, bends
+from comparison.execution.task import TaskResult
 from comparison.study.symmetry import surface
 from reference import amplification, trajectory
-from reference.problem import Amplification, Outcome, Scene
+from reference.problem import Amplification, Scene
 
 Array = NDArray[np.float64]
 
@@ -65,29 +66,35 @@ class Question:
 
 
 def gathered(question: Question) -> Evidence:
-    """Runs inside a worker process. What goes wrong is said in `error_message`."""
-    try:
-        return _gathered(question.scene, question)
-    except Exception as error:
-        return Evidence(error_message=f"{type(error).__name__}: {error}")
+    """
+    Surface, bends and motions of one case under one reading. Runs inside a worker process.
 
+    Parameters
+    ----------
+    question : Question
+        Case, reading and grid.
 
-def lost(question: Question, outcome: Outcome, error_message: str) -> Evidence:
-    return Evidence(error_message=f"{outcome}: {error_message}")
-
-
-def _gathered(scene: Scene, question: Question) -> Evidence:
+    Returns
+    -------
+    Evidence
+    """
+    scene = question.scene
     law = settings(scene, question.reading)
 
     def solved(scene: Scene, phases: Array, tolerance: float = TOLERANCE) -> Amplification:
         return amplification(scene, phases, equations="small", tolerance=tolerance, **law)
 
     mu, error, statuses = surface(scene, question.grid, solved)
-    found = Evidence(mu, float(np.nanmax(error, initial=0.0)), tuple(statuses))
-    if not found.complete or len(scene.bodies) == 1:
-        return found
+    surfaces = Evidence(mu, float(np.nanmax(error, initial=0.0)), tuple(statuses))
+    if not surfaces.complete or len(scene.bodies) == 1:
+        return surfaces
     sharp = bends(mu, lambda phases: solved(scene, phases, SHARP).mu)
-    return Evidence(mu, found.error, found.statuses, tuple(sharp), *_motion(scene, law.get("regularization")))
+    return Evidence(mu, surfaces.error, surfaces.statuses, tuple(sharp), *_motion(scene, law.get("regularization")))
+
+
+def without_value(question: Question, failed: TaskResult) -> Evidence:
+    """In place of what a task did not return."""
+    return Evidence(error_message=failed.reason)
 
 
 def _motion(scene: Scene, v_reg: float | None) -> tuple[tuple[float, ...], float]:

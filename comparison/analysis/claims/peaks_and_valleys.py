@@ -46,7 +46,28 @@ class Counts:
 
 
 def periodic(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
-    """Peaks and valleys on the square that closes at 2 pi; mu (n, n) at phases 2 pi k / n, finite, known to `error`."""
+    """
+    Peaks and valleys on the square that closes at 2 pi.
+
+    Parameters
+    ----------
+    mu : ndarray, (n, n)
+        Finite values at phases 2 pi k / n.
+    error : float
+        Absolute error of the values.
+    share : float
+        Least prominence, as a share of the range.
+
+    Returns
+    -------
+    Counts
+
+    Examples
+    --------
+    >>> phases = 2.0 * np.pi * np.arange(16) / 16
+    >>> periodic(np.cos(phases)[:, None] + np.cos(phases))
+    Counts(peaks=1, valleys=1)
+    """
     return Counts(len(relief(mu, error, share).tops), len(relief(-mu, error, share).tops))
 
 
@@ -55,6 +76,19 @@ def drawn(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
     Peaks and valleys on the closed square [0, 2 pi]^2 as it is drawn, bounded by its edges.
 
     Only valleys between two peaks count: what lies beyond the outermost peak separates it from nothing.
+
+    Parameters
+    ----------
+    mu : ndarray, (n, n)
+        Finite values at phases 2 pi k / n.
+    error : float
+        Absolute error of the values.
+    share : float
+        Least prominence, as a share of the range.
+
+    Returns
+    -------
+    Counts
     """
     square = np.pad(mu, ((0, 1), (0, 1)), mode="wrap")
     peaks, valleys = (relief(side * square, error, share, closed=False) for side in (1.0, -1.0))
@@ -64,9 +98,22 @@ def drawn(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
 
 def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = True) -> Relief:
     """
-    The peaks of mu (n, m), finite; periodic in both directions if `closed`. error: absolute, of the values.
+    The peaks of a surface. One whose range is within its errors is flat: it has no peak at all.
 
-    A surface whose range is within its errors is flat: it has no peak at all.
+    Parameters
+    ----------
+    mu : ndarray, (n, m)
+        Finite values.
+    error : float
+        Absolute error of the values.
+    share : float
+        Least prominence, as a share of the range.
+    closed : bool
+        Whether the surface is periodic in both directions.
+
+    Returns
+    -------
+    Relief
     """
     span = float(np.ptp(mu))
     if not span > 2.0 * error:

@@ -46,9 +46,19 @@ class Bend:
 
 def bends(mu: Array, solve: Callable[[Array], Array]) -> list[Bend]:
     """
-    The sharpest bend of every body's surface mu (n, n, N), finite, on phases 2 pi k / n.
+    The sharpest bend of every body's surface.
 
-    solve: mu (M, N) at phases (M, 2), rad, known much better than the bends that are left at the end, 1e-4 of mu.
+    Parameters
+    ----------
+    mu : ndarray, (n, n, N)
+        Finite values at phases 2 pi k / n.
+    solve : callable
+        mu (M, N) at phases (M, 2), rad, known much better than the bends that are left at the end, 1e-4 of mu.
+
+    Returns
+    -------
+    list of Bend
+        One for each body.
     """
     n, _, bodies = mu.shape
     step = 2.0 * np.pi / n
@@ -71,14 +81,14 @@ def bends(mu: Array, solve: Callable[[Array], Array]) -> list[Bend]:
         sizes.append(np.abs(_second(values)))
     tiny = np.finfo(float).tiny
     exponents = np.log2(np.maximum(sizes[-1 - JUDGED], tiny) / np.maximum(sizes[-1], tiny)) / JUDGED
-    found = []
+    sharpest = []
     for number in range(bodies):
-        own = np.flatnonzero(body == number)
-        lost = own[~np.isfinite(exponents[own])]
-        at = lost[0] if len(lost) else own[np.argmin(exponents[own])]
+        of_body = np.flatnonzero(body == number)
+        without_exponent = of_body[~np.isfinite(exponents[of_body])]
+        at = without_exponent[0] if len(without_exponent) else of_body[np.argmin(exponents[of_body])]
         alpha1, alpha2 = np.mod(center[at], 2.0 * np.pi)
-        found.append(Bend(float(exponents[at]), (float(alpha1), float(alpha2))))
-    return found
+        sharpest.append(Bend(float(exponents[at]), (float(alpha1), float(alpha2))))
+    return sharpest
 
 
 def _second(values: Array) -> Array:
@@ -93,12 +103,12 @@ def _sharpest(mu: Array) -> list[tuple[NDArray[np.int_], NDArray[np.int_]]]:
     )
     best, direction = size.max(axis=0), size.argmax(axis=0)
     n = len(mu)
-    found: list[tuple[NDArray[np.int_], NDArray[np.int_]]] = []
+    places: list[tuple[NDArray[np.int_], NDArray[np.int_]]] = []
     for at in np.argsort(-best.ravel(), kind="stable"):
         place = np.array(divmod(int(at), n))
-        apart = [np.abs((place - other + n // 2) % n - n // 2).max() for other, _ in found]
+        apart = [np.abs((place - other + n // 2) % n - n // 2).max() for other, _ in places]
         if all(distance > 1 for distance in apart):
-            found.append((place, DIRECTIONS[direction[*place]]))
-        if len(found) == PLACES:
+            places.append((place, DIRECTIONS[direction[*place]]))
+        if len(places) == PLACES:
             break
-    return found
+    return places

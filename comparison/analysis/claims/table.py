@@ -14,7 +14,7 @@ import xarray as xr
 
 from comparison.analysis.claims.checks import Finding, Verdict
 from comparison.analysis.claims.claims import CLAIMS, Claim
-from comparison.analysis.claims.evidence import Evidence, Question, gathered, lost
+from comparison.analysis.claims.evidence import Evidence, Question, gathered, without_value
 from comparison.analysis.claims.readings import CASES, READINGS, Reading, without_effect
 from comparison.analysis.protocol import Analysis
 from comparison.execution.task import Task
@@ -84,7 +84,10 @@ class Claims(Analysis[ClaimTable]):
         if not paper_complete(study):
             return None
         columns = [
-            {case: results.value(self._task(_question(case, reading, self.grid)), lost) for case in _cases(self.claims)}
+            {
+                case: results.value(self._task(_question(case, reading, self.grid)), without_value)
+                for case in _cases(self.claims)
+            }
             for reading in self.readings
         ]
         return tabulated(self.claims, self.readings, self.grid, columns)
@@ -94,19 +97,60 @@ class Claims(Analysis[ClaimTable]):
 
 
 def paper_complete(study: Study) -> bool:
-    """Whether the study has every scene of the paper, whose claims speak about all of them."""
+    """
+    Whether a study has every scene of the paper, whose claims speak about all of them.
+
+    Parameters
+    ----------
+    study : Study
+
+    Returns
+    -------
+    bool
+    """
     return {scene.name for scene in study.scenes} >= set(builtin_scenes())
 
 
 def tabulated(
     claims: Sequence[Claim], readings: Sequence[Reading], grid: int, columns: Sequence[Mapping[str, Evidence]]
 ) -> ClaimTable:
-    """The table from the evidence of every reading."""
+    """
+    The table from the evidence of every reading.
+
+    Parameters
+    ----------
+    claims : sequence of Claim
+        Rows.
+    readings : sequence of Reading
+        Columns.
+    grid : int
+        Phases per axis.
+    columns : sequence of mapping
+        For each reading the evidence by case.
+
+    Returns
+    -------
+    ClaimTable
+    """
     return ClaimTable(claims, readings, grid, [[claim.verdict(column) for column in columns] for claim in claims])
 
 
 def questions(readings: Sequence[Reading], claims: Sequence[Claim], grid: int) -> list[Question]:
-    """What has to be computed, each only once, the longest first."""
+    """
+    What has to be computed, each only once.
+
+    Parameters
+    ----------
+    readings : sequence of Reading
+    claims : sequence of Claim
+    grid : int
+        Phases per axis.
+
+    Returns
+    -------
+    list of Question
+        The longest first.
+    """
     every = [_question(case, reading, grid) for case in _cases(claims) for reading in readings]
     return sorted(dict.fromkeys(every), key=lambda question: -question.reading.amplitude)
 

@@ -1,17 +1,20 @@
-"""One cell of the matrix of extremes: a model asked, asked again more strictly, and judged, in a worker process."""
+"""One cell of the matrix of extremes: a model's answer, the same asked more strictly, and the verdict."""
 
 from __future__ import annotations
 
+import math
 import time
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
 
+from comparison.analysis.extremes.matrix import Entry
 from comparison.analysis.extremes.rows import COLUMNS, Column, Row
-from comparison.analysis.extremes.verdicts import NUMERICS, Judged, Reply, judged
+from comparison.analysis.extremes.verdicts import NUMERICS, Reply, judged
 from comparison.study.batches import imported
 from reference.problem import Outcome, Scene
 from reference.problem.scene import KEYS
@@ -28,39 +31,66 @@ class Cell:
     column: Column
 
 
-@dataclass(frozen=True)
-class Solved:
-    """What came of a cell, and processor time in s: of the model's answer, and in all with the finer runs."""
-
-    judged: Judged
-    seconds: float
-    total: float
-
-
 def cells(rows: Sequence[Row], columns: Sequence[Column] = COLUMNS) -> list[Cell]:
-    """Every model that each extreme concerns."""
+    """
+    Every model that each extreme concerns.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+        Extremes.
+    columns : sequence of Column
+        Models.
+
+    Returns
+    -------
+    list of Cell
+        Row by row.
+    """
     return [Cell(row, column) for row in rows for column in columns if column.key in row.columns]
 
 
-def solve_cell(cell: Cell) -> Solved:
-    """Run the cell and judge it."""
+def solve_cell(cell: Cell) -> Entry:
+    """
+    Ask the model, ask for more accuracy until that confirms or contradicts the answer, and judge.
+
+    Parameters
+    ----------
+    cell : Cell
+        Extreme and model.
+
+    Returns
+    -------
+    Entry
+        The verdict. Whatever the model raises is one, too.
+    """
     row, column = cell.row, cell.column
     tolerance = float(row.settings.get("tolerance", column.tolerance))
     begin = time.process_time()
-    asked_function = row.amplification or column.amplification
-    reply = _ask(row, asked_function, {**column.settings, **row.settings, "tolerance": tolerance})
-    seconds = time.process_time() - begin
-    finer: list[Reply] = []
-    for function, settings, asked in column.finer if _answers(reply) else ():
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # overflow in an extreme is judged by what comes of it
+        function = row.amplification or column.amplification
+        reply = _ask(row, function, {**column.settings, **row.settings, "tolerance": tolerance})
+        seconds = time.process_time() - begin
+        finer = list(_finer_replies(cell, function, tolerance)) if _answers(reply) else []
+    verdict = judged(reply, finer, tolerance, row.invalid, row.right)
+    error = verdict.error if math.isfinite(verdict.error) else None
+    total = time.process_time() - begin
+    reason = " ".join(verdict.reason.split())
+    return Entry(verdict.verdict.value, reason, verdict.status, error, round(seconds, 3), round(total, 3))
+
+
+def _finer_replies(cell: Cell, answered_by: str, tolerance: float) -> Iterator[Reply]:
+    """What the finer runs of the column say, until one has an answer at every point."""
+    row, column = cell.row, cell.column
+    for function, settings, usual in column.finer:
         share = min(1.0, tolerance / column.tolerance)
         # another function knows only what its own settings name
-        known = {key: value for key, value in row.settings.items() if function == asked_function or key in settings}
-        stricter = {**settings, **known, "tolerance": max(asked * share, STRICTEST)}
-        finer.append(_ask(row, function, stricter))
-        if _confirms(finer[-1], reply):
-            break
-    verdict = judged(reply, finer, tolerance, row.invalid, row.right)
-    return Solved(replace(verdict, reason=" ".join(verdict.reason.split())), seconds, time.process_time() - begin)
+        known = {key: value for key, value in row.settings.items() if function == answered_by or key in settings}
+        reply = _ask(row, function, {**settings, **known, "tolerance": max(usual * share, STRICTEST)})
+        yield reply
+        if _is_complete(reply):
+            return
 
 
 def _answers(reply: Reply) -> bool:
@@ -70,15 +100,15 @@ def _answers(reply: Reply) -> bool:
     )
 
 
-def _confirms(finer: Reply, reply: Reply) -> bool:
-    """Whether the finer run has something to say at every point."""
-    return bool(finer.status) and all(status not in NUMERICS for status in finer.status)
+def _is_complete(reply: Reply) -> bool:
+    """Whether there is an answer, be it a refusal, at every point."""
+    return bool(reply.status) and all(status not in NUMERICS for status in reply.status)
 
 
 def _ask(row: Row, function: str, settings: Mapping[str, Any]) -> Reply:
     nothing = np.empty((0, 0))
     try:
-        scene = _scene(row.scene)
+        scene = read_scene(row.scene)
         result = imported(function)(scene, np.array(row.phases), **settings)
         status = tuple(str(outcome) for outcome in result.status)
         return Reply(np.array(result.mu, dtype=float), np.array(result.error, dtype=float), status)
@@ -89,19 +119,33 @@ def _ask(row: Row, function: str, settings: Mapping[str, Any]) -> Reply:
         return Reply(nothing, nothing, (), raised=text)
 
 
-def _scene(written: Mapping[str, Any]) -> Scene:
-    """The scene as a file would give it: keys without a value are absent. Raises SceneError."""
+def read_scene(stated: Mapping[str, Any]) -> Scene:
+    """
+    A scene as a file would give it: keys without a value are absent.
+
+    Parameters
+    ----------
+    stated : mapping
+        Tables and keys of a scene file, values that are None among them.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    SceneError
+        If a value is against a rule.
+    """
     try:
-        return Scene.model_validate({**_given(written), "name": "extreme"})
+        return Scene.model_validate({**_without_none(stated), "name": "extreme"})
     except ValidationError as error:
         raise first_error("extreme", error, KEYS) from None
 
 
-def _given(written: Mapping[str, Any]) -> dict[str, Any]:
-    return dict(_kept(written))
-
-
-def _kept(written: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    for key, value in written.items():
-        if value is not None:
-            yield key, _given(value) if isinstance(value, Mapping) else value
+def _without_none(table: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        key: _without_none(value) if isinstance(value, Mapping) else value
+        for key, value in table.items()
+        if value is not None
+    }

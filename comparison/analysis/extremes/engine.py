@@ -29,9 +29,27 @@ def amplification(
     step: float | None = None,
 ) -> Amplification:
     """
-    As `multibody.amplification`, without reductions.
+    As `multibody.amplification`, without reductions and with few levels.
 
-    contact_stiffness: N/m, the same at all levels. step: s, the largest at the first level, halved from level to level.
+    Parameters
+    ----------
+    scene : Scene
+    phases : array_like, (M, 2)
+        rad.
+    model : str
+        "translational" or "spatial".
+    regularization : float or None
+        v_reg, m/s; None in a lubricated scene.
+    tolerance : float
+        Relative error asked of every mu.
+    contact_stiffness : float, optional
+        N/m, the same at all levels.
+    step : float, optional
+        s, the largest at the first level, halved from level to level.
+
+    Returns
+    -------
+    Amplification
     """
     levels = multibody.levels(scene, model, tolerance, regularization)[:MAX_LEVELS]
     if contact_stiffness is not None:

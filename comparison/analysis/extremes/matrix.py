@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -13,10 +12,7 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field
 
-from comparison.analysis.extremes.cells import Cell, Solved
-from comparison.analysis.extremes.rows import Column
-from comparison.analysis.extremes.verdicts import Judged, Verdict
-from comparison.analysis.extremes.worker import NoAnswer
+from comparison.analysis.extremes.verdicts import Verdict
 from comparison.analysis.stored import FILE_FORMAT, load_file
 
 FILE, PICTURE = "extremes.json", "extremes.png"
@@ -40,6 +36,9 @@ class Entry:
     that it cannot; FAILED: all else"""
     reason: str
     """in a few words"""
+    status: str
+    """outcome that decides the verdict, in the words of `reference.problem.Outcome`; empty for an input against a rule
+    and for an error that was raised"""
     error: float | None
     """largest relative error estimate; null without a value"""
     seconds: float | None
@@ -64,7 +63,18 @@ class Extreme:
 
 @dataclass(frozen=True)
 class Matrix:
-    """Every model at the extremes of every quantity, judged by finer runs."""
+    """
+    Every model at the extremes of every quantity, judged by finer runs.
+
+    Attributes
+    ----------
+    columns : mapping of str to str
+        Titles of the models by key.
+    rows : sequence of Extreme
+        One for each extreme.
+    run : mapping
+        How it was made; empty until a command says so.
+    """
 
     __pydantic_config__ = FILE_FORMAT
 
@@ -76,7 +86,14 @@ class Matrix:
     """command, times, provenance, and whether it is the reduced form"""
 
     def counts(self) -> dict[str, int]:
-        """Number of cells of each verdict, in the order from best to worst."""
+        """
+        Number of cells of each verdict.
+
+        Returns
+        -------
+        dict of str to int
+            From the best verdict to the worst, zeros included.
+        """
         seen = Counter(entry.verdict for row in self.rows for entry in row.entries.values())
         return {verdict.value: seen[verdict.value] for verdict in Verdict}
 
@@ -85,7 +102,19 @@ class Matrix:
         return [list(rows) for _, rows in groupby(self.rows, key=lambda row: row.group)]
 
     def listed(self, verdict: str) -> list[tuple[Extreme, str, Entry]]:
-        """The rows, titles of columns and entries with this verdict."""
+        """
+        The cells of one verdict.
+
+        Parameters
+        ----------
+        verdict : str
+            A `Verdict`.
+
+        Returns
+        -------
+        list of tuple
+            Row, title of the column, entry.
+        """
         return [
             (row, self.columns[key], entry)
             for row in self.rows
@@ -94,33 +123,28 @@ class Matrix:
         ]
 
 
-def matrix(
-    cells: Sequence[Cell], results: Sequence[Solved | NoAnswer], columns: Sequence[Column], run: Mapping[str, Any]
-) -> Matrix:
-    """Results laid out by extreme and model."""
-    rows: dict[tuple[str, str], dict[str, Entry]] = {}
-    for cell, result in zip(cells, results):
-        row = rows.setdefault((cell.row.group, cell.row.title), {})
-        row[cell.column.key] = as_entry(result)
-    used = {key for entries in rows.values() for key in entries}
-    titles = {column.key: column.title for column in columns if column.key in used}
-    return Matrix(titles, [Extreme(group, title, entries) for (group, title), entries in rows.items()], run)
-
-
-def as_entry(result: Solved | NoAnswer) -> Entry:
-    """The result as it is shown; no answer at all is a failure."""
-    if isinstance(result, NoAnswer):
-        return Entry(Verdict.FAILED.value, result.why, None, None, None)
-    verdict: Judged = result.judged
-    error = verdict.error if math.isfinite(verdict.error) else None
-    return Entry(verdict.verdict.value, verdict.reason, error, round(result.seconds, 3), round(result.total, 3))
-
-
-def as_json(found: Matrix) -> bytes:
-    """The content of the file."""
-    return (json.dumps(asdict(found), indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+def as_json(matrix: Matrix) -> bytes:
+    """The content of the file, which `load` reads."""
+    return (json.dumps(asdict(matrix), indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
 
 
 def load(folder: Path) -> Matrix | None:
-    """The matrix that `as_json` left in the folder, None if there is none. Raises ValueError if it is another file."""
+    """
+    The matrix that a command left in a folder.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder that may hold FILE.
+
+    Returns
+    -------
+    Matrix or None
+        None if there is no such file.
+
+    Raises
+    ------
+    ValueError
+        One line, if the file is no matrix of this version.
+    """
     return load_file(folder / FILE, Matrix, "a matrix of extremes", "python -m comparison.extremes")

@@ -24,39 +24,37 @@ EQUATIONS, ENGINE = "reference:amplification", "multibody:amplification"
 
 @dataclass(frozen=True)
 class Column:
-    """
-    A model: its function ("package:function"), its settings, and the relative error asked of it.
-
-    finer: how a value is confirmed, in this order until one answers: function, settings, relative error asked.
-    """
+    """A model and what confirms it."""
 
     key: str
     title: str
-    amplification: str
-    settings: Mapping[str, Any]
-    tolerance: float
+    amplification: str  # "package:function"
+    settings: Mapping[str, Any]  # of the function
+    tolerance: float  # relative error asked
+    # how a value is confirmed, in this order until one answers: function, settings, relative error asked
     finer: tuple[tuple[str, Mapping[str, Any], float], ...]
+    seconds: float = 0.5  # processor time of a cell with its finer runs, recorded as `Model.seconds_per_point`
 
 
 @dataclass(frozen=True)
 class Row:
-    """
-    An extreme. scene: as in a scene file. columns: keys of the models it concerns. settings: of the models, in place of
-    the column's. invalid: the rules of the input refuse it. right: outcomes that may stand in place of an answer,
-    where the physics or the rules say which; any named one if empty. quick: takes the equations less than a second.
-    amplification: function in place of the column's.
-    """
+    """An extreme."""
 
-    group: str
-    title: str
-    scene: Mapping[str, Any]
-    columns: tuple[str, ...]
+    group: str  # the quantity
+    title: str  # its value
+    scene: Mapping[str, Any]  # as in a scene file
+    columns: tuple[str, ...]  # keys of the models it concerns
     phases: Phases = PHASES
-    settings: Mapping[str, Any] = field(default_factory=dict)
-    invalid: bool = False
-    right: tuple[str, ...] = ()
-    quick: bool = True
-    amplification: str = ""
+    settings: Mapping[str, Any] = field(default_factory=dict)  # of the models, in place of the column's
+    invalid: bool = False  # the rules of the input refuse it
+    right: tuple[str, ...] = ()  # outcomes that may stand in place of an answer, where they are known; any if empty
+    quick: bool = True  # takes the equations less than a second
+    amplification: str = ""  # function in place of the column's
+
+    @property
+    def name(self) -> str:
+        """Quantity and value."""
+        return f"{self.group} {self.title}"
 
 
 def _column(key: str, title: str, equations: str, regularization: float | None) -> Column:
@@ -68,7 +66,7 @@ V_REG = 1e-3  # m/s, where it is not the extreme
 _REGULARIZED = {"equations": "exact", "regularization": V_REG}
 _TRANSLATIONAL = {"model": "translational", "regularization": V_REG}
 _SPATIAL = {"model": "spatial", "regularization": V_REG}
-GIVEN = "comparison.analysis.extremes.engine:amplification"  # the engine at a step or a contact stiffness of the row
+STATED = "comparison.analysis.extremes.engine:amplification"  # the engine at a step or a contact stiffness of the row
 
 COLUMNS = (
     _column("small", "small equations", "small", None),
@@ -86,6 +84,7 @@ COLUMNS = (
             (ENGINE, _TRANSLATIONAL, 3e-5),
             (ENGINE, _TRANSLATIONAL, 1e-4),
         ),
+        1.0,
     ),
     Column(
         "spatial",
@@ -94,6 +93,7 @@ COLUMNS = (
         _SPATIAL,
         1e-2,
         ((ENGINE, _SPATIAL, 3e-4), (ENGINE, _SPATIAL, 1e-3)),
+        8.5,
     ),
 )
 ALL = tuple(column.key for column in COLUMNS)
@@ -114,7 +114,33 @@ def scene(
     storey: float = 1.0,
     **isolator: Any,
 ) -> dict[str, Any]:
-    """The plain scene, `fig3-I` at twice its amplitude, with what is given changed. link: its periods in x, y, s."""
+    """
+    The plain scene, `fig3-I` at twice its amplitude, with one quantity or a few changed.
+
+    Parameters
+    ----------
+    amplitudes : (2 or 3, 2)
+        Of x, y and upward motion for either harmonic, m/s^2.
+    periods : (2,)
+        Of the harmonics, s.
+    decay : (2,)
+        Of the harmonics, 1/s.
+    duration : float
+        s.
+    masses : (N,)
+        kg, from below.
+    link : (2,)
+        Periods of the links in x and y, s.
+    storey : float
+        Height from body to body, m.
+    **isolator
+        Keys of the isolator's table.
+
+    Returns
+    -------
+    dict
+        As in a scene file; a value of None stands for an absent key.
+    """
     if "radius" not in isolator:
         isolator = {"period": 1.0, **isolator}
     size = [2.0, 2.0, 0.2]
@@ -145,7 +171,26 @@ def _upward(amplitude: float) -> list[list[float]]:
 
 
 def rows() -> Iterator[Row]:
-    """Every extreme, in the order of the matrix."""
+    """
+    Every extreme.
+
+    Yields
+    ------
+    Row
+        In the order of the matrix.
+    """
+    yield from _friction_laws()
+    yield from _numerics_of_the_engine()
+    yield from _sizes()
+    yield from _chains()
+    yield from _excitations()
+    yield from _directions()
+    yield from _starts_and_supports()
+    yield from _tolerances()
+    yield from _outside_the_rules()
+
+
+def _friction_laws() -> Iterator[Row]:
     for friction in (0.0, 1e-9, 1.0, 10.0):
         yield Row("friction", f"{friction:g}", scene(friction=friction), ALL)
     for lubrication in (0.0, 1e-9, 1.0, 1e3):
@@ -156,26 +201,35 @@ def rows() -> Iterator[Row]:
         yield Row("v_reg, m/s", f"{speed:g}", scene(), WITH_V_REG, settings={"regularization": speed})
     for cutoff in (1e-1, 1e-4, 1e-12):
         yield Row("cutoff v_c, m/s", f"{cutoff:g}", scene(), ("small", "exact"), settings={"cutoff": cutoff})
+
+
+def _numerics_of_the_engine() -> Iterator[Row]:
     for exponent in (2, 4, 6, 8, 10, 12):
-        given = {"contact_stiffness": 10.0**exponent, "tolerance": 1e-2}
+        changed = {"contact_stiffness": 10.0**exponent, "tolerance": 1e-2}
         yield Row(
             "contact stiffness, N/m",
             f"1e{exponent}",
             scene(duration=1.0),
             WITH_ENGINE,
-            settings=given,
-            amplification=GIVEN,
+            settings=changed,
+            amplification=STATED,
         )
     for exponent in (-6, -5, -4, -3, -2, -1):
-        given = {"step": 10.0**exponent, "tolerance": 1e-2}
+        changed = {"step": 10.0**exponent, "tolerance": 1e-2}
         brief = scene(duration=0.02 if exponent == -6 else 0.2 if exponent == -5 else 1.0)
-        yield Row("step of the engine, s", f"1e{exponent}", brief, WITH_ENGINE, settings=given, amplification=GIVEN)
+        yield Row("step of the engine, s", f"1e{exponent}", brief, WITH_ENGINE, settings=changed, amplification=STATED)
+
+
+def _sizes() -> Iterator[Row]:
     for amplitude in (1e-9, 1e-6, 1e-3, 5.0, 20.0, 1e3, 1e9):
         yield Row("amplitude, m/s^2", f"{amplitude:g}", scene(amplitudes=_along(amplitude)), ALL)
     near_rim = scene(amplitudes=_along(12.0), friction=0.02, duration=20.0)
     yield Row("amplitude, m/s^2", "12, friction 0.02, along the rim", near_rim, PLANAR, phases=PHASES[:1])
     for radius in (1e-3, 3e-2, 30.0, 1e3):
         yield Row("rho, m", f"{radius:g}", scene(radius=radius), ALL)
+
+
+def _chains() -> Iterator[Row]:
     for count, link in (
         (1, 1.0),
         (2, 1.0),
@@ -193,6 +247,9 @@ def rows() -> Iterator[Row]:
     yield Row("platform's share of the mass", "1", scene(masses=[2.0]), ALL)
     for period in (1e-3, 1e-2, 30.0, 1e3):
         yield Row("link periods, s", f"{period:g}", scene(link=(period, 0.8 * period)), ALL)
+
+
+def _excitations() -> Iterator[Row]:
     yield Row("harmonics", "equal", scene(periods=(0.9, 0.9)), ALL)
     yield Row("harmonics", "1e-3 Hz", scene(periods=(1e3, 1.1e3), decay=(3e-4, 3e-4)), ALL)
     yield Row("harmonics", "1e3 Hz", scene(periods=(1e-3, 1.1e-3), duration=0.05), ALL)
@@ -215,6 +272,9 @@ def rows() -> Iterator[Row]:
     for upward in (15.0, 1e3):
         yield Row("vertical loading, m/s^2", f"{upward:g}", scene(amplitudes=_upward(upward)), ALL)
     yield Row("phases", "at symmetric values", scene(duration=2.0), ALL, phases=SYMMETRIC)
+
+
+def _directions() -> Iterator[Row]:
     yield Row("direction", "x alone", scene(amplitudes=[[2.0, 1.0], [0.0, 0.0]]), ALL)
     yield Row("direction", "y alone", scene(amplitudes=[[0.0, 0.0], [2.0, 1.0]]), ALL)
     oblique = scene(amplitudes=[[2.0, 1.0], [1.0, 0.5]], link=(1.5, 1.5))
@@ -224,6 +284,9 @@ def rows() -> Iterator[Row]:
         yield Row("direction", f"x, and {across:g} m/s^2 across", almost, PLANAR)
     for still in (([2.0, 0.0], [0.0, 0.0]), ([0.0, 2.0], [0.0, 0.0])):
         yield Row("direction", f"one harmonic alone, {still[0]}", scene(amplitudes=still), PLANAR)
+
+
+def _starts_and_supports() -> Iterator[Row]:
     limit = 0.1 * GRAVITY_LIMIT
     for name, phase in (("falling", 0.0), ("rising", -math.pi / 3.0), ("beyond at once", math.pi / 3.0)):
         amplitude = limit / math.cos(phase)
@@ -232,12 +295,14 @@ def rows() -> Iterator[Row]:
     for ring in (1.0, 0.1, 0.01):
         three = scene(amplitudes=_along(4.0), friction=0.05, supports=3, ring=ring)
         yield Row("three supports, ring in m", f"{ring:g}", three, ("spatial",))
+
+
+def _tolerances() -> Iterator[Row]:
     for tolerance in (1e-1, 1e-2, 1e-4, 1e-8):
         yield Row("relative error asked", f"{tolerance:g}", scene(), REFERENCE, settings={"tolerance": tolerance})
     for tolerance in (1e-1, 1e-2, 1e-4, 1e-6):
         settings = {"tolerance": tolerance}
         yield Row("relative error asked", f"{tolerance:g}", scene(), ("translational",), settings=settings)
-    yield from _outside_the_rules()
 
 
 def _outside_the_rules() -> Iterator[Row]:

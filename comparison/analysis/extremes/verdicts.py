@@ -54,19 +54,35 @@ class Reply:
 
 @dataclass(frozen=True)
 class Judged:
-    """A verdict and its reason in a few words; error: the largest relative one claimed, NaN without a value."""
+    """A verdict."""
 
     verdict: Verdict
-    reason: str
-    error: float = float("nan")
+    reason: str  # in a few words
+    status: str = ""  # the outcome that decided it; empty for an input against a rule and for an error that was raised
+    error: float = float("nan")  # largest relative error estimate; NaN without a value
 
 
 def judged(reply: Reply, finer: Sequence[Reply], tolerance: float, invalid: bool, right: Sequence[str]) -> Judged:
     """
-    The verdict on `reply`; finer: other answers to the same question, the most trusted first.
+    The verdict on an answer.
 
-    tolerance: relative error that was asked. invalid: the input is against the rules. right: outcomes that may stand in
-    place of an answer; any named one if empty.
+    Parameters
+    ----------
+    reply : Reply
+        The answer.
+    finer : sequence of Reply
+        Other answers to the same question, the most trusted first.
+    tolerance : float
+        Relative error that was asked.
+    invalid : bool
+        Whether the input is against the rules.
+    right : sequence of str
+        Outcomes that may stand in place of an answer; any named one if empty.
+
+    Returns
+    -------
+    Judged
+        That of the worst phase pair.
     """
     if reply.raised:
         return Judged(Verdict.FAILED, f"raises {reply.raised}")
@@ -82,29 +98,29 @@ def judged(reply: Reply, finer: Sequence[Reply], tolerance: float, invalid: bool
 def _point(reply: Reply, m: int, finer: Sequence[Reply], tolerance: float, right: Sequence[str]) -> Judged:
     status, mu, error = reply.status[m], reply.mu[m], reply.error[m]
     if status not in (PHYSICS | NUMERICS | {Outcome.OK}):
-        return Judged(Verdict.FAILED, f"status {status!r} is no answer of a model")
+        return Judged(Verdict.FAILED, f"status {status!r} is no answer of a model", status)
     if right and status != Outcome.OK and status not in right:
-        return Judged(Verdict.FAILED, f"refused as {status!r} instead of {' or '.join(right)}")
+        return Judged(Verdict.FAILED, f"refused as {status!r} instead of {' or '.join(right)}", status)
     if status in (Outcome.OK, Outcome.TOLERANCE_NOT_MET):
         return _value(status, mu, error, [(other, m) for other in finer], tolerance)
     if not np.isnan(mu).all():
-        return Judged(Verdict.FAILED, f"{status}, and yet a value")
+        return Judged(Verdict.FAILED, f"{status}, and yet a value", status)
     if status in NUMERICS:
-        return Judged(Verdict.LIMIT, status)
+        return Judged(Verdict.LIMIT, status, status)
     answered = [other.status[m] for other in finer if len(other.status) > m and other.status[m] not in NUMERICS]
     if answered and answered[0] != status and status not in right:
-        return Judged(Verdict.FAILED, f"{status}, but a finer run: {answered[0]}")
-    return Judged(Verdict.REFUSED, status)
+        return Judged(Verdict.FAILED, f"{status}, but a finer run: {answered[0]}", status)
+    return Judged(Verdict.REFUSED, status, status)
 
 
 def _value(status: str, mu: Array, error: Array, finer: Sequence[tuple[Reply, int]], tolerance: float) -> Judged:
     """Judge a value with its error estimate."""
     if not (np.isfinite(mu).all() and np.isfinite(error).all()):
-        return Judged(Verdict.FAILED, f"{status}, but no finite number")
+        return Judged(Verdict.FAILED, f"{status}, but no finite number", status)
     claimed = float((error / np.abs(mu)).max()) if (mu != 0.0).all() else float("inf")
     if (error < 0.0).any() or (status == Outcome.OK and claimed > tolerance * (1.0 + ROUNDING)):
         return Judged(
-            Verdict.FAILED, f"{status} with an error estimate of {claimed:.1e}, asked: {tolerance:g}", claimed
+            Verdict.FAILED, f"{status} with an error estimate of {claimed:.1e}, asked: {tolerance:g}", status, claimed
         )
     for other, m in finer:
         if len(other.status) <= m or not np.isfinite(other.mu[m]).all():
@@ -114,10 +130,10 @@ def _value(status: str, mu: Array, error: Array, finer: Sequence[tuple[Reply, in
         if off[worst] > allowed[worst]:
             share = off[worst] / allowed[worst]
             reason = f"mu_{worst + 1} is off by {off[worst] / abs(mu[worst]):.1e}, {share:.2g} times what is claimed"
-            return Judged(Verdict.FAILED, reason, claimed)
+            return Judged(Verdict.FAILED, reason, status, claimed)
         if status == Outcome.OK and (other.error[m] <= np.maximum(error, FINE * tolerance * np.abs(mu))).all():
-            return Judged(Verdict.CONVERGED, f"error {claimed:.1e} confirmed", claimed)
+            return Judged(Verdict.CONVERGED, f"error {claimed:.1e} confirmed", status, claimed)
     if status == Outcome.TOLERANCE_NOT_MET:
-        return Judged(Verdict.LIMIT, f"{status}: {claimed:.1e}", claimed)
+        return Judged(Verdict.LIMIT, f"{status}: {claimed:.1e}", status, claimed)
     refused = next((other.status[m] for other, m in finer if len(other.status) > m), "none")
-    return Judged(Verdict.FAILED, f"ok, but no finer run confirms it: {refused}", claimed)
+    return Judged(Verdict.FAILED, f"ok, but no finer run confirms it: {refused}", status, claimed)

@@ -15,9 +15,24 @@ DISCONTINUOUS = 1.0  # the engine's own default
 
 def factors_at_constant_step(scene: Scene, phases: ArrayLike, solver: str, step: float, v_reg: float) -> Array:
     """
-    mu (M, N) of the translational model at a constant step, s; NaN where the engine gives up.
+    mu of the translational model at a constant step.
 
-    solver: an integrator of `multibody.single_run`.
+    Parameters
+    ----------
+    scene : Scene
+    phases : array_like, (M, 2)
+        rad.
+    solver : str
+        An integrator of `multibody.single_run`.
+    step : float
+        s.
+    v_reg : float
+        m/s.
+
+    Returns
+    -------
+    ndarray, (M, N)
+        NaN where the engine gives up.
     """
     pairs = checked_phases(phases)
     peaks = np.full((len(pairs), len(scene.bodies)), np.nan)

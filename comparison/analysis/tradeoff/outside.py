@@ -84,7 +84,33 @@ def constants_of(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, ...
 
 
 def motion(scene: Scene, phase: ArrayLike, method: str, tolerance: float, v_reg: float) -> tuple[Array, Array]:
-    """Times (T,) and states (T, 4 N): own steps, SAMPLES and closer ones. Raises ValueError if it fails."""
+    """
+    A motion by SciPy.
+
+    Parameters
+    ----------
+    scene : Scene
+    phase : array_like, (2,)
+        rad.
+    method : str
+        Of `scipy.integrate.solve_ivp`.
+    tolerance : float
+        Relative tolerance of a step.
+    v_reg : float
+        m/s.
+
+    Returns
+    -------
+    times : ndarray, (T,)
+        s: the solver's own steps, SAMPLES, and closer ones near the peaks.
+    states : ndarray, (T, 4 N)
+        Positions, m, and velocities, m/s.
+
+    Raises
+    ------
+    ValueError
+        If the solver fails.
+    """
     run = solve_ivp(
         slope, (0.0, scene.duration), np.zeros(4 * len(scene.bodies)), method, dense_output=True,
         args=constants_of(scene, phase, v_reg), rtol=tolerance, atol=tolerance * ABSOLUTE,
@@ -105,7 +131,26 @@ def motion(scene: Scene, phase: ArrayLike, method: str, tolerance: float, v_reg:
 
 
 def accelerations(scene: Scene, phase: ArrayLike, times: Array, states: Array, v_reg: float) -> Array:
-    """Sizes of the absolute accelerations (T, N), m/s^2, of a motion."""
+    """
+    Sizes of the absolute accelerations of a motion.
+
+    Parameters
+    ----------
+    scene : Scene
+    phase : array_like, (2,)
+        rad.
+    times : ndarray, (T,)
+        s.
+    states : ndarray, (T, 4 N)
+        As of `motion`.
+    v_reg : float
+        m/s.
+
+    Returns
+    -------
+    ndarray, (T, N)
+        m/s^2.
+    """
     constants, count = constants_of(scene, phase, v_reg), len(scene.bodies)
     a = slopes(times, states, constants)[:, 2 * count :].reshape(-1, count, 2)
     x, v = states[:, :2], states[:, 2 * count : 2 * count + 2]
@@ -127,6 +172,29 @@ def factors(scene: Scene, phase: ArrayLike, times: Array, states: Array, v_reg: 
 
 
 def factors_by_scipy(scene: Scene, phases: ArrayLike, method: str, tolerance: float, v_reg: float) -> Array:
-    """mu (M, N) by `scipy.integrate.solve_ivp` with this method and relative tolerance of a step."""
+    """
+    mu by `scipy.integrate.solve_ivp`.
+
+    Parameters
+    ----------
+    scene : Scene
+    phases : array_like, (M, 2)
+        rad.
+    method : str
+        Of `solve_ivp`.
+    tolerance : float
+        Relative tolerance of a step.
+    v_reg : float
+        m/s.
+
+    Returns
+    -------
+    ndarray, (M, N)
+
+    Raises
+    ------
+    ValueError
+        If the solver fails at a phase pair.
+    """
     pairs: Array = checked_phases(phases)
     return np.array([factors(scene, phase, *motion(scene, phase, method, tolerance, v_reg), v_reg) for phase in pairs])

@@ -103,19 +103,41 @@ QUESTIONS = (
 
 
 def asked(scene: Scene) -> list[Question]:
-    """The questions that the scene allows."""
+    """
+    The questions that a scene allows.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    list of Question
+    """
     return [question for question in QUESTIONS if question.key != "spatial" or has_spatial_data(scene)]
 
 
 def settings(scene: Scene, quick: bool = False) -> list[Setting]:
-    """Every setting that is measured for this scene; `quick`: every other one of the dear ones."""
+    """
+    Every setting that is measured for a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    quick : bool
+        Every other one of the expensive ones.
+
+    Returns
+    -------
+    list of Setting
+    """
     keys = {question.key for question in asked(scene)}
-    found = [*_reference(scene), *_scipy(quick), *_engine(quick)]
-    return [setting for setting in found if setting.question in keys]
+    every = [*_reference(scene), *_scipy(quick), *_engine(quick)]
+    return [setting for setting in every if setting.question in keys]
 
 
 def _reference(scene: Scene) -> list[Setting]:
-    found = []
+    measured = []
     laws: Sequence[tuple[str, Settings]] = (
         ("exact", {}),
         ("small", {"equations": "small"}),
@@ -124,13 +146,13 @@ def _reference(scene: Scene) -> list[Setting]:
     for question, law in laws:
         for power in range(2, 9):
             value = 10.0**-power
-            found.append(
+            measured.append(
                 Setting(question, "reference, two runs and an estimate", "tolerance of mu", "", value, REFERENCE,
                         {**law, "tolerance": value}, 0.003, controlled=True)
             )  # fmt: skip
         for power in range(1, 9):
             value = 10.0**-power
-            found.append(
+            measured.append(
                 Setting(question, "reference, one run", "tolerance inside a step", "", value, RUN,
                         {**law, "inside": value}, 0.0015)
             )  # fmt: skip
@@ -139,11 +161,11 @@ def _reference(scene: Scene) -> list[Setting]:
             ("supremum", None),
             ("peak faster than v_reg", (REFERENCE, {"cutoff": speed, "tolerance": TIGHT})),
         ):
-            found.append(
+            measured.append(
                 Setting("exact", f"v_reg, model error against the {what}", "v_reg", "m/s", speed, REFERENCE,
                         {"regularization": speed, "tolerance": 1e-6}, 0.004, model_error=True, against=against)
             )  # fmt: skip
-    return found
+    return measured
 
 
 def _scipy(quick: bool) -> list[Setting]:
@@ -175,21 +197,21 @@ def _levels(quick: bool) -> list[Setting]:
         ("regularised", "translational", (1e-2, 1e-3, 1e-4, 1e-5), 1.0),
         ("spatial", "spatial", (1e-2, 1e-3), 1.7),
     )
-    found = []
+    measured = []
     for question, model, tolerances, dearer in models:
         law = {"model": model, "regularization": V_REG}
         for value, seconds in zip(tolerances, (0.35, 0.35, 1.0, 1.8)):
-            found.append(
+            measured.append(
                 Setting(question, f"{model} engine, two levels and an estimate", "tolerance of mu", "", value, ENGINE,
                         {**law, "tolerance": value}, seconds * dearer, controlled=True)
             )  # fmt: skip
         for name, parameter, key, values in parameters:
             for value in values[:: 3 if quick else 1]:
-                found.append(
+                measured.append(
                     Setting(question, f"{model} engine, one run: {name}", parameter, "", value, LEVEL,
                             {**law, key: value}, 0.25 * dearer)
                 )  # fmt: skip
-    return found
+    return measured
 
 
 def _constant(quick: bool) -> list[Setting]:
@@ -197,7 +219,7 @@ def _constant(quick: bool) -> list[Setting]:
     curves = [(f"Exudyn, {solver}", {"solver": solver}, steps, 0.25e-3) for solver, steps in STEPS.items()]
     return [
         Setting("regularised", method, "constant step", "s", step, CONSTANT,
-                {**given, "step": step, "v_reg": V_REG}, cost / step)
-        for method, given, steps, cost in curves
+                {**integrator, "step": step, "v_reg": V_REG}, cost / step)
+        for method, integrator, steps, cost in curves
         for step in steps[:: 2 if quick else 1]
     ]  # fmt: skip

@@ -26,15 +26,34 @@ def reference_run(
     regularization: float | None = None,
 ) -> tuple[Array, float]:
     """
-    mu (M, N) of one run each with the tolerance `inside` its steps, NaN without an answer, and its mean step, s.
+    One run of the reference for each phase pair.
 
-    The solver has no largest step to be given: events and this tolerance alone make its steps.
+    The solver has no largest step: events and this tolerance alone make its steps.
+
+    Parameters
+    ----------
+    scene : Scene
+    phases : array_like, (M, 2)
+        rad.
+    inside : float
+        Tolerance inside a step.
+    equations : str
+        "small" or "exact".
+    regularization : float or None
+        v_reg, m/s; None: set-valued friction.
+
+    Returns
+    -------
+    mu : ndarray, (M, N)
+        NaN without an answer.
+    step : float
+        Mean step, s.
     """
     pairs = checked_phases(phases)
     system, demand = checked_demand(scene, equations, regularization, 1e-6, None, "consistent")
-    found = peaks_at(system, pairs, demand, inside)
-    mu = np.where((found.code == SOLVED)[:, None], found.value, np.nan) / ground_peak(scene, pairs)[:, None]
-    return mu, float(scene.duration / found.steps.mean())
+    peaks = peaks_at(system, pairs, demand, inside)
+    mu = np.where((peaks.code == SOLVED)[:, None], peaks.value, np.nan) / ground_peak(scene, pairs)[:, None]
+    return mu, float(scene.duration / peaks.steps.mean())
 
 
 def engine_run(
@@ -47,10 +66,28 @@ def engine_run(
     newton: float | None = None,
 ) -> Array:
     """
-    mu (M, N) of one run of the engine each at its USUAL_LEVEL, but for the arguments; NaN without an answer.
+    One run of the engine for each phase pair, at its USUAL_LEVEL but for the arguments.
 
-    step: factor on the largest step and on the turn allowed in one. penetration: of the contact under the weight,
-    in rho: the inverse of its stiffness. newton: relative tolerance of Newton's iteration.
+    Parameters
+    ----------
+    scene : Scene
+    phases : array_like, (M, 2)
+        rad.
+    model : str
+        "translational" or "spatial".
+    regularization : float
+        v_reg, m/s.
+    step : float
+        Factor on the largest step and on the turn allowed in one.
+    penetration : float, optional
+        Of the contact under the weight, in rho: the inverse of its stiffness.
+    newton : float, optional
+        Relative tolerance of Newton's iteration.
+
+    Returns
+    -------
+    ndarray, (M, N)
+        mu, NaN without an answer.
     """
     pairs = checked_phases(phases)
     usual = multibody.levels(scene, model, 1e-3, regularization)[USUAL_LEVEL]

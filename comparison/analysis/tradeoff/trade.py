@@ -115,13 +115,48 @@ class Trade:
 
 
 def quantile(errors: Array, share: float) -> float | None:
-    """The error that a share of the points does not exceed; a value that was met, never one between two."""
+    """
+    The error that a share of the points does not exceed: one that occurred, never a value between two.
+
+    Parameters
+    ----------
+    errors : ndarray, (M,)
+        NaN where unknown.
+    share : float
+        From 0 to 1.
+
+    Returns
+    -------
+    float or None
+        None if no error is known.
+
+    Examples
+    --------
+    >>> quantile(np.array([1.0, 2.0, 3.0, np.nan]), 0.5)
+    2.0
+    """
     known = errors[np.isfinite(errors)]
     return float(np.quantile(known, share, method="higher")) if len(known) else None
 
 
 def on_pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[bool]:
-    """Which of the pairs are not beaten: no other is at least as good in both and better in one."""
+    """
+    Which pairs are not beaten: no other is at least as good in both and better in one.
+
+    Parameters
+    ----------
+    cost, error : sequence of float
+        Of each; infinite where unknown.
+
+    Returns
+    -------
+    list of bool
+
+    Examples
+    --------
+    >>> on_pareto_front([1.0, 2.0, 3.0], [1e-2, 1e-3, 1e-2])
+    [True, True, False]
+    """
     pairs = list(zip(cost, error))
     return [
         math.isfinite(mine[0] + mine[1])
@@ -131,18 +166,31 @@ def on_pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[bool]
 
 
 def with_pareto_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
-    """The entries with `pareto_front` filled in: within each question, among those that answer it at every point."""
+    """
+    The entries with `pareto_front` filled in.
+
+    Parameters
+    ----------
+    entries : sequence of Entry
+    bodies : int
+        Number of bodies N.
+
+    Returns
+    -------
+    list of Entry
+        Compared within each question, among those that answer it at every point.
+    """
     marks: dict[int, list[bool]] = {place: [False] * bodies for place in range(len(entries))}
     for question in {entry.question for entry in entries}:
-        own = [
+        complete = [
             place
             for place, entry in enumerate(entries)
             if entry.question == question and not entry.model_error and entry.answered == entry.points
         ]
         for body in range(bodies):
-            errors = [entries[place].most[body] for place in own]
+            errors = [entries[place].most[body] for place in complete]
             known = [math.inf if error is None else error for error in errors]
-            for place, mark in zip(own, on_pareto_front([entries[place].seconds for place in own], known)):
+            for place, mark in zip(complete, on_pareto_front([entries[place].seconds for place in complete], known)):
                 marks[place][body] = mark
     return [Entry(**{**vars(entry), "pareto_front": tuple(marks[place])}) for place, entry in enumerate(entries)]
 
@@ -159,33 +207,65 @@ class TradeFile:
     """one per scene"""
 
 
-def as_json(found: Sequence[Trade]) -> bytes:
-    """The content of the file."""
-    content = asdict(TradeFile(SCHEMA, list(found)))
+def as_json(trades: Sequence[Trade]) -> bytes:
+    """The content of the file, which `load` reads."""
+    content = asdict(TradeFile(SCHEMA, list(trades)))
     return (json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
 
 
 def load(folder: Path) -> list[Trade] | None:
-    """The trades that `as_json` left in the folder, None if there are none. Raises ValueError for another file."""
+    """
+    The trades that a command left in a folder.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder that may hold FILE.
+
+    Returns
+    -------
+    list of Trade or None
+        None if there is no such file.
+
+    Raises
+    ------
+    ValueError
+        One line, if the file holds no trades of this version.
+    """
     content = load_file(folder / FILE, TradeFile, "a measured trade", "python -m comparison.tradeoff")
     return None if content is None else content.trades
 
 
 def labeled(
     entries: Sequence[Entry], mu: Sequence[Array], reference_solution: Sequence[Array], error_estimate: Sequence[Array],
-    phases: Array, run: Mapping[str, Any],
+    phases: Array,
 ) -> xr.Dataset:  # fmt: skip
-    """Every value by setting, point and body; a question with fewer points leaves the rest NaN."""
+    """
+    Every value by setting, point and body.
+
+    Parameters
+    ----------
+    entries : sequence of Entry
+        One for each setting.
+    mu, reference_solution, error_estimate : sequence of ndarray, (P, N)
+        For each setting; a question with fewer points leaves the rest NaN.
+    phases : ndarray, (M, 2)
+        The whole sample, rad.
+
+    Returns
+    -------
+    xr.Dataset
+    """
     count, bodies = len(phases), mu[0].shape[1]
 
-    def padded(parts: Sequence[Array]) -> Array:
-        whole = np.full((len(parts), count, bodies), np.nan)
-        for place, part in enumerate(parts):
-            whole[place, : len(part)] = part
-        return whole
+    def padded(values: Sequence[Array]) -> Array:
+        filled = np.full((len(values), count, bodies), np.nan)
+        for row, value in zip(filled, values):
+            row[: len(value)] = value
+        return filled
 
     axes = ("setting", "point", "body")
-    data = xr.Dataset(
+    return xr.Dataset(
         {
             "mu": (axes, padded(mu), {"long_name": "amplification factor (5.1)", "units": "1"}),
             "reference_solution": (
@@ -211,4 +291,3 @@ def labeled(
             "alpha2": ("point", phases[:, 1], {"units": "rad"}),
         },
     )  # fmt: skip
-    return data.assign_attrs(command=run["command"], **run["provenance"])

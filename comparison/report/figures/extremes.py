@@ -11,7 +11,6 @@ from matplotlib.patches import Patch, Rectangle
 
 from comparison.analysis.extremes.matrix import Entry, Matrix
 from comparison.analysis.extremes.verdicts import Verdict
-from reference.problem import Outcome
 
 Line = tuple[str, Mapping[str, Entry] | None]  # title and its entries; None for the heading of a group
 
@@ -104,5 +103,4 @@ def describe(entry: Entry) -> str:
         return f"{entry.error:.0e}"
     if entry.verdict == Verdict.FAILED:
         return "FAILED"
-    words = entry.reason.split(":")[0]
-    return words if words in set(Outcome) else "against a rule"
+    return entry.status or "against a rule"

@@ -1,0 +1,115 @@
+"""
+How the commands that compute tasks do it: stored results first, the others on the workers that the options name.
+
+Every result is stored as it arrives, in DIR.tiles beside `--out DIR`, so that the same command goes on where it
+stopped.
+"""
+
+from __future__ import annotations
+
+import argparse
+import signal
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+
+from rich.console import Console
+
+from comparison.cli.arguments import EndedEarlyError, jobs
+from comparison.execution.cache import Cache, StoreError, refuse_foreign_store, store_beside
+from comparison.execution.executors import ExecutorLostError, Pool
+from comparison.execution.keys import task_key
+from comparison.execution.output import destination
+from comparison.execution.resume import resume_hint, without_scheduler
+from comparison.execution.runner import Runner
+from comparison.execution.task import Task
+from comparison.execution.task_results import TaskResults
+from comparison.execution.workers import workers
+
+
+def computed(
+    command: str,
+    options: argparse.Namespace,
+    words: Sequence[str],
+    tasks: Sequence[Task],
+    models: set[str],
+    console: Console,
+    executor: Pool,
+) -> TaskResults:
+    """
+    The results of all tasks of a command.
+
+    Parameters
+    ----------
+    command : str
+        Its name, as in "comparison.NAME".
+    options : argparse.Namespace
+        Parsed by a `CommandParser` with `add_out` and `add_computing`.
+    words : sequence of str
+        The command line.
+    tasks : sequence of Task
+        What is computed, unless it is stored.
+    models : set of str
+        Functions that the workers of a cluster must have in the same versions, as "package:name".
+    console : Console
+        Where progress is shown.
+    executor : Executor or callable
+        What makes the processes of this machine, or an executor in their place.
+
+    Returns
+    -------
+    TaskResults
+
+    Raises
+    ------
+    SceneError
+        One line, for a wrong option and where there is no place for results.
+    EndedEarlyError
+        For Ctrl-C and other signals, a full disk and a lost cluster: says how to go on.
+    """
+    width = jobs(options)
+    out = destination(options.out)
+    refuse_foreign_store(out)
+    cache = Cache(store_beside(out))
+    if options.fresh:
+        cache.remove(map(task_key, tasks))
+    results = TaskResults(cache)
+    stored = len(tasks) - len(results.missing(tasks))
+    if stored:
+        line = f"{stored} of {len(tasks)} tasks are in {cache.folder}: only the others are computed."
+        console.print(line, soft_wrap=True)  # a path is copied whole
+    with (
+        ending_early(lambda rest: resume_hint(cache, rest, command), words, options.scheduler),
+        workers(width, options.scheduler, models, executor) as (count, make),
+    ):
+        Runner(results, console, count, make).run_tasks(tasks, compile_first=True)
+    return results
+
+
+@contextmanager
+def ending_early(hint: Callable[[Sequence[str]], str], words: Sequence[str], scheduler: str | None) -> Iterator[None]:
+    """
+    Whatever ends the block early is one line that says how to go on, and an exit code.
+
+    Parameters
+    ----------
+    hint : callable
+        What is kept and how to go on, for the words of a command line.
+    words : sequence of str
+        The command line.
+    scheduler : str or None
+        Address of the cluster.
+
+    Raises
+    ------
+    EndedEarlyError
+        3: a result could not be stored; 4: the cluster was lost; 128 + number of the signal.
+    """
+    try:
+        yield
+    except KeyboardInterrupt as stop:
+        raise EndedEarlyError(128 + getattr(stop, "number", signal.SIGINT), f"interrupted: {hint(words)}") from None
+    except ExecutorLostError as error:
+        where = "" if scheduler is None else f"--scheduler {scheduler}: "
+        raise EndedEarlyError(4, f"{where}{error}: {hint(without_scheduler(words))}") from None
+    except StoreError as error:
+        raise EndedEarlyError(3, f"{error}; {hint(words)}") from None

@@ -1,0 +1,268 @@
+"""
+Draws one motion as a GIF: the boxes from above with the paths of the contact points, then the chain from two sides.
+
+What moves is drawn frame by frame on a background that is drawn once. Displacements, contact paths, tilt and yaw are
+magnified. Heights are scaled so that the whole frame fits, its boxes stay apart, and the poles of the supports end
+below the platform. The caption names every factor.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+from numpy.typing import NDArray
+from PIL import Image
+from scipy.spatial import ConvexHull
+from scipy.spatial.transform import Rotation
+
+from reference.problem import Scene, Trajectory, verbatim
+
+Array = NDArray[np.float64]
+
+RING, SPHERE = 1.0, 0.05  # m: drawn where the scene gives no spatial data
+BARE_SUPPORTS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]) * RING / np.sqrt(2.0)  # m, likewise
+STORY, THICKNESS = 0.5, 0.1  # of a box's width: distance and thickness of boxes, likewise
+MIN_SPAN, MAX_SPAN = 0.35, 1.2  # of the widest box: the distance of the lowest and the highest as it is drawn
+MAX_THICKNESS, MAX_DIP = 0.4, 0.2  # of the smallest distance of two boxes: a box, and its edge where it is tilted
+MAX_DRAWN = 0.3  # rad or m, up to which turns and contact paths are magnified
+MAX_MAGNIFICATION = 1e4  # times
+POLE = 0.15  # of the widest box: length of the poles
+LAYOUT_WIDTH = 12.0  # inches of the figure's layout, whatever its pixels
+COLORS = 255  # of a film, besides one that stands for what has not changed
+CORNERS = 0.5 * np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a film is made. stretch: factor on displacements. speed: s of motion per s. rate: frames per s. size: px."""
+
+    stretch: float = 5.0
+    speed: float = 1.0
+    rate: int = 25
+    size: tuple[int, int] = (1200, 480)
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """What is drawn, in m, magnified: F frames, N bodies, K supports."""
+
+    corners: Array  # (F, N, 8, 3) of the boxes
+    centers: Array  # (F, N, 3)
+    supports: Array  # (K, 2)
+    paths: Array  # (F, K, 2) of the contact points
+    swing: Array  # (S, 2), x and z of the curve that the platform's center swings on
+    scales: str  # the factors, in words
+
+    @property
+    def reach(self) -> float:
+        """Half of the width that everything needs."""
+        return 1.08 * float(np.abs(self.corners[..., :2]).max())
+
+
+def frames(time: Array, values: Array, count: int) -> Array:
+    """`values` (T, ...) given at `time` (T,), s, at `count` equally spaced instants, (F, ...)."""
+    instants = np.linspace(time[0], time[-1], count)
+    columns = [np.interp(instants, time, column) for column in values.reshape(len(time), -1).T]
+    return np.stack(columns, axis=-1).reshape(count, *values.shape[1:])
+
+
+def box_corners(center: Array, size: Array, turns: Array) -> Array:
+    """Corners (..., 8, 3), m, of boxes at `center` (..., 3), m, turned by Rx(a) Ry(b) Rz(c), `turns` (..., 3), rad."""
+    matrices = Rotation.from_euler("XYZ", turns.reshape(-1, 3)).as_matrix().reshape(*turns.shape, 3)
+    turned: Array = (CORNERS * np.asarray(size)[..., None, :]) @ np.swapaxes(matrices, -1, -2)
+    return center[..., None, :] + turned
+
+
+def magnified(values: Array, seen: float) -> float:
+    """Factor 1, 2 or 5 times a power of ten, at most MAX_MAGNIFICATION, that makes the largest value at most `seen`."""
+    largest = float(np.abs(values).max())
+    wanted = min(max(seen / largest, 1.0), MAX_MAGNIFICATION) if largest > 0.0 else MAX_MAGNIFICATION
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted))
+
+
+def contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
+    """
+    From each support to its contact point in plan, (F, K, 2), m, for the platform's `shift` and `turns` (F, 3).
+
+    The point lies on the sphere of radius r, in the direction from the depression's center to the sphere's.
+    """
+    supports = _supports(scene)
+    arms = np.column_stack([supports, np.full(len(supports), -(scene.bodies[0].height or 0.0))])
+    matrices = Rotation.from_euler("XYZ", turns).as_matrix()
+    depressions = shift[:, None, :] + arms @ np.swapaxes(matrices, 1, 2) - arms
+    lever = (scene.isolator.sphere_radius or SPHERE) / scene.radius
+    paths: Array = -lever * depressions[:, :, :2]
+    return paths
+
+
+def drawn_boxes(scene: Scene) -> tuple[Array, Array, float]:
+    """
+    Heights (N,) and sizes (N, 3), m, of the boxes as they are drawn, and the factor on the heights.
+
+    Heights begin at zero. The boxes stay apart as long as an edge moves by no more than MAX_DIP of their distance.
+    """
+    width = 2.0 * (scene.isolator.ring or RING)
+    sizes: Array = np.array([body.size or [width, width, THICKNESS * width] for body in scene.bodies])
+    width = float(sizes[:, :2].max())
+    heights: Array = STORY * width * np.arange(len(sizes), dtype=np.float64)
+    stated = [body.height for body in scene.bodies if body.height is not None]
+    if len(stated) == len(sizes) and (np.diff(stated) > 0.0).all():
+        heights = np.array(stated) - stated[0]
+    factor = 1.0
+    if len(sizes) > 1:
+        factor = float(np.clip(heights[-1], MIN_SPAN * width, MAX_SPAN * width) / heights[-1])
+        gap = factor * float(np.diff(heights).min())
+        sizes[:, 2] = np.minimum(sizes[:, 2], MAX_THICKNESS * gap)
+    return factor * heights, sizes, factor
+
+
+def drawing(scene: Scene, motion: Trajectory, stretch: float, count: int) -> Drawing:
+    """`count` frames of a motion."""
+    shifts = frames(motion.time, motion.position, count)
+    turns = frames(motion.time, motion.extra.get("turns", np.zeros_like(motion.position)), count)
+    heights, sizes, factor = drawn_boxes(scene)
+    gap = float(np.diff(heights).min(initial=np.inf))
+    dip = min(MAX_DRAWN, MAX_DIP * gap / (0.5 * float(np.hypot(*sizes[:, :2].max(axis=0)))))
+    tilt, yaw = magnified(turns[..., :2], dip), magnified(turns[..., 2], MAX_DRAWN)
+    paths = contact_paths(scene, shifts[:, 0], turns[:, 0])
+    closer = magnified(paths, MAX_DRAWN * float(np.hypot(*_supports(scene)[0])))
+    scales = f"displacements x {stretch:g}, contact paths x {closer:g}"
+    scales += f", tilt x {tilt:g}, yaw x {yaw:g}" if "turns" in motion.extra else ""
+    scales += f", heights x {factor:.2g}" if factor != 1.0 else ""
+    across = np.linspace(-0.25, 0.25, 101) * scene.radius
+    rise = scene.radius - np.sqrt(scene.radius**2 - across**2)
+    centers = heights[:, None] * np.array([0.0, 0.0, 1.0]) + shifts * stretch
+    return Drawing(
+        corners=box_corners(centers, sizes, turns * np.array([tilt, tilt, yaw])),
+        centers=centers,
+        supports=_supports(scene),
+        paths=_supports(scene) + paths * closer,
+        swing=stretch * np.column_stack([across, rise]),
+        scales=scales,
+    )
+
+
+def film(scene: Scene, motion: Trajectory, model: str, look: Look, count: int) -> bytes:
+    """The GIF of a motion that `model` computed, in `count` frames."""
+    drawn = drawing(scene, motion, look.stretch, count)
+    width, height = look.size
+    figure = Figure((LAYOUT_WIDTH, LAYOUT_WIDTH * height / width), dpi=width / LAYOUT_WIDTH)
+    canvas: Any = FigureCanvasAgg(figure)
+    figure.subplots_adjust(left=0.05, right=0.99, bottom=0.21, top=0.8, wspace=0.15)
+    figure.suptitle(f"{verbatim(scene.title)}: {model} model of the engine\n{drawn.scales}", fontsize="medium")
+    panels = figure.subplots(1, 3)
+    views = [_FromAbove(panels[0], drawn), _FromSide(panels[1], drawn, 0), _FromSide(panels[2], drawn, 1)]
+    handles: dict[str, Any] = {}
+    for panel in panels:
+        handles |= dict(zip(*reversed(panel.get_legend_handles_labels())))
+    columns = min(len(handles), 9)
+    figure.legend(handles.values(), handles.keys(), loc="lower center", ncols=columns, fontsize="small")
+    clock = figure.text(0.01, 0.97, "", va="top", animated=True)
+    canvas.draw()
+    background = canvas.copy_from_bbox(figure.bbox)
+
+    def picture(frame: int) -> Image.Image:
+        canvas.restore_region(background)
+        clock.set_text(f"t = {frame * look.speed / look.rate:.2f} s")
+        for view in views:
+            view.show(frame)
+        for artist in (clock, *(artist for view in views for artist in view.moving)):
+            figure.draw_artist(artist)
+        return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3])
+
+    return _gif((picture(frame) for frame in range(count)), picture(count // 2), look.rate)
+
+
+def _gif(pictures: Iterator[Image.Image], typical: Image.Image, rate: int) -> bytes:
+    """The pictures in the colors of a typical one, one after the other: none is kept."""
+    palette = typical.quantize(COLORS, Image.Quantize.MAXCOVERAGE)  # white stays white
+    reduced = (picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures)
+    content = io.BytesIO()
+    next(reduced).save(content, "GIF", save_all=True, append_images=reduced, duration=1000 // rate, loop=0)
+    return content.getvalue()
+
+
+class _View:
+    """One panel: what moves in it, and how it stands in a frame."""
+
+    def __init__(self, panel: Any, drawn: Drawing, axes: tuple[int, int], alpha: float) -> None:
+        self.drawn, self.axes = drawn, list(axes)
+        self.outlines = [
+            panel.fill([0.0], [0.0], facecolor=(*color, alpha), edgecolor=color, label=label, animated=True)[0]
+            for color, label in _bodies(drawn.corners.shape[1])
+        ]
+        self.moving: list[Any] = [*self.outlines]
+        names = ["xyz"[axis] for axis in axes]
+        panel.set(xlim=(-drawn.reach, drawn.reach), aspect="equal", xlabel=f"{names[0]} [m]")
+        panel.set_ylabel(f"{names[1]} [m]" if names[1] != "z" else "z", labelpad=2.0)
+
+    def show(self, frame: int) -> None:
+        for body, outline in enumerate(self.outlines):
+            flat = self.drawn.corners[frame, body][:, self.axes]
+            outline.set_xy(flat[ConvexHull(flat).vertices])
+
+
+class _FromAbove(_View):
+    """The boxes, the ring of supports and the paths of the contact points."""
+
+    def __init__(self, panel: Any, drawn: Drawing) -> None:
+        super().__init__(panel, drawn, (0, 1), 0.1)
+        panel.set(ylim=(-drawn.reach, drawn.reach))
+        panel.set_title("from above", fontsize="small")
+        radius = float(np.hypot(*drawn.supports[0]))
+        panel.add_patch(Circle((0.0, 0.0), radius, fill=False, color="0.5", linestyle=":"))
+        panel.plot(*drawn.supports.T, "o", color="0.4", markersize=5, label="support")
+        style = {"color": "tab:red", "animated": True}
+        self.lines = [panel.plot([], [], linewidth=1.0, **style)[0] for _ in drawn.supports]
+        self.lines[0].set_label("path of the contact point")
+        self.points = panel.plot([], [], ".", markersize=6, **style)[0]
+        self.moving += [*self.lines, self.points]
+
+    def show(self, frame: int) -> None:
+        super().show(frame)
+        for line, path in zip(self.lines, np.swapaxes(self.drawn.paths, 0, 1)):
+            line.set_data(*path[: frame + 1].T)
+        self.points.set_data(*self.drawn.paths[frame].T)
+
+
+class _FromSide(_View):
+    """The boxes above each other on their poles, and the line through their centers."""
+
+    def __init__(self, panel: Any, drawn: Drawing, axis: int) -> None:
+        super().__init__(panel, drawn, (axis, 2), 0.35)
+        panel.set_title("along y" if axis == 0 else "along x", fontsize="small")
+        self.axis = axis
+        top = float(drawn.corners[:, 0, :, 2].min())  # as low as the platform ever comes
+        low = top - POLE * 2.0 * drawn.reach
+        panel.set(ylim=(low, float(drawn.corners[..., 2].max()) + 0.05 * drawn.reach), yticks=[])
+        for support in drawn.supports[:, axis]:
+            panel.plot([support, support], [low, top], color="0.5", linewidth=1.5)
+            panel.plot(support, top, "o", color="0.4", markersize=5, clip_on=False)
+        panel.plot(*drawn.swing.T, ":", color="0.2", label="swing of the center")
+        self.mast = panel.plot([], [], "o-", color="0.2", markersize=3, linewidth=1.0, animated=True)[0]
+        self.moving.append(self.mast)
+
+    def show(self, frame: int) -> None:
+        super().show(frame)
+        self.mast.set_data(self.drawn.centers[frame, :, self.axis], self.drawn.centers[frame, :, 2])
+
+
+def _bodies(count: int) -> list[tuple[tuple[float, float, float], str]]:
+    """Color and name of every body; names of as many as a legend holds."""
+    colors = [colormaps["tab10"](body % 10)[:3] for body in range(count)]
+    names = ["platform", *(f"body {body}" for body in range(2, count + 1))]
+    return list(zip(colors, [name if body < 6 else "_" for body, name in enumerate(names)]))
+
+
+def _supports(scene: Scene) -> Array:
+    """Places of the supports in the plane, (K, 2), m."""
+    return BARE_SUPPORTS if scene.support_places is None else scene.support_places

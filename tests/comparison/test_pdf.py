@@ -1,0 +1,110 @@
+"""report.pdf has two to four pages with the sentences of the page, whatever is studied, and its absence is one line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Run
+from fake_models import fake_hierarchy, silenced
+from pypdf import PdfReader
+from test_texts_of_scenes import RUN
+
+from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.unanswered import with_silent_models
+from comparison.report import pdf
+from comparison.report.assemble import assemble
+from comparison.report.findings import Findings, collect_findings
+from comparison.report.results import Results
+from comparison.study.batches import execute_batch
+from comparison.study.models import Model
+from comparison.study.study import Study
+from reference.problem import Scene, load_scene
+
+SCENES = ("fig3-I", "fig3-II", "fig4-dry", "fig4-viscous")
+
+
+def studied(scenes: list[Scene], hierarchy: tuple[Model, ...], grid: int = 4) -> tuple[Results, Findings]:
+    study = Study(tuple(scenes), grid, 1e-3, hierarchy)
+    surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
+    study = with_silent_models(study, surfaces)
+    findings = collect_findings(study, surfaces, {}, ["fig3-I, engine: it broke"], RUN)
+    return assemble(findings), findings
+
+
+def _called(scene: Scene, name: str, title: str) -> Scene:
+    return Scene.model_construct(**{**dict(scene), "name": name, "title": title})
+
+
+def text_of(path: Path) -> tuple[int, str]:
+    """Number of pages, and the text on one line."""
+    pages = PdfReader(path).pages
+    words = " ".join(page.extract_text() for page in pages).replace("\u00a0", " ").split()
+    return len(pages), " ".join(words)
+
+
+def flat(text: str) -> str:
+    """The letters alone: where lines break, a reader of the file may add or lose a space or a hyphen."""
+    return "".join(letter for letter in text if letter.isalnum())
+
+
+def test_the_papers_scenes_are_on_two_to_four_pages_with_every_sentence(tmp_path: Path) -> None:
+    results, findings = studied([load_scene(name) for name in SCENES], fake_hierarchy(gap=0.01), grid=24)
+    pdf.write_pdf(tmp_path / "report.pdf", results, findings)
+    pages, text = text_of(tmp_path / "report.pdf")
+    assert 2 <= pages <= 4
+    for scene in results.scenes:
+        for headline in scene.headlines:
+            assert flat(headline.sentence.removeprefix(f"{scene.name}, ")) in flat(text)
+    for words in ("Provenance", "acceptance limits are broken", "cross-verified", "translational engine", "it broke"):
+        assert flat(words) in flat(text)
+
+
+@pytest.mark.parametrize("case", ["one body", "record", "refused", "many", "nothing"])
+def test_any_study_has_two_to_four_pages(case: str, tmp_path: Path) -> None:
+    scene, hierarchy = load_scene("fig3-I"), fake_hierarchy(gap=0.01)
+    if case == "one body":
+        scene = Scene.model_validate({**scene.model_dump(exclude_none=True), "bodies": [{"mass": 1000.0}], "name": "b"})
+    scenes = [load_scene("synthetic-pair")] if case == "record" else [scene]
+    if case == "refused":
+        hierarchy = silenced("spatial")
+    if case == "many":
+        title = "A long title of a scene of a user. " * 20
+        scenes = [_called(scene, f"scene{number}", title) for number in range(30)]
+    results, findings = studied(scenes, hierarchy, 2)
+    if case == "nothing":
+        surfaces = findings.surfaces.assign(mu=np.nan * findings.surfaces["mu"])
+        findings = collect_findings(findings.study, surfaces, {}, [], RUN)
+        results = assemble(findings)
+    pdf.write_pdf(tmp_path / "report.pdf", results, findings)
+    pages, text = text_of(tmp_path / "report.pdf")
+    assert 2 <= pages <= 4
+    assert "nan" not in text.split()
+    if case == "many":
+        assert flat("10 largest differences of 60 are shown") in flat(text)
+
+
+def test_titles_are_text_and_never_markup_and_the_same_results_give_the_same_bytes(tmp_path: Path) -> None:
+    title = '#panic("x") *b* _i_ $a$ @ref <label> \\ `raw` = // [c] "q" \ud800'
+    scene = _called(load_scene("fig3-I"), "#let", title)
+    results, findings = studied([scene], fake_hierarchy(gap=0.01), 2)
+    for name in ("a.pdf", "b.pdf"):
+        pdf.write_pdf(tmp_path / name, results, findings)
+    assert (tmp_path / "a.pdf").read_bytes() == (tmp_path / "b.pdf").read_bytes()
+    text = text_of(tmp_path / "a.pdf")[1]
+    assert '#panic("x") *b* _i_ $a$ @ref <label>' in text.replace("”", '"').replace("“", '"')
+
+
+def test_without_the_package_one_line_says_how_to_get_it(
+    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(pdf, "find_spec", lambda name: None)
+    run = command("fig3-I", "--grid", "2", hierarchy=fake_hierarchy())
+    assert run.code == 0
+    assert not (run.report / "report.pdf").exists()
+    line = "pip install 'phase-resonance[pdf]'"
+    assert run.out.count(line) == 1
+    assert "phase-resonance[pdf]" in (run.report / "index.html").read_text(encoding="utf-8")
+    assert run.err == ""

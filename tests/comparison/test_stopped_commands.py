@@ -1,0 +1,131 @@
+"""Extremes that are killed or interrupted at any moment go on where they stopped, and end with the same matrix."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import Executor, ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from test_extremes import PLAIN, fake
+
+from comparison.analysis.extremes.matrix import PICTURE, load
+from comparison.cli import extremes
+
+HERE = Path(__file__).parent
+COUNT, INSTANTS = 40, 12  # cells, and runs that are killed
+WORDS = ["--jobs", "2", "--out", "report"]
+
+# One process imports everything, then forks a run for every instant: a start of Python would take most of the time.
+KILLED = """
+import itertools, os, random, signal, sys, threading
+sys.path[:0] = [{here!r}, {root!r}]
+from pathlib import Path
+from comparison.execution.cache import Cache
+from test_stopped_commands import COUNT, INSTANTS, run
+
+def end_after(results, seconds):
+    put, stored = Cache.put, itertools.count()
+    def counted(cache, key, value):
+        if next(stored) == results:
+            threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGKILL)).start()
+        put(cache, key, value)
+    Cache.put = counted
+
+draw, count = random.Random(3), 0
+while count < INSTANTS:
+    place = Path(f"killed{{count}}")
+    place.mkdir(exist_ok=True)
+    results, seconds = draw.randrange(COUNT), draw.uniform(0.0, 0.003)
+    child = os.fork()
+    if child == 0:
+        os.chdir(place)
+        sys.stdout = open(os.devnull, "w")
+        end_after(results, seconds)  # a process beside it, which a busy machine may keep waiting, would be late
+        run()
+        os._exit(0)
+    if os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == -signal.SIGKILL and not (place / "report").exists():
+        count += 1
+"""
+STOPPED = """
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background inherits it ignored
+sys.path[:0] = [{here!r}, {root!r}]
+from test_stopped_commands import run
+from comparison.execution.processes import process_pool
+if __name__ == "__main__":
+    sys.exit(run(process_pool, ("honest", "is_kept_waiting")))
+"""
+
+
+def run(executor: object = ThreadPoolExecutor, models: tuple[str, ...] = ("honest", "lies_about_its_error")) -> int:
+    """The command with COUNT extremes for models of known answer."""
+    columns = tuple(replace(fake(model), key=model) for model in models)
+    rows = [replace(PLAIN, title=str(number), columns=models) for number in range(COUNT // len(models))]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(extremes, "COLUMNS", columns)
+        patch.setattr(extremes, "rows", lambda: iter(rows))
+        patch.setattr(extremes, "made_by", lambda draw: {PICTURE: b"a picture"})
+        return int(extremes.main(WORDS, executor))
+
+
+def forbidden(jobs: int) -> Executor:
+    raise AssertionError("nothing should have been computed")
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="fork")
+def test_extremes_killed_at_random_instants_go_on_to_the_same_matrix(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script = KILLED.format(here=str(HERE), root=str(HERE.parents[1]))
+    subprocess.run([sys.executable, "-c", script], cwd=tmp_path, check=True)
+    (tmp_path / "whole").mkdir()
+    matrices = {}
+    for name in ("whole", *(f"killed{number}" for number in range(INSTANTS))):
+        monkeypatch.chdir(tmp_path / name)
+        assert run() == 1, "a model that lies fails"
+        matrices[name] = load(Path("report"))
+        assert run(forbidden) == 1, "nothing is computed twice"
+        assert load(Path("report")).rows == matrices[name].rows
+
+    def judged(name: str) -> list[object]:
+        return [(e.verdict, e.reason, e.status, e.error) for row in matrices[name].rows for e in row.entries.values()]
+
+    assert len(judged("whole")) == COUNT
+    assert all(judged(name) == judged("whole") for name in matrices)
+    stored = {matrix.run["stored_before"] for matrix in matrices.values()}
+    assert min(stored) == 0
+    assert len(stored) > 4, "killed at different stages"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of a process group")
+def test_ctrl_c_ends_the_extremes_at_once_with_the_command_that_goes_on(tmp_path: Path) -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-c", STOPPED.format(here=str(HERE), root=str(HERE.parents[1]))],
+        cwd=tmp_path,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,  # Ctrl-C reaches the whole group, as on a terminal
+    )
+    while len(list(tmp_path.glob("report.tiles/*/*.answer"))) < 3 and process.poll() is None:
+        time.sleep(0.05)
+    begin = time.monotonic()
+    os.killpg(process.pid, signal.SIGINT)
+    _, err = process.communicate(timeout=30)
+    assert time.monotonic() - begin < 2.0, "does not wait for the cells under way"
+    assert process.returncode == 130, err
+    stopped = re.fullmatch(
+        r"interrupted: (\d+) results are kept in 'report.tiles'; "
+        r"go on with: python -m comparison.extremes --jobs 2 --out report\n",
+        err,
+    )
+    assert stopped, err
+    assert int(stopped[1]) == len(list(tmp_path.glob("report.tiles/*/*.answer")))
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["report.tiles"]

@@ -1,0 +1,114 @@
+"""Runs that stop once nothing can come: no peak, displacement or outcome is lost by it, on random scenes."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import multibody
+from multibody.integration.adaptive import Budget, EngineRun
+from multibody.integration.level import Level
+from multibody.integration.one_run import PhasePair
+from multibody.integration.refine import refine
+from multibody.models.assembly import assemble
+from multibody.models.units import units_of
+from reference.problem import Outcome, Scene, load_scene
+
+TOLERANCE = 3e-3
+STEP, SAMPLES = 0.02, 400  # of a random record, s
+
+
+def burst(time: np.ndarray, instant: float, frequency: float) -> np.ndarray:
+    swing: np.ndarray = np.exp(-(((time - instant) / 0.8) ** 2)) * np.sin(2.0 * np.pi * frequency * time)
+    return swing
+
+
+def random_record(random: np.random.Generator) -> dict[str, Any]:
+    """Two bursts along x and y, the second half to one and a half times as strong as the first, at any distance."""
+    time = STEP * np.arange(SAMPLES)
+    size, instant = random.uniform(0.5, 1.5), random.uniform(4.0, 7.5)
+    rows = [
+        strength * (burst(time, 2.5, frequency) + size * burst(time, instant, frequency))
+        for strength, frequency in random.uniform((0.5, 0.5), (2.0, 2.0), (2, 2))
+    ]
+    samples = np.column_stack([time, *rows, np.zeros(SAMPLES)])
+    return {"record": "two bursts.csv", "samples": samples.tolist()}
+
+
+def random_scene(seed: int) -> Scene:
+    """One to three bodies on three to five supports, under a record or harmonics that decay or do not."""
+    random = np.random.default_rng(seed)
+    count = int(random.integers(1, 4))
+    heights = np.cumsum([0.2, *random.uniform(0.5, 1.2, count - 1)])
+    bodies: list[dict[str, Any]] = [
+        {"mass": random.uniform(0.5, 2.0), "height": float(height), "size": [2.0, 2.0, 0.2]} for height in heights
+    ]
+    for body in bodies[1:]:
+        body["period"] = random.uniform(0.4, 1.6, 2).tolist()
+    supports = {"supports": int(random.integers(3, 6)), "ring": random.uniform(1.2, 2.5), "sphere_radius": 0.05}
+    friction = {"friction": random.uniform(0.02, 0.15)}
+    excitation: dict[str, Any] = {
+        "amplitudes": random.uniform(-1.2, 1.2, (2, 2)).tolist(),
+        "periods": random.uniform(0.5, 1.4, 2).tolist(),
+        "decay": (random.uniform(0.0, 0.4, 2) * random.integers(0, 2, 2)).tolist(),
+    }
+    if random.uniform() < 0.3:
+        excitation = random_record(random)
+    if random.uniform() < 0.2:
+        friction = {"lubrication": random.uniform(0.1, 1.0)}
+    return Scene.model_validate(
+        {
+            "title": f"random scene {seed}",
+            "duration": float(random.uniform(3.0, 8.0)),
+            "isolator": {"radius": random.uniform(0.2, 1.5), **friction, **supports},
+            "bodies": bodies,
+            "excitation": excitation,
+        }
+    )
+
+
+def assert_nothing_is_lost(seed: int, model: str) -> bool:
+    """Compare with runs to the end of the motion; whether a run stopped early."""
+    scene = random_scene(seed)
+    phase = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, 2)
+    early, whole = (refine(scene, assemble(scene, model, 1e-3), phase, TOLERANCE, whole=full) for full in (False, True))
+    assert early.outcome == whole.outcome
+    # a motion that settles has the same steps up to there; softer supports may follow from what warping took later
+    np.testing.assert_allclose(early.peaks, whole.peaks, rtol=TOLERANCE if scene.isolator.supports > 3 else 1e-12)
+    if early.outcome == Outcome.OK:
+        assert early.finest.max_displacement == pytest.approx(whole.finest.max_displacement, rel=TOLERANCE)
+    return early.finest.steps < whole.finest.steps
+
+
+@pytest.mark.parametrize("model", ["translational", "spatial"])
+def test_no_peak_is_lost_by_stopping_early(model: str) -> None:
+    stopped = [assert_nothing_is_lost(seed, model) for seed in range(20 if model == "translational" else 8)]
+    assert sum(stopped) > len(stopped) / 4
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("model", ["translational", "spatial"])
+def test_no_peak_is_lost_by_stopping_early_on_300_scenes(model: str) -> None:
+    for seed in range(1000, 1300):
+        assert_nothing_is_lost(seed, model)
+
+
+def test_full_runs_go_to_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    stops = []
+    at_level = PhasePair.at_level
+
+    def noted(pair: PhasePair, level: Level, budget: Budget, stop: float = math.inf, **options: Any) -> EngineRun:
+        stops.append(stop)
+        return at_level(pair, level, budget, stop, **options)
+
+    monkeypatch.setattr(PhasePair, "at_level", noted)
+    scene = load_scene("fig3-I")
+    multibody.amplification(scene, [(0.3, 1.1)], tolerance=TOLERANCE)
+    assert math.isinf(stops[0])
+    assert stops[1] * units_of(scene).time < 0.6 * scene.duration
+    stops.clear()
+    multibody.amplification(scene, [(0.3, 1.1)], tolerance=TOLERANCE, full=True)
+    assert np.isinf(stops).all()
