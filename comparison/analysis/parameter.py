@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
 import xarray as xr
@@ -11,10 +12,11 @@ import xarray as xr
 from comparison.analysis.budget import TOTAL
 from comparison.analysis.steps import known_mu
 from comparison.analysis.surfaces import common_phases
+from comparison.analysis.trajectories import StoredMotion
 from comparison.analysis.waterfall import NAN, Waterfall, WaterfallBar
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
-from reference.problem import Family, Scene
+from reference.problem import Demands, Estimate, Family, Scene
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,52 @@ def family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfall]]) 
             sizes, errors = tuple(bar.size for bar in column), tuple(bar.error for bar in column)
             steps.append(FamilyStep(key, body, sizes, errors, tuple(bar.real for bar in column)))
     return steps
+
+
+@dataclass(frozen=True)
+class FamilyDemand:
+    """One demand of the stored motions of a model over the value that runs, one number for each scene; NaN without."""
+
+    model: str  # key
+    quantity: str  # field of `Demands`
+    body: int  # from 1; 0 where the demand is of the isolator
+    median: tuple[float, ...]  # over the stored motions, in the unit of the field
+    lowest: tuple[float, ...]
+    highest: tuple[float, ...]
+    motions: tuple[int, ...]  # how many have the demand
+
+
+def family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[FamilyDemand]:
+    """One per model, quantity and body of which a motion is stored, in the order of `Demands`."""
+    numbers: dict[tuple[str, str, int], dict[str, list[float]]] = {}
+    for motion in motions:
+        if motion.demands is not None and motion.place.scene in {scene.name for scene in family.scenes}:
+            for quantity, body, number in _demands(motion.demands):
+                column = numbers.setdefault((motion.model, quantity, body), {})
+                column.setdefault(motion.place.scene, []).append(number)
+    demands = []
+    for (model, quantity, body), column in numbers.items():
+        rows = [np.array(column.get(scene.name, [])) for scene in family.scenes]
+        median, lowest, highest = (
+            tuple(float(function(row)) if row.size else NAN for row in rows) for function in (np.median, np.min, np.max)
+        )
+        demands.append(FamilyDemand(model, quantity, body, median, lowest, highest, tuple(row.size for row in rows)))
+    return demands
+
+
+def _demands(demands: Demands) -> Iterator[tuple[str, int, float]]:
+    """Quantity, body and finite value of every demand."""
+    for field in fields(demands):
+        estimates = getattr(demands, field.name)
+        if isinstance(estimates, Estimate):
+            listed = [(0, estimates)]
+        elif isinstance(estimates, tuple):
+            listed = list(enumerate(estimates, start=2 if field.name == "drift" else 1))
+        else:
+            continue  # the status, or a demand that the model does not have
+        for body, estimate in listed:
+            if math.isfinite(estimate.value):
+                yield field.name, body, estimate.value
 
 
 def _bars(waterfall: Waterfall) -> dict[str, WaterfallBar]:

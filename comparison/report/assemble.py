@@ -10,7 +10,7 @@ from comparison.analysis.claims.table import ClaimTable
 from comparison.analysis.errata import ERRATA
 from comparison.analysis.grid_maxima import grid_maxima
 from comparison.analysis.headline import headline
-from comparison.analysis.parameter import family_curves, family_steps
+from comparison.analysis.parameter import family_curves, family_demands, family_steps
 from comparison.analysis.surfaces import largest_cap_share, outcome_counts
 from comparison.analysis.trends import Trend as FittedTrend
 from comparison.analysis.unanswered import advice
@@ -30,6 +30,7 @@ from comparison.report.results import (
     Effective,
     Erratum,
     FamilyCurve,
+    FamilyDemand,
     FamilyResult,
     FamilyStep,
     GridMaximum,
@@ -172,6 +173,7 @@ def _family(found: Findings, family: Family, waterfalls: Mapping[str, Sequence[B
         scenes=[scene.name for scene in family.scenes],
         curves=[FamilyCurve.model_validate(curve) for curve in family_curves(found.study, found.surfaces, family)],
         steps=[FamilyStep.model_validate(step) for step in family_steps(family, waterfalls)],
+        demands=[FamilyDemand.model_validate(each) for each in family_demands(family, found.motions or [])],
     )
 
 

@@ -15,6 +15,11 @@ Panel = dict[str, Any]  # title, and plot: see plot.js
 
 MAX_CURVES = 6  # in one panel: more cannot be told apart
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)  # relative errors for which the trade is put into words
+DEMANDS = (  # demands that are shown of a family: key, name, unit, and the unit in those of the results
+    ("displacement", "isolator displacement", "mm", 1e3),
+    ("base_shear", "base shear", "kN", 1e-3),
+    ("acceleration", "platform acceleration", "m/s²", 1.0),
+)
 
 
 def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
@@ -71,6 +76,7 @@ def family_panels(results: Results) -> list[dict[str, Any]]:
         first = scenes[family.scenes[0]]
         bodies = range(1, first.bodies + 1)
         panels = [draw(results, family, body) for body in bodies for draw in (_family_mu, _family_steps)]
+        panels += [_family_demand(results, family, *shown) for shown in DEMANDS if _has(family, shown[0])]
         listed.append(
             {
                 "title": first.title,
@@ -187,6 +193,28 @@ def _family_steps(results: Results, family: FamilyResult, body: int) -> Panel:
     label = f"what each effect adds to mu_{body} over {family.key}"
     plot = {"label": label, "x": axis, "y": {"title": "% of the first model"}, "series": series}
     return {"title": f"what each effect adds to mu_{body}", "plot": plot}
+
+
+def _has(family: FamilyResult, quantity: str) -> bool:
+    return any(demand.quantity == quantity for demand in family.demands)
+
+
+def _family_demand(results: Results, family: FamilyResult, quantity: str, title: str, unit: str, scale: float) -> Panel:
+    """One demand of every model over the value that runs: median of the stored motions, from smallest to largest."""
+    places, axis = _axis(family)
+    titles = {model.key: model.title for model in results.models}
+    series = []
+    for number, demand in enumerate(demand for demand in family.demands if demand.quantity == quantity):
+        if demand.body > 1:
+            continue
+        line: dict[str, Any] = {"name": titles[demand.model], "x": places, "color": number, "marks": True}
+        line["y"] = _plain([scale * value for value in demand.median])
+        if any(low < high for low, high in zip(demand.lowest, demand.highest)):
+            line["low"] = _plain([scale * value for value in demand.lowest])
+            line["high"] = _plain([scale * value for value in demand.highest])
+        series.append(line)
+    plot = {"label": f"{title} over {family.key}", "x": axis, "y": {"title": f"{title}, {unit}"}, "series": series}
+    return {"title": f"{title} of the stored motions", "plot": plot}
 
 
 def _plain(values: Sequence[float]) -> list[float | None]:

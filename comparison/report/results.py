@@ -722,6 +722,25 @@ class FamilyStep(Part):
     """whether the size exceeds five times its error estimate"""
 
 
+class FamilyDemand(Part):
+    """One demand of the stored motions of a model over the value that runs, with its band."""
+
+    model: str
+    """key of the model"""
+    quantity: str
+    """key in `demands` of a scene, with the unit stated there"""
+    body: int
+    """number of the body; 0 where the demand is of the isolator"""
+    median: list[Number]
+    """median over the stored motions that have the demand, one for each scene; null without any"""
+    lowest: list[Number]
+    """smallest of them"""
+    highest: list[Number]
+    """largest of them"""
+    motions: list[int]
+    """how many motions have the demand"""
+
+
 class FamilyResult(Part):
     """Scenes of one file in which one value runs."""
 
@@ -737,6 +756,8 @@ class FamilyResult(Part):
     """one per model and body"""
     steps: list[FamilyStep]
     """one per step of the waterfalls and body, then the total"""
+    demands: list[FamilyDemand]
+    """one per model, quantity and body of which a motion is stored"""
 
 
 class OutcomeNote(Part):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -15,13 +16,15 @@ from matplotlib.image import imread
 from test_texts_of_scenes import RUN
 
 from comparison.analysis.budget import budget
+from comparison.analysis.parameter import family_demands
 from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.trajectories import Place, StoredMotion
 from comparison.report.assemble import assemble
 from comparison.report.figures.families import draw_family, family_figure_name
 from comparison.report.findings import collect_findings
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
-from reference.problem import load_family
+from reference.problem import Demands, Estimate, load_family
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"
 
@@ -99,3 +102,32 @@ def test_the_results_have_every_curve_and_step_over_the_value_that_runs(file: Pa
     steps = {(step.model, step.body): step for step in results.families[0].steps}
     assert [steps["total", 1].size[0], steps["total", 2].size[2]] == pytest.approx([0.01, 0.01])
     assert steps["translational", 1].real == [True, False, True]
+
+
+def test_demands_of_stored_motions_have_their_band_over_the_value_that_runs(file: Path) -> None:
+    family = load_family(file)
+    estimates = {field.name: Estimate(1.0, 0.0) for field in fields(Demands) if field.name != "status"}
+    estimates |= {"acceleration": (Estimate(2.0, 0.0),) * 2, "drift": (Estimate(3.0, 0.0),), "support_force_min": None}
+
+    def motion(scene: str, displacement: float) -> StoredMotion:
+        numbers = Demands(status="ok", **{**estimates, "displacement": Estimate(displacement, 0.0)})
+        nothing = np.zeros((0, 2, 2))
+        place = Place(scene, 0, 0, "")
+        return StoredMotion(place, "small", np.zeros(0), nothing, nothing, demands=numbers)
+
+    first, second, third = (scene.name for scene in family.scenes)
+    stored = [
+        motion(first, 0.1),
+        motion(first, 0.4),
+        motion(first, 0.3),
+        motion(second, float("nan")),
+        motion(third, 5.0),
+    ]
+    found = {(demand.quantity, demand.body): demand for demand in family_demands(family, stored)}
+    band = found["displacement", 0]
+    assert band.motions == (3, 0, 1)
+    assert [band.lowest[0], band.median[0], band.highest[0], band.median[2]] == pytest.approx([0.1, 0.3, 0.4, 5.0])
+    assert np.isnan(band.median[1])
+    assert {("acceleration", 1), ("acceleration", 2), ("drift", 2)} <= set(found)
+    assert ("support_force_min", 0) not in found
+    assert family_demands(family, []) == []
