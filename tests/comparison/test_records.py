@@ -14,7 +14,7 @@ from conftest import Run
 from fake_models import fake_hierarchy, known_motions
 from known_analyses import analyses_are
 from playwright.sync_api import sync_playwright
-from test_page_in_a_browser import CHROMIUM, DESKTOP, FLAGS, LAPTOP, _opened
+from test_page_in_a_browser import CHROMIUM, DESKTOP, FLAGS, LAPTOP, OVERLAPS, PHONE, _opened, _unfolded, _until
 
 from comparison.analysis.budget import budget
 from comparison.analysis.surfaces import NOT_ASKED, labeled_surfaces
@@ -107,18 +107,20 @@ def test_the_page_shows_the_table_and_the_motions_of_a_record_without_a_click(tm
         assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        for window in (LAPTOP, DESKTOP):
-            visit = _opened(browser, place / "index.html", window)
+        for width in (PHONE, LAPTOP, DESKTOP):
+            visit = _opened(browser, place / "index.html", width)
             page = visit.page
-            assert page.locator(".surfaces").count() == 0
-            assert page.locator(".record tbody tr").count() == 2 * 2 * 6
-            box = page.locator(".motions").first
-            page.locator(".record").first.scroll_into_view_if_needed()
-            page.wait_for_function("document.querySelector('.motions').data?.length > 0")
-            assert box.is_visible()
-            page.locator("button[data-pair=like-for-like]").click()
-            named = "document.querySelector('.motions').data?.some(trace => trace.name?.includes('translational'))"
-            page.wait_for_function(named)
+            assert page.locator("canvas.surface:visible").count() == 0
+            assert page.locator("[data-record]:visible tbody tr").count() == 6, "one row for each model"
+            _until(page, "document.querySelector('[data-part=plots] svg')")
+            page.locator("[data-part=pair]").select_option("like-for-like")
+            _until(page, "document.querySelector('[data-part=plots] .legend').textContent.includes('translational')")
+            page.locator("[data-part=scene]").select_option(index=1)
+            page.locator("[data-part=body]").select_option("2")
+            assert page.locator("[data-record='1-2']").is_visible()
+            _unfolded(page)
+            assert page.evaluate(OVERLAPS)["faults"] == []
             assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+            assert "phases per axis" not in page.inner_text("main")
             assert (visit.complaints, len(visit.requests)) == ([], 1)
         browser.close()

@@ -36,7 +36,7 @@ STAGES = {  # of the tasks of an analysis
 
 def sections(page: str) -> set[str]:
     """Names of the sections of a page."""
-    return set(re.findall(r'<h2 id="(\w+)">', page)) - {"absent"}
+    return set(re.findall(r'<(?:section|details class="section") id="(\w+)">', page)) - {"absent", "summary"}
 
 
 def scene_file(folder: Path, analyses: str) -> str:
@@ -80,7 +80,7 @@ def test_only_leaves_the_sections_asked_for_and_says_nothing_wrong_of_the_others
     selectable = {section.name for section in SECTIONS} & set(ANALYSES)
     assert sections(page) & selectable == {"surfaces", "budget"}
     assert sections(page) - selectable == {"outcomes", "models", "verification", "provenance"}
-    missing = page.split('<h2 id="absent">')[1].split("</ul>")[0]
+    missing = page.split('id="absent">')[1].split("</ul>")[0]
     assert missing.count(": not asked for</li>") == missing.count("<li>") == len(selectable) - 2
     assert "Relative differences" not in run.out
     assert "### Differences" not in (run.report / "summary.md").read_text(encoding="utf-8")
@@ -108,11 +108,11 @@ def test_a_scene_selects_its_own_analyses_and_the_command_line_comes_before_it(
     mine = scene_file(tmp_path, 'skip = ["differences", "surfaces"]')
     run = command(mine, "fig4-viscous", *GRID)
     page = (run.report / "index.html").read_text(encoding="utf-8")
-    table = page.split('<h2 id="differences">')[1].split("<h2")[0]
+    table = page.split('id="differences">')[1].split("</table>")[0]
     assert "<td>fig4-viscous</td>" in table
     assert "<td>mine</td>" not in table
-    assert 'id="scene-1"' in page
-    assert 'id="scene-0"' not in page
+    assert '<option value="1">' in page
+    assert '<option value="0">' not in page
     options = parsed([mine, "--only", "budget", "--out", str(tmp_path / "other")])
     assert options.selection.by_scene == {"mine": ("budget",)}
 

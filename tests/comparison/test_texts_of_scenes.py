@@ -150,7 +150,7 @@ def test_compiling_is_said_in_one_way(command: Callable[..., Run]) -> None:
 def test_a_page_of_records_says_nothing_of_phases_over_which_it_is_not(command: Callable[..., Run]) -> None:
     run = command("synthetic-pair")
     page = (run.report / "index.html").read_text(encoding="utf-8")
-    top = page[page.index("<h1>") : page.index("<nav>")]
+    top = page[page.index("<h1>") : page.index("<nav")]
     assert "initial phases" not in top
     assert "of every body under a recorded motion" in top
     assert "48 ×" not in (run.report / "summary.md").read_text(encoding="utf-8")

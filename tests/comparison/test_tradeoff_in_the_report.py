@@ -75,7 +75,7 @@ def test_diagrams_of_another_scene_are_added_and_said_to_be_none_of_the_study(
     assert run.code == 0, run.err
     page = (run.report / "index.html").read_text(encoding="utf-8")
     assert page.count("not a scene of this study") == 1
-    assert "(fig3-II): not a scene of this study" in page
+    assert "(fig3-II)</span>: not a scene of this study" in page
 
 
 def test_a_file_of_that_name_which_is_no_trade_is_refused_in_one_line(

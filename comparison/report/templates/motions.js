@@ -98,7 +98,7 @@ function demandsTable(scene, place, models) {
     return Array.from({ length: count }, (_, i) => [`${title}: ${each(i)}`, factor, demands.map(one => one?.[key]?.[i] ?? null)]);
   }).filter(([, , values]) => values.some(value => known2(value?.[0])));
   const cell = (value, factor) => {
-    const made = element("td", "number", known2(value?.[0]) ? digits(factor * value[0]) + (value[1] ? ` ± ${digits(factor * value[1], 1)}` : "") : "none");
+    const made = element("td", "number", known2(value?.[0]) ? digits(factor * value[0]) + (value[1] > 1e-4 * Math.abs(value[0]) ? ` ± ${digits(factor * value[1], 1)}` : "") : "none");
     made.dataset.value = known2(value?.[0]) ? factor * value[0] : "";
     return made;
   };

@@ -36,7 +36,7 @@ addEventListener("beforeprint", () => document.querySelectorAll("details.section
 
 unpacked("data").then(buffer => {
   study = JSON.parse(new TextDecoder().decode(buffer));
-  if (study.scenes.length && part("scene").options.length) startViewer();
+  if (part("scene")?.options.length) startViewer();
   document.documentElement.dataset.ready = "true";
   openTarget();
 });

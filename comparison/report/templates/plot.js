@@ -50,13 +50,14 @@ function drawPlot(box, spec) {
   const width = Math.max(200, box.clientWidth), height = spec.height ?? 230;
   const all = key => spec.series.flatMap(series => [...series[key], ...(key === "y" ? [...(series.low ?? []), ...(series.high ?? [])] : [])]);
   let xRange = rangeOf(spec.x, all("x")), yRange = rangeOf(spec.y, all("y"));
-  const yTicks = ticksOf(spec.y, yRange, Math.max(2, Math.floor(height / 42)));
+  let yTicks = ticksOf(spec.y, yRange, Math.max(2, Math.floor(height / 42)));
   const left = 12 + 6.6 * Math.max(2, ...yTicks.map(([, text]) => text.length)), right = 14, top = 22, bottom = 38;
   const inner = { width: width - left - right, height: height - top - bottom };
   if (spec.equal) {  // one meter is as long in x as in y
     const per = Math.max((xRange[1] - xRange[0]) / inner.width, (yRange[1] - yRange[0]) / inner.height);
     const about = (range, length) => { const middle = (range[0] + range[1]) / 2; return [middle - per * length / 2, middle + per * length / 2]; };
     [xRange, yRange] = [about(xRange, inner.width), about(yRange, inner.height)];
+    yTicks = ticksOf(spec.y, yRange, Math.max(2, Math.floor(height / 42)));
   }
   const place = (axis, [low, high], length) => value => (axis.log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low)) * length;
   const px = place(spec.x, xRange, inner.width), py = place(spec.y, yRange, inner.height);
@@ -75,7 +76,7 @@ function drawPlot(box, spec) {
     svg.append(svgElement("line", { x1: X(value), x2: X(value), y1: top, y2: top + inner.height, class: "grid" }));
     if (i % apart === 0) svg.append(svgElement("text", { x: X(value), y: top + inner.height + 14, "text-anchor": "middle" }, text));
   });
-  yTicks.concat(spec.equal ? ticksOf(spec.y, yRange, 4) : []).filter(([value], i, list) => list.findIndex(([other]) => other === value) === i).forEach(([value, text]) => {
+  yTicks.forEach(([value, text]) => {
     if (value < yRange[0] || value > yRange[1]) return;
     svg.append(svgElement("line", { x1: left, x2: left + inner.width, y1: Y(value), y2: Y(value), class: value === 0 ? "zero" : "grid" }));
     svg.append(svgElement("text", { x: left - 5, y: Y(value) + 4, "text-anchor": "end" }, text));

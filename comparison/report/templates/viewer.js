@@ -3,7 +3,7 @@
 const camera = { azimuth: -0.65, elevation: 0.5 };
 const state = { scene: 0, body: 1, pair: "total", view: "3d", grid: "own", cursor: null, place: null, away: null };
 let study = null;  // the data, unpacked when the page stands
-const viewer = document.getElementById("viewer");
+const viewer = document.getElementById("viewer") ?? document.createElement("div");  // empty where no surfaces were asked for
 const part = name => viewer.querySelector(`[data-part="${name}"]`);
 const degrees = phase => `${Math.round(phase * 180 / Math.PI)}°`;
 const at = phases => `(${phases.map(degrees).join(", ")})`;
