@@ -206,7 +206,7 @@ def test_the_motions_plotted_are_those_stored(visit: Visit) -> None:
 
 def test_the_demands_of_both_models_stand_beside_each_other(visit: Visit) -> None:
     table = visit.page.locator("[data-part=demands] table")
-    assert [text.strip() for text in table.locator("thead th").all_inner_texts()][0] == "demand"
+    assert table.locator("thead th").first.inner_text().strip() == "demand"
     rows = {
         row.locator("th").inner_text(): row.locator("td").all_inner_texts() for row in table.locator("tbody tr").all()
     }
