@@ -19,11 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.models.contact import (
-    DAMPING_RATIO,
     FORCE_ROUNDING,
     contact_law,
     corner_and_relaxation,
     platform_on_sphere,
+    set_contact_parameters,
 )
 from multibody.models.engine import exudyn, items
 from multibody.models.loading import Ground, ground_of, symbolic_load
@@ -84,9 +84,7 @@ def spatial(
     def set_contact(penetration: float, warping_compliance: float = MIN_WARPING_COMPLIANCE) -> None:
         pressed = bearing_penetration or penetration
         for contact in contacts:
-            mbs.SetObjectParameter(contact, "spheresRadii", [radius + pressed, radius + 1.0])
-            mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / (count * pressed))
-            mbs.SetObjectParameter(contact, "contactDamping", 2.0 * DAMPING_RATIO / (count * np.sqrt(pressed)))
+            set_contact_parameters(mbs, contact, [radius + pressed, radius + 1.0], pressed, count)
         supports.set_stiffness(penetration, warping_compliance)
         for link in links:
             set_link_stiffness(mbs, *link, 1.0 / (LINK_COMPLIANCE_RATIO * penetration))
@@ -124,7 +122,6 @@ def spatial(
         set_contact=set_contact,
         start=start,
         settle=settle,
-        rim=1.0,
         corner=corner,
         relaxation=relaxation,
         # of places, and of their moments
