@@ -33,6 +33,7 @@ GLOSSARY = {
     "real": "Larger than five times the error estimates of both models together, and so known to a fifth of itself.",
     "limits": "Largest values that a scene file states as acceptable.",
 }  # fmt: skip
+LEAD = re.compile(r"^.*?(?= \(|\. |\.$)|\bCause: [^.]*\.")  # of a headline: how much, and why
 WORDS = re.compile("|".join(rf"\b{re.escape(word)}\b" for word in sorted(GLOSSARY, key=len, reverse=True)))
 
 
@@ -58,3 +59,15 @@ def explained(sentence: str, seen: set[str] | None = None) -> Markup:
         parts += [symbols(sentence[end : match.start()]), term(match.group())]
         end = match.end()
     return Markup("").join([*parts, symbols(sentence[end:])])
+
+
+def emphasized(sentence: str) -> Markup:
+    """A headline with how much and why in bold, its words explained."""
+    seen: set[str] = set()
+    parts: list[Markup] = []
+    end = 0
+    for match in LEAD.finditer(sentence):
+        strong = Markup("<strong>{}</strong>").format(explained(match.group(), seen))
+        parts += [explained(sentence[end : match.start()], seen), strong]
+        end = match.end()
+    return Markup("").join([*parts, explained(sentence[end:], seen)])

@@ -25,7 +25,7 @@ from comparison.report.figures.families import draw_families
 from comparison.report.figures.pictures import smaller
 from comparison.report.figures.tradeoff import draw_tradeoff, tradeoff_figure_name
 from comparison.report.findings import Findings
-from comparison.report.glossary import explained, term
+from comparison.report.glossary import emphasized, term
 from comparison.report.motion_data import packed, packed_motions
 from comparison.report.page_data import page_data
 from comparison.report.page_plots import claim_heat, family_panels, tradeoff_answers, tradeoff_panels, trend_panels
@@ -223,7 +223,7 @@ def content_policy(script: str, style: str) -> str:
 def _environment() -> jinja2.Environment:
     loader = jinja2.PackageLoader("comparison.report", "templates")
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
-    filters = (percent, signed, scientific, degrees, significant, symbols, explained)
+    filters = (percent, signed, scientific, degrees, significant, symbols, emphasized)
     environment.filters.update({function.__name__: function for function in filters})
     environment.globals["term"] = term  # in macros, too
     return environment

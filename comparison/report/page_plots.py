@@ -170,7 +170,7 @@ def _family_mu(results: Results, family: FamilyResult, body: int) -> Panel:
         line: dict[str, Any] = {"name": titles[curve.model], "x": places, "color": number, "marks": True}
         line["y"] = _plain(curve.mean)
         if any(low < high for low, high in zip(curve.lowest, curve.highest)):
-            line["low"], line["high"] = _plain(curve.lowest), _plain(curve.highest)
+            line |= {"low": _plain(curve.lowest), "high": _plain(curve.highest), "band": True}
         series.append(line)
     label = f"mu_{body} of every model over {family.key}"
     plot = {"label": label, "x": axis, "y": {"title": f"μ{body}"}, "series": series}
@@ -212,6 +212,7 @@ def _family_demand(results: Results, family: FamilyResult, quantity: str, title:
         if any(low < high for low, high in zip(demand.lowest, demand.highest)):
             line["low"] = _plain([scale * value for value in demand.lowest])
             line["high"] = _plain([scale * value for value in demand.highest])
+            line["band"] = True
         series.append(line)
     plot = {"label": f"{title} over {family.key}", "x": axis, "y": {"title": f"{title}, {unit}"}, "series": series}
     return {"title": f"{title} of the stored motions", "plot": plot}

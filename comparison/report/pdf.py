@@ -9,18 +9,14 @@ from collections.abc import Sequence
 from importlib import resources
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
 
-from comparison.analysis.assumptions.validity import ASSUMPTIONS
 from comparison.report.figures.print_maps import draw_maps
 from comparison.report.findings import Findings
-from comparison.report.results import Headline, Limit, ModelDescription, ModelOutcome, Results, SceneResult, Waterfall
-from comparison.report.waterfall_chart import Scale, bars_of, scale_of
+from comparison.report.pdf_data import largest_headlines, pdf_data, short_title, size_of
+from comparison.report.results import Headline, Results, SceneResult
 from comparison.study.models import Model
-from comparison.wording import significant
 
-MAX_ALERTS, MAX_SENTENCES, MAX_WATERFALLS, MAX_MAPS, MAX_LINES = 5, 10, 8, 4, 8  # what fits on four pages
-MAX_TITLE, MAX_ALERT = 110, 500  # letters
+MAX_MAPS = 4  # scenes
 TEMPLATE = "report.typ"
 
 
@@ -39,7 +35,7 @@ def write_pdf(path: Path, results: Results, findings: Findings) -> None:
     """
     import typst  # an optional extra
 
-    shown = _largest(results)
+    shown = largest_headlines(results)
     maps = _maps(results, findings, shown)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -48,110 +44,15 @@ def write_pdf(path: Path, results: Results, findings: Findings) -> None:
             shutil.copy(template, folder / TEMPLATE)
         for number, (_, content) in enumerate(maps):
             (folder / f"map{number}.svg").write_bytes(content)
-        data = _data(results, findings, shown, [{**about, "file": f"map{n}.svg"} for n, (about, _) in enumerate(maps)])
+        data = pdf_data(results, shown, [{**about, "file": f"map{n}.svg"} for n, (about, _) in enumerate(maps)])
         (folder / "data.json").write_text(json.dumps(data, ensure_ascii=False), encoding="utf-8")
         typst.compile(str(folder / TEMPLATE), output=str(path), root=str(folder))
-
-
-def _largest(results: Results) -> list[Headline]:
-    """The headlines that are shown: those with the largest differences, in the order of the scenes."""
-    every = [headline for scene in results.scenes for headline in scene.headlines]
-    kept = sorted(every, key=lambda headline: -abs(headline.maximum) if headline.maximum == headline.maximum else 0.0)
-    names = {(headline.scene, headline.body) for headline in kept[:MAX_SENTENCES]}
-    return [headline for headline in every if (headline.scene, headline.body) in names]
-
-
-def _data(
-    results: Results, findings: Findings, shown: Sequence[Headline], maps: Sequence[dict[str, str]]
-) -> dict[str, Any]:
-    every = sum(len(scene.headlines) for scene in results.scenes)
-    alerts = [alert for alert in results.alerts if alert.kind != "limit"]  # broken limits have a section of their own
-    more = len(alerts) - MAX_ALERTS
-    waterfalls, scale = _waterfalls(results, shown)
-    recorded = [scene for scene in results.scenes if scene.recorded][:MAX_LINES]
-    keys = list(dict.fromkeys(value.model for scene in recorded for value in scene.values))
-    titles = {model.key: model.title for model in results.models}
-    count = len(results.scenes)
-    grid = f", {results.grid} × {results.grid} initial phases" if results.phased else ""
-    return {
-        "subtitle": f"Amplification factors of {count} scene{'' if count == 1 else 's'}{grid}: the paper's equations "
-        f"against a multibody engine. Computed {results.run.began} by phase-resonance.",
-        "alerts": [{"level": alert.level, "line": alert.line[:MAX_ALERT] + "."} for alert in alerts[:MAX_ALERTS]],
-        "broken": len(results.broken),
-        "more_alerts": f"{more} more of these in index.html." if more > 0 else "",
-        "scenes": [_sentences(scene, shown) for scene in results.scenes if any(h.scene == scene.name for h in shown)],
-        "more_scenes": _more(every, len(shown)),
-        "waterfall_note": "Relative to the first model, on one scale; gray is not known to a fifth of itself; the thin "
-        f"line is the error. Every total is the sum of its bars. {_more(every, len(waterfalls))}",
-        "waterfalls": waterfalls,
-        "zero": scale.at(0.0),
-        "maps": maps,
-        "maps_note": "α₁ to the right, α₂ upward. Left and middle share their colors. A cross marks the highest value; "
-        "dots mark the computed phases of a surface that is completed through a finer model.",
-        "record_models": [titles[key] for key in keys],
-        "records": [_record(scene, body, keys) for scene in recorded for body in range(1, scene.bodies + 1)][:16],
-        "models": [_model(results, model) for model in results.models if _outcomes(results, model)],
-        "assumptions": [[a.number, a.statement, a.engine, a.relaxed] for a in ASSUMPTIONS],
-        **_limits(results),
-        "provenance": _provenance(results),
-    }
-
-
-def _more(every: int, shown: int) -> str:
-    rest = every - shown
-    return f"The {shown} largest differences of {every} are shown; the others are in index.html." if rest > 0 else ""
-
-
-def _title(scene: SceneResult) -> str:
-    title = scene.title or scene.name
-    return title if len(title) <= MAX_TITLE else title[: MAX_TITLE - 1] + "…"
-
-
-def _sentences(scene: SceneResult, shown: Sequence[Headline]) -> dict[str, Any]:
-    sentences = [
-        headline.sentence.removeprefix(f"{scene.name}, ").replace(" %", "\u00a0%")  # no line between number and sign
-        for headline in shown
-        if headline.scene == scene.name
-    ]
-    return {"title": _title(scene), "name": scene.name[:MAX_TITLE], "sentences": sentences}
-
-
-def _waterfalls(results: Results, shown: Sequence[Headline]) -> tuple[list[dict[str, Any]], Scale]:
-    order = sorted(shown, key=lambda headline: -abs(headline.maximum) if headline.maximum == headline.maximum else 0.0)
-    names = {(headline.scene, headline.body): headline.name for headline in order[:MAX_WATERFALLS]}
-    kept = [w for scene in results.scenes for w in scene.waterfalls if (w.scene, w.body) in names]
-    scale = scale_of((waterfall.bars, waterfall.total) for waterfall in kept)
-    effects = {model.key: model.effect or model.title for model in results.models} | {"total": "total"}
-    recorded = {scene.name for scene in results.scenes if scene.recorded}
-    panels = [
-        {
-            "title": f"{waterfall.scene[:60]}, {names[waterfall.scene, waterfall.body]}",
-            "note": "under the record" if waterfall.scene in recorded else _points(waterfall),
-            "bars": [
-                {
-                    "label": effects[bar.model],
-                    "left": bar.left,
-                    "width": bar.width,
-                    "kind": bar.kind,
-                    "error": list(bar.error),
-                    "text": bar.text,
-                }
-                for bar in bars_of(waterfall.bars, waterfall.total, scale)
-            ],
-        }
-        for waterfall in kept
-    ]
-    return panels, scale
-
-
-def _points(waterfall: Waterfall) -> str:
-    return f"mean over {waterfall.points} phase pairs, {waterfall.independent} independent"
 
 
 def _maps(results: Results, findings: Findings, shown: Sequence[Headline]) -> list[tuple[dict[str, str], bytes]]:
     """Title, note and SVG of the scenes with phases that have the largest differences."""
     largest: dict[str, list[Headline]] = {}
-    for headline in sorted(shown, key=lambda headline: -abs(headline.maximum)):
+    for headline in sorted(shown, key=size_of, reverse=True):
         largest.setdefault(headline.scene, []).append(headline)
     study, drawn = findings.study, []
     phased = [name for name in largest if any(scene.name == name for scene in study.phased)][:MAX_MAPS]
@@ -166,7 +67,7 @@ def _maps(results: Results, findings: Findings, shown: Sequence[Headline]) -> li
         completed = [surface for surface in findings.completions if surface.scene == scene.name]
         counts = [result.models[model.key] for model in (models[0], second)]
         sizes = [f"{c.phases_per_axis} × {c.phases_per_axis}, {c.computed} computed" for c in counts]
-        about = {"title": _title(result), "note": f"{models[0].title}: {sizes[0]}; {second.title}: {sizes[1]}"}
+        about = {"title": short_title(result), "note": f"{models[0].title}: {sizes[0]}; {second.title}: {sizes[1]}"}
         drawn.append((about, draw_maps(findings.surfaces, scene, (models[0], second), bodies, completed)))
     return drawn
 
@@ -175,50 +76,3 @@ def _engine(models: Sequence[Model], result: SceneResult) -> Model:
     """The engine model with the most phases, of several the last; without one the last model."""
     engines = [model for model in models if model.side == "engine"] or [models[-1]]
     return max(reversed(engines), key=lambda model: result.models[model.key].phases_per_axis)
-
-
-def _record(scene: SceneResult, body: int, keys: Sequence[str]) -> list[str]:
-    values = {value.model: value for value in scene.values if value.body == body}
-    cells = [significant(values[key].mu) or values[key].status if key in values else "" for key in keys]
-    return [scene.name[:40], str(body), *cells]
-
-
-def _outcomes(results: Results, model: ModelDescription) -> list[ModelOutcome]:
-    return [scene.models[model.key] for scene in results.scenes if model.key in scene.models]
-
-
-def _model(results: Results, model: ModelDescription) -> dict[str, str]:
-    outcomes = _outcomes(results, model)
-    phases = max(outcome.phases_per_axis for outcome in outcomes)
-    seconds = sum(outcome.cost for outcome in outcomes)
-    return {"title": model.title, "adds": model.adds, "phases": f"{phases} × {phases}", "seconds": f"{seconds:.1f}"}
-
-
-def _limits(results: Results) -> dict[str, Any]:
-    if not results.limits:
-        return {"limits_line": "No scene states acceptance limits: nothing was checked.", "limits": []}
-    broken = sum(bool(limit.breaches) for limit in results.limits)
-    count = len(results.limits)
-    line = f"{broken} of {count} acceptance limits are broken." if broken else f"All {count} acceptance limits hold."
-    limited = [scene for scene in results.scenes if scene.limits]
-    lines = [
-        f"{scene.name[:60]}: " + ", ".join(_limit(limit) for limit in scene.limits) for scene in limited[:MAX_LINES]
-    ]
-    return {"limits_line": line, "limits": lines}
-
-
-def _limit(limit: Limit) -> str:
-    return f"{limit.key} ≤ {limit.allowed:g} {'is broken' if limit.breaches else 'holds'}"
-
-
-def _provenance(results: Results) -> list[list[str]]:
-    run = results.run
-    digests = ", ".join(f"{scene.name[:40]} {scene.digest}" for scene in results.scenes[:MAX_LINES])
-    versions = ", ".join(f"{name} {value}" for name, value in run.provenance.items())
-    return [
-        ["command", run.command[:300]],
-        ["computed", f"{run.began}, {run.seconds} s with {run.jobs} workers"],
-        ["accuracy", f"every value asked for a relative error of {results.tolerance:g}"],
-        ["versions", versions],
-        ["scenes", digests],
-    ]

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from comparison.execution.output import on_stderr
 from comparison.report.findings import Findings
 from comparison.report.junit import junit
 from comparison.report.page import SECTIONS, page
@@ -47,5 +48,8 @@ def write_report(folder: Path, results: Results, found: Findings) -> None:
         if section.draw and section.present(results):
             section.draw(figures, found)
     if not results.no_pdf:
-        write_pdf(folder / "report.pdf", results, found)
+        try:
+            write_pdf(folder / "report.pdf", results, found)
+        except RuntimeError as error:  # what typst raises: the rest of the report does not depend on it
+            on_stderr(f"report.pdf: not written: {error}")
     (folder / "index.html").write_text(page(figures, found, results), encoding="utf-8")

@@ -21,6 +21,7 @@ from playwright.sync_api import Browser, Locator, Page, sync_playwright
 
 import comparison.run
 from comparison.report.motion_data import ROUNDING
+from reference.problem import load_scene
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 FLAGS = ["--no-sandbox", "--disable-background-networking", "--disable-sync"]
@@ -190,13 +191,27 @@ def test_a_click_anywhere_shows_the_nearest_stored_motion_and_how_far_away_it_is
 
 def test_the_motions_plotted_are_those_stored(visit: Visit) -> None:
     """The first model goes in circles of 1 cm, rounded as they are packed, and rests from 2 s to 3 s."""
-    wide, rest = visit.page.evaluate("""() => {
+    wide, path, rest, plots = visit.page.evaluate("""() => {
         const plots = [...document.querySelectorAll('[data-part=plots] .plot')].map(box => box.spec);
-        const path = plots.find(spec => spec.equal), rest = plots.find(spec => spec.label.includes('rests'));
-        return [Math.max(...path.series[0].x), rest.series[0].x.slice(0, 2)];
+        const first = title => plots.find(spec => spec.label.startsWith(title)).series[0];
+        return [Math.max(...first('displacement of the platform in x').y), Math.max(...first('path of the contact').x),
+          first('rest').x.slice(0, 2), plots.map(spec => spec.label)];
     }""")
+    isolator = load_scene("fig3-I").isolator
     assert wide == pytest.approx(10.0, rel=ROUNDING)
+    assert path == pytest.approx(10.0 * isolator.sphere_radius / load_scene("fig3-I").radius, rel=2 * ROUNDING)
     assert rest == [2.0, 3.0]
+    assert {"loop", "contact", "absolute"} <= {label.split()[0] for label in plots}
+
+
+def test_the_demands_of_both_models_stand_beside_each_other(visit: Visit) -> None:
+    table = visit.page.locator("[data-part=demands] table")
+    assert table.locator("thead th").first.inner_text().strip() == "demand"
+    rows = {
+        row.locator("th").inner_text(): row.locator("td").all_inner_texts() for row in table.locator("tbody tr").all()
+    }
+    assert rows["largest displacement of the isolator, mm"][0] == "1500 ± 300"
+    assert "base shear, N" in rows
 
 
 def test_the_film_plays_and_pauses(visit: Visit) -> None:

@@ -41,7 +41,7 @@ function startFilm(scene, titles, motions) {
         if (body === 0) dot(pen, x, y + 8, 3, ink);
         above = [x, y];
       }
-      const size = Math.min(34, each * 0.12), [cx, cy] = [middle + each * 0.4, 52];  // seen from above: the platform's path
+      const size = Math.min(34, each * 0.12), [cx, cy] = [middle + each / 2 - size - 6, 20 + size];  // seen from above: the platform's path
       pen.strokeStyle = soft;
       pen.strokeRect(cx - size, cy - size, 2 * size, 2 * size);
       dot(pen, cx + size * at(column, 0, 0) / most, cy - size * at(column, 0, 1) / most, 4, color);

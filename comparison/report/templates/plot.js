@@ -1,8 +1,8 @@
 "use strict";
 // every plot of the page: drawn as SVG at the width it has, from a description
 //   { label, height, x: {title, log, range, ticks: [[value, text], ...], equal}, y: the same,
-//     series: [{ name, x, y, low, high, line, marks, color, dash, width, titles, legend }], bands: [{ from, to, text }] }
-// color: 0 to 7 of the palette, "ink" or "gray"; a null in y parts a line; low and high make error bars
+//     series: [{ name, x, y, low, high, band, line, marks, color, dash, width, titles, legend }], bands: [{ from, to, text }] }
+// color: 0 to 7 of the palette, "ink" or "gray"; a null in y parts a line; low and high make error bars, or a band
 const SVG = "http://www.w3.org/2000/svg";
 function svgElement(name, attributes = {}, text = "") {
   const element = document.createElementNS(SVG, name);
@@ -95,9 +95,14 @@ function drawPlot(box, spec) {
       series.x.forEach((x, i) => { path += shown[i] ? `${down ? "L" : "M"}${X(x).toFixed(1)} ${Y(series.y[i]).toFixed(1)}` : ""; down = shown[i]; });
       drawing.append(svgElement("path", { d: path, class: `line ${look}`, "stroke-width": series.width ?? 1.6, ...(series.dash ? { "stroke-dasharray": series.dash } : {}) }));
     }
+    if (series.band && series.low) {
+      const both = series.x.map((x, i) => i).filter(i => shown[i] && known(series.low[i]) && known(series.high[i]));
+      const points = [...both.map(i => [i, series.high[i]]), ...both.reverse().map(i => [i, series.low[i]])].map(([i, y]) => `${X(series.x[i]).toFixed(1)},${clampY(y).toFixed(1)}`);
+      drawing.append(svgElement("polygon", { points: points.join(" "), class: `area ${look}` }));
+    }
     series.x.forEach((x, i) => {
       if (!shown[i]) return;
-      if (series.low && known(series.low[i])) drawing.append(svgElement("line", { x1: X(x), x2: X(x), y1: clampY(Math.max(series.low[i], spec.y.log ? yRange[0] : -Infinity)), y2: clampY(series.high[i]), class: `line ${look}` }));
+      if (series.low && !series.band && known(series.low[i])) drawing.append(svgElement("line", { x1: X(x), x2: X(x), y1: clampY(Math.max(series.low[i], spec.y.log ? yRange[0] : -Infinity)), y2: clampY(series.high[i]), class: `line ${look}` }));
       if (!series.marks) return;
       const mark = markOf(series.marks === true ? series.color : series.marks, X(x), Y(series.y[i]), look);
       mark.append(svgElement("title", {}, series.titles?.[i] ?? `${series.name}: ${+x.toPrecision(5)}, ${+series.y[i].toPrecision(4)}`));

@@ -84,7 +84,7 @@ function paintSoon() {
 function show() {
   const scene = sceneNow();
   part("panels").hidden = scene.recorded;
-  part("shape").hidden = scene.recorded;
+  part("shape").hidden = part("hint").hidden = scene.recorded;
   viewer.querySelectorAll("[data-record]").forEach(box => { box.hidden = box.dataset.record !== `${state.scene}-${state.body}`; });
   if (scene.recorded) return;
   shown = panels();
