@@ -274,6 +274,17 @@ def test_the_copy_reaches_the_clipboard(browser: Browser, finished: Path) -> Non
     context.close()
 
 
+def test_every_folded_plot_is_drawn_when_the_page_goes_to_paper(browser: Browser, finished: Path) -> None:
+    page = _opened(browser, finished / "index.html", LAPTOP).page
+    drawn = page.evaluate("""() => {
+        dispatchEvent(new Event('beforeprint'));
+        return [...document.querySelectorAll('[data-plot]')].map(box => Boolean(box.querySelector('svg')));
+    }""")
+    assert len(drawn) > 1
+    assert all(drawn)
+    page.close()
+
+
 def test_paper_shows_plots_and_surfaces_and_no_control(visit: Visit) -> None:
     page = visit.page
     page.emulate_media(media="print")
