@@ -163,6 +163,10 @@ def test_a_spatial_model_on_few_phases_is_drawn_as_points(visit: Visit) -> None:
     visit.page.locator("[data-part=pair]").select_option("total")
     assert visit.page.evaluate("shown.map(panel => panel.sheet)") == [True, False, False]
     assert "too few" in visit.page.locator(".three .notes").nth(1).inner_text()
+    visit.page.locator("canvas.surface").nth(1).focus()
+    for key in ("ArrowRight", "ArrowLeft"):
+        visit.page.keyboard.press(key)
+    assert visit.page.locator("[data-part=readout]").inner_text().count("±") == 2, "points have their errors"
     visit.page.locator("[data-part=pair]").select_option("translational")
     assert visit.page.evaluate("shown.map(panel => panel.sheet)") == [True, True, True]
     visit.page.get_by_role("button", name="on those of the second").click()
