@@ -1,14 +1,28 @@
 """
 The same question put to a multibody engine: rigid bodies, springs, and a compliant contact with friction.
 
-Functions:
-    amplification(scene, phases, ...)   amplification factors with an error estimate
-    trajectory(scene, phase, ...)       one motion to a tolerance
-    single_run(scene, phase, ...)       one run at a level of accuracy or a constant step, without an error estimate
-    demands(trajectory)                 what a motion demands of isolator and structure, with errors
-    levels(scene, ...)                  the levels of accuracy (`Level`) that `amplification` goes through
-    refusal(scene, ...)                 why a model is refused for a scene, or ""
+Functions
+---------
+amplification   factors mu_i of (5.1) for many phase pairs, with errors and outcomes
+trajectory      one motion to a tolerance
+single_run      one run at a level of accuracy or a constant step, without an error estimate
+demands         what a motion demands of isolator and structure, with errors
+levels          the levels of accuracy that `amplification` goes through
+refusal         why a model is refused for a scene, or ""
 
+Classes
+-------
+Level           one level of accuracy: step, contact, tolerances
+
+Examples
+--------
+>>> import multibody, reference
+>>> scene = reference.load_scene("fig3-I").with_values({"duration": 1.0})
+>>> str(multibody.amplification(scene, [(0.3, 1.1)]).status[0])
+'ok'
+
+Notes
+-----
 The engine is loaded on first use, so that a command can be stopped while it loads.
 """
 

@@ -10,10 +10,11 @@ from typing import Any
 
 import pytest
 
+import multibody
 import reference
 import reference.problem
 
-PACKAGES = (reference, reference.problem)
+PACKAGES = (reference, reference.problem, multibody)
 CONSTANTS = {"ADVICE", "GRAVITY"}  # explained in the docstring of their package
 NAMES = [
     pytest.param(package, name, id=f"{package.__name__}.{name}")

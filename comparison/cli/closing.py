@@ -89,9 +89,17 @@ def next_commands(results: Results, words: Sequence[str]) -> list[str]:
         largest, source = max(filmed, key=lambda pair: abs(pair[0].maximum))
         lines.append(f"Next: a film of the largest difference: {_film(largest, source)}")
     if results.phased:
-        finer = command_line([*words, "--grid", str(2 * results.grid), "--plan"])
+        finer = command_line([*_without_grid(words), "--grid", str(2 * results.grid), "--plan"])
         lines.append(f"Next: what a finer grid costs: {finer}")
     return lines
+
+
+def _without_grid(words: Sequence[str]) -> list[str]:
+    return [
+        word
+        for before, word in zip(["", *words], words)
+        if before != "--grid" and word != "--grid" and not word.startswith("--grid=")
+    ]
 
 
 def _film(headline: Headline, source: str) -> str:

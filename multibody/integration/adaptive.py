@@ -33,6 +33,7 @@ MAX_CHUNK_STEPS, DIVIDED_CHUNK_STEPS = 256, 32  # steps in a chunk at the larges
 FREE_ITERATIONS = 2  # of Newton's method in a step; further ones count as steps
 GAP_RATE_STEPS = 4  # over which the rate of a gap is taken
 KINK_STEP_RATIO = 4.0  # first step behind a kink of the loading over slip_change times the relaxation of friction
+RIM = 1.0  # largest rise of the platform, in units of length, which is rho
 RECENT_ROWS = 8  # at the end of a chunk: they decide whether the step may grow
 SETTLED_FRACTION = 0.9  # of a largest value: later values below it do not reach it in a run of another level either
 WARPING_RELAXATION = 20.0  # time until warping has relaxed, in square roots of the warping compliance
@@ -256,7 +257,7 @@ def termination(motion: Motion, model: EngineModel) -> tuple[Outcome, int]:
     # by height: the horizontal offset only touches rho at the rim and falls again beyond
     rise = motion.coordinates[:, model.bodies[0, 2]]
     count = len(motion.time)
-    rim = _first(rise >= model.rim)
+    rim = _first(rise >= RIM)
     contact_lost = count if model.allows_liftoff else _first((motion.gap >= 0.0).all(axis=1))
     if min(rim, contact_lost) == count:
         return Outcome.OK, count - 1

@@ -50,6 +50,27 @@ class Level:
 
     A level with another step or contact is made by `dataclasses.replace`.
 
+    Attributes
+    ----------
+    step : float
+        The largest step, in units of time.
+    slip_change : float
+        Allowed change of the slip velocity in one step, as its fraction.
+    penetration : float
+        Of the contact under the weight, of rho: the inverse of its stiffness.
+    newton : float
+        Relative tolerance of the forces in Newton's iteration.
+    rounding_moment : float
+        Rounding of a contact force times the penetration, in weights times rho.
+    max_divisions : int
+        How often the largest step may be divided by `STEP_RATIO`.
+    error_floor : float
+        Relative error that the level typically has: closer agreement is treated as accidental.
+    warping_compliance : float
+        Of supports against warping under the weight, of rho.
+    decays : tuple of (float, float)
+        For everything that dies faster than the largest step resolves: the instant until which it lasts, and its step.
+
     Examples
     --------
     >>> from dataclasses import replace
@@ -58,15 +79,14 @@ class Level:
     >>> coarse = replace(level, step=4.0 * level.step)
     """
 
-    step: float  # the largest, in units of time
-    slip_change: float  # allowed change of the slip velocity in one step, as its fraction
-    penetration: float  # of the contact under the weight, of rho: the inverse of its stiffness
-    newton: float  # relative tolerance of the forces in Newton's iteration
-    rounding_moment: float  # rounding of a contact force times the penetration, in weights times rho
-    max_divisions: int  # how often the largest step may be divided by `STEP_RATIO`
-    error_floor: float  # relative error that the level typically has: closer agreement is treated as accidental
-    warping_compliance: float  # of supports against warping under the weight, of rho
-    # for everything that dies faster than the largest step resolves: the instant until which it lasts, and its step
+    step: float
+    slip_change: float
+    penetration: float
+    newton: float
+    rounding_moment: float
+    max_divisions: int
+    error_floor: float
+    warping_compliance: float
     decays: tuple[tuple[float, float], ...] = ()
 
     @property

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,13 @@ def contact_law(scene: Scene, regularization: float | None, units: Units) -> tup
     if regularization is None:
         return scene.friction_coefficient, 1.0
     return scene.friction_coefficient, regularization / units.velocity
+
+
+def set_contact_parameters(mbs: Any, contact: Any, radii: list[float], penetration: float, count: int = 1) -> None:
+    """Set radii of sphere and depression, stiffness and damping of one of `count` contacts that share the weight."""
+    mbs.SetObjectParameter(contact, "spheresRadii", radii)
+    mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / (count * penetration))
+    mbs.SetObjectParameter(contact, "contactDamping", 2.0 * DAMPING_RATIO / (count * np.sqrt(penetration)))
 
 
 def corner_and_relaxation(scene: Scene, regularization: float | None, units: Units) -> tuple[float, float]:

@@ -13,17 +13,18 @@ More than three supports share the load as elastic bearings do (`supports`), or 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from multibody.models.contact import (
-    DAMPING_RATIO,
     FORCE_ROUNDING,
     contact_law,
     corner_and_relaxation,
     platform_on_sphere,
+    set_contact_parameters,
 )
 from multibody.models.engine import exudyn, items
 from multibody.models.loading import Ground, ground_of, symbolic_load
@@ -32,6 +33,7 @@ from multibody.models.recorders import add_recorders
 from multibody.models.supports import (
     DETERMINATE,
     MIN_WARPING_COMPLIANCE,
+    Supports,
     fixed_supports,
     sharing_supports,
     sphere_nodes,
@@ -76,44 +78,8 @@ def spatial(
     recorders = add_recorders(mbs, [*nodes, *supports.nodes], contact_nodes, forces, plate.node)
     mbs.Assemble()
 
-    count = len(contacts)
     index = PER_BODY * np.arange(len(masses))[:, None] + np.arange(3)
-    body_coordinates = PER_BODY * len(masses)  # before those of the spheres
-    vertical = body_coordinates + supports.vertical
-
-    def set_contact(penetration: float, warping_compliance: float = MIN_WARPING_COMPLIANCE) -> None:
-        pressed = bearing_penetration or penetration
-        for contact in contacts:
-            mbs.SetObjectParameter(contact, "spheresRadii", [radius + pressed, radius + 1.0])
-            mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / (count * pressed))
-            mbs.SetObjectParameter(contact, "contactDamping", 2.0 * DAMPING_RATIO / (count * np.sqrt(pressed)))
-        supports.set_stiffness(penetration, warping_compliance)
-        for link in links:
-            set_link_stiffness(mbs, *link, 1.0 / (LINK_COMPLIANCE_RATIO * penetration))
-
-    def start(initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
-        coordinates, velocities = np.zeros((2, body_coordinates + supports.coordinates))
-        if initial is not None:
-            coordinates[index[:, :2]] = np.asarray(initial.position, float) / units.length
-            velocities[index[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
-        plate_acceleration = ground_acceleration / units.acceleration
-        pressed = bearing_penetration or penetration
-        place, velocity, gap, slip = platform_on_sphere(coordinates[:2], velocities[:2], plate_acceleration, pressed)
-        coordinates[:3], velocities[:3] = place, velocity
-        coordinates[index[1:, 2]], velocities[index[1:, 2]] = place[2], velocity[2]
-        return EngineState(coordinates, velocities, np.tile([gap, slip, 0.0, 0.0], count))
-
-    def set_frictionless(frictionless: bool) -> None:
-        for contact in contacts:
-            mbs.SetObjectParameter(contact, "dynamicFriction", 0.0 if frictionless else friction)
-
-    def settle(state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
-        return state
-
-    def warping_displacement(coordinates: Array) -> Array:
-        largest: Array = np.abs(coordinates[:, vertical] @ supports.warping).max(axis=1, initial=0.0)
-        return largest
-
+    parts = _Parts(mbs, units, index, contacts, links, supports, radius, friction, bearing_penetration)
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     return EngineModel(
         mbs=mbs,
@@ -121,22 +87,83 @@ def spatial(
         ground=ground,
         recorders=recorders,
         bodies=index,
-        set_contact=set_contact,
-        start=start,
-        settle=settle,
-        rim=1.0,
+        set_contact=parts.set_contact,
+        start=parts.start,
+        settle=parts.settle,
         corner=corner,
         relaxation=relaxation,
         # of places, and of their moments
         rounding=FORCE_ROUNDING * max(1.0, float(np.hypot(*ring[0])), float(heights.max())) ** 2,
         moving_plate=plate.moves,
-        carried=np.vstack([index, body_coordinates + supports.carried]),
+        carried=np.vstack([index, parts.body_coordinates + supports.carried]),
         references=(container, expressions),
         allows_liftoff=True,
-        set_frictionless=set_frictionless,
-        warping_displacement=warping_displacement,
+        set_frictionless=parts.set_frictionless,
+        warping_displacement=parts.warping_displacement,
         bearing_penetration=bearing_penetration,
     )
+
+
+Link = tuple[Any, float, Array, float]  # connector, mass above it, stiffness in shear (2,) and against twist
+
+
+@dataclass(frozen=True)
+class _Parts:
+    """What can be set in the assembled system, and how it starts; in units of the model."""
+
+    mbs: Any
+    units: Units
+    index: NDArray[np.int_]  # (N, 3), of the coordinates that move the bodies
+    contacts: list[Any]
+    links: list[Link]
+    supports: Supports
+    radius: float  # of the spheres
+    friction: float
+    bearing_penetration: float  # by the weight, as the scene's bearings state it, or 0
+
+    @property
+    def body_coordinates(self) -> int:
+        """Number of the coordinates of the bodies, which come before those of the spheres."""
+        return PER_BODY * len(self.index)
+
+    def set_contact(self, penetration: float, warping_compliance: float = MIN_WARPING_COMPLIANCE) -> None:
+        """See `EngineModel`."""
+        pressed = self.bearing_penetration or penetration
+        radii = [self.radius + pressed, self.radius + 1.0]
+        for contact in self.contacts:
+            set_contact_parameters(self.mbs, contact, radii, pressed, len(self.contacts))
+        self.supports.set_stiffness(penetration, warping_compliance)
+        for link in self.links:
+            set_link_stiffness(self.mbs, *link, 1.0 / (LINK_COMPLIANCE_RATIO * penetration))
+
+    def start(self, initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
+        """See `EngineModel`."""
+        units, index = self.units, self.index
+        coordinates, velocities = np.zeros((2, self.body_coordinates + self.supports.coordinates))
+        if initial is not None:
+            coordinates[index[:, :2]] = np.asarray(initial.position, float) / units.length
+            velocities[index[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
+        plate_acceleration = ground_acceleration / units.acceleration
+        pressed = self.bearing_penetration or penetration
+        place, velocity, gap, slip = platform_on_sphere(coordinates[:2], velocities[:2], plate_acceleration, pressed)
+        coordinates[:3], velocities[:3] = place, velocity
+        coordinates[index[1:, 2]], velocities[index[1:, 2]] = place[2], velocity[2]
+        return EngineState(coordinates, velocities, np.tile([gap, slip, 0.0, 0.0], len(self.contacts)))
+
+    def settle(self, state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
+        """See `EngineModel`: the bodies that turn settle by themselves."""
+        return state
+
+    def set_frictionless(self, frictionless: bool) -> None:
+        """See `EngineModel`."""
+        for contact in self.contacts:
+            self.mbs.SetObjectParameter(contact, "dynamicFriction", 0.0 if frictionless else self.friction)
+
+    def warping_displacement(self, coordinates: Array) -> Array:
+        """See `EngineModel`."""
+        vertical = self.body_coordinates + self.supports.vertical
+        largest: Array = np.abs(coordinates[:, vertical] @ self.supports.warping).max(axis=1, initial=0.0)
+        return largest
 
 
 def _boxes(mbs: Any, masses: Array, heights: Array, sizes: Array) -> tuple[list[Any], list[Any]]:
@@ -148,9 +175,6 @@ def _boxes(mbs: Any, masses: Array, heights: Array, sizes: Array) -> tuple[list[
         box = items.ObjectRigidBody(nodeNumber=nodes[-1], mass=mass, inertia=[*inertia, 0.0, 0.0, 0.0])
         bodies.append(mbs.AddObject(box))
     return nodes, bodies
-
-
-Link = tuple[Any, float, Array, float]  # connector, mass above it, stiffness in shear (2,) and against twist
 
 
 def _links(mbs: Any, bodies: list[Any], masses: Array, heights: Array, stiffness: Array, ring: float) -> list[Link]:

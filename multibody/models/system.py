@@ -55,7 +55,6 @@ class EngineModel:
     start: Callable[[State | None, Array, float], EngineState]
     # state to go on from with a smaller step, from the last one, the rate of each gap (K,) and the penetration
     settle: Callable[[EngineState, Array, float], EngineState]
-    rim: float  # largest rise of the platform, in units of length
     corner: float  # slip speed under which the friction law is linear; inf if it has no such corner
     relaxation: float  # time in which a slip below the corner dies out; inf likewise
     rounding: float  # of a contact force times its penetration, in units of weight times length

@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.models.contact import (
-    DAMPING_RATIO,
     FORCE_ROUNDING,
     contact_law,
     corner_and_relaxation,
     platform_on_sphere,
+    set_contact_parameters,
     settled_contact,
 )
 from multibody.models.engine import exudyn, items
@@ -77,9 +77,7 @@ def translational(
 
     def set_contact(penetration: float, warping_compliance: float = 0.0) -> None:
         # closer by the static penetration, so that the pendulum at rest has length rho whatever the stiffness
-        mbs.SetObjectParameter(contact, "spheresRadii", [HOLLOW_RADIUS - (1.0 - penetration), HOLLOW_RADIUS])
-        mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / penetration)
-        mbs.SetObjectParameter(contact, "contactDamping", 2.0 * DAMPING_RATIO / np.sqrt(penetration))
+        set_contact_parameters(mbs, contact, [HOLLOW_RADIUS - (1.0 - penetration), HOLLOW_RADIUS], penetration)
 
     def start(initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
         coordinates, velocities = np.zeros(count), np.zeros(count)
@@ -104,7 +102,6 @@ def translational(
         set_contact=set_contact,
         start=start,
         settle=settle,
-        rim=1.0,
         corner=corner,
         relaxation=relaxation,
         rounding=FORCE_ROUNDING,

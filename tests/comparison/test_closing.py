@@ -44,6 +44,7 @@ def test_the_next_commands_work_as_they_are_printed(
     assert all(0.0 <= float(phase) < 6.2832 for phase in words[5:7])
     words = shlex.split(finer.split("costs: ")[1])
     assert words[:3] == ["python", "-m", "comparison.run"]
+    assert words.count("--grid") == 1
     assert main([*words[3:], "--out", str(tmp_path / "other")]) == 0
     assert "4 x 4 phases" in capfd.readouterr().out.replace("\n", " ")
 
