@@ -52,18 +52,20 @@ def tradeoff_panels(trade: Trade) -> list[Panel]:
 
 
 def tradeoff_answers(trade: Trade) -> list[dict[str, str]]:
-    """For each question, which method meets which error in the least time."""
+    """For each question, which method meets which error in the least time: one that estimates its error, if any."""
     answers = []
     for question in trade.questions:
         parts = []
         for target in TARGETS:
             able = [entry for entry in trade.of(question.key) if _meets(entry, target)]
+            estimated = [entry for entry in able if entry.controlled]
             if not able:
                 parts.append(f"for {target:.0e} none")
                 continue
-            best = min(able, key=lambda entry: entry.seconds)
+            best = min(estimated or able, key=lambda entry: entry.seconds)
             setting = f"{best.parameter} {best.value:.3g} {best.unit}".strip()
-            parts.append(f"for {target:.0e} ask {best.method}, {setting} ({1e3 * best.seconds:.3g} ms)")
+            time = f"{1e3 * best.seconds:.3g} ms{'' if estimated else ', no error estimate'}"
+            parts.append(f"for {target:.0e} ask {best.method}, {setting} ({time})")
         answers.append({"title": question.title, "text": "; ".join(parts) + "."})
     return answers
 

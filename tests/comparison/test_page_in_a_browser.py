@@ -163,6 +163,10 @@ def test_a_spatial_model_on_few_phases_is_drawn_as_points(visit: Visit) -> None:
     visit.page.locator("[data-part=pair]").select_option("total")
     assert visit.page.evaluate("shown.map(panel => panel.sheet)") == [True, False, False]
     assert "too few" in visit.page.locator(".three .notes").nth(1).inner_text()
+    visit.page.locator("canvas.surface").nth(1).focus()
+    for key in ("ArrowRight", "ArrowLeft"):
+        visit.page.keyboard.press(key)
+    assert visit.page.locator("[data-part=readout]").inner_text().count("±") == 2, "points have their errors"
     visit.page.locator("[data-part=pair]").select_option("translational")
     assert visit.page.evaluate("shown.map(panel => panel.sheet)") == [True, True, True]
     visit.page.get_by_role("button", name="on those of the second").click()
@@ -272,6 +276,17 @@ def test_the_copy_reaches_the_clipboard(browser: Browser, finished: Path) -> Non
     _until(page, "document.querySelector('#outcomes [role=status]').textContent")
     assert page.evaluate("navigator.clipboard.readText()").startswith("scene,model,")
     context.close()
+
+
+def test_every_folded_plot_is_drawn_when_the_page_goes_to_paper(browser: Browser, finished: Path) -> None:
+    page = _opened(browser, finished / "index.html", LAPTOP).page
+    drawn = page.evaluate("""() => {
+        dispatchEvent(new Event('beforeprint'));
+        return [...document.querySelectorAll('[data-plot]')].map(box => Boolean(box.querySelector('svg')));
+    }""")
+    assert len(drawn) > 1
+    assert all(drawn)
+    page.close()
 
 
 def test_paper_shows_plots_and_surfaces_and_no_control(visit: Visit) -> None:

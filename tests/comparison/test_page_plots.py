@@ -32,6 +32,13 @@ def test_the_answer_in_words_is_the_cheapest_method_that_meets_the_error() -> No
     assert "for 1e-06 ask slow, tolerance 1e-07 (200 ms)" in answer["text"]
 
 
+def test_a_method_that_does_not_estimate_its_error_is_asked_only_without_one_that_does() -> None:
+    quick = replace(FAST, method="quick", seconds=1e-3, controlled=False)
+    (both,), (alone,) = (tradeoff_answers(replace(TRADE, entries=entries)) for entries in ([FAST, quick], [quick]))
+    assert "for 1e-03 ask fast" in both["text"]
+    assert "for 1e-03 ask quick, tolerance 0.001 (1 ms, no error estimate)" in alone["text"]
+
+
 def test_a_method_that_lacks_values_is_not_asked() -> None:
     (answer,) = tradeoff_answers(replace(TRADE, entries=[replace(FAST, answered=3)]))
     assert answer["text"] == "for 1e-02 none; for 1e-03 none; for 1e-04 none; for 1e-06 none."

@@ -32,7 +32,10 @@ function openTarget() {
 }
 addEventListener("hashchange", openTarget);
 document.querySelectorAll("a[data-show-scene]").forEach(link => link.addEventListener("click", () => { if (study) chooseScene(Number(link.dataset.showScene)); }));
-addEventListener("beforeprint", () => document.querySelectorAll("details.section").forEach(section => { section.open = true; }));
+addEventListener("beforeprint", () => {  // paper has no folded section, and no time to wait for its plots
+  document.querySelectorAll("details.section").forEach(section => { section.open = true; });
+  document.querySelectorAll("[data-plot]").forEach(drawStanding);
+});
 
 unpacked("data").then(buffer => {
   study = JSON.parse(new TextDecoder().decode(buffer));

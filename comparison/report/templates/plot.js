@@ -137,11 +137,11 @@ const plain = text => text.replaceAll("_", "");  // inside a picture, where no i
 const indexed = text => text.split(/(_\w+)/).map(part => part.startsWith("_") ? element("sub", "", part.slice(1)) : part);
 
 // plots that stand in the page: drawn when they come into view, and again at another width
+const drawStanding = box => { if (box.clientWidth) drawPlot(box, box.spec ??= JSON.parse(box.dataset.plot)); };
 const plotWatcher = new ResizeObserver(entries => entries.forEach(({ target, contentRect }) => {
-  if (contentRect.width && Math.abs(contentRect.width - (target.drawnAt ?? 0)) > 1) {
-    target.drawnAt = contentRect.width;
-    drawPlot(target, target.spec ??= JSON.parse(target.dataset.plot));
-  }
+  if (Math.abs(contentRect.width - (target.drawnAt ?? 0)) <= 1) return;
+  target.drawnAt = contentRect.width;
+  drawStanding(target);
 }));
 document.querySelectorAll("[data-plot]").forEach(box => plotWatcher.observe(box));
 // a plot that a script makes: a figure with its title

@@ -102,12 +102,15 @@ function readOut() {
   const scene = sceneNow(), pair = pairNow();
   if (!state.cursor) return;
   const [a, b, d] = shown.map(panel => valueAt(panel, state.cursor));
-  part("readout").replaceChildren(...indexed(`${at(state.cursor)}: ${study.titles[pair.first]} ${digits(a)}, ${study.titles[pair.second]} ${digits(b)}, difference ${percentText(d)}`));
+  const written = (value, text) => text(value.z) + (value.error ? ` ± ${digits(value.error, 1)}` : "");
+  const sizes = [`${study.titles[pair.first]} ${written(a, digits)}`, `${study.titles[pair.second]} ${written(b, digits)}`, `difference ${written(d, percentText)}`];
+  part("readout").replaceChildren(...indexed(`${at(state.cursor)}: ${sizes.join(", ")}`));
 }
+// height of a surface at a phase pair, or the point that is there, with its error
 function valueAt(panel, [alpha1, alpha2]) {
-  if (panel.sheet) return heightAt(panel.rows, alpha1, alpha2);
-  const near = panel.points.find(point => around(point.a, alpha1) + around(point.b, alpha2) < 0.02);
-  return near ? near.z : null;
+  if (panel.sheet) return { z: heightAt(panel.rows, alpha1, alpha2) };
+  const reach = turn / panel.rows.length / 4;
+  return panel.points.find(point => Math.max(around(point.a, alpha1), around(point.b, alpha2)) < reach) ?? { z: null };
 }
 
 // what a click, a key or a picker changes
