@@ -175,7 +175,7 @@ def page(figures: Path, found: Findings, results: Results) -> str:
         study=study,
         question=_question(study),
         has_surfaces=lambda scene: "surfaces" in scene.analyses,
-        cards=[_card(scene, axes, found) for scene in results.scenes],
+        cards=[_card(scene, axes) for scene in results.scenes],
         scales=axes,
         effects={model.key: model.effect or model.title for model in study.hierarchy},
         record_tables=_record_tables(study, results),
@@ -262,7 +262,7 @@ def _alert_groups(results: Results) -> list[dict[str, Any]]:
     ]
 
 
-def _card(scene: SceneResult, axes: dict[str, Scale], found: Findings) -> dict[str, Any]:
+def _card(scene: SceneResult, axes: dict[str, Scale]) -> dict[str, Any]:
     """One scene on the first screen."""
     bodies = [
         {

@@ -17,7 +17,6 @@ function palette(list) {
 const variable = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const dark = () => matchMedia("(prefers-color-scheme: dark)").matches && !matchMedia("print").matches;
 const around = (a, b) => { const d = Math.abs(a - b) % turn; return Math.min(d, turn - d); };
-const known2 = value => value !== null && value !== undefined;
 
 function prepared(canvas) {
   const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
@@ -83,7 +82,7 @@ function draw3d(canvas, panel, camera) {
     const rows = order(Math.sin(camera.azimuth) < 0, n), columns = order(Math.cos(camera.azimuth) < 0, n), tilt = n / 9;
     for (const i of rows) for (const j of columns) {
       const heights = [z(i, j), z(i + 1, j), z(i + 1, j + 1), z(i, j + 1)];
-      if (!heights.every(known2)) continue;
+      if (!heights.every(known)) continue;
       const s = heights.map(value => share(panel, value)), light = 1 + 0.22 * Math.tanh(tilt * 0.5 * (s[0] + s[3] - s[1] - s[2]) + tilt * 0.3 * (s[0] + s[1] - s[2] - s[3]));
       const p = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(([u, v], k) => place(u, v, heights[k]));
       pen.fillStyle = pen.strokeStyle = panel.color((s[0] + s[1] + s[2] + s[3]) / 4, light);
@@ -95,7 +94,7 @@ function draw3d(canvas, panel, camera) {
       pen.stroke();
     }
   }
-  const lift = ([a, b]) => { const value = heightAt(panel.rows, a, b); return known2(value) ? at(a, b, share(panel, value)) : null; };
+  const lift = ([a, b]) => { const value = heightAt(panel.rows, a, b); return known(value) ? at(a, b, share(panel, value)) : null; };
   pen.strokeStyle = ink;
   pen.lineWidth = 1.4;
   panel.lines.forEach(points => strokeLine(pen, points.map(lift)));
@@ -128,7 +127,7 @@ function drawMap(canvas, panel) {
   pen.clip();
   if (panel.sheet) for (let i = 0; i <= n; i++) for (let j = 0; j <= n; j++) {  // a cell stands around its phase pair, on the closed square
     const value = panel.rows[i % n][j % n];
-    if (!known2(value)) continue;
+    if (!known(value)) continue;
     pen.fillStyle = panel.color(share(panel, value));
     pen.fillRect(X(turn * i / n) - cell / 2, Y(turn * j / n) - cell / 2, cell + 0.7, cell + 0.7);
   }
@@ -213,7 +212,7 @@ function nearestVertex(panel, at, x, y) {
   const n = panel.rows.length;
   let best = null;
   panel.rows.concat([panel.rows[0]]).forEach((row, i) => row.concat([row[0]]).forEach((value, j) => {
-    if (!known2(value)) return;
+    if (!known(value)) return;
     const [a, b] = [turn * i / n, turn * j / n], [u, v, deep] = at(a, b, share(panel, value)), far = Math.hypot(u - x, v - y), score = Math.max(far, 12) + 8 * deep;
     if (far < 60 && (!best || score < best.score)) best = { score, phases: [a, b] };
   }));
@@ -226,7 +225,7 @@ function heightAt(rows, alpha1, alpha2) {
   for (const [k, l] of [[0, 0], [0, 1], [1, 0], [1, 1]]) {
     const weight = (k ? u - i : 1 - u + i) * (l ? v - j : 1 - v + j), value = rows[(i + k) % n][(j + l) % n];
     if (weight < 1e-9) continue;
-    if (!known2(value)) return null;
+    if (!known(value)) return null;
     sum += weight * value;
   }
   return sum;

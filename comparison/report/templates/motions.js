@@ -96,17 +96,17 @@ function demandsTable(scene, place, models) {
     if (!each) return [[title, factor, demands.map(one => one?.[key] ?? null)]];
     const count = Math.max(...demands.map(one => one?.[key]?.length ?? 0));
     return Array.from({ length: count }, (_, i) => [`${title}: ${each(i)}`, factor, demands.map(one => one?.[key]?.[i] ?? null)]);
-  }).filter(([, , values]) => values.some(value => known2(value?.[0])));
+  }).filter(([, , values]) => values.some(value => known(value?.[0])));
   const cell = (value, factor) => {
-    const made = element("td", "number", known2(value?.[0]) ? digits(factor * value[0]) + (value[1] > 1e-4 * Math.abs(value[0]) ? ` ± ${digits(factor * value[1], 1)}` : "") : "none");
-    made.dataset.value = known2(value?.[0]) ? factor * value[0] : "";
+    const made = element("td", "number", known(value?.[0]) ? digits(factor * value[0]) + (value[1] > 1e-4 * Math.abs(value[0]) ? ` ± ${digits(factor * value[1], 1)}` : "") : "none");
+    made.dataset.value = known(value?.[0]) ? factor * value[0] : "";
     return made;
   };
   const head = ["demand", ...models.map(key => study.titles[key]), "difference"].map((text, i) => { const made = element("th", i ? "number" : "", ...indexed(text)); made.scope = "col"; return made; });
   const body = rows.map(([title, factor, values]) => {
-    const [a, b] = values.map(value => value?.[0]), heading = element("th", "", title), change = known2(a) && known2(b) && a ? 100 * (b - a) / Math.abs(a) : null;
+    const [a, b] = values.map(value => value?.[0]), heading = element("th", "", title), change = known(a) && known(b) && a ? 100 * (b - a) / Math.abs(a) : null;
     heading.scope = "row";
-    const last = element("td", "number", known2(change) ? percentText(change) : "");
+    const last = element("td", "number", known(change) ? percentText(change) : "");
     last.dataset.value = change ?? "";
     return element("tr", "", heading, ...values.map(value => cell(value, factor)), last);
   });

@@ -7,8 +7,8 @@ const viewer = document.getElementById("viewer") ?? document.createElement("div"
 const part = name => viewer.querySelector(`[data-part="${name}"]`);
 const degrees = phase => `${Math.round(phase * 180 / Math.PI)}°`;
 const at = phases => `(${phases.map(degrees).join(", ")})`;
-const percentText = value => !known2(value) ? "none" : `${value > 0 ? "+" : value < 0 ? "−" : ""}${Math.abs(value) >= 10 ? Math.abs(value).toFixed(0) : +Math.abs(value).toPrecision(2)} %`;
-const digits = (value, count = 4) => known2(value) ? String(+value.toPrecision(count)).replace("-", "−") : "none";
+const percentText = value => !known(value) ? "none" : `${value > 0 ? "+" : value < 0 ? "−" : ""}${Math.abs(value) >= 10 ? Math.abs(value).toFixed(0) : +Math.abs(value).toPrecision(2)} %`;
+const digits = (value, count = 4) => known(value) ? String(+value.toPrecision(count)).replace("-", "−") : "none";
 
 async function unpacked(id) {
   const bytes = Uint8Array.from(atob(document.getElementById(id).textContent), letter => letter.charCodeAt(0));
@@ -18,7 +18,7 @@ async function unpacked(id) {
 const sceneNow = () => study.scenes[state.scene];
 const pairNow = () => sceneNow().pairs.find(pair => pair.key === state.pair) ?? sceneNow().pairs[0];
 const thinned = (rows, n) => { const k = rows.length / n; return rows.filter((_, i) => i % k === 0).map(row => row.filter((_, j) => j % k === 0)); };
-const pointsOf = (rows, errors) => rows.flatMap((row, i) => row.flatMap((z, j) => known2(z) ? [{ a: turn * i / rows.length, b: turn * j / rows.length, z, error: errors?.[i][j] }] : []));
+const pointsOf = (rows, errors) => rows.flatMap((row, i) => row.flatMap((z, j) => known(z) ? [{ a: turn * i / rows.length, b: turn * j / rows.length, z, error: errors?.[i][j] }] : []));
 
 // one model as it may be drawn: all phases, completed, or points; `every` asks for so many phases per axis only
 function surfaceOf(scene, key, body, every = null) {
@@ -28,17 +28,17 @@ function surfaceOf(scene, key, body, every = null) {
   if (completed?.mu) return { rows: completed.mu, sheet: true, points: pointsOf(mu, null), model, completed };
   return { rows: mu, sheet: false, points: pointsOf(mu, model.error?.[body - 1]), model, completed };
 }
-const relative = (rows, base) => rows.map((row, i) => row.map((value, j) => known2(value) && base[i][j] > 0 ? 100 * (value - base[i][j]) / base[i][j] : null));
+const relative = (rows, base) => rows.map((row, i) => row.map((value, j) => known(value) && base[i][j] > 0 ? 100 * (value - base[i][j]) / base[i][j] : null));
 // the difference in percent of the first model, on the phases of both
 function differenceOf(scene, pair, body) {
   const [first, second] = [pair.first, pair.second].map(key => surfaceOf(scene, key, body)), [a, b] = [pair.first, pair.second].map(key => scene.models[key]);
   const n = Math.min(a.phases, b.phases), raw = relative(thinned(b.mu[body - 1], n), thinned(a.mu[body - 1], n));
-  const errors = pair.uncertainty?.[body - 1].map(row => row.map(value => known2(value) ? 100 * value : null));
+  const errors = pair.uncertainty?.[body - 1].map(row => row.map(value => known(value) ? 100 * value : null));
   if (first.sheet && second.sheet && first.rows.length === second.rows.length && [first, second].every(one => !one.completed || one.completed.difference))
     return { rows: relative(second.rows, first.rows), sheet: true, points: first.completed || second.completed ? pointsOf(raw, null) : [], completed: second.completed ?? first.completed };
   return { rows: raw, sheet: false, points: pointsOf(raw, errors) };
 }
-const values = surface => surface.sheet ? surface.rows.flat().filter(known2) : surface.points.map(point => point.z);
+const values = surface => surface.sheet ? surface.rows.flat().filter(known) : surface.points.map(point => point.z);
 function extent(list) {
   if (!list.length) return [0, 1];
   const low = list.reduce((a, b) => Math.min(a, b)), high = list.reduce((a, b) => Math.max(a, b));
