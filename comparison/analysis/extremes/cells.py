@@ -70,7 +70,7 @@ def solve_cell(cell: Cell) -> Entry:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # overflow in an extreme is judged by what comes of it
         function = row.amplification or column.amplification
-        reply = _ask(row, function, {**column.settings, **row.settings, "tolerance": tolerance})
+        reply = _ask(row, function, {**_with_work(column.settings, row), **row.settings, "tolerance": tolerance})
         seconds = time.process_time() - begin
         finer = list(_finer_replies(cell, function, tolerance)) if _answers(reply) else []
     verdict = judged(reply, finer, tolerance, row.invalid, row.right)
@@ -87,10 +87,15 @@ def _finer_replies(cell: Cell, answered_by: str, tolerance: float) -> Iterator[R
         share = min(1.0, tolerance / column.tolerance)
         # another function knows only what its own settings name
         known = {key: value for key, value in row.settings.items() if function == answered_by or key in settings}
-        reply = _ask(row, function, {**settings, **known, "tolerance": max(usual * share, STRICTEST)})
+        reply = _ask(row, function, {**_with_work(settings, row), **known, "tolerance": max(usual * share, STRICTEST)})
         yield reply
         if _is_complete(reply):
             return
+
+
+def _with_work(settings: Mapping[str, Any], row: Row) -> dict[str, Any]:
+    """The settings, those of an engine with the work that the row allows."""
+    return {**settings, "max_work": row.max_work} if "max_work" in settings else dict(settings)
 
 
 def _answers(reply: Reply) -> bool:
