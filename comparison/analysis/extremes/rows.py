@@ -36,8 +36,8 @@ class Column:
     seconds: float = 0.5  # processor time of a cell with its finer runs, recorded as `Model.seconds_per_point`
 
 
-# steps of the engine for a phase pair, and for one of a tower by its number of bodies, whose steps cost more: a cell ends
-# within the limit of its processor time
+# steps of the engine for a phase pair, and for one of a tower by its number of bodies, whose steps cost more: a cell
+# ends within the limit of its processor time
 MAX_WORK = 6e5
 TOWER_WORK = {10: 1.5e5, 100: 1e5, 1000: 1e3}
 
