@@ -73,6 +73,8 @@ def _maps(results: Results, findings: Findings, shown: Sequence[Headline]) -> li
 
 
 def _engine(models: Sequence[Model], result: SceneResult) -> Model:
-    """The engine model with the most phases, of several the last; without one the last model."""
+    """The engine model with the most phases, of several the last; one that is no surface only if there is no other."""
     engines = [model for model in models if model.side == "engine"] or [models[-1]]
-    return max(reversed(engines), key=lambda model: result.models[model.key].phases_per_axis)
+    refused = {completion.model for completion in result.completions if not completion.accepted}
+    drawn = [model for model in engines if model.key not in refused] or engines
+    return max(reversed(drawn), key=lambda model: result.models[model.key].phases_per_axis)
