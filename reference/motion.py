@@ -12,7 +12,6 @@ from reference.problem import Accuracy, Outcome, Scene, State, Trajectory, check
 from reference.problem.ranges import checked_array, checked_state
 from reference.solver.error_estimate import (
     DIFFERENCE_FRACTION,
-    MIN_ERROR_PER_STEP_TOLERANCE,
     READING_ERROR_FACTOR,
     ROUNDING_ERROR,
     TOLERANCE_RATIO,
@@ -26,6 +25,7 @@ SAMPLES_PER_PERIOD = 64  # of the shorter loading period, when no times are give
 STEP_SAMPLES = 8000  # of the steps, if these are few
 MAX_SAMPLES = 200_000
 FIRST_CAPACITY = 1024  # steps, to begin with
+MIN_ERROR_FRACTION = 1.0  # of the tolerance: closer agreement of two runs is accidental (measured: errors up to 0.2)
 
 
 def trajectory(
@@ -92,7 +92,7 @@ def trajectory(
     other = _recorded(system, pair, x, v, demand._replace(tolerance=TOLERANCE_RATIO * demand.tolerance))
     if other.outcome != Outcome.OK:
         return motion
-    floor = MIN_ERROR_PER_STEP_TOLERANCE * demand.tolerance + ROUNDING_ERROR
+    floor = MIN_ERROR_FRACTION * demand.tolerance + ROUNDING_ERROR
     error = READING_ERROR_FACTOR * run.reading_error + DIFFERENCE_FRACTION * np.abs(run.peak - other.peak)
     coarser = _motion(scene, system, other, asked)
     return replace(motion, accuracy=Accuracy(error + floor * run.peak, (coarser,), (DIFFERENCE_FRACTION,), floor))
