@@ -33,17 +33,21 @@ def description() -> TextColumn:
 
 @dataclass(frozen=True)
 class Stage:
-    """A part of the work: how many points, the compute time predicted for all of them, s, and how many are there."""
+    """A part of the work."""
 
     points: int
-    seconds: float
+    seconds: float  # compute time predicted for the points that are computed
     before: int = 0  # points that need no computing: an earlier run stored them
+
+    def share(self, points: int) -> float:
+        """Predicted compute time of some of the points, s, if each costs the same."""
+        return self.seconds * points / (self.points - self.before)
 
 
 class Display(Protocol):
-    """Told of every finished piece of work."""
+    """Told of every finished piece of work and its predicted compute time, s."""
 
-    def advance(self, stage: str, points: int) -> None: ...
+    def advance(self, stage: str, points: int, seconds: float) -> None: ...
 
 
 @contextmanager
@@ -89,16 +93,15 @@ class Bars:
             )
             for name, stage in stages.items()
         }
-        total = _seconds_left(stages, self._done)
-        self._whole = bars.add_task("all".ljust(width), total=total, count="")
+        self._whole = bars.add_task("all".ljust(width), total=_seconds(stages), count="")
 
-    def advance(self, stage: str, points: int) -> None:
+    def advance(self, stage: str, points: int, seconds: float) -> None:
         task, whole = self._tasks[stage], self._stages[stage]
         if self._done[stage] == whole.before:
             self._bars.start_task(task)
         self._done[stage] += points
         self._bars.update(task, advance=points, count=f"{self._done[stage]}/{whole.points}")
-        self._bars.update(self._whole, advance=whole.seconds * points / whole.points)
+        self._bars.update(self._whole, advance=seconds)
 
 
 class Lines:
@@ -107,11 +110,13 @@ class Lines:
     def __init__(self, console: Console, stages: Mapping[str, Stage], jobs: int) -> None:
         self._console, self._stages, self._jobs = console, stages, jobs
         self._done = {name: stage.before for name, stage in stages.items()}
-        self._total = _seconds_left(stages, self._done)
+        self._total = _seconds(stages)
+        self._spent = 0.0  # predicted compute time of what is done, s
         self._begin = self._last = time.monotonic()
 
-    def advance(self, stage: str, points: int) -> None:
+    def advance(self, stage: str, points: int, seconds: float) -> None:
         self._done[stage] += points
+        self._spent += seconds
         now = time.monotonic()
         if self._done[stage] < self._stages[stage].points and now - self._last < EVERY:
             return
@@ -121,11 +126,10 @@ class Lines:
 
     def _left(self, now: float) -> float:
         """Predicted time left, corrected by how the prediction has fared so far."""
-        left = _seconds_left(self._stages, self._done)
-        spent = self._total - left
-        return left * (now - self._begin) / spent if spent > 0.0 else self._total / self._jobs
+        left = max(self._total - self._spent, 0.0)
+        return left * (now - self._begin) / self._spent if self._spent > 0.0 else self._total / self._jobs
 
 
-def _seconds_left(stages: Mapping[str, Stage], done: Mapping[str, int]) -> float:
-    """Compute time predicted for the points that are not there yet, s."""
-    return sum(stage.seconds * (stage.points - done[name]) / stage.points for name, stage in stages.items())
+def _seconds(stages: Mapping[str, Stage]) -> float:
+    """Compute time predicted for everything, s."""
+    return sum(stage.seconds for stage in stages.values())

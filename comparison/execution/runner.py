@@ -131,11 +131,12 @@ class Runner:
                     assert isinstance(answer, TaskResult)
                     if piece is not first:
                         self.results.put(piece, answer)
-                    display.advance(piece.stage, 1)
+                    display.advance(piece.stage, 1, piece.seconds)
                     return
                 if self.results.cache is not None and piece is not first:
                     self.results.cache.put(batch_key(piece), answer)
-                display.advance(titles[piece.model], len(piece.phases))
+                stage, points = titles[piece.model], len(piece.phases)
+                display.advance(stage, points, stages[stage].share(points))
 
             def ready(piece: Piece) -> bool:
                 needs = piece.needs_compiled_reference if isinstance(piece, Task) else piece.model in compiled
@@ -156,15 +157,16 @@ def _batch_stages(study: Study, batches: Sequence[Batch], missing: Sequence[int]
         if points_by_place:
             points = sum(points_by_place.values())
             left = sum(points_by_place[place] for place in missing if place in points_by_place)
-            stages[model.title] = Stage(points, study.seconds(model), points - left)
+            stages[model.title] = Stage(points, study.seconds(model) * left / points, points - left)
     return stages
 
 
 def _task_stages(tasks: Sequence[Task], left: Sequence[Task]) -> dict[str, Stage]:
     stages = {}
     for name in dict.fromkeys(task.stage for task in tasks):
-        seconds = [task.seconds for task in tasks if task.stage == name]
-        stages[name] = Stage(len(seconds), sum(seconds), len(seconds) - sum(task.stage == name for task in left))
+        count = sum(task.stage == name for task in tasks)
+        seconds = [task.seconds for task in left if task.stage == name]
+        stages[name] = Stage(count, sum(seconds), count - len(seconds))
     return stages
 
 
