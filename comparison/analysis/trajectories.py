@@ -108,14 +108,19 @@ Arguments = tuple[Scene, Model, float, Place, tuple[float, float]]
 
 
 def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Place]:
-    """Where the total difference of each body is largest, then an even spread over the phases; no place twice."""
+    """
+    Where the difference of each body is largest, total and translational, then an even spread over the phases.
+
+    No place is listed twice.
+    """
     if scene.recorded:
         return [Place(scene.name, 0, 0, "")]
     places: dict[tuple[int, int], str] = {}
-    total = study.pairs(scene)[0]
-    for body in range(1, len(scene.bodies) + 1):
-        if place := pair_step(surfaces, scene.name, total, body).place:
-            places.setdefault(place, f"largest difference of body {body}")
+    largest = {"total": "largest difference of body {}", "translational": "largest difference in translation, body {}"}
+    for pair in study.pairs(scene):
+        for body in range(1, len(scene.bodies) + 1):
+            if pair.key in largest and (place := pair_step(surfaces, scene.name, pair, body).place):
+                places.setdefault(place, largest[pair.key].format(body))
     for k in range(SPREAD):
         row, column = (round(study.grid * (factor * k % SPREAD) / SPREAD) % study.grid for factor in (1, 2))
         places.setdefault((row, column), "")

@@ -51,10 +51,13 @@ def test_the_largest_difference_of_every_body_is_among_the_places() -> None:
     for body, row, column in ((1, 3, 9), (2, 6, 0)):
         place = {"alpha1": surfaces["alpha1"][row], "alpha2": surfaces["alpha2"][column]}
         surfaces["mu"].loc[{"model": "spatial", "body": body, **place}] *= 2.0
-    places = chosen_places(study, surfaces, study.scenes[0])
-    assert [(place.row, place.column) for place in places[:2]] == [(3, 9), (6, 0)]
-    assert [place.why for place in places[:2]] == ["largest difference of body 1", "largest difference of body 2"]
-    assert len({(place.row, place.column) for place in places}) == len(places) == 7
+    moved_in_plane = {"alpha1": surfaces["alpha1"][5], "alpha2": surfaces["alpha2"][2]}
+    surfaces["mu"].loc[{"model": "translational", "body": 1, **moved_in_plane}] *= 1.5
+    places = {(place.row, place.column): place.why for place in chosen_places(study, surfaces, study.scenes[0])}
+    assert list(places)[:2] == [(3, 9), (6, 0)]
+    assert list(places.values())[:2] == ["largest difference of body 1", "largest difference of body 2"]
+    assert places[5, 2] == "largest difference in translation, body 1"
+    assert len(places) == 9, "two of each difference, and five evenly spread"
 
 
 def test_no_two_spread_places_are_mirror_images() -> None:
