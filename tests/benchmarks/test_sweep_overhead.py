@@ -80,10 +80,12 @@ def pool(tmp_path_factory: pytest.TempPathFactory) -> Measured:
     return measured(tmp_path_factory.mktemp("pool") / "tiles", process_pool)
 
 
+@pytest.mark.long
 def test_store_and_executor_take_at_most_3_percent_of_the_sweep(pool: Measured) -> None:
     assert pool.overhead <= 0.03, pool
 
 
+@pytest.mark.long
 def test_two_workers_of_a_dask_cluster_are_within_10_percent_of_the_process_pool(
     pool: Measured, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

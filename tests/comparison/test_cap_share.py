@@ -50,7 +50,7 @@ def test_the_share_of_the_equations_is_that_of_a_dense_motion(scene, equations, 
     np.testing.assert_allclose(found.cap_share, expected, rtol=2e-4)
 
 
-@pytest.mark.parametrize("model", ["translational", "spatial"])
+@pytest.mark.parametrize("model", ["translational", pytest.param("spatial", marks=pytest.mark.long)])
 def test_the_share_of_the_engine_is_that_of_the_equations(model):
     scene = strong().with_values({"duration": 3.0})
     engine = multibody.amplification(scene, PHASES[:1], model)

@@ -47,6 +47,7 @@ def called(script: Path, *words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, cwd=place, env=environment, capture_output=True, text=True, check=False)
 
 
+@pytest.mark.long
 def test_the_modules_beside_a_user_are_not_imported_by_the_script_or_its_workers(script: Path) -> None:
     run = called(script, "extremes", "--models", "small", "--rows", "outside the rules", "--jobs", "2")
     assert run.returncode == 0, run.stderr

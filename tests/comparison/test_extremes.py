@@ -9,22 +9,24 @@ from concurrent.futures import Executor
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from rich.console import Console
 
 import reference
 from comparison.analysis.extremes.analysis import Extremes, reduced
-from comparison.analysis.extremes.cells import Cell, cells, read_scene, solve_cell
+from comparison.analysis.extremes.cells import Cell, answers, cells, read_scene, solve_cell
 from comparison.analysis.extremes.engine import amplification
 from comparison.analysis.extremes.matrix import FILE, Entry, Extreme, Matrix, as_json, load
 from comparison.analysis.extremes.rows import COLUMNS, Column, Row, rows, scene
-from comparison.analysis.extremes.verdicts import Verdict
+from comparison.analysis.extremes.verdicts import Reply, Verdict
 from comparison.cli.extremes import main
 from comparison.execution.cache import Cache
 from comparison.execution.processes import process_pool
 from comparison.execution.runner import Runner
 from comparison.execution.task_results import TaskResults
 from comparison.report.figures.extremes import describe, draw_extremes
+from reference.problem import Outcome
 
 PLAIN = Row("anything", "plain", scene(), ("fake",))
 FAILING = {
@@ -251,3 +253,13 @@ def test_the_error_knows_what_a_bad_choice_of_stiffness_or_step_costs(choice):
 def test_the_reduced_form_asks_the_engine_as_well():
     asked = {cell.column.key for cell in cells(reduced(list(rows())))}
     assert asked == {column.key for column in COLUMNS}
+
+
+def test_a_value_whose_error_is_as_large_as_itself_is_not_held_against_finer_runs() -> None:
+    mu = np.array([[1.0, 2.0]])
+    said = {"status": (Outcome.TOLERANCE_NOT_MET.value,), "mu": mu}
+    assert not answers(Reply(error=mu, **said))
+    assert answers(Reply(error=0.9 * mu, **said))
+    assert answers(Reply(error=mu, **(said | {"status": (Outcome.OK.value,)})))
+    assert answers(Reply(error=mu, **(said | {"status": (Outcome.RIM_REACHED.value,)})))
+    assert not answers(Reply(error=mu, **(said | {"status": (Outcome.STEP_LIMIT.value,)})))

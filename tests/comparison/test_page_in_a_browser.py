@@ -181,7 +181,7 @@ def test_a_click_anywhere_shows_the_nearest_stored_motion_and_how_far_away_it_is
     box = canvas.bounding_box()
     assert box is not None
     page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.31 * box["height"])
-    _until(page, "document.querySelector('[data-part=distance]').textContent.includes('away')")
+    _until(page, "document.querySelector('[data-part=distance]')?.textContent.includes('away')")
     chosen = page.evaluate("""() => {
         const far = place => Math.hypot(...place.phases.map((p, k) => around(p, state.cursor[k])));
         const { places } = sceneNow(), picked = Number(document.querySelector('[data-part=place]').value);
@@ -273,7 +273,7 @@ def test_the_copy_reaches_the_clipboard(browser: Browser, finished: Path) -> Non
     page.wait_for_selector("html[data-ready]", state="attached")
     page.evaluate("document.getElementById('outcomes').open = true")
     page.locator("#outcomes button.copy").first.click()
-    _until(page, "document.querySelector('#outcomes [role=status]').textContent")
+    _until(page, "document.querySelector('#outcomes [role=status]')?.textContent")
     assert page.evaluate("navigator.clipboard.readText()").startswith("scene,model,")
     context.close()
 
@@ -333,6 +333,7 @@ def test_surfaces_without_any_value_are_said_to_have_none(
     visit.page.close()
 
 
+@pytest.mark.long
 def test_a_page_without_surfaces_complains_of_nothing(
     browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

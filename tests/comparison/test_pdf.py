@@ -62,7 +62,9 @@ def test_the_papers_scenes_are_on_two_to_four_pages_with_every_sentence(tmp_path
         assert flat(words) in flat(text)
 
 
-@pytest.mark.parametrize("case", ["one body", "record", "refused", "many", "nothing"])
+@pytest.mark.parametrize(
+    "case", ["one body", "record", "refused", pytest.param("many", marks=pytest.mark.long), "nothing"]
+)
 def test_any_study_has_two_to_four_pages(case: str, tmp_path: Path) -> None:
     scene, hierarchy = load_scene("fig3-I"), fake_hierarchy(gap=0.01)
     if case == "one body":

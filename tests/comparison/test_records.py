@@ -114,7 +114,7 @@ def test_the_page_shows_the_table_and_the_motions_of_a_record_without_a_click(tm
             assert page.locator("[data-record]:visible tbody tr").count() == 6, "one row for each model"
             _until(page, "document.querySelector('[data-part=plots] svg')")
             page.locator("[data-part=pair]").select_option("like-for-like")
-            _until(page, "document.querySelector('[data-part=plots] .legend').textContent.includes('translational')")
+            _until(page, "document.querySelector('[data-part=plots] .legend')?.textContent.includes('translational')")
             page.locator("[data-part=scene]").select_option(index=1)
             page.locator("[data-part=body]").select_option("2")
             assert page.locator("[data-record='1-2']").is_visible()

@@ -84,6 +84,7 @@ def test_a_hang_ends_at_the_limit_of_processor_time_and_costs_no_other_task(tmp_
     assert _calls(tmp_path) == {"hanging": 1} | {f"other{number}": 1 for number in range(6)}, "nothing is tried again"
 
 
+@pytest.mark.long
 def test_a_repeated_run_does_not_wait_for_the_hang_again_unless_it_allows_more(tmp_path: Path) -> None:
     def task(timeout: float | None) -> Task:
         return Task(hangs, str(tmp_path / "hanging"), "test", 1.0, timeout=timeout)

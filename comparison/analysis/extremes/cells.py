@@ -72,7 +72,7 @@ def solve_cell(cell: Cell) -> Entry:
         function = row.amplification or column.amplification
         reply = _ask(row, function, {**_with_work(column.settings, row), **row.settings, "tolerance": tolerance})
         seconds = time.process_time() - begin
-        finer = list(_finer_replies(cell, function, tolerance)) if _answers(reply) else []
+        finer = list(_finer_replies(cell, function, tolerance)) if answers(reply) else []
     verdict = judged(reply, finer, tolerance, row.invalid, row.right)
     error = verdict.error if math.isfinite(verdict.error) else None
     total = time.process_time() - begin
@@ -98,10 +98,11 @@ def _with_work(settings: Mapping[str, Any], row: Row) -> dict[str, Any]:
     return {**settings, "max_work": row.max_work} if "max_work" in settings else dict(settings)
 
 
-def _answers(reply: Reply) -> bool:
-    """Whether there is anything that a finer run could contradict."""
+def answers(reply: Reply) -> bool:
+    """Whether there is anything that a finer run could contradict: not a value whose error is as large as itself."""
     return not (reply.invalid or reply.raised) and any(
-        status == Outcome.TOLERANCE_NOT_MET or status not in NUMERICS for status in reply.status
+        (error < np.abs(mu)).any() if status == Outcome.TOLERANCE_NOT_MET else status not in NUMERICS
+        for status, mu, error in zip(reply.status, reply.mu, reply.error)
     )
 
 
