@@ -60,6 +60,7 @@ def test_a_tile_that_raises_loses_its_own_points_only(command: Callable[..., Run
     ]
 
 
+@pytest.mark.long
 def test_a_worker_that_dies_loses_its_own_tile_only(command: Callable[..., Run]) -> None:
     hierarchy = [model for model in fake_hierarchy("killing", batch=4) if model.key in ("small", "translational")]
     run = command(*GRID, hierarchy=hierarchy, executor=process_pool)

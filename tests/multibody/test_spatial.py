@@ -71,6 +71,7 @@ def assert_agrees_with_newton_and_euler(scene: Scene, phase: tuple[float, float]
     assert (np.abs(engine.mu[0] - independent.mu) <= engine.error[0]).all(), (engine.mu, independent.mu, engine.error)
 
 
+@pytest.mark.long  # a minute of compiling the independent equations
 @pytest.mark.parametrize("supports", [3, 4])
 def test_factors_agree_with_newton_euler_equations_with_constraints(supports: int) -> None:
     assert_agrees_with_newton_and_euler(towers(supports), (2.0, 0.7))
