@@ -226,7 +226,7 @@ TRANSLATIONAL = _next(
     trajectory="multibody:trajectory",
     refusal="multibody:refusal",
     settings={"model": "translational", "regularization": V_REG},
-    seconds_per_point=0.35,
+    seconds_per_point=0.26,
     batch=2,
     applies=any_scene,
     most=16,
@@ -244,7 +244,7 @@ SPATIAL = _next(
     adds="Every body free to turn, at its height, on a ring of supports: overturning shares the load unequally, "
     "friction twists the platform, supports may lift off.",
     settings={"model": "spatial", "regularization": V_REG},
-    seconds_per_point=0.6,
+    seconds_per_point=0.65,
     batch=1,
     applies=has_spatial_data,
     most=4,
