@@ -23,18 +23,21 @@ class LocalCluster:
     def __init__(self, folder: Path, workers: int = 2, nanny: bool = False) -> None:
         self._log = (folder / "cluster.log").open("w")
         self._folder = folder
+        self._workers: list[subprocess.Popen[bytes]] = []
         file = folder / "scheduler.json"
         self._scheduler = self._start(
             ["scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file)]
         )
-        deadline = time.monotonic() + DEADLINE
-        while not file.exists() and time.monotonic() < deadline:
-            time.sleep(0.05)
-        self.address: str = json.loads(file.read_text(encoding="utf-8"))["address"]
-        words = ["--nthreads", "1", "--no-dashboard", "--nanny" if nanny else "--no-nanny", "--host", "127.0.0.1"]
-        self._workers = [self._start(["worker", self.address, *words]) for _ in range(workers)]
-        with Client(self.address, timeout=DEADLINE, set_as_default=False) as client:
-            client.wait_for_workers(workers, timeout=DEADLINE)
+        try:
+            self.address: str = json.loads(_written(file))["address"]
+            words = ["--nthreads", "1", "--no-dashboard", "--nanny" if nanny else "--no-nanny", "--host", "127.0.0.1"]
+            for _ in range(workers):
+                self._workers.append(self._start(["worker", self.address, *words]))
+            with Client(self.address, timeout=DEADLINE, set_as_default=False) as client:
+                client.wait_for_workers(workers, timeout=DEADLINE)
+        except BaseException:
+            self.end()  # a test without a cluster leaves no programs behind
+            raise
 
     def _start(self, words: list[str]) -> subprocess.Popen[bytes]:
         paths = os.pathsep.join([str(HERE), str(HERE.parents[1]), os.environ.get("PYTHONPATH", "")])
@@ -64,3 +67,13 @@ class LocalCluster:
                 os.killpg(process.pid, signal.SIGKILL)  # a nanny's worker is in its group
             process.wait()
         self._log.close()
+
+
+def _written(file: Path) -> str:
+    """The text of a JSON object in a file that another program creates first and then fills."""
+    deadline = time.monotonic() + DEADLINE
+    text = ""
+    while not text.rstrip().endswith("}") and time.monotonic() < deadline:
+        time.sleep(0.05)
+        text = file.read_text(encoding="utf-8") if file.exists() else ""
+    return text
