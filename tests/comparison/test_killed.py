@@ -36,12 +36,12 @@ INSTANTS = 24
 # An instant is a random number of stored results and a random time after. The run counts and kills itself: another
 # process, which a busy machine may keep waiting, would meet the late stages only.
 SCRIPT = """
-import itertools, os, random, shutil, signal, sys, threading
+import os, random, shutil, signal, sys
 sys.path[:0] = [{here!r}, {root!r}]
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from rich.console import Console
-from comparison.execution.cache import Cache
+from ending import end_after
 from test_killed import whole_run
 
 def run(place):
@@ -54,14 +54,6 @@ def killed(place, results, seconds):
         run(place)
         os._exit(0)
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == -signal.SIGKILL
-
-def end_after(results, seconds):
-    put, stored = Cache.put, itertools.count()
-    def counted(cache, key, value):
-        if next(stored) == results:
-            threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGKILL)).start()
-        put(cache, key, value)
-    Cache.put = counted
 
 run(Path("whole"))
 draw, count = random.Random(7), 0

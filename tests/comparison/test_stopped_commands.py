@@ -24,19 +24,11 @@ WORDS = ["--jobs", "2", "--out", "report"]
 
 # One process imports everything, then forks a run for every instant: a start of Python would take most of the time.
 KILLED = """
-import itertools, os, random, signal, sys, threading
+import os, random, signal, sys
 sys.path[:0] = [{here!r}, {root!r}]
 from pathlib import Path
-from comparison.execution.cache import Cache
+from ending import end_after
 from test_stopped_commands import COUNT, INSTANTS, run
-
-def end_after(results, seconds):
-    put, stored = Cache.put, itertools.count()
-    def counted(cache, key, value):
-        if next(stored) == results:
-            threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGKILL)).start()
-        put(cache, key, value)
-    Cache.put = counted
 
 draw, count = random.Random(3), 0
 while count < INSTANTS:
@@ -47,7 +39,7 @@ while count < INSTANTS:
     if child == 0:
         os.chdir(place)
         sys.stdout = open(os.devnull, "w")
-        end_after(results, seconds)  # a process beside it, which a busy machine may keep waiting, would be late
+        end_after(results, seconds)
         run()
         os._exit(0)
     if os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == -signal.SIGKILL and not (place / "report").exists():
