@@ -14,6 +14,10 @@ Classes
 -------
 Level           one level of accuracy: step, contact, tolerances
 
+Constants
+---------
+MAX_WORK        steps of the engine that a phase pair may take unless the caller says otherwise
+
 Examples
 --------
 >>> import multibody, reference
@@ -33,12 +37,14 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from multibody.integration.level import Level, levels
+    from multibody.integration.refine import MAX_WORK
     from multibody.integration.work_limit import refusal
     from multibody.motion import single_run, trajectory
     from multibody.surface import amplification
     from reference.problem import demands
 
 ENGINE = {
+    "MAX_WORK": "multibody.integration.refine",
     "Level": "multibody.integration.level",
     "amplification": "multibody.surface",
     "demands": "reference.problem",
@@ -48,7 +54,7 @@ ENGINE = {
     "trajectory": "multibody.motion",
 }
 
-__all__ = ["Level", "amplification", "demands", "levels", "refusal", "single_run", "trajectory"]
+__all__ = ["MAX_WORK", "Level", "amplification", "demands", "levels", "refusal", "single_run", "trajectory"]
 
 
 def __getattr__(name: str) -> Any:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from multibody.integration.constant_step import silence
 from multibody.integration.level import Level
 from multibody.integration.refine import MAX_WORK, WORK, Refinement, refine
-from multibody.models.assembly import assemble
+from multibody.models.assembly import assemble, required_model
 from multibody.models.system import EngineModel
 from reference.problem import (
     Amplification,
@@ -23,7 +23,6 @@ from reference.problem import (
     ground_peak,
     in_plane,
     planar_chain,
-    untilted,
 )
 from reference.problem.ranges import LEAST_ACCELERATION, TOLERANCE, checked_number
 
@@ -136,11 +135,10 @@ class _Reduced:
 
 
 def _reduced(scene: Scene, model: str, regularization: float | None, loading: str, full: bool) -> _Reduced:
-    """A platform that does not tilt needs no rotations, and a motion in a plane no coordinates across it."""
-    level = model == "spatial" and not full and untilted(scene).allowed
-    chosen = "translational" if level else model
+    """The model that is required, and in a plane no coordinates across it."""
+    chosen = required_model(scene, model, full)
     planar = chosen == "translational" and not full and planar_chain(scene).allowed
     moving = in_plane(scene) if planar else scene
     axes: dict[str, Any] = {"axes": 1} if planar else {}
     built = assemble(moving, chosen, regularization, loading=loading, **axes)
-    return _Reduced(moving, built, (scene, model, regularization, loading) if level else None, full)
+    return _Reduced(moving, built, (scene, model, regularization, loading) if chosen != model else None, full)

@@ -15,7 +15,7 @@ import reference
 import reference.problem
 
 PACKAGES = (reference, reference.problem, multibody)
-CONSTANTS = {"ADVICE", "GRAVITY"}  # explained in the docstring of their package
+CONSTANTS = {"ADVICE", "GRAVITY", "MAX_WORK"}  # explained in the docstring of their package
 NAMES = [
     pytest.param(package, name, id=f"{package.__name__}.{name}")
     for package in PACKAGES

@@ -1,1 +1,1 @@
-"""Runs of an assemble model: adaptive steps, levels of accuracy, peaks, error estimates and the work limit."""
+"""Runs of an assembled model: adaptive steps, levels of accuracy, peaks, error estimates and the work limit."""

@@ -59,7 +59,6 @@ class EngineRun:
     outcome: Outcome = Outcome.OK
     instant: float = math.nan  # of a termination, in units of time
     steps: int = 0
-    runs: int = 0  # of the engine
     warping_load: float = 0.0  # largest load that warping of the supports takes, in shares of the weight
     last_open: float = -math.inf  # the latest instant at which a support carried no load, in units of time
     max_displacement: float = 0.0  # horizontal, of the platform, in units of length
@@ -103,7 +102,6 @@ def run_adaptively(
         count = min(count, math.ceil((end - time) / step * (1.0 - 1e-12)))
         step, count = align_steps(model.ground.knots, model.ground.near, time, min(step, (end - time) / count), count)
         motion = engine.run(state, time, step, count)
-        result.runs += 1
         result.steps += count if motion is None else len(motion.time) - 1
         budget.left -= max(count, engine.iterations / FREE_ITERATIONS)
         if budget.left < 0.0:

@@ -42,12 +42,9 @@ UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
 MAX_WARPING_ERROR_SHARE = 0.2  # of the tolerance, that the load of warped supports may take as an error
 MAX_WORK_GROWTH = 2.0  # steps of a level over those of the level before
 STEPS_AFTER_SETTLING = 20.0  # largest steps from the last large value of a run to the end of the next
-MAX_EARLY_CHANGE = (
-    0.2  # between two levels, over what separates later values from the largest, of a run that stops early
-)
-MIN_END_MARGIN = (
-    0.1  # distance from the rim, of rho, and contact force, in weights, of a run that others may stop before
-)
+# change between two levels over what separates later values from the largest: beyond it a run goes to the end after all
+MAX_EARLY_CHANGE = 0.2
+MIN_END_MARGIN = 0.1  # of the first run from the rim, in rho, and contact force, in weights: closer, all go to the end
 
 
 @dataclass(frozen=True)
@@ -61,11 +58,6 @@ class Refinement:
     finest: EngineRun  # the last run
     coarser: tuple[tuple[EngineRun, float], ...] = ()  # runs whose differences to the last, in these shares, are errors
     floor: float = math.nan  # lower bound of a relative error
-
-
-def least_work(end: float, largest: float) -> float:
-    """Steps that a point takes at least: one run of duration `end` in the largest steps, both in units of time."""
-    return end / largest
 
 
 def refine(
@@ -89,7 +81,7 @@ def refine(
     pair = PhasePair(scene, model, phase, initial)
     budget = Budget(max_work)
     remaining = levels_of(scene, model, tolerance) if levels is None else list(levels)
-    if least_work(pair.end, remaining[0].step) > max_work:
+    if not budget.allows(pair.end, remaining[0]):
         no_run = EngineRun(Peaks(len(model.bodies), model.corner), math.inf, Outcome.STEP_LIMIT, 0.0)
         return _no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
     runs: list[EngineRun] = []

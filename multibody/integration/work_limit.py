@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from multibody.integration.adaptive import Budget
 from multibody.integration.constant_step import silence
 from multibody.integration.level import STEPS_PER_PERIOD, levels_of
-from multibody.integration.refine import MAX_WORK, MAX_WORK_GROWTH, least_work
-from multibody.models.assembly import assemble
-from reference.problem import Scene, untilted
+from multibody.integration.refine import MAX_WORK, MAX_WORK_GROWTH
+from multibody.models.assembly import assemble, required_model
+from reference.problem import Scene
 
 # work of two levels and of the compliance of the second over a first level in its largest steps: stops take as many
 WHOLE_POINT = 2.0 * (1.0 + 2.0 * MAX_WORK_GROWTH)
@@ -48,15 +49,13 @@ def refusal(
     >>> multibody.refusal(reference.load_scene("fig3-I"))
     ''
     """
-    chosen = "translational" if model == "spatial" and not full and untilted(scene).allowed else model
     with silence():
-        built = assemble(scene, chosen, regularization)
-    largest = levels_of(scene, built, tolerance)[0].step
-    end = scene.duration / built.units.time
-    needed = least_work(end, largest)
-    if needed <= max_work:
+        built = assemble(scene, required_model(scene, model, full), regularization)
+    first = levels_of(scene, built, tolerance)[0]
+    if Budget(max_work).allows(scene.duration / built.units.time, first):
         return ""
-    step = largest * built.units.time
+    step = first.step * built.units.time
+    needed = scene.duration / step
     tried = scene.duration * max_work / needed
     enough = tried / WHOLE_POINT
     return (

@@ -9,10 +9,15 @@ from multibody.models.plate import LOADINGS
 from multibody.models.spatial import spatial
 from multibody.models.system import EngineModel
 from multibody.models.translational import translational
-from reference.problem import Scene
+from reference.problem import Scene, untilted
 from reference.problem.ranges import REGULARIZATION, checked_choice, checked_number
 
 BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": translational, "spatial": spatial}
+
+
+def required_model(scene: Scene, model: str, full: bool) -> str:
+    """The model that answers for `model`: a platform that does not tilt needs no rotations, unless `full`."""
+    return "translational" if model == "spatial" and not full and untilted(scene).allowed else model
 
 
 def assemble(

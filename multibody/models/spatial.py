@@ -41,6 +41,7 @@ from multibody.models.supports import (
 from multibody.models.system import EngineModel, EngineState
 from multibody.models.units import Units, link_stiffness, units_of
 from reference.problem import Scene, State
+from reference.problem.scene import ring_places
 
 Array = NDArray[np.float64]
 
@@ -237,8 +238,7 @@ def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:
     assert isolator.supports is not None
     assert isolator.ring is not None
     assert isolator.sphere_radius is not None
-    angles = 2.0 * np.pi * (np.arange(isolator.supports) + 0.5) / isolator.supports
-    ring = isolator.ring / units.length * np.column_stack([np.cos(angles), np.sin(angles)])
+    ring = ring_places(isolator.supports, isolator.ring / units.length)
     heights = np.array([body.height for body in scene.bodies]) / units.length
     sizes = np.array([body.size for body in scene.bodies]) / units.length
     return ring, isolator.sphere_radius / units.length, heights, sizes

@@ -107,8 +107,8 @@ def demands(trajectory: Trajectory) -> Demands:
     --------
     >>> import reference
     >>> motion = reference.trajectory(reference.load_scene("fig3-I"), (0.3, 1.1))
-    >>> found = reference.demands(motion)
-    >>> round(found.displacement.value, 4), found.displacement.error < 1e-5
+    >>> numbers = reference.demands(motion)
+    >>> round(numbers.displacement.value, 4), numbers.displacement.error < 1e-5
     (0.0267, True)
     """
     read = _Reading(trajectory)

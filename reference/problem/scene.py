@@ -200,8 +200,7 @@ class Scene(Table):
         count, ring = self.isolator.supports, self.isolator.ring
         if count is None or ring is None:
             return None
-        angles = 2.0 * np.pi * (np.arange(count) + 0.5) / count
-        return ring * np.column_stack([np.cos(angles), np.sin(angles)])
+        return ring_places(count, ring)
 
     @property
     def lubricated(self) -> bool:
@@ -285,6 +284,12 @@ class Scene(Table):
             exclude_none=True,  # a key that is not given changes no result
         )
         return hashlib.sha256(content.encode()).hexdigest()[:16]
+
+
+def ring_places(count: int, radius: float) -> NDArray[np.float64]:
+    """Places (count, 2) on a ring, at angles 2 pi (k + 1/2) / count."""
+    angles = 2.0 * np.pi * (np.arange(count) + 0.5) / count
+    return radius * np.column_stack([np.cos(angles), np.sin(angles)])
 
 
 KEYS: dict[str, tuple[str, ...]] = {

@@ -27,7 +27,7 @@ def amplification(
     tolerance: float = 1e-2,
     contact_stiffness: float | None = None,
     step: float | None = None,
-    max_work: float = 2e6,
+    max_work: float = multibody.MAX_WORK,
 ) -> Amplification:
     """
     As `multibody.amplification`, without reductions and with few levels.
