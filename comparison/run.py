@@ -47,7 +47,7 @@ from comparison.execution.task_results import TaskResults
 from comparison.execution.workers import workers
 from comparison.registry import affordable, analysis_cost, chosen_analyses, first_tasks
 from comparison.report.assemble import assemble
-from comparison.report.findings import collect_findings
+from comparison.report.findings import Fault, collect_findings
 from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work
 from comparison.study.planning import BudgetError, StudyPlan, StudyRequest, plan_study
 from comparison.study.study import Study
@@ -195,16 +195,15 @@ def _run(
     return 1 if options.check and results.broken else 0
 
 
-def _faults(study: Study, computed: Computed) -> list[str]:
-    """What solvers reported, one line for each scene and model."""
+def _faults(study: Study, computed: Computed) -> list[Fault]:
+    """What solvers reported, once for each scene, model and message."""
     titles = {model.key: model.title for model in study.hierarchy}
-    return sorted(
-        {
-            f"{batch.scene.name}, {titles[batch.model]}: {answer.error_message}"
-            for batch, answer in zip(computed.batches, computed.answers)
-            if answer.error_message
-        }
-    )
+    faults = {
+        Fault(batch.scene.name, f"{titles[batch.model]}: {answer.error_message}")
+        for batch, answer in zip(computed.batches, computed.answers)
+        if answer.error_message
+    }
+    return sorted(faults, key=lambda fault: fault.line)
 
 
 def _taken_up(load: Callable[[Path], Any], out: Path) -> Any:

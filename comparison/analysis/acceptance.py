@@ -35,13 +35,18 @@ class Limit:
     breaches: tuple[Breach, ...]  # none if it holds
 
     @property
-    def broken(self) -> list[str]:
-        """One line for each breach."""
+    def broken_texts(self) -> list[str]:
+        """One text for each breach, without the scene."""
         return [
-            f"{self.scene}: {f'body {breach.body}: ' if breach.body else ''}acceptance.{self.key}: "
+            f"{f'body {breach.body}: ' if breach.body else ''}acceptance.{self.key}: "
             f"{breach.reason or f'{breach.found:.3g} found'}, {self.allowed:g} allowed"
             for breach in self.breaches
         ]
+
+    @property
+    def broken(self) -> list[str]:
+        """One line for each breach."""
+        return [f"{self.scene}: {text}" for text in self.broken_texts]
 
 
 def checked_limits(
@@ -62,17 +67,17 @@ def checked_limits(
     list of Limit
         In the order of scenes and keys. A scene that states no limit has none.
     """
-    found = []
+    limits = []
     for scene in study.scenes:
-        silent = [one for one in lacking if one.scene == scene.name]
-        own = [row for row in rows if row.scene == scene.name]
-        checked = _breaches(study, surfaces, scene, own, silent)
-        found += [Limit(scene.name, key, allowed, tuple(breaches)) for key, allowed, breaches in checked]
-    return found
+        gaps = [gap for gap in lacking if gap.scene == scene.name]
+        differences = [row for row in rows if row.scene == scene.name]
+        checked = _breaches(study, surfaces, scene, differences, gaps)
+        limits += [Limit(scene.name, key, allowed, tuple(breaches)) for key, allowed, breaches in checked]
+    return limits
 
 
 def _breaches(
-    study: Study, surfaces: xr.Dataset, scene: Scene, rows: Sequence[Difference], silent: Sequence[Unanswered]
+    study: Study, surfaces: xr.Dataset, scene: Scene, rows: Sequence[Difference], gaps: Sequence[Unanswered]
 ) -> Iterator[tuple[str, float, list[Breach]]]:
     """Key, limit and what breaks it, of every limit that the scene states."""
     stated = scene.acceptance
@@ -81,15 +86,15 @@ def _breaches(
         if any(row.asked > row.unanswered for row in compared):
             yield key, allowed, _beyond([(row.body, getattr(row, measure)) for row in compared], allowed)
         else:
-            reason = f"nothing to compare ({_why_not(study, scene, pair, silent)})"
+            reason = f"nothing to compare ({_why_not(study, scene, pair, gaps)})"
             yield key, allowed, [Breach(0, float("nan"), reason)]
     if stated.closure is not None:
         bodies = range(1, len(scene.bodies) + 1)
-        gaps = [(body, closure(steps(study, surfaces, scene.name, body))) for body in bodies]
-        yield "closure", stated.closure, _beyond(gaps, stated.closure)
+        remainders = [(body, closure(steps(study, surfaces, scene.name, body))) for body in bodies]
+        yield "closure", stated.closure, _beyond(remainders, stated.closure)
     if (allowed_points := stated.failures) is not None:
-        count = sum(one.points for one in silent)
-        models = ", ".join(f"{one.title} {one.points} of {one.asked}" for one in silent)
+        count = sum(gap.points for gap in gaps)
+        models = ", ".join(f"{gap.title} {gap.points} of {gap.asked}" for gap in gaps)
         excess = f"{count} points without an answer ({models})"
         yield "failed", allowed_points, [Breach(0, count, excess)] if count > allowed_points else []
 
@@ -105,16 +110,16 @@ def _beyond(values: Sequence[tuple[int, float]], allowed: float) -> list[Breach]
 
 def _same(study: Study, scene: Scene, pair: str) -> str:
     """The pair under which a study compares these models: the translational difference may be the total one."""
-    compared = {one.key: one for one in study.pairs(scene)}
+    compared = {known.key: known for known in study.pairs(scene)}
     engines = [model.key for model in study.compared(scene) if model.side == "engine"]
     alone = pair == "translational" and pair not in compared and engines == [compared["total"].second.key]
     return "total" if alone else pair
 
 
-def _why_not(study: Study, scene: Scene, pair: str, silent: Sequence[Unanswered]) -> str:
+def _why_not(study: Study, scene: Scene, pair: str, gaps: Sequence[Unanswered]) -> str:
     """Why a pair of models is not compared."""
-    wanted = next((one for one in pairs_of(scene, study.hierarchy) if one.key == pair), None)
+    wanted = next((known for known in pairs_of(scene, study.hierarchy) if known.key == pair), None)
     if wanted is None:
         return "no engine in this study"
-    mute = [one.description for one in silent if one.model in (wanted.first.key, wanted.second.key)]
-    return mute[0] if mute else "no phase pair in common"
+    reasons = [gap.description for gap in gaps if gap.model in (wanted.first.key, wanted.second.key)]
+    return reasons[0] if reasons else "no phase pair in common"

@@ -60,7 +60,7 @@ class Entry:
 
 def steps(study: Study, surfaces: xr.Dataset, scene: str, body: int) -> list[Step]:
     """The steps of one body's surface in the order of the hierarchy, named after their second model, and the total."""
-    models = study.compared(next(one for one in study.scenes if one.name == scene))
+    models = study.compared(next(known for known in study.scenes if known.name == scene))
     pairs = [(second.key, first, second) for first, second in pairwise(models)]
     return [
         step(surfaces, scene, key, first, second, body, per=models[0])
@@ -85,13 +85,14 @@ def closure(steps: Sequence[Step]) -> float:
     Rounding if the budget is sound; NaN without such a point.
     """
     coarsest = max(step.stride for step in steps)
-    gap = np.abs(np.sum([step.every(coarsest) for step in steps[:-1]], axis=0) - steps[-1].every(coarsest))
+    *sizes, total = (step.every(coarsest, step.size) for step in steps)
+    gap = np.abs(np.sum(sizes, axis=0) - total)
     return float(np.nanmax(gap)) if np.isfinite(gap).any() else float("nan")
 
 
-def torus_distance(one: Sequence[float], other: Sequence[float]) -> float:
+def torus_distance(first: Sequence[float], second: Sequence[float]) -> float:
     """Distance of two phase pairs on the square that closes at 2 pi in both directions, rad."""
-    apart = np.abs(np.subtract(one, other)) % (2.0 * np.pi)
+    apart = np.abs(np.subtract(first, second)) % (2.0 * np.pi)
     return float(np.hypot(*np.minimum(apart, 2.0 * np.pi - apart)))
 
 
@@ -131,7 +132,7 @@ def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> Entry:
         error_estimate=float(np.median(step.uncertainty[known])),
         peak_moves=float("nan")
         if step.recorded
-        else min(torus_distance(one, other) for one in highest[0] for other in highest[1]),
+        else min(torus_distance(first, second) for first in highest[0] for second in highest[1]),
         correlation=_correlation(both[0][known], both[1][known]),
     )
 
@@ -140,8 +141,8 @@ def _phases_at(step: Step, where: NDArray[np.bool_]) -> list[tuple[float, float]
     return [(float(step.alpha1[row]), float(step.alpha2[column])) for row, column in np.argwhere(where)]
 
 
-def _correlation(one: Array, other: Array) -> float:
+def _correlation(first: Array, second: Array) -> float:
     """Pearson's, NaN for a flat surface."""
-    a, b = one - one.mean(), other - other.mean()
+    a, b = first - first.mean(), second - second.mean()
     scale = float(np.sqrt((a @ a) * (b @ b)))
     return float(a @ b) / scale if scale > 0.0 else float("nan")

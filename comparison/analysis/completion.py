@@ -70,15 +70,15 @@ def completions(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Comple
     """
     if scene.recorded:
         return []
-    models, found = study.compared(scene), []
+    models, listed = study.compared(scene), []
     for number, model in enumerate(models):
         few = len(study.axis(model)) < MIN_PER_AXIS
         if study.stride(model) == 1 and not (few and model.settings.get("model") == "spatial"):
             continue
         finer = next((before for before in reversed(models[:number]) if study.stride(before) == 1), None)
         for body in range(1, len(scene.bodies) + 1):
-            found.append(_completion(study, surfaces, scene, models[0], finer, model, body))
-    return found
+            listed.append(_completion(study, surfaces, scene, models[0], finer, model, body))
+    return listed
 
 
 def with_completed(surfaces: xr.Dataset, listed: Sequence[Completion]) -> xr.Dataset:

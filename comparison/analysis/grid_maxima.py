@@ -27,17 +27,17 @@ class GridMaximum:
 
 def grid_maxima(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[GridMaximum]:
     """One per model and body, in this order. Of phase pairs with the same value it is the first."""
-    found = []
+    maxima = []
     for model in models_of(scene, study.hierarchy):
         for body in range(1, len(scene.bodies) + 1):
             data = common_phases(surfaces, scene.name, [model.key]).sel(body=body)
             mu, nan = known_mu(data, model), float("nan")
             if not np.isfinite(mu).any():
-                found.append(GridMaximum(model.key, body, nan, nan, (nan, nan)))
+                maxima.append(GridMaximum(model.key, body, nan, nan, (nan, nan)))
                 continue
             row, column = np.unravel_index(np.nanargmax(mu), mu.shape)
             alpha1, alpha2 = (float(data[name][place]) for name, place in (("alpha1", row), ("alpha2", column)))
             phases = (nan, nan) if scene.recorded else (alpha1, alpha2)
             error = float(data["error"].sel(model=model.key)[row, column])
-            found.append(GridMaximum(model.key, body, float(mu[row, column]), error, phases))
-    return found
+            maxima.append(GridMaximum(model.key, body, float(mu[row, column]), error, phases))
+    return maxima

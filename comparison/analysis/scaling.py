@@ -62,7 +62,7 @@ class Scaling(Analysis[list[Trend]]):
         """The trends, in the order of the tasks; None for a study without phases."""
         if not study.phased:
             return None
-        return [one for task in self.tasks(study) for one in results.value(task, _without_value)]
+        return [trend for task in self.tasks(study) for trend in results.value(task, _without_value)]
 
 
 def scene_trends(task: Arguments) -> list[Trend]:

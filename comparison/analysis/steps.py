@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -76,9 +77,9 @@ class Step:
         row, column = self.place
         return float(self.alpha1[row // self.stride]), float(self.alpha2[column // self.stride])
 
-    def every(self, stride: int) -> Array:
-        """The size at every `stride`-th phase of the study only."""
-        return self.size[:: stride // self.stride, :: stride // self.stride]
+    def every(self, stride: int, values: NDArray[Any]) -> NDArray[Any]:
+        """`values` of the step, such as its size, at every `stride`-th phase of the study only."""
+        return values[:: stride // self.stride, :: stride // self.stride]
 
 
 def known_mu(data: xr.Dataset, model: Model) -> Array:
@@ -101,7 +102,8 @@ def step(surfaces: xr.Dataset, scene: str, key: str, first: Model, second: Model
     def error(model: Model) -> Array:
         return np.asarray(data["error"].sel(model=model.key), float)
 
-    scale = np.where(mu(per) > 0.0, mu(per), np.nan)
+    unit = mu(per)
+    scale = np.where(unit > 0.0, unit, np.nan)
     return Step(
         key=key,
         first=first,

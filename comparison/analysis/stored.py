@@ -1,9 +1,11 @@
-"""Files of results that another command left beside the report."""
+"""JSON files of results: written by one command, and read by another that finds them beside the report."""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
@@ -11,6 +13,11 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 FILE_FORMAT = ConfigDict(extra="forbid", use_attribute_docstrings=True)
 
 T = TypeVar("T")
+
+
+def json_text(content: Mapping[str, Any]) -> str:
+    """Content of a JSON file, a line for every value. Raises ValueError for NaN, which JSON does not have."""
+    return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def load_file(file: Path, kind: type[T], what: str, command: str) -> T | None:

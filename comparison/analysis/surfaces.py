@@ -9,8 +9,9 @@ import numpy as np
 import xarray as xr
 
 from comparison.study.batches import Batch, BatchResult
-from comparison.study.models import models_of
+from comparison.study.models import Model, models_of
 from comparison.study.study import Study
+from reference.problem import Scene
 
 NOT_APPLICABLE = "not applicable"  # status of a model that the scene gives nothing to add
 NOT_ASKED = "not asked"  # status of the phases between those of a model that computes every k-th
@@ -108,9 +109,14 @@ def largest_cap_share(surfaces: xr.Dataset, scene: str, model: str) -> float:
 
 def common_phases(surfaces: xr.Dataset, scene: str, models: Sequence[str]) -> xr.Dataset:
     """The part of one scene's surfaces at the phases that each of these models was asked for."""
-    own = surfaces.sel(scene=scene)
-    every = slice(None, None, int(own["stride"].sel(model=list(models)).max()))
-    return own.isel(alpha1=every, alpha2=every)
+    data = surfaces.sel(scene=scene)
+    every = slice(None, None, int(data["stride"].sel(model=list(models)).max()))
+    return data.isel(alpha1=every, alpha2=every)
+
+
+def asked_of(surfaces: xr.Dataset, scene: Scene, model: Model) -> xr.Dataset:
+    """The part of one scene's surfaces that a model was asked for: its phases, and the bodies that the scene has."""
+    return common_phases(surfaces, scene.name, [model.key]).isel(body=slice(len(scene.bodies)))
 
 
 def outcome_counts(surfaces: xr.Dataset, scene: str, model: str) -> dict[str, int]:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from comparison.analysis.surfaces import common_phases
+from comparison.analysis.surfaces import asked_of
 from comparison.study.models import Model
 from comparison.study.planning import StudyPlan
 
@@ -37,9 +37,8 @@ def _met(plan: StudyPlan, model: Model, surfaces: xr.Dataset) -> dict[str, Any]:
     study, errors = plan.study, []
     for scene in study.scenes:
         if model.applies(scene):
-            own = common_phases(surfaces, scene.name, [model.key]).sel(model=model.key)
-            own = own.isel(body=slice(len(scene.bodies)))
-            errors.append(np.asarray(own["error"] / own["mu"]).reshape(-1, len(scene.bodies)).max(axis=1))
+            data = asked_of(surfaces, scene, model).sel(model=model.key)
+            errors.append(np.asarray(data["error"] / data["mu"]).reshape(-1, len(scene.bodies)).max(axis=1))
     every = np.nan_to_num(np.concatenate(errors), nan=np.inf)
     worst = float(np.quantile(every, 0.99, method="higher"))
     return {

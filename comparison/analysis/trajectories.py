@@ -239,7 +239,7 @@ def thinned(time: Array, values: Array, peaks: NDArray[np.intp], share: float = 
     scaled = values / swing(values)
     kept = np.unique(np.concatenate([[0, len(time) - 1], peaks]))
     spans = list(zip(kept[:-1].tolist(), kept[1:].tolist()))
-    found = set(kept.tolist())
+    indices = set(kept.tolist())
     while spans:
         a, b = spans.pop()
         if b - a < 2:
@@ -249,9 +249,9 @@ def thinned(time: Array, values: Array, peaks: NDArray[np.intp], share: float = 
         worst = int(np.argmax(missed))
         if missed[worst] > share:
             middle = a + 1 + worst
-            found.add(middle)
+            indices.add(middle)
             spans += [(a, middle), (middle, b)]
-    return np.array(sorted(found))
+    return np.array(sorted(indices))
 
 
 def _nothing(place: Place, model: str, outcome: Outcome, error_message: str) -> StoredMotion:

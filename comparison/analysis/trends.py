@@ -92,10 +92,10 @@ def fitted(parameter: Sequence[float], sizes: Array, errors: Array) -> Slope:
         return Slope(np.nan, np.nan, points, len(rows))
     x, y, error_estimate = [], [], []
     for row in rows:
-        one = np.log(np.asarray(parameter)[known[row]])
-        other = np.log(np.abs(sizes[row, known[row]]))
-        x.append(one - one.mean())
-        y.append(other - other.mean())
+        abscissa = np.log(np.asarray(parameter)[known[row]])
+        ordinate = np.log(np.abs(sizes[row, known[row]]))
+        x.append(abscissa - abscissa.mean())
+        y.append(ordinate - ordinate.mean())
         error_estimate.append(errors[row, known[row]] / np.abs(sizes[row, known[row]]))
     along, up, noise = (np.concatenate(parts) for parts in (x, y, error_estimate))
     spread = float(along @ along)

@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.analysis.steps import WORTHLESS
-from comparison.analysis.surfaces import common_phases, outcome_counts
+from comparison.analysis.steps import known_mu
+from comparison.analysis.surfaces import asked_of, outcome_counts
 from comparison.study.batches import refusal_of
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
@@ -80,7 +80,7 @@ def with_silent_models(study: Study, surfaces: xr.Dataset) -> Study:
 
 def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
     """Every model of every scene that lacks a value somewhere, in the order of scenes and models."""
-    found = []
+    gaps = []
     for scene in study.scenes:
         compared = {model.key for model in study.compared(scene)}
         for model in models_of(scene, study.hierarchy):
@@ -89,8 +89,8 @@ def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
                 asked = study.points(model, scene)
                 used = model.key in compared and lacking < asked
                 notes = _notes(study, surfaces, scene, model)
-                found.append(Unanswered(scene.name, model.key, model.title, lacking, asked, used, notes))
-    return found
+                gaps.append(Unanswered(scene.name, model.key, model.title, lacking, asked, used, notes))
+    return gaps
 
 
 def advice(study: Study, scene: Scene, model: Model, outcome: str) -> str:
@@ -112,17 +112,10 @@ def _notes(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> tu
 
 def _answered(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
     """At which phase pairs asked of a model every body has a value."""
-    mu, _ = _values(surfaces, scene, model)
+    mu = np.asarray(asked_of(surfaces, scene, model)["mu"].sel(model=model.key), float)
     return np.asarray(np.isfinite(mu).all(axis=0))
 
 
 def _usable(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
     """At which of them every value is known to half of itself."""
-    mu, error = _values(surfaces, scene, model)
-    return np.asarray((np.isfinite(mu) & (error <= WORTHLESS * mu)).all(axis=0))
-
-
-def _values(surfaces: xr.Dataset, scene: Scene, model: Model) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """mu and error (N, K, K) at the phase pairs asked of a model."""
-    own = common_phases(surfaces, scene.name, [model.key]).sel(model=model.key).isel(body=slice(len(scene.bodies)))
-    return np.asarray(own["mu"], float), np.asarray(own["error"], float)
+    return np.asarray(np.isfinite(known_mu(asked_of(surfaces, scene, model), model)).all(axis=0))

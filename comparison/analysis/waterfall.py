@@ -70,7 +70,7 @@ def waterfall(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> Wa
     """
     hierarchy = steps(study, surfaces, scene.name, body)
     stride = max(step.stride for step in hierarchy)
-    known = np.all([_every(step, step.known, stride) for step in hierarchy], axis=0)
+    known = np.all([step.every(stride, step.known) for step in hierarchy], axis=0)
     bars = tuple(_mean(step, known, stride) for step in hierarchy)
     models = study.compared(scene)
     return Waterfall(
@@ -108,15 +108,10 @@ def largest_difference(study: Study, surfaces: xr.Dataset, scene: Scene, body: i
     return LargestDifference(bars, _at(total, total.place), total.phases, len(total.size))
 
 
-def _every(step: Step, values: NDArray[np.generic], stride: int) -> NDArray[np.generic]:
-    every = slice(None, None, stride // step.stride)
-    return values[every, every]
-
-
 def _mean(step: Step, known: NDArray[np.bool_], stride: int) -> WaterfallBar:
     if not known.any():
         return WaterfallBar(step.second.key, NAN, NAN)
-    size, error = (float(_every(step, values, stride)[known].mean()) for values in (step.size, step.uncertainty))
+    size, error = (float(step.every(stride, values)[known].mean()) for values in (step.size, step.uncertainty))
     return WaterfallBar(step.second.key, size, error)
 
 

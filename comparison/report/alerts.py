@@ -10,20 +10,20 @@ from comparison.study.models import models_of
 WIDE = 0.5  # of rho: a displacement of the platform from the middle that a reader must know of
 
 
-def alerts(found: Findings) -> list[Alert]:
+def alerts(findings: Findings) -> list[Alert]:
     """
     Every alert of a run, red before amber, otherwise in the order of the kinds and scenes.
 
     Red: a model has no value at any phase pair, or an acceptance limit is broken. Amber: a model lacks a value at some
     phase pairs, a solver reported an error, or a platform moves so far that the report says so.
     """
-    listed = [*_gaps(found), *_limits(found), *_faults(found), *_swings(found)]
+    listed = [*_gaps(findings), *_limits(findings), *_faults(findings), *_swings(findings)]
     return sorted(listed, key=lambda alert: alert.level != "red")
 
 
-def _gaps(found: Findings) -> list[Alert]:
+def _gaps(findings: Findings) -> list[Alert]:
     rows = []
-    for lacking in found.unanswered:
+    for lacking in findings.unanswered:
         refused = lacking.points == lacking.asked
         rest = "" if lacking.used else "; comparisons leave this model out"
         outcomes = ", ".join(
@@ -42,30 +42,28 @@ def _gaps(found: Findings) -> list[Alert]:
     return rows
 
 
-def _limits(found: Findings) -> list[Alert]:
+def _limits(findings: Findings) -> list[Alert]:
     return [
         Alert(
             level="red",
             kind="limit",
             scene=limit.scene,
-            text=line.removeprefix(f"{limit.scene}: "),
+            text=text,
             help="read the cause of the difference, then correct the scene or the limit in its [acceptance] table",
         )
-        for limit in found.limits
-        for line in limit.broken
+        for limit in findings.limits
+        for text in limit.broken_texts
     ]
 
 
-def _faults(found: Findings) -> list[Alert]:
-    rows = []
-    for line in found.faults:
-        scene, _, text = line.partition(", ")
-        rows.append(Alert(level="amber", kind="fault", scene=scene, text=text, help=""))
-    return rows
+def _faults(findings: Findings) -> list[Alert]:
+    return [
+        Alert(level="amber", kind="fault", scene=fault.scene, text=fault.text, help="") for fault in findings.faults
+    ]
 
 
-def _swings(found: Findings) -> list[Alert]:
-    study = found.study
+def _swings(findings: Findings) -> list[Alert]:
+    study = findings.study
     return [
         Alert(
             level="amber",
@@ -76,5 +74,5 @@ def _swings(found: Findings) -> list[Alert]:
         )
         for scene in study.scenes
         for model in models_of(scene, study.hierarchy)
-        if (share := largest_cap_share(found.surfaces, scene.name, model.key)) > WIDE
+        if (share := largest_cap_share(findings.surfaces, scene.name, model.key)) > WIDE
     ]

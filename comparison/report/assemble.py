@@ -52,13 +52,13 @@ from reference.problem import Family, Outcome, Scene
 from reference.problem.analyses import ANALYSES
 
 
-def assemble(found: Findings) -> Results:
+def assemble(findings: Findings) -> Results:
     """
     The results of a run.
 
     Parameters
     ----------
-    found : Findings
+    findings : Findings
         Study, surfaces and what the analyses returned.
 
     Returns
@@ -66,39 +66,41 @@ def assemble(found: Findings) -> Results:
     Results
         Everything that summary.json holds; verdicts, bars and limits included.
     """
-    study = found.study
+    study = findings.study
     waterfalls = {
-        scene.name: [waterfall(study, found.surfaces, scene, body) for body in range(1, len(scene.bodies) + 1)]
+        scene.name: [waterfall(study, findings.surfaces, scene, body) for body in range(1, len(scene.bodies) + 1)]
         for scene in study.scenes
     }
     return Results(
-        run=Run.model_validate(found.run),
+        run=Run.model_validate(findings.run),
         grid=study.grid,
         tolerance=study.tolerance,
         models=[ModelDescription.model_validate(model) for model in study.hierarchy],
-        scenes=[_scene(found, scene, waterfalls[scene.name]) for scene in study.scenes],
-        errata=None if "errata" in study.absent else _errata(found),
-        assumptions=None if found.assumptions is None else Assumptions.model_validate(found.assumptions.listed()),
-        claims=None if found.claims is None else _claims(found.claims),
-        scaling=_trends(found.scaling),
-        convergence=_trends(found.convergence),
-        extremes=found.extremes,
-        tradeoff=None if found.tradeoff is None else list(found.tradeoff),
-        families=None if found.families is None else [_family(found, family, waterfalls) for family in found.families],
-        unanswered=[Unanswered.model_validate(lacking) for lacking in found.unanswered],
+        scenes=[_scene(findings, scene, waterfalls[scene.name]) for scene in study.scenes],
+        errata=None if "errata" in study.absent else _errata(findings),
+        assumptions=None if findings.assumptions is None else Assumptions.model_validate(findings.assumptions.listed()),
+        claims=None if findings.claims is None else _claims(findings.claims),
+        scaling=_trends(findings.scaling),
+        convergence=_trends(findings.convergence),
+        extremes=findings.extremes,
+        tradeoff=None if findings.tradeoff is None else list(findings.tradeoff),
+        families=None
+        if findings.families is None
+        else [_family(findings, family, waterfalls) for family in findings.families],
+        unanswered=[Unanswered.model_validate(lacking) for lacking in findings.unanswered],
         absent=study.absent,
-        alerts=alerts(found),
-        faults=list(found.faults),
+        alerts=alerts(findings),
+        faults=[fault.line for fault in findings.faults],
         no_pdf=why_no_pdf(),
     )
 
 
-def _scene(found: Findings, scene: Scene, waterfalls: Sequence[BodyWaterfall]) -> SceneResult:
+def _scene(findings: Findings, scene: Scene, waterfalls: Sequence[BodyWaterfall]) -> SceneResult:
     def of_scene(rows: Sequence[Any]) -> list[Any]:
         return [row for row in rows if row.scene == scene.name]
 
-    study, surfaces, bodies = found.study, found.surfaces, len(scene.bodies)
-    headlines = [headline(study, surfaces, scene, bars, found.rows) for bars in waterfalls]
+    study, surfaces, bodies = findings.study, findings.surfaces, len(scene.bodies)
+    headlines = [headline(study, surfaces, scene, bars, findings.rows) for bars in waterfalls]
     return SceneResult(
         name=scene.name,
         title=scene.title,
@@ -108,25 +110,25 @@ def _scene(found: Findings, scene: Scene, waterfalls: Sequence[BodyWaterfall]) -
         recorded=scene.recorded,
         analyses=[name for name in ANALYSES if study.selection.has(name, scene.name)],
         acceptance=scene.acceptance,
-        models={model.key: _model(found, scene, model) for model in models_of(scene, study.hierarchy)},
-        differences=[Difference.model_validate(row) for row in of_scene(found.rows)],
-        budget=[BudgetEntry.model_validate(entry) for entry in of_scene(found.budget)],
+        models={model.key: _model(findings, scene, model) for model in models_of(scene, study.hierarchy)},
+        differences=[Difference.model_validate(row) for row in of_scene(findings.rows)],
+        budget=[BudgetEntry.model_validate(entry) for entry in of_scene(findings.budget)],
         headlines=[Headline.model_validate(each) for each in headlines],
         waterfalls=[Waterfall.model_validate(each) for each in waterfalls],
-        completions=[Completion.model_validate(surface) for surface in of_scene(found.completions)],
+        completions=[Completion.model_validate(surface) for surface in of_scene(findings.completions)],
         grid_maxima=[GridMaximum.model_validate(each) for each in grid_maxima(study, surfaces, scene)],
-        values=_values(found, scene) if scene.recorded else [],
-        limits=[Limit.model_validate(limit) for limit in of_scene(found.limits)],
-        effective=[Effective.model_validate(values) for values in of_scene(found.effective)],
-        demands=_demands(found, scene),
+        values=_values(findings, scene) if scene.recorded else [],
+        limits=[Limit.model_validate(limit) for limit in of_scene(findings.limits)],
+        effective=[Effective.model_validate(values) for values in of_scene(findings.effective)],
+        demands=_demands(findings, scene),
     )
 
 
-def _demands(found: Findings, scene: Scene) -> list[MotionDemands]:
+def _demands(findings: Findings, scene: Scene) -> list[MotionDemands]:
     """Of every stored motion that was computed."""
-    alpha1, alpha2 = (found.surfaces[name].values for name in ("alpha1", "alpha2"))
+    alpha1, alpha2 = (findings.surfaces[name].values for name in ("alpha1", "alpha2"))
     listed = []
-    for motion in found.motions or []:
+    for motion in findings.motions or []:
         place = motion.place
         if place.scene == scene.name and motion.demands is not None:
             phases = (math.nan, math.nan) if scene.recorded else (alpha1[place.row], alpha2[place.column])
@@ -135,8 +137,8 @@ def _demands(found: Findings, scene: Scene) -> list[MotionDemands]:
     return listed
 
 
-def _model(found: Findings, scene: Scene, model: Model) -> ModelOutcome:
-    study, surfaces = found.study, found.surfaces
+def _model(findings: Findings, scene: Scene, model: Model) -> ModelOutcome:
+    study, surfaces = findings.study, findings.surfaces
     counts = outcome_counts(surfaces, scene.name, model.key)
     return ModelOutcome(
         phases_per_axis=len(study.axis(model, scene)),
@@ -149,9 +151,9 @@ def _model(found: Findings, scene: Scene, model: Model) -> ModelOutcome:
     )
 
 
-def _values(found: Findings, scene: Scene) -> list[RecordValue]:
+def _values(findings: Findings, scene: Scene) -> list[RecordValue]:
     """mu under the record, by model and body."""
-    data = found.surfaces.sel(scene=scene.name).isel(alpha1=0, alpha2=0)
+    data = findings.surfaces.sel(scene=scene.name).isel(alpha1=0, alpha2=0)
     return [
         RecordValue(
             model=model.key,
@@ -160,24 +162,26 @@ def _values(found: Findings, scene: Scene) -> list[RecordValue]:
             error=float(data["error"].sel(model=model.key, body=body)),
             status=str(data["status"].sel(model=model.key).item()),
         )
-        for model in models_of(scene, found.study.hierarchy)
+        for model in models_of(scene, findings.study.hierarchy)
         for body in range(1, len(scene.bodies) + 1)
     ]
 
 
-def _family(found: Findings, family: Family, waterfalls: Mapping[str, Sequence[BodyWaterfall]]) -> FamilyResult:
+def _family(findings: Findings, family: Family, waterfalls: Mapping[str, Sequence[BodyWaterfall]]) -> FamilyResult:
     return FamilyResult(
         name=family.name,
         key=family.key,
         values=list(family.values),
         scenes=[scene.name for scene in family.scenes],
-        curves=[FamilyCurve.model_validate(curve) for curve in family_curves(found.study, found.surfaces, family)],
+        curves=[
+            FamilyCurve.model_validate(curve) for curve in family_curves(findings.study, findings.surfaces, family)
+        ],
         steps=[FamilyStep.model_validate(step) for step in family_steps(family, waterfalls)],
-        demands=[FamilyDemand.model_validate(each) for each in family_demands(family, found.motions or [])],
+        demands=[FamilyDemand.model_validate(each) for each in family_demands(family, findings.motions or [])],
     )
 
 
-def _errata(found: Findings) -> list[Erratum]:
+def _errata(findings: Findings) -> list[Erratum]:
     return [
         Erratum(
             where=erratum.where,
@@ -185,7 +189,7 @@ def _errata(found: Findings) -> list[Erratum]:
             corrected=erratum.corrected,
             why=erratum.why,
             none=erratum.none,
-            effects=[Effect.model_validate(effect) for effect in found.effects if effect.erratum == number],
+            effects=[Effect.model_validate(effect) for effect in findings.effects if effect.erratum == number],
         )
         for number, erratum in enumerate(ERRATA)
     ]

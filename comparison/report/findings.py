@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import xarray as xr
 
@@ -25,6 +25,18 @@ from comparison.study.study import Study
 from reference.problem import Family
 
 
+class Fault(NamedTuple):
+    """What a solver reported."""
+
+    scene: str  # name of the scene
+    text: str  # model and error message
+
+    @property
+    def line(self) -> str:
+        """With the name of the scene."""
+        return f"{self.scene}, {self.text}"
+
+
 @dataclass(frozen=True)
 class Findings:
     """
@@ -42,7 +54,7 @@ class Findings:
     unanswered: Sequence[Unanswered]  # models without a value somewhere
     limits: Sequence[Limit]  # acceptance limits of the scenes, held against the rest
     completions: Sequence[Completion]  # surfaces of models with fewer phases, on all of them
-    faults: Sequence[str]  # what solvers reported
+    faults: Sequence[Fault]  # what solvers reported
     run: Mapping[str, Any]  # command, times, provenance
     pictures: Mapping[str, bytes] = field(default_factory=dict)  # files of the pictures of the surfaces, by name
     motions: Sequence[StoredMotion] | None = None  # motions at chosen phases
@@ -59,7 +71,7 @@ def collect_findings(
     study: Study,
     surfaces: xr.Dataset,
     collected: Mapping[str, Any],
-    faults: Sequence[str],
+    faults: Sequence[Fault],
     run: Mapping[str, Any],
     **more: Any,
 ) -> Findings:
@@ -72,7 +84,7 @@ def collect_findings(
         What was computed.
     collected : mapping of str to object
         What each analysis of the run collected, by its key.
-    faults : sequence of str
+    faults : sequence of Fault
         What solvers reported.
     run : mapping
         Command, times, provenance.

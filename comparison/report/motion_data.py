@@ -52,9 +52,9 @@ ROUNDING = 7e-4  # of the swing of a column
 TIME_ROUNDING = 1e-6  # of the duration
 
 
-def packed_motions(found: Findings) -> str:
+def packed_motions(findings: Findings) -> str:
     """The numbers of every motion, packed."""
-    return packed(b"".join(_numbers(motion) for motion in found.motions or []))
+    return packed(b"".join(_numbers(motion) for motion in findings.motions or []))
 
 
 def packed(content: bytes) -> str:
@@ -62,10 +62,10 @@ def packed(content: bytes) -> str:
     return base64.b64encode(gzip.compress(content, mtime=0)).decode()
 
 
-def places(found: Findings, scene: Scene, starts: Starts) -> Iterator[dict[str, Any]]:
-    own = [motion for motion in found.motions or [] if motion.place.scene == scene.name]
-    alpha1, alpha2 = (np.asarray(found.surfaces[name]) for name in ("alpha1", "alpha2"))
-    for place, motions in groupby(own, key=lambda motion: motion.place):
+def places(findings: Findings, scene: Scene, starts: Starts) -> Iterator[dict[str, Any]]:
+    of_scene = [motion for motion in findings.motions or [] if motion.place.scene == scene.name]
+    alpha1, alpha2 = (np.asarray(findings.surfaces[name]) for name in ("alpha1", "alpha2"))
+    for place, motions in groupby(of_scene, key=lambda motion: motion.place):
         yield {
             "row": place.row,
             "column": place.column,

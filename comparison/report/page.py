@@ -64,16 +64,16 @@ class Section:
         return self.title if results.phased else self.title_recorded or self.title
 
 
-def draw_all_assumptions(figures: Path, found: Findings) -> None:
+def draw_all_assumptions(figures: Path, findings: Findings) -> None:
     """The picture of every scene that has a spatial model."""
-    if found.assumptions:
-        for scene in found.assumptions.scenes:
-            draw_assumptions(figures / assumption_figure_name(scene), scene, found.assumptions.cells)
+    if findings.assumptions:
+        for scene in findings.assumptions.scenes:
+            draw_assumptions(figures / assumption_figure_name(scene), scene, findings.assumptions.cells)
 
 
-def draw_all_trades(figures: Path, found: Findings) -> None:
+def draw_all_trades(figures: Path, findings: Findings) -> None:
     """The diagrams of every scene that has them."""
-    for trade in found.tradeoff or ():
+    for trade in findings.tradeoff or ():
         draw_tradeoff(figures / tradeoff_figure_name(trade.scene), trade)
 
 
@@ -117,7 +117,7 @@ SECTIONS = (
         "Stability at the extremes",
         "extremes",
         "python -m comparison.extremes makes it, beside the report; the next run of the study shows it",
-        lambda figures, found: draw_extremes(figures / PICTURE, found.extremes) if found.extremes else None,
+        lambda figures, findings: draw_extremes(figures / PICTURE, findings.extremes) if findings.extremes else None,
     ),
     Section(
         "tradeoff",
@@ -133,7 +133,7 @@ SECTIONS = (
 SCRIPTS = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions.js", "page.js")
 
 
-def page(figures: Path, found: Findings, results: Results) -> str:
+def page(figures: Path, findings: Findings, results: Results) -> str:
     """
     Content of index.html.
 
@@ -141,7 +141,7 @@ def page(figures: Path, found: Findings, results: Results) -> str:
     ----------
     figures : Path
         Folder with the pictures of the report.
-    found : Findings
+    findings : Findings
         What the run found: surfaces and motions that are drawn.
     results : Results
         Everything else, as typed data.
@@ -151,7 +151,7 @@ def page(figures: Path, found: Findings, results: Results) -> str:
     str
         The page, which needs no other file and no network.
     """
-    study = found.study
+    study = findings.study
     templates = resources.files("comparison.report") / "templates"
     style = (templates / "report.css").read_text(encoding="utf-8")
     script = "\n".join((templates / name).read_text(encoding="utf-8") for name in SCRIPTS)
@@ -194,7 +194,7 @@ def page(figures: Path, found: Findings, results: Results) -> str:
         effective=[values for scene in results.scenes for values in scene.effective],
         phases=PHASES,
         errata=[{"erratum": erratum, "effects": _effects(erratum)} for erratum in results.errata or []],
-        assumption_pictures=_assumption_pictures(figures, found, results),
+        assumption_pictures=_assumption_pictures(figures, findings, results),
         checks=CHECKS,
         claim_signs=SIGNS,
         verdicts=[(verdict.value, MEANING[verdict]) for verdict in Verdict],
@@ -204,8 +204,8 @@ def page(figures: Path, found: Findings, results: Results) -> str:
         peak_shares=(LEAST_SHARE, MOST_SHARE),
         outcomes=outcomes,
         most_cost=max((row["cost"] for row in outcomes), default=0.0) or 1.0,
-        data=packed(page_data(found).encode()),
-        motions=packed_motions(found),
+        data=packed(page_data(findings).encode()),
+        motions=packed_motions(findings),
     )  # fmt: skip
 
 
@@ -266,7 +266,7 @@ def _card(scene: SceneResult, axes: dict[str, Scale]) -> dict[str, Any]:
     """One scene on the first screen."""
     bodies = [
         {
-            "sentence": headline.sentence.removeprefix(f"{scene.name}, ").replace(f"{scene.name}: ", ""),
+            "sentence": headline.statement,
             "bars": charts(waterfall, axes),
             "mean_caption": f"mu_{waterfall.body}, {_phases_of(waterfall, scene)}",
             "largest_caption": f"mu_{waterfall.body}, {_place_of(waterfall)}",
@@ -306,17 +306,17 @@ def _record_tables(study: Study, results: Results) -> list[dict[str, Any]]:
     return tables
 
 
-def _assumption_pictures(figures: Path, found: Findings, results: Results) -> list[dict[str, Any]]:
-    if found.assumptions is None or results.assumptions is None:
+def _assumption_pictures(figures: Path, findings: Findings, results: Results) -> list[dict[str, Any]]:
+    if findings.assumptions is None or results.assumptions is None:
         return []
     return [
         {
             "title": scene.title,
             "name": scene.name,
             "picture": _inlined(smaller((figures / assumption_figure_name(scene)).read_bytes())),
-            "lines": found.assumptions.lines(scene),
+            "lines": findings.assumptions.lines(scene),
         }
-        for scene in found.assumptions.scenes
+        for scene in findings.assumptions.scenes
     ]
 
 
@@ -326,7 +326,7 @@ def _inlined(webp: bytes) -> str:
 
 
 def _claim_findings(claim: Claim) -> list[tuple[ClaimVerdict, list[int]]]:
-    """What the checks of a claim found, each different answer once, with the numbers of its readings from 1 on."""
+    """What the checks of a claim findings, each different answer once, with the numbers of its readings from 1 on."""
     groups: dict[tuple[str, str], tuple[ClaimVerdict, list[int]]] = {}
     for number, verdict in enumerate(claim.verdicts, start=1):
         groups.setdefault((verdict.finding, verdict.found), (verdict, []))[1].append(number)

@@ -24,7 +24,7 @@ Rows = list[list[float | None]]
 DIGITS, ERROR_DIGITS = 7, 2  # significant, of mu and of an error
 
 
-def page_data(found: Findings) -> str:
+def page_data(findings: Findings) -> str:
     """
     JSON of all that is drawn; NaN is null.
 
@@ -35,8 +35,8 @@ def page_data(found: Findings) -> str:
     places (row, column, phases or null under a record, why, and motions: see `motion_data`). A surface
     is a list of rows, one per alpha1, of values, one per alpha2.
     """
-    study = found.study
-    starts = starts_of(found.motions or [])
+    study = findings.study
+    starts = starts_of(findings.motions or [])
     data = {
         "grid": study.grid,
         "titles": {model.key: model.title for model in study.hierarchy},
@@ -48,10 +48,10 @@ def page_data(found: Findings) -> str:
                 "duration": scene.duration,
                 "recorded": scene.recorded,
                 "radius": scene.radius,
-                "pairs": [_pair(found, scene, pair) for pair in study.pairs(scene)],
-                "models": _models(found, scene),
+                "pairs": [_pair(findings, scene, pair) for pair in study.pairs(scene)],
+                "models": _models(findings, scene),
                 "contact": contact_geometry(scene),
-                "places": list(places(found, scene, starts)),
+                "places": list(places(findings, scene, starts)),
             }
             for scene in study.scenes
         ],
@@ -67,9 +67,9 @@ def crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[f
     return [np.round(np.asarray(line), 4).tolist() for line in lines]
 
 
-def _pair(found: Findings, scene: Scene, pair: Pair) -> dict[str, Any]:
-    surfaces = not scene.recorded and _surface(found, scene, pair.first) and _surface(found, scene, pair.second)
-    steps = [pair_step(found.surfaces, scene.name, pair, body) for body in range(1, len(scene.bodies) + 1)]
+def _pair(findings: Findings, scene: Scene, pair: Pair) -> dict[str, Any]:
+    surfaces = not scene.recorded and _surface(findings, scene, pair.first) and _surface(findings, scene, pair.second)
+    steps = [pair_step(findings.surfaces, scene.name, pair, body) for body in range(1, len(scene.bodies) + 1)]
     return {
         "key": pair.key,
         "title": pair.title,
@@ -81,18 +81,20 @@ def _pair(found: Findings, scene: Scene, pair: Pair) -> dict[str, Any]:
     }
 
 
-def _surface(found: Findings, scene: Scene, model: Model) -> bool:
+def _surface(findings: Findings, scene: Scene, model: Model) -> bool:
     """Whether the values of a model are drawn as a surface as they are: what may need completing is not."""
-    return not any((each.scene, each.model) == (scene.name, model.key) for each in found.completions)
+    return not any((each.scene, each.model) == (scene.name, model.key) for each in findings.completions)
 
 
-def _models(found: Findings, scene: Scene) -> dict[str, Any]:
-    completed = {(each.model, each.body): each for each in found.completions if each.scene == scene.name}
-    return {model.key: _model(found, scene, completed, model) for model in models_of(scene, found.study.hierarchy)}
+def _models(findings: Findings, scene: Scene) -> dict[str, Any]:
+    completed = {(each.model, each.body): each for each in findings.completions if each.scene == scene.name}
+    return {
+        model.key: _model(findings, scene, completed, model) for model in models_of(scene, findings.study.hierarchy)
+    }
 
 
 def _model(
-    found: Findings, scene: Scene, completed: Mapping[tuple[str, int], Completion], model: Model
+    findings: Findings, scene: Scene, completed: Mapping[tuple[str, int], Completion], model: Model
 ) -> dict[str, Any]:
     """
     One model of a scene.
@@ -101,16 +103,16 @@ def _model(
     mu: per body. error: per body, null for a surface. completed: per body, null or through (a model), error (largest
     of leaving out one), reason (why it is not drawn), difference (whether that may be drawn), mu (null where refused).
     """
-    data = common_phases(found.surfaces, scene.name, [model.key]).sel(model=model.key)
+    data = common_phases(findings.surfaces, scene.name, [model.key]).sel(model=model.key)
     bodies = range(1, len(scene.bodies) + 1)
-    surface = not scene.recorded and _surface(found, scene, model)
+    surface = not scene.recorded and _surface(findings, scene, model)
 
     def listed(name: str, digits: int) -> list[Rows]:
         return [_rows(np.asarray(data[name].sel(body=body), float), digits) for body in bodies]
 
     return {
-        "phases": len(found.study.axis(model, scene)),
-        "computed": len(found.study.solved(scene, model)),
+        "phases": len(findings.study.axis(model, scene)),
+        "computed": len(findings.study.solved(scene, model)),
         "surface": surface,
         "mu": listed("mu", DIGITS),
         "error": None if surface else listed("error", ERROR_DIGITS),

@@ -74,7 +74,7 @@ def short_title(scene: SceneResult) -> str:
 
 def _sentences(scene: SceneResult, shown: Sequence[Headline]) -> dict[str, Any]:
     sentences = [
-        headline.sentence.removeprefix(f"{scene.name}, ").replace(" %", "\u00a0%")  # no line between number and sign
+        headline.statement.replace(" %", "\u00a0%")  # no line between number and sign
         for headline in shown
         if headline.scene == scene.name
     ]

@@ -16,7 +16,7 @@ from comparison.report.results import Results, schema_json
 from comparison.report.summary_text import summary_text
 
 
-def write_report(folder: Path, results: Results, found: Findings) -> None:
+def write_report(folder: Path, results: Results, findings: Findings) -> None:
     """
     Write every file of the report.
 
@@ -26,11 +26,11 @@ def write_report(folder: Path, results: Results, found: Findings) -> None:
         Exists and is empty.
     results : Results
         What summary.json, summary.md and junit.xml hold.
-    found : Findings
+    findings : Findings
         Surfaces, motions and pictures, which the page shows beside the results.
     """
-    run = found.run
-    stamped = found.surfaces.assign_attrs(command=run["command"], **run["provenance"])
+    run = findings.run
+    stamped = findings.surfaces.assign_attrs(command=run["command"], **run["provenance"])
     stamped.to_netcdf(folder / "surfaces.nc", engine="h5netcdf")
     texts = {
         "summary.json": results.as_json(),
@@ -42,14 +42,14 @@ def write_report(folder: Path, results: Results, found: Findings) -> None:
         (folder / name).write_text(text, encoding="utf-8")
     figures = folder / "figures"
     figures.mkdir()
-    for name, content in found.pictures.items():
+    for name, content in findings.pictures.items():
         (figures / name).write_bytes(content)
     for section in SECTIONS:
         if section.draw and section.present(results):
-            section.draw(figures, found)
+            section.draw(figures, findings)
     if not results.no_pdf:
         try:
-            write_pdf(folder / "report.pdf", results, found)
+            write_pdf(folder / "report.pdf", results, findings)
         except RuntimeError as error:  # what typst raises: the rest of the report does not depend on it
             on_stderr(f"report.pdf: not written: {error}")
-    (folder / "index.html").write_text(page(figures, found, results), encoding="utf-8")
+    (folder / "index.html").write_text(page(figures, findings, results), encoding="utf-8")

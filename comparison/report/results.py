@@ -9,13 +9,13 @@ Two types hold what JSON cannot: `Number` writes NaN as null, and `Text` replace
 
 from __future__ import annotations
 
-import json
 import math
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
 
 from comparison.analysis.extremes.matrix import Matrix
+from comparison.analysis.stored import json_text
 from comparison.analysis.tradeoff.trade import Trade
 from reference.problem.acceptance import Acceptance
 
@@ -318,6 +318,11 @@ class Headline(Part):
     """largest absolute difference of the two codes given the same equations and friction law"""
     sentence: Text
     """all that in words"""
+
+    @property
+    def statement(self) -> str:
+        """The sentence below a heading that names the scene."""
+        return self.sentence.removeprefix(f"{self.scene}, ")
 
 
 class Completion(Part):
@@ -888,15 +893,11 @@ class Results(Part):
 
     def as_json(self) -> str:
         """Content of summary.json."""
-        return _json(self.model_dump(mode="json", by_alias=True))
+        return json_text(self.model_dump(mode="json", by_alias=True))
 
 
 def schema_json() -> str:
     """JSON schema (draft 2020-12) of summary.json."""
     schema = Results.model_json_schema(by_alias=True, mode="serialization")
     title = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "summary.json of a study"}
-    return _json({**schema, **title})
-
-
-def _json(data: dict[str, Any]) -> str:
-    return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    return json_text({**schema, **title})

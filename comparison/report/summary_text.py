@@ -57,7 +57,7 @@ def _limits(results: Results) -> str:
 def _headlines(results: Results) -> str:
     return "\n".join(
         f"- **{_plain(scene.name)}** ({_plain(scene.title)})\n"
-        + "\n".join(f"  - {_plain(headline.sentence.removeprefix(f'{scene.name}, '))}" for headline in scene.headlines)
+        + "\n".join(f"  - {_plain(headline.statement)}" for headline in scene.headlines)
         for scene in results.scenes
     )
 

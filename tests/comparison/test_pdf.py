@@ -16,7 +16,7 @@ from comparison.analysis.surfaces import labeled_surfaces
 from comparison.analysis.unanswered import with_silent_models
 from comparison.report import pdf
 from comparison.report.assemble import assemble
-from comparison.report.findings import Findings, collect_findings
+from comparison.report.findings import Fault, Findings, collect_findings
 from comparison.report.results import Results
 from comparison.study.batches import execute_batch
 from comparison.study.models import Model
@@ -30,7 +30,7 @@ def studied(scenes: list[Scene], hierarchy: tuple[Model, ...], grid: int = 4) ->
     study = Study(tuple(scenes), grid, 1e-3, hierarchy)
     surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
     study = with_silent_models(study, surfaces)
-    findings = collect_findings(study, surfaces, {}, ["fig3-I, engine: it broke"], RUN)
+    findings = collect_findings(study, surfaces, {}, [Fault("fig3-I", "engine: it broke")], RUN)
     return assemble(findings), findings
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -13,7 +12,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, Field
 
 from comparison.analysis.extremes.verdicts import Verdict
-from comparison.analysis.stored import FILE_FORMAT, load_file
+from comparison.analysis.stored import FILE_FORMAT, json_text, load_file
 
 FILE, PICTURE = "extremes.json", "extremes.png"
 
@@ -125,7 +124,7 @@ class Matrix:
 
 def as_json(matrix: Matrix) -> bytes:
     """The content of the file, which `load` reads."""
-    return (json.dumps(asdict(matrix), indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+    return json_text(asdict(matrix)).encode()
 
 
 def load(folder: Path) -> Matrix | None:

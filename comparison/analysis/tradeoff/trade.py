@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -13,7 +12,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.analysis.stored import FILE_FORMAT, load_file
+from comparison.analysis.stored import FILE_FORMAT, json_text, load_file
 
 Array = NDArray[np.float64]
 
@@ -209,8 +208,7 @@ class TradeFile:
 
 def as_json(trades: Sequence[Trade]) -> bytes:
     """The content of the file, which `load` reads."""
-    content = asdict(TradeFile(SCHEMA, list(trades)))
-    return (json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+    return json_text(asdict(TradeFile(SCHEMA, list(trades)))).encode()
 
 
 def load(folder: Path) -> list[Trade] | None:

@@ -28,13 +28,13 @@ def assumption_figure_name(scene: Scene) -> str:
 
 def draw_assumptions(path: Path, scene: Scene, cells: Sequence[Cell]) -> None:
     """Write one map per body to `path`, PNG, and as PDF: ring across, heights upwards, largest change in percent."""
-    own = [cell for cell in cells if cell.scene == scene.name and cell.variation.supports is None]
+    shown = [cell for cell in cells if cell.scene == scene.name and cell.variation.supports is None]
     bodies = len(scene.bodies)
     figure = Figure(figsize=(1.2 + 4.6 * bodies, 3.9), dpi=110, layout="constrained")
     FigureCanvasAgg(figure)
     figure.suptitle(verbatim(f"{scene.title} ({scene.name}): spatial against translational model"), fontsize=11)
     for body, axes in enumerate(np.atleast_1d(figure.subplots(1, bodies, sharey=True)), start=1):
-        _map(axes, scene, own, body)
+        _map(axes, scene, shown, body)
     save(figure, path)
 
 

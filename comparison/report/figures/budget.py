@@ -30,16 +30,16 @@ def budget_figure_name(scene: Scene, body: int) -> str:
 
 def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> None:
     """Write one map per step, and of the total, to `path`, PNG: % of the first model's mu_i."""
-    found = steps(study, surfaces, scene.name, body)
+    bars = steps(study, surfaces, scene.name, body)
     figure = Figure(figsize=(13.0, 3.4), dpi=110)
     FigureCanvasAgg(figure)
     heading = f"{scene.title} ({scene.name}), body {body}: what each model adds (dots: not resolved)"
     figure.suptitle(verbatim(heading), fontsize=12, y=0.98)
-    sizes = np.abs(np.concatenate([step.size[np.isfinite(step.size)] for step in found] or [np.zeros(0)]))
+    sizes = np.abs(np.concatenate([step.size[np.isfinite(step.size)] for step in bars] or [np.zeros(0)]))
     largest = max(float(sizes.max()) if sizes.size else 0.0, 10.0 * LINEAR)
     norm = SymLogNorm(100.0 * LINEAR, vmin=-100.0 * largest, vmax=100.0 * largest)
-    width = 0.86 / len(found)
-    for index, step in enumerate(found):
+    width = 0.86 / len(bars)
+    for index, step in enumerate(bars):
         axes = figure.add_axes((0.045 + index * width, 0.14, 0.82 * width, 0.64))
         image = _map(axes, step, norm)
         if index:

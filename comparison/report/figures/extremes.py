@@ -31,18 +31,18 @@ HEIGHT, WIDTH, LABELS, MARGIN, TOP = 0.2, 0.9, 1.75, 0.2, 1.15  # of fields, lab
 PANELS = 2  # side by side, so that the whole fits a screen
 
 
-def draw_extremes(file: Path, found: Matrix) -> None:
+def draw_extremes(file: Path, matrix: Matrix) -> None:
     """Write the matrix as PNG."""
-    panels = _panels(_lines(found))
+    panels = _panels(_lines(matrix))
     longest = max(len(lines) for lines in panels)
-    panel = LABELS + WIDTH * len(found.columns) + MARGIN
+    panel = LABELS + WIDTH * len(matrix.columns) + MARGIN
     size = MARGIN + panel * len(panels), TOP + HEIGHT * (longest + 1)
     figure = Figure(figsize=size)
     for number, lines in enumerate(panels):
         left = MARGIN + number * panel + LABELS
-        place = left / size[0], 0.0, WIDTH * len(found.columns) / size[0], 1.0 - TOP / size[1]
-        _draw_panel(figure.add_axes(place), lines, found.columns, longest + 1)
-    counts = found.counts()
+        place = left / size[0], 0.0, WIDTH * len(matrix.columns) / size[0], 1.0 - TOP / size[1]
+        _draw_panel(figure.add_axes(place), lines, matrix.columns, longest + 1)
+    counts = matrix.counts()
     handles = [Patch(color=COLORS[verdict], label=f"{counts[verdict]} {MEANING[verdict]}") for verdict in Verdict]
     figure.legend(handles=handles, loc="upper center", ncol=2, fontsize=8, frameon=False)
     figure.savefig(file, dpi=130)
@@ -75,11 +75,11 @@ def _panels(lines: Sequence[Line]) -> list[list[Line]]:
     return panels
 
 
-def _lines(found: Matrix) -> list[Line]:
+def _lines(matrix: Matrix) -> list[Line]:
     """A heading for every group, and below it a line for every extreme."""
     lines: list[Line] = []
     group = None
-    for row in found.rows:
+    for row in matrix.rows:
         if row.group != group:
             group = row.group
             lines.append((group, None))

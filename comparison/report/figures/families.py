@@ -26,11 +26,13 @@ def family_figure_name(family: Family, body: int) -> str:
     return figure_file(family.name, f"body{body}", "family")
 
 
-def draw_families(folder: Path, found: Findings) -> None:
+def draw_families(folder: Path, findings: Findings) -> None:
     """Write the figure of every body of every family into `folder`, PNG."""
-    for family in found.families or ():
+    for family in findings.families or ():
         for body in range(1, family.bodies + 1):
-            draw_family(folder / family_figure_name(family, body), family, found.budget, found.study.hierarchy, body)
+            draw_family(
+                folder / family_figure_name(family, body), family, findings.budget, findings.study.hierarchy, body
+            )
 
 
 def draw_family(path: Path, family: Family, entries: Sequence[Entry], hierarchy: Sequence[Model], body: int) -> None:
@@ -73,8 +75,8 @@ def draw_family(path: Path, family: Family, entries: Sequence[Entry], hierarchy:
 
 def _over(family: Family, entries: Sequence[Entry], body: int, step: str, part: str) -> np.ndarray:
     """One number of one step for every scene of the family, NaN where a scene does not have it."""
-    found = {entry.scene: getattr(entry, part) for entry in entries if (entry.body, entry.step) == (body, step)}
-    return np.array([found.get(scene.name, np.nan) for scene in family.scenes], dtype=float)
+    sizes = {entry.scene: getattr(entry, part) for entry in entries if (entry.body, entry.step) == (body, step)}
+    return np.array([sizes.get(scene.name, np.nan) for scene in family.scenes], dtype=float)
 
 
 def _positive(axes: Axes) -> bool:

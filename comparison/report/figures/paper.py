@@ -47,7 +47,7 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
         FigureCanvasAgg(figure)
         for row in range(bodies):
             data = [common_phases(surfaces, scene.name, [r.key]).sel(model=r.key, body=row + 1) for r in (first, last)]
-            heights = [closed(one["alpha1"].values, one["mu"].values) for one in data]
+            heights = [closed(surface["alpha1"].values, surface["mu"].values) for surface in data]
             finite = np.concatenate([height[np.isfinite(height)] for _, height in heights])
             low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
             for column, ((phase, height), model) in enumerate(zip(heights, (first, last))):

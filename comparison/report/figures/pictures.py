@@ -46,20 +46,20 @@ Files = tuple[tuple[str, bytes], ...]  # names and contents
 
 def pictures(study: Study, surfaces: xr.Dataset) -> list[Picture]:
     """Every picture of the selected sections: a scene without phases has no surfaces."""
-    found = []
+    listed = []
     for scene in study.phased:
         silent = {scene.name: (study.silent or {}).get(scene.name, ())}
         alone = replace(study, scenes=(scene,), costs=None, silent=silent, selection=EVERYTHING)
         shown = surfaces[SHOWN].sel(scene=[scene.name])
         with_surfaces, with_budget = (study.selection.has(section, scene.name) for section in ("surfaces", "budget"))
         if with_surfaces:
-            found.append(Picture("paper", alone, shown))
+            listed.append(Picture("paper", alone, shown))
         for body in range(1, len(scene.bodies) + 1):
             if with_surfaces:
-                found += [Picture("pair", alone, shown, body, pair) for pair in study.pairs(scene)]
+                listed += [Picture("pair", alone, shown, body, pair) for pair in study.pairs(scene)]
             if with_budget:
-                found.append(Picture("budget", alone, shown, body))
-    return found
+                listed.append(Picture("budget", alone, shown, body))
+    return listed
 
 
 class Pictures(Analysis[dict[str, bytes]]):
