@@ -4,10 +4,10 @@
 //     series: [{ name, x, y, low, high, band, line, marks, color, dash, width, titles, legend }], bands: [{ from, to, text }] }
 // color: 0 to 7 of the palette, "ink" or "gray"; a null in y parts a line; low and high make error bars, or a band
 const SVG = "http://www.w3.org/2000/svg";
-function svgElement(name, attributes = {}, text = "") {
+function svgElement(name, attributes = {}, ...content) {
   const element = document.createElementNS(SVG, name);
   Object.entries(attributes).forEach(([key, value]) => element.setAttribute(key, value));
-  if (text) element.textContent = text;
+  element.append(...content);
   return element;
 }
 function element(name, className = "", ...content) {
@@ -81,8 +81,8 @@ function drawPlot(box, spec) {
     svg.append(svgElement("line", { x1: left, x2: left + inner.width, y1: Y(value), y2: Y(value), class: value === 0 ? "zero" : "grid" }));
     svg.append(svgElement("text", { x: left - 5, y: Y(value) + 4, "text-anchor": "end" }, text));
   });
-  svg.append(svgElement("text", { x: 2, y: 12, class: "axis" }, plain(spec.y.title ?? "")));
-  svg.append(svgElement("text", { x: width - 4, y: height - 6, "text-anchor": "end", class: "axis" }, plain(spec.x.title ?? "")));
+  svg.append(svgElement("text", { x: 2, y: 12, class: "axis" }, ...indexedInPicture(spec.y.title ?? "")));
+  svg.append(svgElement("text", { x: width - 4, y: height - 6, "text-anchor": "end", class: "axis" }, ...indexedInPicture(spec.x.title ?? "")));
   const clip = `clip-${drawPlot.count = (drawPlot.count ?? 0) + 1}`;
   const frame = svgElement("clipPath", { id: clip });
   frame.append(svgElement("rect", { x: left - 6, y: top - 6, width: inner.width + 12, height: inner.height + 12 }));
@@ -132,9 +132,10 @@ function legendOf(list) {
   });
   return legend;
 }
-const plain = text => text.replaceAll("_", "");  // inside a picture, where no index can stand
-// v_reg with its index below the line
-const indexed = text => text.split(/(_\w+)/).map(part => part.startsWith("_") ? element("sub", "", part.slice(1)) : part);
+// v_reg with its index below the line, in the page and inside a picture: every second part is an index
+const parts = text => text.split(/(_\w+)/).map(part => part.replace(/^_/, ""));
+const indexed = text => parts(text).map((part, i) => i % 2 ? element("sub", "", part) : part);
+const indexedInPicture = text => parts(text).map((part, i) => svgElement("tspan", i % 2 ? { dy: 3, "font-size": "80%" } : i ? { dy: -3 } : {}, part));
 
 // plots that stand in the page: drawn when they come into view, and again at another width
 const drawStanding = box => { if (box.clientWidth) drawPlot(box, box.spec ??= JSON.parse(box.dataset.plot)); };
