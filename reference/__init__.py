@@ -4,6 +4,7 @@ The paper's equations, solved with an error estimate on every value.
 Functions
 ---------
 amplification   factors mu_i of (5.1) for many phase pairs, with errors and outcomes
+worst_phases    the largest factor, or displacement, over all phases
 trajectory      one motion, sampled in time
 demands         what a motion demands of isolator and structure, with errors
 modes           natural frequencies and modes of the frictionless chain (4.8)-(4.11)
@@ -61,12 +62,14 @@ from reference.problem import (
 if TYPE_CHECKING:
     from reference.motion import trajectory
     from reference.natural_modes import modes
+    from reference.phase_maximum import worst_phases
     from reference.surface import amplification
 
 LOADED_ON_FIRST_USE = {
     "amplification": "reference.surface",
     "modes": "reference.natural_modes",
     "trajectory": "reference.motion",
+    "worst_phases": "reference.phase_maximum",
 }
 
 __all__ = [
@@ -86,6 +89,7 @@ __all__ = [
     "modes",
     "phase_grid",
     "trajectory",
+    "worst_phases",
 ]
 
 
