@@ -12,6 +12,7 @@ load_scene      a scene from a built-in name or a TOML file
 builtin_scenes  names of the paper's own cases
 example_scenes  names of the examples with a recorded motion
 phase_grid      equally spaced phase pairs
+phase_distribution  mean and fractiles of mu over uniform phases, from its surface
 
 Classes
 -------
@@ -19,6 +20,7 @@ Scene           the system, its loading and the duration
 State           displacement and velocity at the start of a trajectory
 Amplification   what `amplification` returns
 Trajectory      what `trajectory` returns
+PhaseMaximum    what `worst_phases` returns
 Demands         what `demands` returns
 Estimate        a number and its error
 Outcome         how the run of one phase pair ended
@@ -56,16 +58,18 @@ from reference.problem import (
     demands,
     example_scenes,
     load_scene,
+    phase_distribution,
     phase_grid,
 )
 
 if TYPE_CHECKING:
     from reference.motion import trajectory
     from reference.natural_modes import modes
-    from reference.phase_maximum import worst_phases
+    from reference.phase_maximum import PhaseMaximum, worst_phases
     from reference.surface import amplification
 
 LOADED_ON_FIRST_USE = {
+    "PhaseMaximum": "reference.phase_maximum",
     "amplification": "reference.surface",
     "modes": "reference.natural_modes",
     "trajectory": "reference.motion",
@@ -77,6 +81,7 @@ __all__ = [
     "Demands",
     "Estimate",
     "Outcome",
+    "PhaseMaximum",
     "Scene",
     "SceneError",
     "State",
@@ -87,6 +92,7 @@ __all__ = [
     "example_scenes",
     "load_scene",
     "modes",
+    "phase_distribution",
     "phase_grid",
     "trajectory",
     "worst_phases",

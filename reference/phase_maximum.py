@@ -31,7 +31,7 @@ MAX_SHORTFALL = 0.01  # of the maximum: climbs that end lower need not follow th
 
 
 @dataclass(frozen=True)
-class WorstPhases:
+class PhaseMaximum:
     """
     The largest value over all phase pairs.
 
@@ -74,7 +74,7 @@ def worst_phases(
     regularization: float | None = None,
     tolerance: float = 1e-6,
     cutoff: float | None = None,
-) -> WorstPhases:
+) -> PhaseMaximum:
     """
     Largest amplification factor of a body, or displacement of the isolator, over all initial phases.
 
@@ -91,7 +91,7 @@ def worst_phases(
 
     Returns
     -------
-    WorstPhases
+    PhaseMaximum
 
     Raises
     ------
@@ -132,7 +132,7 @@ def worst_phases(
     best, *others = sorted(merged(climbs, shifts(scene)), key=lambda climb: -climb.value)
     kind, side = kind_of(search, best)
     alpha1, alpha2 = (best.phases % (2.0 * np.pi)).tolist()
-    return WorstPhases(
+    return PhaseMaximum(
         value=best.value,
         error=best.error + best.search_error,
         phases=(alpha1, alpha2),
