@@ -1,15 +1,16 @@
 """
 The worst phases of every scene: the largest mu_i and displacement over all phases, and what the engine has there.
 
-The search of `reference.worst_phases` is made for each model of the equations that reads the peak differently. Beside
-the largest regularized mu_i, the first model of the engine is searched in a square around the same phases, so that its
-own maximum nearby is known, too.
+The search of `reference.worst_phases` is made for every model of the equations. Beside the largest regularized mu_i,
+the engine under the same assumptions is searched in a square around these phases, so that its own maximum nearby is
+known, too.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -31,6 +32,7 @@ TOLERANCE = 1e-5  # relative error of mu by the equations
 POINTS = 2000  # of the equations that a search takes
 ENGINE_HALF_WIDTH = 0.02  # rad, of the square in which the engine is searched
 ENGINE_NODES = 3  # of its polynomial along each axis
+SOLVED_BY = "reference:amplification"  # the models that `reference.worst_phases` searches
 NOWHERE = (math.nan, math.nan)
 
 
@@ -96,17 +98,16 @@ class WorstPhases(Analysis[list[Worst]]):
         """Searches of the exact equations, and of the engine beside its counterpart."""
         tasks = []
         for scene in study.phased:
-            models = [model for model in models_of(scene, study.hierarchy) if model.side == "reference"]
-            exact = [model for model in models if model.settings.get("equations") == "exact"]
+            equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SOLVED_BY]
             engines = {
                 pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"
             }
             searches = [
                 (model, engines.get(model.key), "amplification", body)
-                for model in exact
+                for model in equations
                 for body in range(1, len(scene.bodies) + 1)
             ]
-            searches += [(exact[0], None, "displacement", 1)] if exact else []
+            searches += [(model, None, "displacement", 1) for model in equations if _exact_supremum(model)]
             for model, engine, quantity, body in searches:
                 seconds = model.seconds(scene, POINTS)
                 if engine is not None:
@@ -122,12 +123,17 @@ class WorstPhases(Analysis[list[Worst]]):
         return [worst for task in self.tasks(study) for worst in results.value(task, _without_value)]
 
 
+def _exact_supremum(model: Model) -> bool:
+    """Whether a model solves the exact equations with friction that sticks, and reads every value."""
+    return model.settings == {"equations": "exact", "regularization": None}
+
+
 def worst_of(task: Arguments) -> list[Worst]:
     """The largest value of the equations, and of the engine beside it. Runs inside a worker process."""
     scene, model, engine, quantity, body, tolerance = task
-    law = {name: value for name, value in model.settings.items() if name != "equations"}
-    found = worst_phases(scene, body, quantity, "exact", tolerance=TOLERANCE, **law)  # type: ignore[arg-type]
-    worst = Worst(scene.name, model.key, quantity, body, **vars(found))
+    settings: dict[str, Any] = dict(model.settings)
+    maximum = worst_phases(scene, body, quantity, tolerance=TOLERANCE, **settings)
+    worst = Worst(scene.name, model.key, quantity, body, **vars(maximum))
     return [worst] if engine is None else [worst, _engine_beside(worst, scene, engine, tolerance)]
 
 
