@@ -19,7 +19,8 @@ Classes
 -------
 Scene, Family                       the system with its loading; the scenes of one file
 State, Amplification, Trajectory    arguments and results of both sides
-Demands, Estimate, Accuracy         numbers of one motion, one of them with its error, what errors are made from
+Demands, PhaseDistribution           numbers of one motion; of mu over all phases
+Estimate, Accuracy                  a number with its error; what errors are made from
 Outcome, Reduction, SceneError      why a point has no answer; why work is left out; what is wrong with a scene
 
 Constants
