@@ -14,6 +14,7 @@ from comparison.analysis.errata import Errata
 from comparison.analysis.protocol import Analysis
 from comparison.analysis.scaling import Scaling
 from comparison.analysis.trajectories import Motions
+from comparison.analysis.worst_phases import WorstPhases
 from comparison.execution.task import Task
 from comparison.report.figures.pictures import Pictures
 from comparison.study.study import Study
@@ -26,6 +27,7 @@ ANALYSES: tuple[Analysis[Any], ...] = (
     Claims(),
     Assumptions(),
     Motions(),
+    WorstPhases(),
     Pictures(),
 )
 

@@ -28,7 +28,15 @@ from comparison.report.findings import Findings
 from comparison.report.glossary import emphasized, term
 from comparison.report.motion_data import packed, packed_motions
 from comparison.report.page_data import page_data
-from comparison.report.page_plots import claim_heat, family_panels, tradeoff_answers, tradeoff_panels, trend_panels
+from comparison.report.page_plots import (
+    claim_heat,
+    distribution_panels,
+    family_panels,
+    tradeoff_answers,
+    tradeoff_panels,
+    trend_panels,
+    worst_lines,
+)
 from comparison.report.results import Alert, Claim, ClaimVerdict, Effect, Erratum, Results, SceneResult, Waterfall
 from comparison.report.verification import CHECKS
 from comparison.report.waterfall_chart import Scale, charts, log_scale, scales
@@ -86,6 +94,9 @@ SECTIONS = (
         "a range in a scene file makes one: friction = {range = [0.02, 0.2], steps = 10}",
         draw_families,
         folded=False,
+    ),
+    Section(
+        "worst_phases", "Over all phases", "worst_phases", "python -m comparison.run makes it, of scenes with phases"
     ),
     Section("differences", "Differences"),
     Section("budget", "What makes the difference"),
@@ -183,6 +194,8 @@ def page(figures: Path, findings: Findings, results: Results) -> str:
         dots=log_scale([size for row in rows for size in (row.median, row.maximum)]),
         budget=[entry for scene in results.scenes_with("budget") for entry in scene.budget],
         trend_panels=trend_panels,
+        distribution_panels=distribution_panels(results),
+        worst_lines=worst_lines(results),
         tradeoff_panels=tradeoff_panels,
         tradeoff_answers=tradeoff_answers,
         family_panels=family_panels(results),

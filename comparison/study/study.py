@@ -13,9 +13,9 @@ from comparison.study.batches import Batch
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, models_of, pairs_of
 from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.speedup import speedup
-from comparison.study.symmetry import sources
 from reference.problem import Scene, SceneError, phase_grid
 from reference.problem.analyses import ANALYSES
+from reference.problem.symmetry import sources
 
 
 def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
