@@ -42,9 +42,8 @@ class Peaks:
         self._size = np.empty((0, bodies))
         self._slip = np.empty((0, 0))
 
-    def add(self, time: Array, absolute: Array, slip: Array) -> None:
-        """Samples (T,), (T, N, 3) and slip speeds (T, K), whose first row repeats the last one of the chunk before."""
-        size = np.sqrt((absolute**2).sum(axis=-1))
+    def add(self, time: Array, size: Array, slip: Array) -> None:
+        """Sizes (T, N) at times (T,), slip speeds (T, K); their first row repeats the last one of the chunk before."""
         if len(self._time):
             time = np.concatenate([self._time, time[1:]])
             size = np.concatenate([self._size, size[1:]])

@@ -57,7 +57,8 @@ PLAIN = {  # what a plain run sets: Exudyn's defaults, or the Newton tolerances 
 @pytest.mark.parametrize("name", ["fig3-I", "fig3-II", "fig4-dry"])
 @pytest.mark.parametrize(
     # with the default tolerances, which lie below the rounding of its contacts, a spatial run takes over ten seconds
-    ("model", "kinds"), [("translational", ("defaults", "tuned")), ("spatial", ("tuned",))]
+    ("model", "kinds"),
+    [("translational", ("defaults", "tuned")), ("spatial", ("tuned",))],
 )
 def test_a_point_costs_at_most_one_plain_run_in_the_median(name: str, model: str, kinds: tuple[str, ...]) -> None:
     """A plain run: the same model, 20 s in 20 000 equal steps, generalized alpha, one call of SolveDynamic."""
