@@ -52,6 +52,16 @@ class Budget:
 
 
 @dataclass
+class Place:
+    """Where a run is, and how it goes on from there."""
+
+    state: EngineState
+    time: float = 0.0  # in units of time
+    divisions: int = FIRST_DIVISIONS  # of the largest step
+    next_count: int = MAX_CHUNK_STEPS  # steps of the next chunk at the largest step
+
+
+@dataclass
 class EngineRun:
     """The result of one run from the start of the loading to its end, or to where the run terminates."""
 
@@ -67,6 +77,7 @@ class EngineRun:
     # largest value, in units of time
     settled: float = 0.0
     min_load: float = math.inf  # smallest contact force, in weights, of a model that ends where the contact opens
+    opened: bool = False  # whether any contact carried no load
     chunks: list[Motion] = field(default_factory=list)  # the motion, if it is kept
 
     def terminated(self, outcome: Outcome, instant: float) -> EngineRun:
@@ -91,12 +102,34 @@ def run_adaptively(
 
     stop: do not go on after this instant. Up to there the steps are those of a run to `end`.
     """
-    model = engine.model
-    result = EngineRun(Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near), stop)
+    result = begin_run(engine.model, stop)
     if not budget.allows(min(end, stop), level):
         return result.terminated(Outcome.STEP_LIMIT, 0.0)
-    state, time, divisions, next_count = start, 0.0, FIRST_DIVISIONS, MAX_CHUNK_STEPS
-    while time < min(end, stop) * (1.0 - 1e-12):
+    go_on(result, Place(start), engine, end, ground, level, budget, keep=keep)
+    return result
+
+
+def begin_run(model: EngineModel, stop: float = math.inf) -> EngineRun:
+    """The result of a run that has taken no step yet."""
+    return EngineRun(Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near), stop)
+
+
+def go_on(
+    result: EngineRun,
+    place: Place,
+    engine: Engine,
+    end: float,
+    ground: Callable[[Array], Array],
+    level: Level,
+    budget: Budget,
+    *,
+    keep: bool = False,
+    pause: Callable[[float], bool] = lambda time: False,
+) -> Place:
+    """Go on with a run from `place`; where it ends. Before every chunk `pause` says whether to end at its instant."""
+    model = engine.model
+    state, time, divisions, next_count = place.state, place.time, place.divisions, place.next_count
+    while time < min(end, result.stop) * (1.0 - 1e-12) and not pause(time):
         divisions = max(divisions, level.min_divisions(time))
         step = level.step / STEP_RATIO**divisions
         count = next_count if divisions == 0 else DIVIDED_CHUNK_STEPS
@@ -106,10 +139,12 @@ def run_adaptively(
         result.steps += count if motion is None else len(motion.time) - 1
         budget.left -= max(count, engine.iterations / FREE_ITERATIONS)
         if budget.left < 0.0:
-            return result.terminated(Outcome.STEP_LIMIT, time)
+            result.terminated(Outcome.STEP_LIMIT, time)
+            break
         if motion is None or not np.isfinite(motion.accelerations).all():
             if divisions == level.max_divisions:
-                return result.terminated(Outcome.SOLVER_FAILED, time)
+                result.terminated(Outcome.SOLVER_FAILED, time)
+                break
             divisions += 1
             continue
         size = absolute_accelerations(model, motion, ground)
@@ -122,7 +157,7 @@ def run_adaptively(
         if last > 0:
             accepted = motion.until(last)
             if not _record(result, accepted, size[: last + 1], model, level, keep):
-                return result
+                break
             state, time = accepted.state(last), float(accepted.time[last])
             next_count = min(_steps_ahead(accepted, engine, level), CHUNK_GROWTH * last)
             if rejected:
@@ -132,7 +167,7 @@ def run_adaptively(
             divisions = min(divisions, level.max_divisions)
         elif divisions > 0 and step_ratio[-RECENT_ROWS:].max() * STEP_RATIO < 1.0:
             divisions -= 1
-    return result
+    return Place(state, time, divisions, next_count)
 
 
 def absolute_accelerations(model: EngineModel, motion: Motion, ground: Callable[[Array], Array]) -> Array:
@@ -164,8 +199,10 @@ def _record(result: EngineRun, motion: Motion, size: Array, model: EngineModel, 
     result.max_displacement = max(result.max_displacement, displacement)
     result.peaks.add(motion.time, size, motion.slip)
     _record_settling(result, motion.time, size, _length(place))
+    gap = float(motion.gap.max())
+    result.opened |= gap >= 0.0
     if not model.allows_liftoff:
-        result.min_load = min(result.min_load, -float(motion.gap.max()) / level.penetration)
+        result.min_load = min(result.min_load, -gap / level.penetration)
     return True
 
 

@@ -13,6 +13,7 @@ from multibody.integration.adaptive import Budget, EngineRun, absolute_accelerat
 from multibody.integration.balance import balanced_start
 from multibody.integration.constant_step import Engine
 from multibody.integration.level import Level
+from multibody.integration.look_ahead import looks_ahead, run_looking_ahead
 from multibody.integration.peak import Peaks
 from multibody.models.system import EngineModel, EngineState
 from reference.problem import Outcome, Scene, State, exponents, ground_acceleration
@@ -28,6 +29,7 @@ class PhasePair:
     model: EngineModel
     phase: Array  # (2,), rad
     initial: State | None = None  # at rest without
+    whole: bool = False  # whether every run without a stop takes its own steps to the end of the motion
 
     @property
     def end(self) -> float:
@@ -56,12 +58,15 @@ class PhasePair:
         """
         Run with the steps that `level` allows.
 
-        stop: do not go on after this instant, in units of time. residual: of Newton's iteration, if not that of the
-        level.
+        stop: do not go on after this instant, in units of time. Without it the run may leave out an end in which
+        nothing large comes (`look_ahead`), unless its motion is kept. residual: of Newton's iteration, if not that of
+        the level.
         """
         engine = Engine(self.model, level.newton, level.residual if residual is None else residual)
         self.model.set_contact(level.penetration, level.warping_compliance)
         start = self._start(engine, level.penetration)
+        if stop == math.inf and not (keep or self.whole) and looks_ahead(self.model, level):
+            return run_looking_ahead(engine, start, self.end, self.ground, level, budget)
         return run_adaptively(engine, start, self.end, self.ground, level, budget, stop=stop, keep=keep)
 
     def at_constant_step(

@@ -34,7 +34,7 @@ def _frame(duration: float, count: int = 6, period: float = 0.17) -> Scene:
     )
 
 
-WORK = 2e4  # steps
+WORK = 5e3  # steps
 
 
 def test_a_refusal_tells_by_how_much_and_the_durations_that_it_names_are_true() -> None:
