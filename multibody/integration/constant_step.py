@@ -22,7 +22,7 @@ EXPLICIT = {"RK44": "RK44", "velocity Verlet": "VelocityVerlet"}  # integrators,
 INTEGRATORS = ("generalized alpha", "trapezoidal", *EXPLICIT)
 
 MAX_DENSE_COORDINATES = 40  # beyond them a sparse solver takes less time a step (measured: a third at 360)
-MAX_CONTRACTIVITY = 0.05  # of modified Newton, above which the Jacobian is renewed: fewest iterations (measured)
+MAX_CONTRACTIVITY = 0.2  # of modified Newton, above which the Jacobian is renewed: least time (measured)
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,8 @@ A run to the end of the motion that integrates in full only as long as anything 
 
 Once nothing came near a largest value for a while, the rest of the motion is looked over in steps four times as large,
 from the state that the run has reached. If nothing comes near a largest value there either, the rest is left out.
-Otherwise the run goes on from where it was, beyond the instant that was found, and looks ahead again after twice the
-while. Where a contact opens, motions of different steps are different motions: such a run goes to the end in full.
+Otherwise the run goes on from where it was, for a while beyond the instant that was found, and looks ahead again.
+Where a contact opens, motions of different steps are different motions: such a run goes to the end in full.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 
 NEAR_FRACTION = 0.8  # of a largest value: in larger steps later values below it are no larger ones of the run either
 NEAR_LOAD = 0.2  # of the weight: with less on the contact in larger steps it might open in the run
-FIRST_WAIT = 2.0 * math.pi  # units of time since the last large value: a period of the pendulum
+WAIT = 2.0 * math.pi  # units of time from the last large value to a look ahead: a period of the pendulum
 
 
 def looks_ahead(model: EngineModel, level: Level) -> bool:
@@ -45,12 +45,14 @@ def run_looking_ahead(
 ) -> EngineRun:
     """As `run_adaptively`, without the steps of a part in which nothing comes near a largest value."""
     result, place = begin_run(engine.model), Place(start)
-    if not budget.allows(end, level.coarsened()):
+    scan = level.coarsened()
+    if not budget.allows(end, scan):
         return result.terminated(Outcome.STEP_LIMIT, 0.0)
-    earliest, wait = 0.0, FIRST_WAIT
+    scanning = Engine(engine.model, scan.newton, scan.residual)
+    large_at = 0.0  # the last instant at which a look ahead found something large
 
     def quiet(time: float) -> bool:
-        return time >= earliest and time - result.settled >= wait and not result.opened
+        return time >= max(large_at, result.settled) + WAIT and not result.opened
 
     while True:
         place = go_on(result, place, engine, end, ground, level, budget, pause=quiet)
@@ -58,12 +60,12 @@ def run_looking_ahead(
             return result
         ahead = _ahead_of(result, engine.model)
         large = partial(_large, ahead, result)
-        reached = go_on(ahead, place, engine, end, ground, level.coarsened(), budget, pause=large)
+        reached = go_on(ahead, place, scanning, end, ground, scan, budget, pause=large)
         if ahead.outcome == Outcome.STEP_LIMIT:
             return result.terminated(Outcome.STEP_LIMIT, place.time)
         if ahead.outcome == Outcome.OK and not large(reached.time):
             return result
-        earliest, wait = reached.time, 2.0 * wait
+        large_at = reached.time
 
 
 def _ahead_of(result: EngineRun, model: EngineModel) -> EngineRun:
