@@ -195,10 +195,12 @@ def _record(result: EngineRun, motion: Motion, size: Array, model: EngineModel, 
     _record_warping(result, motion, model, level)
     axes = model.bodies[0, :2]
     place = motion.coordinates[:, axes]
-    displacement = largest_displacement(motion.time, place, motion.velocities[:, axes])
-    result.max_displacement = max(result.max_displacement, displacement)
+    distance = _length(place)
+    if distance.max() > CANDIDATE_FRACTION * result.max_displacement:
+        displacement = largest_displacement(motion.time, place, motion.velocities[:, axes])
+        result.max_displacement = max(result.max_displacement, displacement)
     result.peaks.add(motion.time, size, motion.slip)
-    _record_settling(result, motion.time, size, _length(place))
+    _record_settling(result, motion.time, size, distance)
     gap = float(motion.gap.max())
     result.opened |= gap >= 0.0
     if not model.allows_liftoff:
