@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Batch:
-    """Phase pairs number `first` ... `first` + len(phases) - 1 of the model's grid, phases (M, 2), rad."""
+    """Phase pairs number `first` ... `first` + len(phases) - 1 of those the model solves, phases (M, 2), rad."""
 
     scene: Scene
     model: str

@@ -229,7 +229,7 @@ TRANSLATIONAL = _next(
     seconds_per_point=0.26,
     batch=2,
     applies=any_scene,
-    most=16,
+    most=24,
 )
 SPATIAL = _next(
     TRANSLATIONAL,
@@ -247,7 +247,7 @@ SPATIAL = _next(
     seconds_per_point=0.65,
     batch=1,
     applies=has_spatial_data,
-    most=4,
+    most=8,
     symmetric=on_an_even_ring,
 )
 

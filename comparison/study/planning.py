@@ -45,11 +45,11 @@ STUDY_PRESETS = (  # each costs more than the one before
     StudyPreset(32, 8, 2, False),
     StudyPreset(32, 8, 4, False),
     StudyPreset(48, 16, 4, False),
-    StudyPreset(48, 16, 4, True),
-    StudyPreset(48, 16, 4, True, 1e-4),
-    StudyPreset(96, 32, 8, True, 1e-4),
+    StudyPreset(48, 24, 8, True),
+    StudyPreset(48, 24, 8, True, 1e-4),
+    StudyPreset(96, 48, 8, True, 1e-4),
 )
-DEFAULT_PRESET = STUDY_PRESETS.index(StudyPreset(48, 16, 4, True))
+DEFAULT_PRESET = STUDY_PRESETS.index(StudyPreset(48, 24, 8, True))
 
 
 def nothing(study: Study, with_analyses: bool) -> float:

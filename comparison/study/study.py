@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from comparison.study.batches import Batch
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, models_of, pairs_of
+from comparison.study.nesting import levels
 from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.speedup import speedup
 from comparison.study.symmetry import sources
@@ -129,37 +130,43 @@ class Study:
             else places
         )
 
+    def solved_by_level(self, scene: Scene, model: Model) -> list[NDArray[np.intp]]:
+        """The places that the model is asked for, by the nested grid of its phases that is the first with them."""
+        solved, stride = np.unique(self.sources(scene, model)), self.stride(model, scene)
+        level = levels(len(self.axis(model, scene)))
+        first = np.maximum(*(level[position // stride] for position in np.divmod(solved, self.grid)))
+        return [solved[first == number] for number in range(level.max() + 1)]
+
     def solved(self, scene: Scene, model: Model) -> NDArray[np.intp]:
-        """The places that the model is asked for."""
-        return np.unique(self.sources(scene, model))
+        """The places that the model is asked for, from coarse to fine."""
+        return np.concatenate(self.solved_by_level(scene, model))
 
     def batches(self) -> list[Batch]:
         """
-        The whole work, model by model.
+        The whole work, model by model, and of each from coarse to fine: a finer study begins with the same batches.
 
         The cut depends on the study alone, never on the number of workers: a result must not depend on scheduling.
         """
-        phases = phase_grid(self.grid)
-        work = [
-            (model, scene, self.solved(scene, model))
+        return [
+            batch
             for model in self.hierarchy
             for scene in self.scenes
             if model.applies(scene)
+            for batch in self._batches_of(scene, model)
         ]
+
+    def _batches_of(self, scene: Scene, model: Model) -> list[Batch]:
+        phases = phase_grid(self.grid)
         asked = {"full": True} if self.full else {}
-        return [
-            Batch(
-                scene=scene,
-                model=model.key,
-                amplification=model.amplification,
-                settings={**model.settings, "tolerance": model.tolerance(self.tolerance), **asked},
-                first=first,
-                phases=phases[places[first : first + size]],
-            )
-            for model, scene, places in work
-            for size in [model.batch * max(1, round(self.speedup(scene, model)))]
-            for first in range(0, len(places), size)
-        ]
+        settings = {**model.settings, "tolerance": model.tolerance(self.tolerance), **asked}
+        size = model.batch * max(1, round(self.speedup(scene, model)))
+        batches, first = [], 0
+        for places in self.solved_by_level(scene, model):
+            for start in range(0, len(places), size):
+                part = phases[places[start : start + size]]
+                batches.append(Batch(scene, model.key, model.amplification, settings, first + start, part))
+            first += len(places)
+        return batches
 
     def speedup(self, scene: Scene, model: Model) -> float:
         """How many times less a point costs for what the model leaves out of this scene."""

@@ -9,7 +9,7 @@ ground_acceleration, ground_velocity, ground_displacement       motion of the gr
 exponents, loading_period                                       of the loading
 ground_peak                                                     denominator of (5.1)
 demands                                                         what a motion demands of isolator and structure
-checked_phase, checked_phases, phase_grid                       phase pairs
+checked_phase, checked_phases, phase_axis, phase_grid                       phase pairs
 half_turn, own_axes, planar, planar_chain, linear, no_friction,
 untilted, even_ring, unused_harmonics, in_plane                 what a scene does not require
 verbatim                                                        a text of a scene for matplotlib
@@ -40,7 +40,7 @@ from reference.problem.excitation import (
 from reference.problem.families import Family, load_family
 from reference.problem.figure_text import verbatim
 from reference.problem.outcome import ADVICE, Outcome
-from reference.problem.phases import checked_phase, checked_phases, phase_grid
+from reference.problem.phases import checked_phase, checked_phases, phase_axis, phase_grid
 from reference.problem.reductions import (
     Reduction,
     even_ring,
@@ -93,6 +93,7 @@ __all__ = [
     "no_friction",
     "own_axes",
     "parse_scene",
+    "phase_axis",
     "phase_grid",
     "planar",
     "planar_chain",
