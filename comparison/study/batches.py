@@ -26,6 +26,13 @@ class Batch:
     settings: Mapping[str, object]
     first: int
     phases: Array
+    level: int = 0  # of the nested grids, the first that has these phases
+    seconds: float = 0.0  # predicted processor time
+
+    @property
+    def kind(self) -> tuple[str, str]:
+        """Batches of one kind cost about as much more or less than predicted."""
+        return self.scene.name, self.model
 
 
 @dataclass(frozen=True)

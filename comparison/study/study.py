@@ -9,7 +9,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from comparison.study.accuracy_record import recorded
 from comparison.study.batches import Batch
+from comparison.study.costs import seconds_per_point
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, models_of, pairs_of
 from comparison.study.nesting import levels
 from comparison.study.selection import EVERYTHING, Selection
@@ -50,9 +52,9 @@ class Study:
     are multiples of one another, so that of any two models the coarser grid is part of the finer. Phases whose motion
     is the mirror image of another's are not computed again, and models leave out what the scene does not require,
     unless the study is `full`. A scene with a recorded motion has no phases: every model computes the one point (0, 0).
-    costs: processor time of a point, s, by name of the scene and key of the model, where it is known better than from
-    the model hierarchy (costs.py). silent: by name of the scene, the models that have no value there: comparisons pass
-    over them (analysis/unanswered.py). selection: the analyses that are made of each scene.
+    costs: processor time of a point at the usual tolerance, s, by name of the scene and key of the model, where it was
+    tried (costs.py); else it is that of the record. silent: by name of the scene, the models that have no value there:
+    comparisons pass over them (analysis/unanswered.py). selection: the analyses that are made of each scene.
     """
 
     scenes: tuple[Scene, ...]
@@ -160,11 +162,12 @@ class Study:
         asked = {"full": True} if self.full else {}
         settings = {**model.settings, "tolerance": model.tolerance(self.tolerance), **asked}
         size = model.batch * max(1, round(self.speedup(scene, model)))
-        batches, first = [], 0
-        for places in self.solved_by_level(scene, model):
+        batches, first, each = [], 0, self.seconds_per_point(scene, model)
+        for level, places in enumerate(self.solved_by_level(scene, model)):
             for start in range(0, len(places), size):
                 part = phases[places[start : start + size]]
-                batches.append(Batch(scene, model.key, model.amplification, settings, first + start, part))
+                about = first + start, part, level, each * len(part)
+                batches.append(Batch(scene, model.key, model.amplification, settings, *about))
             first += len(places)
         return batches
 
@@ -172,11 +175,16 @@ class Study:
         """How many times less a point costs for what the model leaves out of this scene."""
         return 1.0 if self.full else speedup(scene, model)
 
+    def seconds_per_point(self, scene: Scene, model: Model) -> float:
+        """Predicted processor time of a phase pair, s."""
+        tried = (self.costs or {}).get((scene.name, model.key))
+        usual = seconds_per_point(scene, model, self.full) if tried is None else tried
+        accuracy = recorded().accuracy.get(model.key)
+        return usual * (accuracy.cost(model.tolerance(self.tolerance)) if accuracy else 1.0)
+
     def seconds_of(self, scene: Scene, model: Model) -> float:
         """Predicted cost of one model on one scene, s on one core."""
-        if self.costs is not None and (scene.name, model.key) in self.costs:
-            return self.costs[scene.name, model.key] * len(self.solved(scene, model))
-        return model.seconds(scene, len(self.solved(scene, model))) / self.speedup(scene, model)
+        return self.seconds_per_point(scene, model) * len(self.solved(scene, model))
 
     def seconds(self, model: Model) -> float:
         """Predicted cost of one model on every scene it applies to, s on one core."""
