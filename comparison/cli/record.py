@@ -20,7 +20,6 @@ from comparison.cli.arguments import CommandParser, command
 from comparison.execution.provenance import provenance
 from comparison.study.accuracy_record import FILE
 from comparison.study.batches import imported
-from comparison.study.benchmark import ENGINE_POINTS, machine_benchmark
 from comparison.study.models import MODEL_HIERARCHY, REFERENCE_TOLERANCE, Model
 from reference.problem import Scene, builtin_scenes, load_scene
 from reference.problem.files import write_atomically
@@ -38,20 +37,17 @@ def main(argv: Sequence[str]) -> int:
     CommandParser("tradeoff.record", "Cost and accuracy of every model, recorded on this machine.").parse_args(argv)
     scenes = [load_scene(name) for name in builtin_scenes()]
     record: dict[str, Any] = {"machine": provenance()["processor"], "models": {}}
-    took = [machine_benchmark()]  # again after every model: what else the machine does falls on both alike
     seconds: dict[str, dict[str, float]] = {scene.digest(): {} for scene in scenes}
     for model in MODEL_HIERARCHY:
         applying = [scene for scene in scenes if model.applies(scene)]
         rows, costs = _rows(model, applying)
         record["models"][model.key] = {"usual": _usual(model), "tolerances": rows}
-        took.append(machine_benchmark())
         for scene, cost in zip(applying, costs):
             seconds[scene.digest()][model.key] = float(f"{cost:.4g}")
         print(model.key, *(f"{row['tolerance']:.0e}: {row['cost']:.2f}, {row['met']:.3f}" for row in rows), sep="  ")
     record["seconds"] = seconds
-    record["machine_benchmark"] = {side: float(np.median([benchmark[side] for benchmark in took])) for side in took[0]}
     write_atomically(FILE, (json.dumps(record, indent=1) + "\n").encode())
-    print(f"{ENGINE_POINTS} point(s) of the engine in the machine benchmark: {record['machine_benchmark']}; {FILE}")
+    print(FILE)
     return 0
 
 

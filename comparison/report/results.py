@@ -69,12 +69,23 @@ class TargetOfModel(Part):
     """relative error that was to be met"""
     asked: float
     """tolerance that the model was given for it"""
+    phases_per_axis: int
+    """of its grid; 1 in a study without phases"""
     points: int
     """phase pairs of all its surfaces"""
     met: float
     """fraction of them whose error estimates meet the tolerance"""
     error99: float | None
     """relative error estimate that 99 % do not exceed; null if more than 1 % have no value"""
+
+
+class NextStep(Part):
+    """What more time would buy."""
+
+    what: Text
+    """a finer grid of a model, or an analysis"""
+    seconds: float
+    """processor time that it still takes, s"""
 
 
 class Targets(Part):
@@ -88,10 +99,10 @@ class Targets(Part):
     """compute time expected for the surfaces, s"""
     seconds: float
     """compute time they took, s"""
-    predicted_wall: float
-    """wall time expected for the whole run, s"""
     left_out: list[Text]
     """models left out, and why"""
+    next_steps: list[NextStep]
+    """what the budget did not buy, in the order in which it would be computed"""
     models: list[TargetOfModel]
     """what every model met"""
 
