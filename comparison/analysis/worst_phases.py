@@ -20,6 +20,7 @@ from comparison.analysis.protocol import Analysis
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
+from comparison.study.costs import seconds_per_point
 from comparison.study.models import Model, models_of, pairs_of
 from comparison.study.study import Study
 from reference import worst_phases
@@ -109,9 +110,9 @@ class WorstPhases(Analysis[list[Worst]]):
             ]
             searches += [(model, None, "displacement", 1) for model in equations if _exact_supremum(model)]
             for model, engine, quantity, body in searches:
-                seconds = model.seconds(scene, POINTS)
+                seconds = POINTS * seconds_per_point(scene, model)
                 if engine is not None:
-                    seconds += engine.seconds(scene, ENGINE_NODES**2 + 1)
+                    seconds += (ENGINE_NODES**2 + 2) * seconds_per_point(scene, engine)
                 argument = (scene, model, engine, quantity, body, study.tolerance)
                 tasks.append(Task(worst_of, argument, self.stage, seconds, scene))
         return tasks
