@@ -78,6 +78,7 @@ class EngineRun:
     settled: float = 0.0
     min_load: float = math.inf  # smallest contact force, in weights, of a model that ends where the contact opens
     opened: bool = False  # whether any contact carried no load
+    looked_over: float = math.inf  # from here on the motion was only looked over in larger steps, in units of time
     chunks: list[Motion] = field(default_factory=list)  # the motion, if it is kept
 
     def terminated(self, outcome: Outcome, instant: float) -> EngineRun:

@@ -64,6 +64,7 @@ def run_looking_ahead(
         if ahead.outcome == Outcome.STEP_LIMIT:
             return result.terminated(Outcome.STEP_LIMIT, place.time)
         if ahead.outcome == Outcome.OK and not large(reached.time):
+            result.looked_over = place.time
             return result
         large_at = reached.time
 

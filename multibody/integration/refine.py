@@ -134,7 +134,8 @@ def refine(
 
 def _work_of_next(run: EngineRun, stop: float, end: float) -> float:
     """Steps of the run at the level after that of `run`, up to `stop`."""
-    shorter = min(stop, end) / min(run.stop, end) if run.outcome == Outcome.OK else 1.0
+    own = min(run.looked_over, end)  # both runs look over what comes later
+    shorter = min(stop, own) / min(run.stop, own) if run.outcome == Outcome.OK else 1.0
     return MAX_WORK_GROWTH * shorter * run.steps
 
 
