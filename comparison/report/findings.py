@@ -65,6 +65,7 @@ class Findings:
     families: Sequence[Family] | None = None  # those of more than one scene
     extremes: Matrix | None = None  # what python -m comparison.extremes left beside the report
     tradeoff: Sequence[Trade] | None = None  # what python -m comparison.tradeoff left beside the report
+    drawings: Mapping[str, Any] = field(default_factory=dict)  # files of the other drawings, by key of their task
 
 
 def collect_findings(
@@ -97,7 +98,9 @@ def collect_findings(
         All of it, with differences, budget, gaps and limits.
     """
     rows, lacking = differences(study, surfaces), unanswered(study, surfaces)
-    optional = {key: collected.get(key) for key in ("motions", "claims", "scaling", "convergence", "assumptions")}
+    optional: dict[str, Any] = {
+        key: collected.get(key) for key in ("motions", "claims", "scaling", "convergence", "assumptions")
+    }
     completed = [surface for scene in study.scenes for surface in completions(study, surfaces, scene)]
     return Findings(
         study=study,
