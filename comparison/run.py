@@ -133,7 +133,7 @@ def _run(
     executor: Callable[[int], Executor],
     store: Cache,
 ) -> int:
-    from comparison.report.report import write_report  # plotting: not needed to refuse a command or to plan
+    from comparison.report.report import drawing_tasks, write_report  # plotting: not needed to refuse or to plan
 
     begin, began = time.monotonic(), datetime.now(UTC)
     clear_dead(options.out)
@@ -195,6 +195,10 @@ def _run(
         tradeoff=None if "tradeoff" in study.absent else _taken_up(stored_trades, options.out),
     )
     results = assemble(findings)
+    drawings = drawing_tasks(results, findings)
+    runner.run_tasks(drawings)
+    files = {task.key: runner.results[task].value for task in drawings}
+    findings = replace(findings, drawings={key: value for key, value in files.items() if value})
 
     console.print("Writing the report.")
     with writing(options.out), atomic_replace(options.out) as report:

@@ -130,6 +130,6 @@ def new_table(*headings: str) -> Table:
     """An empty table: words to the left, numbers to the right."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for heading in headings:
-        words = heading in ("scene", "model", "difference", "step")
+        words = heading in ("scene", "model", "difference", "step", "quantity")
         table.add_column(heading, justify="left" if words else "right", no_wrap=True)
     return table

@@ -67,6 +67,7 @@ class Findings:
     families: Sequence[Family] | None = None  # those of more than one scene
     extremes: Matrix | None = None  # what python -m comparison.extremes left beside the report
     tradeoff: Sequence[Trade] | None = None  # what python -m comparison.tradeoff left beside the report
+    drawings: Mapping[str, Any] = field(default_factory=dict)  # files of the other drawings, by key of their task
 
 
 def collect_findings(
@@ -100,7 +101,7 @@ def collect_findings(
     """
     rows, lacking = differences(study, surfaces), unanswered(study, surfaces)
     names = ("motions", "worst_phases", "claims", "scaling", "convergence", "assumptions")
-    optional = {name: collected.get(name) for name in names}
+    optional: dict[str, Any] = {name: collected.get(name) for name in names}
     completed = [surface for scene in study.scenes for surface in completions(study, surfaces, scene)]
     return Findings(
         study=study,

@@ -19,7 +19,8 @@ from comparison.analysis.claims.table import SIGNS
 from comparison.analysis.effective import PHASES
 from comparison.analysis.extremes.matrix import PICTURE
 from comparison.analysis.extremes.verdicts import Verdict
-from comparison.report.figures.assumptions import assumption_figure_name, draw_assumptions
+from comparison.report.drawings import assumption_tasks, drawn
+from comparison.report.figures.assumptions import assumption_figure_name
 from comparison.report.figures.extremes import MEANING, describe, draw_extremes
 from comparison.report.figures.families import draw_families
 from comparison.report.figures.pictures import smaller
@@ -73,10 +74,10 @@ class Section:
 
 
 def draw_all_assumptions(figures: Path, findings: Findings) -> None:
-    """The picture of every scene that has a spatial model."""
-    if findings.assumptions:
-        for scene in findings.assumptions.scenes:
-            draw_assumptions(figures / assumption_figure_name(scene), scene, findings.assumptions.cells)
+    """One picture for each scene whose assumptions were varied."""
+    for task in assumption_tasks(findings):
+        for name, content in drawn(findings, task):
+            (figures / name).write_bytes(content)
 
 
 def draw_all_trades(figures: Path, findings: Findings) -> None:
