@@ -80,7 +80,7 @@ def test_a_grid_that_is_given_is_the_finest() -> None:
 
 
 def test_after_the_deadline_nothing_starts_and_what_runs_is_ended() -> None:
-    deadline, done = Deadline(1.5), []
+    deadline, done = Deadline(5.0), []  # a busy machine takes seconds to start a worker
     begin = time.monotonic()
     results = sweep(
         [0.0, 60.0, 0.0],
@@ -91,7 +91,7 @@ def test_after_the_deadline_nothing_starts_and_what_runs_is_ended() -> None:
         process_pool,
         seconds_left=lambda task: deadline.left,
     )
-    assert time.monotonic() - begin < 10.0
+    assert time.monotonic() - begin < 30.0
     late = Outcome.TIME_LIMIT, "not computed before the deadline"
     assert results == ["done", late, late]
     assert done == [0.0], "what has no result is not kept"
