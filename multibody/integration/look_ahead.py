@@ -31,8 +31,7 @@ WAIT = 2.0 * math.pi  # units of time from the last large value to a look ahead:
 
 def looks_ahead(model: EngineModel, level: Level) -> bool:
     """Whether larger steps save work: they end at the knots of a record in any case."""
-    knots = model.ground.knots
-    return not len(knots) or float(np.diff(knots).min()) >= 2.0 * level.step
+    return float(np.diff(model.ground.knots).min(initial=math.inf)) >= 2.0 * level.step
 
 
 def longest_steps(model: EngineModel, level: Level, whole: bool) -> Level:
