@@ -28,21 +28,22 @@ DURATIONS = (10.0, 30.0, 100.0, 300.0, 1000.0)  # s
 PHASES = (1, 4, 16, 64, 256)
 POINTS = {"reference": 16, "engine": 1}  # phase pairs of a measurement over bodies and durations
 TALL_DURATION = 5.0  # s, of scenes with many bodies
+SHAKEN = 3.0  # times the amplitudes of the scene: else friction holds a tall platform, which costs nothing
 STOREY = 1.0  # m between the bodies of a tall scene; its ring is as wide as it is high
 LIMIT = 60.0  # s of processor time of one measurement
 MAX_WORK = 1e9  # steps of the engine: the limit ends what takes too long, not a refusal
 
 
 def tall(scene: Scene, bodies: int) -> Scene:
-    """The scene with its upper body repeated until there are so many."""
+    """The scene with its upper body cut into so many less one, each above the other on links of the same period."""
     table = scene.model_dump(exclude_none=True)
     first, second = table["bodies"][0], table["bodies"][min(1, len(table["bodies"]) - 1)]
     height = second.get("height", STOREY)
-    above = [{**second, "height": height + STOREY * number} for number in range(bodies - 1)]
+    mass = second["mass"] / (bodies - 1)
+    above = [{**second, "mass": mass, "height": height + STOREY * number} for number in range(bodies - 1)]
     isolator = {**table["isolator"], "ring": max(table["isolator"].get("ring", 1.0), STOREY * bodies)}
-    return Scene.model_validate(
-        {**table, "isolator": isolator, "bodies": [first, *above], "duration": TALL_DURATION, "acceptance": {}}
-    )
+    changed = {"isolator": isolator, "bodies": [first, *above], "duration": TALL_DURATION, "acceptance": {}}
+    return Scene.model_validate(table | changed).with_values({"excitation.amplitudes": SHAKEN * scene.amplitudes})
 
 
 @dataclass(frozen=True)

@@ -37,6 +37,11 @@ def longest_first(piece: Piece) -> float:
     return -piece.seconds
 
 
+def surfaces_first(piece: Piece) -> float:
+    """The order of the study, then tasks, the longest first."""
+    return -piece.seconds if isinstance(piece, Task) else -math.inf
+
+
 @dataclass(frozen=True)
 class Computed:
     """
@@ -64,7 +69,7 @@ class Runner:
     deadline: Deadline | None = None
 
     def run_study(
-        self, study: Study, tasks: Sequence[Task] = (), order: Callable[[Piece], float] = longest_first
+        self, study: Study, tasks: Sequence[Task] = (), order: Callable[[Piece], float] = surfaces_first
     ) -> Computed:
         """
         Every batch of the study and every task, in one sweep.

@@ -30,7 +30,7 @@ class Task:
     function: Callable[[Any], Any]
     argument: Any
     stage: str  # its name on the terminal and in the table of costs
-    seconds: float  # predicted cost, as `Model.seconds_per_point`
+    seconds: float  # predicted cost, as `costs.seconds_per_point`
     about: Any = None  # what its directory in the cache belongs to
     needs_compiled_reference: bool = True  # on a new installation it waits until one worker has compiled the reference
     timeout: float | None = None  # most processor time, s, rounded up; what takes longer is ended: Outcome.TIME_LIMIT
