@@ -114,11 +114,10 @@ def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) 
     capacity = FIRST_CAPACITY
     while True:
         record = record_of(capacity, bodies)
-        peaks, reading_errors = np.empty((1, bodies)), np.empty((1, bodies))
-        codes, instants, steps, reach = (np.empty(1) for _ in range(4))
-        runs(system, phase[None], x, v, demand, record, peaks, reading_errors, codes, instants, steps, reach)
+        peaks, reading_errors, ends = np.empty((1, bodies)), np.empty((1, bodies)), np.empty((7, 1))
+        runs(system, phase[None], x, v, demand, record, peaks, reading_errors, ends, np.full(1, np.inf))
         if record.made.max() <= capacity:
-            return _Run(OUTCOMES[int(codes[0])], float(instants[0]), record, peaks[0], reading_errors[0])
+            return _Run(OUTCOMES[int(ends[0, 0])], float(ends[1, 0]), record, peaks[0], reading_errors[0])
         capacity = int(record.made.max())
 
 

@@ -94,7 +94,7 @@ def amplification(
     rest_condition : {"consistent", "printed"}
         "printed" takes (4.6) as it stands in the paper.
     full : bool
-        Integrate every motion, even where the scene does not require it (`reference.problem.reductions`).
+        Integrate every motion to its end, even where nothing asked for requires it (`reference.problem.reductions`).
 
     Returns
     -------
@@ -108,7 +108,8 @@ def amplification(
 
     Notes
     -----
-    Every run is made twice with different tolerances; docs/reference.md says how the error follows from both. Statuses
+    Every run is made twice with different tolerances; docs/reference.md says how the error follows from both. The
+    second ends where mu, the largest displacement and the outcome can no longer change, unless `full`. Statuses
     are the values of `Outcome`: "ok"; "tolerance not met", with mu and its larger error; the others come with mu NaN.
 
     Examples
@@ -144,7 +145,7 @@ def amplification(
         peaks = (
             superposed(scene, system, moving_pairs, demand)
             if summed
-            else peaks_with_error(system, moving_pairs, demand)
+            else peaks_with_error(system, moving_pairs, demand, whole=full)
         )
         outcomes = np.array([OUTCOMES[int(code)] for code in peaks.code], dtype=object)
         outcomes[(outcomes == Outcome.OK) & ~np.isfinite(peaks.value).all(axis=1)] = Outcome.SOLVER_FAILED
@@ -171,8 +172,8 @@ def superposed(scene: Scene, system: System, phases: Array, demand: Demand) -> P
     """The peaks of a linear scene, from one motion per harmonic; runs only where it may reach the rim (4.1)."""
     value, error, reach, at_rim = frictionless_peaks(scene, phases)
     met = (error <= demand.tolerance * value).all(axis=1)
-    nothing = np.zeros(len(phases))
-    peaks = Peaks(value, error, np.where(met, SOLVED, NOT_MET), nothing, nothing.copy(), reach)
+    code, no_run = np.where(met, SOLVED, NOT_MET), np.zeros((5, len(phases)))
+    peaks = Peaks(value, error, code, no_run[0], no_run[1], reach, no_run[2], no_run[3], no_run[4])
     if at_rim.any():  # whether it does, and when, is for the run to say
         for whole, ran in zip(peaks, peaks_with_error(system, phases[at_rim], demand)):
             whole[at_rim] = ran

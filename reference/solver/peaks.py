@@ -14,6 +14,7 @@ from reference.solver.work import POWERS, Work
 MAX_RISE_BETWEEN_STAGES = 0.2
 MAX_WAY_FACTOR = 1.5  # bound on the way within a step, times the larger speed at its ends and its length
 NEWTON_ITERATIONS = 6
+SETTLED_FRACTION = 0.9  # of the largest so far: smaller values count as over
 
 
 @compiled
@@ -68,8 +69,13 @@ def interpolation_error(theta: float) -> float:
 
 
 @compiled
-def take_peaks(work: Work, low: float, high: float) -> None:
-    """Raises work.best (N,) by the largest |total|^2 over the part [low, high] of the step just made."""
+def take_peaks(work: Work, low: float, high: float) -> bool:
+    """
+    Raises work.best (N,) by the largest |total|^2 over the part [low, high] of the step just made.
+
+    Returns whether that is near the largest so far for any body.
+    """
+    large = False
     for i in range(work.x.shape[0]):
         highest = 0.0
         for k in range(STAGES):
@@ -82,35 +88,47 @@ def take_peaks(work: Work, low: float, high: float) -> None:
         for axis in range(3):
             expand(work.total[i, axis], work.powers[axis])
         top, place = largest_square(work, 3, low, high)
+        large = large or top >= SETTLED_FRACTION**2 * work.best[i]
         if top > work.best[i]:
             work.best[i] = top
             work.reading_error[i] = interpolation_error(place) * work.defect[i]
+    return large
 
 
 @compiled
-def take_reach(work: Work, h: float, stretched: bool) -> None:
+def take_limit(work: Work, squared: float) -> None:
+    """Raises the platform's largest acceleration by a one-sided limit, which is read without an error."""
+    if squared >= SETTLED_FRACTION**2 * work.best[0]:
+        work.settled = work.time
+    if squared > work.best[0]:
+        work.best[0] = squared
+        work.reading_error[0] = 0.0
+
+
+@compiled
+def take_reach(work: Work, h: float, stretched: bool) -> bool:
     """
     Raises work.reach2 by the largest |x|^2 of the platform in the step just made.
 
     From the polynomial of its acceleration through the stages; in stretched time near a stop, where h is no length of
-    time, at the stages: the way left there is short.
+    time, at the stages: the way left there is short. Returns whether the displacement is near the largest so far.
     """
-    far = work.reach2
     speed2 = 0.0
     for axis in range(2):
         speed2 = max(speed2, work.v[0, axis] ** 2, work.v1[0, axis] ** 2)
     start = work.x[0, 0] ** 2 + work.x[0, 1] ** 2
     end = work.x1[0, 0] ** 2 + work.x1[0, 1] ** 2
-    far = max(far, start, end)
+    far = max(start, end)
     if stretched:
         for k in range(STAGES):
             far = max(far, work.chain[0, 0, k] ** 2 + work.chain[0, 1, k] ** 2)
-    elif sqrt(max(start, end)) + MAX_WAY_FACTOR * h * sqrt(speed2) > sqrt(far):
+    elif sqrt(max(start, end)) + MAX_WAY_FACTOR * h * sqrt(speed2) > sqrt(work.reach2):
         for axis in range(2):
             expand_place(work, h, axis)
         top, _ = largest_square(work, 2, 0.0, 1.0)
         far = max(far, top)
-    work.reach2 = far
+    work.reach2 = max(work.reach2, far)
+    return far >= SETTLED_FRACTION**2 * work.reach2
 
 
 @compiled

@@ -62,7 +62,7 @@ def first_contact(system: System, work: Work) -> int:
 @compiled
 def named(system: System, work: Work, demand: Demand, code: int) -> int:
     """What a run that cannot go on has come to: nearly its end, the rim (4.1), or the trouble that it reports."""
-    if code != STEP_LIMIT and system.duration - work.time < NEGLIGIBLE_REMAINDER * demand.period:
+    if code != STEP_LIMIT and work.end - work.time < NEGLIGIBLE_REMAINDER * demand.period:
         return SOLVED
     at_rim = work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > RIM_SQUARED_FRACTION * system.radius**2
     return RIM if at_rim and code in (UNSOLVED, STEP_LIMIT) else code
@@ -78,13 +78,14 @@ def crawls(system: System, work: Work, contact: int, demand: Demand) -> bool:
 
 
 @inlined
-def integrate(system: System, work: Work, demand: Demand, record: Record) -> int:
+def integrate(system: System, work: Work, demand: Demand, record: Record, stop: float) -> int:
     """
-    Follow the motion from the state in work.x, work.v to the end; how it ended (system.py), at work.time.
+    Follow the motion from the state in work.x, work.v to `stop` or its end; how it ended (system.py), at work.time.
 
     work.best (N,) holds the squared peaks of absolute acceleration, m^2/s^4.
     """
-    start_anew(work, min(FIRST_STEP * demand.period, system.duration))
+    end = min(stop, system.duration)
+    start_anew(work, min(FIRST_STEP * demand.period, end), end)
     contact = first_contact(system, work)
     before, idle = -1.0, 0
     while remaining(system, work, demand) > 0.0:
@@ -105,14 +106,15 @@ def integrate(system: System, work: Work, demand: Demand, record: Record) -> int
 @cached_entry_point
 def runs(
     system: System, phases: Array, x: Array, v: Array, demand: Demand, record: Record,
-    peaks: Array, reading_errors: Array, codes: Array, instants: Array, steps: Array, reach: Array,
+    peaks: Array, reading_errors: Array, ends: Array, stop: Array,
 ) -> None:  # fmt: skip
     """
     Follow the motion from x, v (N, 2) for every phase pair (M, 2), rad.
 
-    Fills peaks (M, N), the largest absolute accelerations, m/s^2, and reading_errors (M, N), their
-    errors inside their steps; how (system.py), when (s) and after how many steps each run ended (M,); reach (M,), m,
-    the platform's largest displacement.
+    Fills peaks (M, N), the largest absolute accelerations, m/s^2, and reading_errors (M, N), their errors inside their
+    steps, and ends (7, M): how (system.py), when (s) and after how many steps each
+    run ended, the platform's largest displacement (m), when the last large value came (s), the smallest reaction / m1
+    (m/s^2) and inertia determinant. A run goes no further than `stop` (M,), s.
     """
     work = workspace(peaks.shape[1])
     system_reference, record_reference = SystemReference(*system), RecordReference(*record)
@@ -122,10 +124,9 @@ def runs(
             for axis in range(2):
                 work.x[i, axis] = x[i, axis]
                 work.v[i, axis] = v[i, axis]
-        codes[m] = integrate(system_reference, work, demand, record_reference)
-        instants[m] = work.time
-        steps[m] = work.steps
-        reach[m] = sqrt(work.reach2)
+        code = integrate(system_reference, work, demand, record_reference, stop[m])
+        ends[0, m], ends[1, m], ends[2, m], ends[3, m] = code, work.time, work.steps, sqrt(work.reach2)
+        ends[4, m], ends[5, m], ends[6, m] = work.settled, work.least_reaction, work.least_determinant
         for i in range(peaks.shape[1]):
             peaks[m, i] = sqrt(work.best[i])
             reading_errors[m, i] = work.reading_error[i]

@@ -8,13 +8,13 @@ from reference.solver.chain import chain_acceleration
 from reference.solver.collocation import NODES, STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.platform import load_in_state, moving
-from reference.solver.events import expand
+from reference.solver.events import expand, lowest
 from reference.solver.ground import ground_at, knot_after
 from reference.solver.peaks import take_peaks, take_reach
 from reference.solver.record import record_step
 from reference.solver.steps import lifted
 from reference.solver.system import REST, SLIDING, STOPPING, UNSOLVED, Demand, Ground, Record, System
-from reference.solver.work import Work
+from reference.solver.work import CLOCK, DETERMINANT, REACTION, Work
 
 MIN_LENGTH_FACTOR, MAX_LENGTH_FACTOR, SAFETY_FACTOR = 0.1, 5.0, 0.85
 MAX_SHORTENING = 0.7  # factor of the length of a step that misses the tolerance, at most
@@ -73,18 +73,18 @@ def negligible_time(system: System, demand: Demand) -> float:
 @compiled
 def remaining(system: System, work: Work, demand: Demand) -> float:
     """Time left, s; 0 when it is so little that nothing changes."""
-    left = system.duration - work.time
+    left = work.end - work.time
     return left if left > negligible_time(system, demand) else 0.0
 
 
 @compiled
 def next_break(system: System, work: Work, demand: Demand) -> float:
-    """Where the loading has its next kink, s, or the motion ends: a step beyond it would lose its order."""
+    """Where the loading has its next kink, s, or the run ends: a step beyond it would lose its order."""
     if system.record.shape[0] > 0:
         k = knot_after(system.record, work.time + negligible_time(system, demand))
         if k < system.record.shape[0]:
-            return min(system.record[k, 0], system.duration)
-    return system.duration
+            return min(system.record[k, 0], work.end)
+    return work.end
 
 
 @compiled
@@ -152,10 +152,12 @@ def commit(work: Work, record: Record, h: float, contact: int, low: float, high:
     """Make the step's end the new state; its part [low, high] counts for the peaks."""
     if record.start.shape[0] > 0:
         record_step(work, record, h, contact)
-    if high > low:
-        take_peaks(work, low, high)
+    large = high > low and take_peaks(work, low, high)
+    work.least_reaction = min(work.least_reaction, lowest(work.stage[REACTION]))
     if contact != REST:
-        take_reach(work, h, contact == STOPPING)
+        large = take_reach(work, h, contact == STOPPING) or large
+    if contact not in (REST, STOPPING):
+        work.least_determinant = min(work.least_determinant, lowest(work.stage[DETERMINANT]))
     for axis in range(2):
         expand(work.a[0, axis], work.powers[axis])
         for k in range(STAGES):
@@ -170,3 +172,5 @@ def commit(work: Work, record: Record, h: float, contact: int, low: float, high:
     work.old_length = 0.0 if contact in (STOPPING, REST) else h
     if contact != STOPPING:
         work.time += h
+    if large:
+        work.settled = work.turning[CLOCK, STAGES - 1] if contact == STOPPING else work.time

@@ -101,10 +101,14 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     old_length: float  # s; 0 where its polynomial is no guess for the next step
     guess: Array  # (2, S) coefficients of the platform's acceleration in it
     # the run
+    end: float  # s, at most the duration
     steps: float
     best: Array  # (N,) largest squared absolute acceleration so far
     reading_error: Array  # (N,) m/s^2, error of reading it inside its step
     reach2: float  # m^2, largest squared displacement of the platform
+    settled: float  # s, end of the last step with a large value of anything that is asked for
+    least_reaction: float  # m/s^2, of the platform / m1
+    least_determinant: float  # of the inertia while sliding
 
 
 structref.define_proxy(Work, _WorkType, list(Work.__annotations__))
@@ -155,18 +159,23 @@ def workspace(bodies: int) -> Work:
         defect=np.zeros(n),
         old_length=0.0,
         guess=np.zeros((2, s)),
+        end=0.0,
         steps=0.0,
         best=np.zeros(n),
         reading_error=np.zeros(n),
         reach2=0.0,
+        settled=0.0,
+        least_reaction=0.0,
+        least_determinant=0.0,
     )
 
 
 @compiled
-def start_anew(work: Work, length: float) -> None:
-    """Forget the run before; `length`, s, of the first step."""
+def start_anew(work: Work, length: float, end: float) -> None:
+    """Forget the run before; `length` of the first step and end of the run, s."""
     work.time = work.angle = work.log_speed = work.log_ratio = work.start2 = 0.0
     work.length, work.stretched, work.growth, work.old_length = length, 0.0, 0.0, 0.0
+    work.end, work.settled, work.least_reaction, work.least_determinant = end, 0.0, np.inf, np.inf
     work.held = work.entered = work.left = work.steps = work.reach2 = 0.0
     for i in range(work.x.shape[0]):
         work.best[i] = work.reading_error[i] = 0.0

@@ -115,6 +115,21 @@ def test_the_reference_is_faster_than_a_compiled_lsoda_at_better_accuracy():
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("law", [{}, {"equations": "small"}, {"regularization": V_REG}], ids=str)
+def test_a_point_whose_second_run_stops_early_costs_less(law):
+    """fig3-I has no other reduction for a single point, so full over not full is the early end alone."""
+    scene, phases = reference.load_scene("fig3-I"), reference.phase_grid(16) + 0.1
+    reference.amplification(scene, phases[:1], **law)  # compiled
+    seconds = np.array(
+        [[reference.amplification(scene, phases, full=full, **law).cost for full in (True, False)] for _ in range(3)]
+    )
+    whole, early = seconds.min(axis=0)
+    print(f"\nto the end {1e3 * whole / len(phases):.2f} ms a point, early {1e3 * early / len(phases):.2f} ms")
+    print(f"ratio of processor time {whole / early:.2f}")
+    assert whole / early > 1.15
+
+
+@pytest.mark.long
 def test_the_cost_per_step_grows_linearly_with_the_number_of_bodies():
     base = reference.load_scene("fig3-I").model_dump(exclude_none=True)
 

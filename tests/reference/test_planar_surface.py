@@ -45,9 +45,9 @@ def axes(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     noted: list[int] = []
     solved = surface.peaks_with_error
 
-    def seen(system: Any, *rest: Any) -> Any:
+    def seen(system: Any, *rest: Any, **options: Any) -> Any:
         noted.append(system.axes)
-        return solved(system, *rest)
+        return solved(system, *rest, **options)
 
     monkeypatch.setattr(surface, "peaks_with_error", seen)
     return noted

@@ -12,6 +12,7 @@ from reference.solver.contact.platform import directed, load_in_state, rest_exce
 from reference.solver.contact.stop_arc import settled_direction, squared_total
 from reference.solver.events import first_crossing, lowest
 from reference.solver.ground import ground_at, ground_at_stages
+from reference.solver.peaks import take_limit
 from reference.solver.step_control import (
     MAX_LENGTH_FACTOR,
     MIN_STEP,
@@ -72,10 +73,7 @@ def begin_sliding(system: System, work: Work, demand: Demand) -> None:
     gx, gy = load.fx - reaction * load.px / system.radius, load.fy - reaction * load.py / system.radius
     work.angle = settled_direction(system, load, atan2(gy, gx), 0.0)
     if demand.cutoff == 0.0:
-        onset = squared_total(system, load, work.angle)
-        if onset > work.best[0]:
-            work.best[0] = onset
-            work.reading_error[0] = 0.0
+        take_limit(work, squared_total(system, load, work.angle))
     ex, ey = heading(work.angle, system.axes)
     ax, ay, _, _ = directed(system, load, 0.0, ex, ey)
     begin_with(system, work, ground, ax, ay, False)

@@ -12,6 +12,7 @@ from reference.solver.contact.platform import directed, load_in_state, rest_exce
 from reference.solver.contact.stop_arc import arc_peak
 from reference.solver.events import first_crossing, lowest
 from reference.solver.ground import ground_at
+from reference.solver.peaks import take_limit
 from reference.solver.step_control import MIN_STEP, begin_with, next_break
 from reference.solver.system import CREEPING, REGULARIZED, REST, SLIDING, STOPPING, Demand, System
 from reference.solver.work import ACROSS, ALONG, CLOCK, DIRECTION, LOG_RATIO, SIGMA, Work
@@ -96,7 +97,7 @@ def after_stopping_step(system: System, work: Work, demand: Demand, h: float, fa
     work.time, work.angle = work.turning[CLOCK, last], work.turning[DIRECTION, last]
     work.log_speed, work.log_ratio = work.turning[SIGMA, last], work.turning[LOG_RATIO, last]
     work.stretched = h * factor
-    if work.time >= system.duration - 10.0 * MIN_STEP * demand.period:
+    if work.time >= work.end - 10.0 * MIN_STEP * demand.period:
         return STOPPING
     if system.law != REGULARIZED:
         contact = after_stop(system, work, demand)
@@ -136,9 +137,7 @@ def after_stop(system: System, work: Work, demand: Demand) -> int:
         arc = arc_peak(system, load, work.angle)
         if speed > MIN_FOLLOWED_SPEED * unit and arc > DECISIVE_ARC_FRACTION * DECISIVE_ARC_FRACTION * work.best[0]:
             return STOPPING
-        if arc > work.best[0]:
-            work.best[0] = arc
-            work.reading_error[0] = 0.0
+        take_limit(work, arc)
     elif speed > demand.cutoff:
         return STOPPING
     return REST

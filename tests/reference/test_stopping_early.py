@@ -1,0 +1,127 @@
+"""Runs that stop once nothing can come: no peak, displacement or outcome is lost by it, on random scenes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import reference
+from reference.problem import Scene, load_scene
+from reference.solver import error_estimate
+from reference.solver.error_estimate import Peaks, peaks_at, peaks_with_error
+from reference.surface import checked_demand
+
+TOLERANCE = 1e-5
+STEP, SAMPLES = 0.05, 160  # of a random record, s
+LAWS: list[dict[str, Any]] = [{}, {}, {"regularization": 1e-3}, {"cutoff": 1e-3}]
+
+
+def random_record(random: np.random.Generator) -> dict[str, Any]:
+    """Two bursts along x and y, the second half to one and a half times as strong as the first, at any distance."""
+    time = STEP * np.arange(SAMPLES)
+    size, instants = random.uniform(0.5, 1.5), (1.5, random.uniform(2.5, 6.5))
+    rows = []
+    for strength, frequency in random.uniform((0.5, 0.5), (2.0, 2.0), (2, 2)):
+        bursts = [np.exp(-(((time - instant) / 0.6) ** 2)) for instant in instants]
+        rows.append(strength * (bursts[0] + size * bursts[1]) * np.sin(2.0 * np.pi * frequency * time))
+    samples = np.column_stack([time, *rows, np.zeros(SAMPLES)])
+    return {"record": "two bursts.csv", "samples": samples.tolist()}
+
+
+def random_scene(random: np.random.Generator) -> Scene:
+    """One to four bodies under a record or harmonics that decay or do not, gentle or up to the rim."""
+    bodies: list[dict[str, Any]] = [{"mass": random.uniform(0.3, 3.0)} for _ in range(random.integers(1, 5))]
+    for body in bodies[1:]:
+        body["period"] = random.uniform(0.3, 2.0, 2).tolist()
+    excitation: dict[str, Any] = {
+        "amplitudes": random.uniform(-2.0, 2.0, (random.integers(2, 4), 2)).tolist(),
+        "periods": random.uniform(0.4, 1.6, 2).tolist(),
+        "decay": (random.uniform(0.0, 0.5, 2) * random.integers(0, 2, 2)).tolist(),
+    }
+    if random.uniform() < 0.3:
+        excitation = random_record(random)
+    law = (
+        {"lubrication": random.uniform(0.1, 1.0)} if random.uniform() < 0.2 else {"friction": random.uniform(0.0, 0.3)}
+    )
+    return Scene.model_validate(
+        {
+            "title": "random scene",
+            "duration": float(random.uniform(2.0, 8.0)),
+            "isolator": {"radius": float(10.0 ** random.uniform(-0.8, 0.5)), **law},
+            "bodies": bodies,
+            "excitation": excitation,
+        }
+    )
+
+
+def early_and_whole(seed: int) -> tuple[Peaks, Peaks]:
+    """The answers for one random scene with runs that stop early and with runs to the end."""
+    random = np.random.default_rng(seed)
+    scene, law = random_scene(random), LAWS[random.integers(len(LAWS))]
+    if scene.lubricated:
+        law = {}
+    system, demand = checked_demand(
+        scene,
+        equations=str(random.choice(["exact", "small"])),
+        regularization=law.get("regularization"),
+        tolerance=TOLERANCE,
+        cutoff=law.get("cutoff"),
+        rest_condition="consistent",
+    )
+    phases = random.uniform(0.0, 2.0 * np.pi, (1, 2))
+    early, whole = (peaks_with_error(system, phases, demand, whole=full) for full in (False, True))
+    return early, whole
+
+
+def number_stopped(seeds: range) -> int:
+    """How many of the random scenes stopped early; none of them may have lost anything."""
+    stopped = 0
+    for seed in seeds:
+        early, whole = early_and_whole(seed)
+        lost = f"random scene {seed}"
+        np.testing.assert_array_equal(early.code, whole.code, lost)
+        # the same steps up to where a run stops
+        np.testing.assert_allclose(early.value, whole.value, rtol=1e-12, err_msg=lost)
+        np.testing.assert_allclose(early.error, whole.error, rtol=1e-6, err_msg=lost)
+        np.testing.assert_allclose(early.reach, whole.reach, rtol=1e-12, err_msg=lost)
+        stopped += int((early.steps < whole.steps).sum())
+    return stopped
+
+
+def test_no_peak_is_lost_by_stopping_early() -> None:
+    assert number_stopped(range(300)) > 100
+
+
+@pytest.mark.long
+def test_no_peak_is_lost_by_stopping_early_on_10_000_scenes() -> None:
+    assert number_stopped(range(1000, 11_000)) > 3000
+
+
+def test_a_surface_stops_early_and_a_full_one_goes_to_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    stops: list[np.ndarray] = []
+
+    def noted(*arguments: Any) -> Peaks:
+        stops.append(arguments[4] if len(arguments) > 4 else np.full(len(arguments[1]), np.inf))
+        return peaks_at(*arguments)
+
+    monkeypatch.setattr(error_estimate, "peaks_at", noted)
+    scene = load_scene("fig3-I")
+    early = reference.amplification(scene, [(0.3, 1.1)])
+    assert np.isinf(stops[0]).all()
+    assert (stops[1] < 0.6 * scene.duration).all()
+    stops.clear()
+    whole = reference.amplification(scene, [(0.3, 1.1)], full=True)
+    assert np.isinf(np.concatenate(stops)).all()
+    np.testing.assert_array_equal(early.mu, whole.mu)
+    np.testing.assert_array_equal(early.cap_share, whole.cap_share)
+
+
+def test_a_run_that_disagrees_with_the_one_before_goes_to_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(error_estimate, "MAX_EARLY_CHANGE", -1.0)
+    scene = load_scene("fig3-I")
+    system, demand = checked_demand(scene, "exact", None, TOLERANCE, None, "consistent")
+    phases = np.array([(0.3, 1.1)])
+    early, whole = (peaks_with_error(system, phases, demand, whole=full) for full in (False, True))
+    np.testing.assert_array_equal(early.steps, whole.steps)
