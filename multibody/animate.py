@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from multibody.film import Look, film
 from multibody.integration.constant_step import set_initial_state
+from multibody.integration.refine import MAX_WORK
 from multibody.integration.work_limit import refusal
 from multibody.models.assembly import assemble
 from multibody.models.engine import exudyn
@@ -108,6 +109,9 @@ def _arguments(words: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--model", default="translational")
     parser.add_argument("--regularization", type=float, default=1e-3, help="v_reg, m/s")
     parser.add_argument("--amplitude", type=float, help="largest entry of the amplitude matrix, m/s^2")
+    parser.add_argument(
+        "--max-work", type=float, default=MAX_WORK, help="most steps of the engine, %(default)g if not given"
+    )
     parser.add_argument("--stretch", type=float, default=Look.stretch, help="displacements drawn so many times larger")
     parser.add_argument("--speed", type=float, default=Look.speed, help="seconds of motion per second of film")
     parser.add_argument("--rate", type=int, default=Look.rate, help=f"frames per second, {Look.rate} if not given")
@@ -129,9 +133,10 @@ def main(words: list[str] | None = None) -> int:
             return 0
         look = Look(options.stretch, options.speed, options.rate, tuple(options.size))
         refuse_film(scene, options.out, look)
-        motion = trajectory(scene, phase, options.model, options.regularization)
+        motion = trajectory(scene, phase, options.model, options.regularization, max_work=options.max_work)
         if len(motion.time) == 0:
-            reason = refusal(scene, options.model, options.regularization, full=True) or ADVICE[Outcome(motion.status)]
+            why = refusal(scene, options.model, options.regularization, full=True, max_work=options.max_work)
+            reason = why or ADVICE[Outcome(motion.status)]
             raise ValueError(f"{scene.name}: there is no motion to show: {motion.status}: {reason}")
     except (SceneError, ValueError) as error:
         print(error, file=sys.stderr)

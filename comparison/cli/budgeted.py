@@ -62,7 +62,7 @@ def allotment(study: Study, budget: float, jobs: int) -> Allotment:
     SceneError
         If not even the coarsest grids of both sides fit.
     """
-    slow = max(1.0, slowness())
+    slow = slowness()
     later = [analysis for analysis in chosen_analyses(study) if analysis.needs_surfaces]
     seconds = {
         analysis.key: slow * sum(analysis.predicted_seconds(study.selecting(analysis.key))) / jobs for analysis in later

@@ -80,8 +80,7 @@ def test_a_grid_that_is_given_is_the_finest() -> None:
 
 
 def test_after_the_deadline_nothing_starts_and_what_runs_is_ended() -> None:
-    deadline, done = Deadline(5.0), []  # a busy machine takes seconds to start a worker
-    begin = time.monotonic()
+    deadline, done = Deadline(1.5), []
     results = sweep(
         [0.0, 60.0, 0.0],
         busy,
@@ -91,7 +90,6 @@ def test_after_the_deadline_nothing_starts_and_what_runs_is_ended() -> None:
         process_pool,
         seconds_left=lambda task: deadline.left,
     )
-    assert time.monotonic() - begin < 30.0
     late = Outcome.TIME_LIMIT, "not computed before the deadline"
     assert results == ["done", late, late]
     assert done == [0.0], "what has no result is not kept"
@@ -113,10 +111,10 @@ def test_a_task_that_would_cross_the_deadline_is_not_started() -> None:
 
 
 def test_a_budget_is_kept_and_says_what_it_reached_and_what_more_would_buy(command: Callable[..., Run]) -> None:
-    run = command("fig3-I", "--budget", "30", "--grid", "4", "--jobs", "1")
+    run = command("fig3-I", "--budget", "3000", "--grid", "4", "--jobs", "1")
     assert run.code == 0, run.err
     kept = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))["run"]["choice"]
-    assert (kept["budget"], kept["next_steps"]) == (30.0, [])
+    assert (kept["budget"], kept["next_steps"]) == (3000.0, [])
     assert {model["key"]: model["phases_per_axis"] for model in kept["models"]}["exact"] == 4
     assert "best complete study" in (run.report / "index.html").read_text(encoding="utf-8")
     assert "exact equations, 4 x 4 phases: 0.001 met at 100 %" in run.out
@@ -132,7 +130,7 @@ def test_what_is_not_complete_when_the_time_is_up_is_left_out_and_kept_for_the_n
         return kind == "pictures" or bool(allowed and allowed.pop())
 
     monkeypatch.setattr(Deadline, "allows", few)
-    run = command("fig3-I", "--budget", "30", "--skip", "assumptions", "--jobs", "1")
+    run = command("fig3-I", "--budget", "3000", "--skip", "assumptions", "--jobs", "1")
     assert run.code == 0, run.err
     choice = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))["run"]["choice"]
     grids = {model["key"]: model["phases_per_axis"] for model in choice["models"]}
@@ -149,7 +147,7 @@ def test_a_budget_that_ends_before_both_sides_have_values_is_one_line(
     command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(Deadline, "allows", lambda self, kind, predicted: False)
-    run = command("fig3-I", "--budget", "30", "--jobs", "1")
+    run = command("fig3-I", "--budget", "3000", "--jobs", "1")
     assert run.code == 2
     assert "ended before both sides had a value" in run.err
     assert run.err.count("\n") == 1
@@ -164,15 +162,25 @@ def test_an_impossible_budget_is_one_line(command: Callable[..., Run]) -> None:
     assert not run.report.exists()
 
 
+def test_a_slow_or_busy_machine_keeps_more_time_for_the_report(monkeypatch: pytest.MonkeyPatch) -> None:
+    shares = []
+    for slow in (1.0, 3.0):
+        monkeypatch.setattr(budgeted, "slowness", lambda slow=slow: slow)
+        shares.append(budgeted.allotment(finest(), 300.0, 2))
+    assert shares[1].writing > 2.0 * shares[0].writing
+    assert shares[1].surfaces < shares[0].surfaces
+
+
 def test_the_plan_of_a_budget_lists_the_steps_in_their_order(command: Callable[..., Run]) -> None:
-    run = command("fig3-I", "--budget", "60", "--plan")
+    run = command("fig3-I", "--budget", "3000", "--plan")
     assert run.code == 0, run.err
     assert run.out.index("equations: 2 x 2 phases") < run.out.index("translational engine: 2 x 2 phases")
     assert run.out.index("translational engine: 2 x 2 phases") < run.out.index("equations: 96 x 96 phases")
     assert not run.report.exists()
 
 
-def test_what_the_surfaces_choose_is_left_out_of_a_short_budget() -> None:
+def test_what_the_surfaces_choose_is_left_out_of_a_short_budget(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(budgeted, "slowness", lambda: 1.0)
     study = plan_study(StudyRequest(tuple(map(load_scene, builtin_scenes())), budgeted=True)).study
     assert "motions" in budgeted.allotment(study, 45.0, 2).dropped
     assert budgeted.allotment(study, 600.0, 2).dropped == ()

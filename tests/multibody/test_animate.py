@@ -65,6 +65,16 @@ def test_a_refused_motion_is_one_line_that_says_why_and_what_helps(
     assert not (tmp_path / "run.gif").exists()
 
 
+def test_the_work_that_is_allowed_is_an_option(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "short.toml").write_text(SHORT)
+    words = [str(tmp_path / "short.toml"), "--phases", "0.3", "1.1", "--out", str(tmp_path / "run.gif")]
+    assert main([*words, "--max-work", "2"]) == 2
+    assert "a phase pair may take 2 " in capsys.readouterr().err
+    assert main([*words, "--max-work", "0"]) == 2
+    assert "max_work" in capsys.readouterr().err
+    assert main(words) == 0
+
+
 def test_a_dollar_in_a_title_is_a_letter_of_the_film(tmp_path: Path) -> None:
     (tmp_path / "short.toml").write_text(SHORT.replace('title = "short"', r"title = 'x $\frac{$ y'"))
     out = tmp_path / "run.gif"
