@@ -20,7 +20,9 @@ from numpy.typing import NDArray
 
 from multibody.integration.constant_step import Engine, Motion
 from multibody.integration.level import STEP_RATIO, Level
+from multibody.integration.openings import FIRST_STEP, Event, Openings
 from multibody.integration.peak import CANDIDATE_FRACTION, Peaks, kinks
+from multibody.models.depressions import rotation
 from multibody.models.recorded import align_steps
 from multibody.models.system import EngineModel, EngineState
 from reference.problem import Outcome
@@ -65,6 +67,8 @@ class EngineRun:
     # the last instant at which an acceleration or the displacement of the platform came within SETTLED_FRACTION of its
     # largest value, in units of time
     settled: float = 0.0
+    undisturbed: float = -math.inf  # contact forces have settled after the last impact: peaks are read from here on
+    impacts: int = 0  # of supports that closed again
     min_load: float = math.inf  # smallest contact force, in weights, of a model that ends where the contact opens
     chunks: list[Motion] = field(default_factory=list)  # the motion, if it is kept
 
@@ -94,6 +98,7 @@ def run_adaptively(
     result = EngineRun(Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near), stop)
     if not budget.allows(min(end, stop), level):
         return result.terminated(Outcome.STEP_LIMIT, 0.0)
+    openings = None if model.impact is None else Openings(engine, model.impact, level.penetration)
     state, time, divisions, next_count = start, 0.0, FIRST_DIVISIONS, MAX_CHUNK_STEPS
     while time < min(end, stop) * (1.0 - 1e-12):
         divisions = max(divisions, level.min_divisions(time))
@@ -111,6 +116,8 @@ def run_adaptively(
                 return result.terminated(Outcome.SOLVER_FAILED, time)
             divisions += 1
             continue
+        if openings is not None:
+            motion = openings.with_gaps(motion)
         absolute = absolute_accelerations(model, motion, ground)
         step_ratio = _step_ratio(motion, engine, absolute, float(result.peaks.value[0]), step / level.slip_change)
         last = len(motion.time) - 1
@@ -118,6 +125,9 @@ def run_adaptively(
         rejected = divisions < level.max_divisions and len(failing) > 0
         if rejected:
             last = max(int(failing[0]) - 1, 0)
+        event = None if openings is None else openings.first_event(motion.until(last))
+        if openings is not None and event is not None:
+            last, rejected = event.row, False
         if last > 0:
             accepted = motion.until(last)
             if not _record(result, accepted, absolute[: last + 1], model, level, keep):
@@ -126,12 +136,55 @@ def run_adaptively(
             next_count = _steps_ahead(accepted, engine, level)
             if rejected:
                 state = model.settle(state, _gap_rate(accepted), level.penetration)
-        if rejected:
+        if openings is not None and event is not None:
+            state, time, going_on = _pass(event, openings, state, time, step, result, ground, level, keep)
+            budget.left -= 1.0
+            if not going_on:
+                return result
+            if event.closes:
+                divisions = max(divisions, _divisions_behind_impact(level))
+            next_count = DIVIDED_CHUNK_STEPS
+        elif rejected:
             divisions += 1 if step_ratio[failing[0]] < STEP_RATIO else 2
             divisions = min(divisions, level.max_divisions)
         elif divisions > 0 and step_ratio[-RECENT_ROWS:].max() * STEP_RATIO < 1.0:
             divisions -= 1
     return result
+
+
+def _pass(
+    event: Event,
+    openings: Openings,
+    state: EngineState,
+    time: float,
+    step: float,
+    result: EngineRun,
+    ground: Callable[[Array], Array],
+    level: Level,
+    keep: bool,
+) -> tuple[EngineState, float, bool]:
+    """State and instant behind an opening or closing of supports, and whether the run goes on."""
+    model = openings.engine.model
+    motion = openings.located(state, time, step, event)
+    if motion is not None:
+        absolute = absolute_accelerations(model, motion, ground)
+        motion = openings.touching(motion, event.which) if event.closes else openings.with_gaps(motion)
+        if not _record(result, motion, absolute, model, level, keep):
+            return state, time, False
+        state, time = motion.state(-1), float(motion.time[-1])
+    if not event.closes:
+        openings.opened(event)
+        return state, time, True
+    state = openings.after_impact(state, time, event.which)
+    result.undisturbed, result.impacts = openings.settled, openings.impacts
+    result.peaks.restart()
+    return state, time, True
+
+
+def _divisions_behind_impact(level: Level) -> int:
+    """How often the largest step is divided while contact forces settle."""
+    wanted = math.ceil(math.log(level.step / (FIRST_STEP * math.sqrt(level.penetration)), STEP_RATIO))
+    return min(max(wanted, 0), level.max_divisions)
 
 
 def absolute_accelerations(model: EngineModel, motion: Motion, ground: Callable[[Array], Array]) -> Array:
@@ -153,8 +206,10 @@ def _record(result: EngineRun, motion: Motion, absolute: Array, model: EngineMod
     axes = model.bodies[0, :2]
     displacement = largest_displacement(motion.time, motion.coordinates[:, axes], motion.velocities[:, axes])
     result.max_displacement = max(result.max_displacement, displacement)
-    result.peaks.add(motion.time, absolute, motion.slip)
-    _record_settling(result, motion, absolute, model)
+    read = slice(int(np.searchsorted(motion.time, result.undisturbed)), None)
+    if len(motion.time[read]):
+        result.peaks.add(motion.time[read], absolute[read], motion.slip[read])
+        _record_settling(result, motion.since(read.start), absolute[read], model)
     if not model.allows_liftoff:
         result.min_load = min(result.min_load, -float(motion.gap.max()) / level.penetration)
     return True
@@ -186,8 +241,14 @@ def _slip_change(motion: Motion, engine: Engine, per_change: float) -> Array:
     size = np.linalg.norm(acceleration, axis=-1)
     # an acceleration that changes within a step counts twice: it says more about the steps that follow
     size[1:] = np.maximum(size[1:], 2.0 * np.linalg.norm(np.diff(acceleration, axis=0), axis=-1))
-    step_ratio: Array = per_change * size / np.maximum(motion.slip.min(axis=1), corner)
+    step_ratio: Array = per_change * size / np.maximum(_loaded_slip(motion), corner)
     return step_ratio
+
+
+def _loaded_slip(motion: Motion) -> Array:
+    """Smallest slip speed of the contacts that carry load, (T,); inf where none does."""
+    slip: Array = np.where(motion.gap < 0.0, motion.slip, np.inf).min(axis=1)
+    return slip
 
 
 def _behind_kinks(motion: Motion, platform: Array, engine: Engine, peak: float, per_change: float) -> Array:
@@ -239,7 +300,9 @@ def _steps_ahead(motion: Motion, engine: Engine, level: Level) -> int:
     corner = engine.model.corner
     if len(motion.time) < 2 or not np.isfinite(corner):
         return MAX_CHUNK_STEPS
-    slip = motion.slip[-2:].min(axis=1)
+    slip = _loaded_slip(motion)[-2:]
+    if not np.isfinite(slip).all():
+        return MAX_CHUNK_STEPS
     rate = (slip[1] - slip[0]) / (motion.time[-1] - motion.time[-2])
     target = corner
     if slip[1] > corner:
@@ -252,14 +315,27 @@ def _steps_ahead(motion: Motion, engine: Engine, level: Level) -> int:
 
 def termination(motion: Motion, model: EngineModel) -> tuple[Outcome, int]:
     """The first event that ends the model's validity and its row; OK and the last row if there is none."""
+    count = len(motion.time)
+    if model.depressions is not None:
+        rim, tilt = _first(model.depressions.beyond_rim(motion.coordinates)), _tilt(motion, model)
+        if min(rim, _first(tilt >= 0.5 * math.pi)) == count:
+            return Outcome.OK, count - 1
+        row = min(rim, _first(tilt >= 0.5 * math.pi))
+        return Outcome.OVERTURNED if tilt[row] > model.critical_tilt else Outcome.RIM_REACHED, row
     # by height: the horizontal offset only touches rho at the rim and falls again beyond
     rise = motion.coordinates[:, model.bodies[0, 2]]
-    count = len(motion.time)
     rim = _first(rise >= RIM)
     contact_lost = count if model.allows_liftoff else _first((motion.gap >= 0.0).all(axis=1))
     if min(rim, contact_lost) == count:
         return Outcome.OK, count - 1
     return (Outcome.RIM_REACHED, rim) if rim <= contact_lost else (Outcome.CONTACT_LOST, contact_lost)
+
+
+def _tilt(motion: Motion, model: EngineModel) -> Array:
+    """Angle of the platform's axis to the vertical, (T,), rad."""
+    upright = rotation(motion.coordinates[:, model.bodies[0] + 3])[:, 2, 2]
+    tilt: Array = np.arccos(np.clip(upright, -1.0, 1.0))
+    return tilt
 
 
 def _first(holds: Any) -> int:

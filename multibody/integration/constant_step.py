@@ -51,6 +51,10 @@ class Motion:
         """The rows up to and including `row`."""
         return Motion(*(getattr(self, column.name)[: row + 1] for column in fields(self)))
 
+    def since(self, row: int) -> Motion:
+        """The rows from `row` on."""
+        return Motion(*(getattr(self, column.name)[row:] for column in fields(self)))
+
     @staticmethod
     def concatenated(chunks: list[Motion]) -> Motion:
         """One motion from chunks, each of which starts with the last row of the one before."""

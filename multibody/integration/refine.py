@@ -24,6 +24,7 @@ from multibody.integration.estimate import (
     from_compliance,
     from_levels,
     from_sharing,
+    measured_per_load,
     share_of_change,
     widened_without_convergence,
 )
@@ -85,6 +86,7 @@ def refine(
         no_run = EngineRun(Peaks(len(model.bodies), model.corner), math.inf, Outcome.STEP_LIMIT, 0.0)
         return _no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
     runs: list[EngineRun] = []
+    per_load = np.full(len(model.bodies), ERROR_PER_WARPING_LOAD)
     stop = math.inf  # of the next run, where nothing later can matter
     candidate: _Candidate | None = None
     complete: _Candidate | None = None  # the last candidate whose error lacks nothing
@@ -105,7 +107,7 @@ def refine(
             continue
         candidate = None
         too_stiff = run.warping_load * ERROR_PER_WARPING_LOAD > MAX_WARPING_ERROR_SHARE * tolerance
-        if too_stiff and run.last_open == -math.inf:  # a support that closes again would hit a softer platform
+        if too_stiff:
             rest = slice(number + 1, len(remaining))
             remaining[rest] = [_softer(later, run.warping_load, tolerance) for later in remaining[rest]]
         if number == 0 or runs[-2].outcome != run.outcome:
@@ -114,9 +116,18 @@ def refine(
             earlier.chunks.clear()
         if run.outcome != Outcome.OK:
             break
-        finished = [other.peaks for other in runs[-3:] if other.outcome == Outcome.OK]
-        errors = from_levels(finished, remaining[: number + 1], model) + from_sharing(run)
-        errors = widened_without_convergence(errors, run)
+        same = remaining[number - 1].warping_compliance == level.warping_compliance
+        per_load = per_load if same else np.minimum(per_load, measured_per_load(run, runs[-2]))
+        finished = [
+            other.peaks
+            for other, its_level in zip(runs[-3:-1], remaining[max(number - 2, 0) : number])
+            if other.outcome == Outcome.OK
+            and (other is runs[-2] or its_level.warping_compliance == remaining[number - 1].warping_compliance)
+        ]
+        sharing = from_sharing(run, per_load)
+        errors = from_levels([*finished, run.peaks], remaining[: number + 1], model)
+        settled_sharing = (sharing > np.maximum(tolerance * run.peaks.value, 16.0 * errors)).all()
+        errors = widened_without_convergence(errors + sharing, run)
         before = (runs[-2], share_of_change(remaining[number - 1], model))
         candidate = _Candidate(run, errors, level.error_floor, (before,), level if shared else None)
         if candidate.meets(tolerance):
@@ -126,6 +137,8 @@ def refine(
             return _answer(model, candidate, Outcome.OK)
         if (level.rounding > np.maximum(tolerance * run.peaks.value, candidate.errors / COMPLIANCE_RATIO)).any():
             break  # hardly more than rounding is left, and no further level rounds less
+        if settled_sharing and level.warping_compliance == MAX_WARPING_COMPLIANCE:
+            break  # hardly more than the uneven share of the load is left, and no further level shares it better
     if candidate is not None:
         return _beyond_tolerance(pair, candidate.completed(pair, budget, keep), complete)
     return _unfinished(pair, runs)
