@@ -122,3 +122,12 @@ def test_without_a_run_about_the_compliance_the_level_before_answers(monkeypatch
     assert result.status[0] == Outcome.TOLERANCE_NOT_MET
     equations = reference.amplification(scene, PHASE, equations="exact", regularization=V_REG, tolerance=1e-8)
     assert (np.abs(result.mu - equations.mu) <= result.error + equations.error).all()
+
+
+def test_a_loading_of_a_millionth_has_the_factors_of_the_equations() -> None:
+    scene = load_scene("fig3-I").with_values({"duration": 3.0}).with_amplitude(1e-6)
+    phases = [(0.3, 1.1), (2.0, 0.7)]
+    engine = multibody.amplification(scene, phases, tolerance=1e-3)
+    equations = reference.amplification(scene, phases, equations="exact", regularization=1e-3, tolerance=1e-6)
+    assert engine.status.tolist() == ["ok", "ok"]
+    assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scenes_at_hand import changed, one_body
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
@@ -14,7 +15,6 @@ import multibody
 from multibody.models.depressions import Depressions, rotation
 from multibody.models.impact import ImpactLaw
 from reference.problem import GRAVITY, Scene, SceneError
-from tests.multibody.scenes_at_hand import changed, one_body
 
 HALF_WIDTH, HEIGHT, RADIUS = 0.5, 3.0, 0.2  # of the square of supports, of the center of mass, of the spheres
 INERTIA = 0.9  # of the block about horizontal axes
