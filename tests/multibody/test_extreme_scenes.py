@@ -81,9 +81,9 @@ def test_a_motion_that_was_never_begun_has_no_instants_and_says_why() -> None:
 
 
 def test_levels_that_cannot_round_less_are_not_spent(monkeypatch: pytest.MonkeyPatch) -> None:
-    # 1e-9 m/s^2 is a tenth of what a contact force rounds to
+    # 1e-11 m/s^2 is less than what a contact force rounds to
     done = adaptive_runs(monkeypatch)
-    weak = strong(duration=0.5, excitation={"amplitudes": [[1e-9, 0.0], [0.0, 1e-9]]})
+    weak = strong(duration=0.5, excitation={"amplitudes": [[1e-11, 0.0], [0.0, 1e-11]]})
     result = multibody.amplification(weak, PHASE)
     assert result.status[0] == Outcome.TOLERANCE_NOT_MET
     assert (result.error > 0.1 * result.mu).all()
