@@ -136,7 +136,7 @@ def single_run(
     -------
     Trajectory
         As in `trajectory`. `peak` is read between the samples; it is NaN where the engine gives up. `status` is "ok",
-        "rim reached", "contact lost", "solver failed" or "step limit".
+        "rim reached", "contact lost", "overturned", "solver failed" or "step limit".
 
     Raises
     ------

@@ -188,3 +188,8 @@ def test_a_restitution_outside_its_range_is_refused_in_one_line(wrong: Any) -> N
     message = str(caught.value)
     assert "isolator.restitution" in message
     assert "\n" not in message
+
+
+def test_restitution_beside_a_stiffness_of_the_supports_is_refused() -> None:
+    with pytest.raises(SceneError, match="remove one of the two keys"):
+        tower(1.0).with_values({"isolator.restitution": 0.5, "isolator.support_stiffness": 1e6})
