@@ -45,6 +45,7 @@ MAX_WORK_GROWTH = 2.0  # steps of a level over those of the level before
 STEPS_AFTER_SETTLING = 20.0  # largest steps from the last large value of a run to the end of the next
 # change between two levels over what separates later values from the largest: beyond it a run goes to the end after all
 MAX_EARLY_CHANGE = 0.2
+MAX_DIFFERENT_MOTIONS = 2  # successive levels with impacts that are another motion than the level before
 MIN_END_MARGIN = 0.1  # of the first run from the rim, in rho, and contact force, in weights: closer, all go to the end
 
 
@@ -86,6 +87,7 @@ def refine(
         no_run = EngineRun(Peaks(len(model.bodies), model.corner), math.inf, Outcome.STEP_LIMIT, 0.0)
         return _no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
     runs: list[EngineRun] = []
+    different = 0  # how many of the last levels with impacts were another motion
     per_load = np.full(len(model.bodies), ERROR_PER_WARPING_LOAD)
     stop = math.inf  # of the next run, where nothing later can matter
     candidate: _Candidate | None = None
@@ -130,6 +132,9 @@ def refine(
         errors = widened_without_convergence(errors + sharing, run)
         before = (runs[-2], share_of_change(remaining[number - 1], model))
         candidate = _Candidate(run, errors, level.error_floor, (before,), level if shared else None)
+        different = different + 1 if run.impacts and (errors >= run.peaks.value).all() else 0
+        if different == MAX_DIFFERENT_MOTIONS:
+            break  # impacts take every level elsewhere: a further one would, too
         if candidate.meets(tolerance):
             candidate = candidate.completed(pair, budget, keep)
         complete = complete if candidate.without_compliance else candidate

@@ -12,6 +12,9 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import multibody
+from multibody.integration.adaptive import EngineRun
+from multibody.integration.one_run import PhasePair
+from multibody.integration.peak import Peaks
 from multibody.models.depressions import Depressions, rotation
 from multibody.models.impact import ImpactLaw
 from reference.problem import GRAVITY, Scene, SceneError
@@ -179,6 +182,22 @@ def test_a_tower_that_hits_its_supports_has_an_answer_that_a_finer_run_confirms(
     assert coarse.status.tolist() == fine.status.tolist() == ["ok"]
     assert (np.abs(coarse.mu - fine.mu) <= coarse.error + fine.error).all()
     assert (fine.error < 1e-3 * fine.mu).all()
+
+
+def test_levels_that_impacts_take_elsewhere_are_given_up_with_a_wide_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    ran: list[EngineRun] = []
+
+    def elsewhere(pair: PhasePair, *given: Any, **named: Any) -> EngineRun:
+        run = EngineRun(Peaks(2, pair.model.corner), math.inf, steps=1000, impacts=7)
+        run.peaks.value[:] = 2.0 ** len(ran)
+        ran.append(run)
+        return run
+
+    monkeypatch.setattr(PhasePair, "at_level", elsewhere)
+    result = multibody.amplification(tower(1.0), [(0.3, 1.1)], model="spatial", tolerance=1e-2)
+    assert result.status.tolist() == ["tolerance not met"]
+    assert (result.error >= result.mu).all()
+    assert len(ran) <= 5, "three levels, two of which went to the end after all"
 
 
 @pytest.mark.parametrize("wrong", [-0.1, 1.5, math.nan, "0.5"])
