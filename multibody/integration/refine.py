@@ -45,6 +45,7 @@ MAX_WORK_GROWTH = 2.0  # steps of a level over those of the level before
 STEPS_AFTER_SETTLING = 20.0  # largest steps from the last large value of a run to the end of the next
 # change between two levels over what separates later values from the largest: beyond it a run goes to the end after all
 MAX_EARLY_CHANGE = 0.2
+MAX_SHARING_ERROR = 16.0  # over the error from levels: beyond it further levels hardly help
 MAX_DIFFERENT_MOTIONS = 2  # successive levels with impacts that are another motion than the level before
 MIN_END_MARGIN = 0.1  # of the first run from the rim, in rho, and contact force, in weights: closer, all go to the end
 
@@ -118,17 +119,17 @@ def refine(
             earlier.chunks.clear()
         if run.outcome != Outcome.OK:
             break
-        same = remaining[number - 1].warping_compliance == level.warping_compliance
-        per_load = per_load if same else np.minimum(per_load, measured_per_load(run, runs[-2]))
-        finished = [
-            other.peaks
-            for other, its_level in zip(runs[-3:-1], remaining[max(number - 2, 0) : number])
-            if other.outcome == Outcome.OK
-            and (other is runs[-2] or its_level.warping_compliance == remaining[number - 1].warping_compliance)
-        ]
+        finished = [other.peaks for other in runs[-3:] if other.outcome == Outcome.OK]
+        lifted = any(other.last_open > -math.inf for other in runs)
+        if lifted:  # open supports warp the ring: the load of warping is large, and its effect is measured
+            compliances = [other.warping_compliance for other in remaining[max(number - 2, 0) : number + 1]]
+            if compliances[-2] != compliances[-1]:
+                per_load = np.minimum(per_load, measured_per_load(run, runs[-2]))
+            if compliances[0] != compliances[-2]:
+                finished = finished[-2:]
         sharing = from_sharing(run, per_load)
-        errors = from_levels([*finished, run.peaks], remaining[: number + 1], model)
-        settled_sharing = (sharing > np.maximum(tolerance * run.peaks.value, 16.0 * errors)).all()
+        errors = from_levels(finished, remaining[: number + 1], model)
+        uneven = lifted and (sharing > np.maximum(tolerance * run.peaks.value, MAX_SHARING_ERROR * errors)).all()
         errors = widened_without_convergence(errors + sharing, run)
         before = (runs[-2], share_of_change(remaining[number - 1], model))
         candidate = _Candidate(run, errors, level.error_floor, (before,), level if shared else None)
@@ -142,7 +143,7 @@ def refine(
             return _answer(model, candidate, Outcome.OK)
         if (level.rounding > np.maximum(tolerance * run.peaks.value, candidate.errors / COMPLIANCE_RATIO)).any():
             break  # hardly more than rounding is left, and no further level rounds less
-        if settled_sharing and level.warping_compliance == MAX_WARPING_COMPLIANCE:
+        if uneven and level.warping_compliance == MAX_WARPING_COMPLIANCE:
             break  # hardly more than the uneven share of the load is left, and no further level shares it better
     if candidate is not None:
         return _beyond_tolerance(pair, candidate.completed(pair, budget, keep), complete)
