@@ -27,6 +27,9 @@ MIN_RATE, MAX_RATE = 2.0, 4.0  # factor by which a level reduces the error: at s
 MAX_CREDIBLE_RATE = 5.0  # a larger factor is accidental
 ERROR_PER_WARPING_LOAD = 0.05  # relative change of a peak over the largest warping load (measured: up to 0.02)
 MIN_ERROR_PER_WARPING_LOAD = 0.005  # likewise, where the scene itself shows less
+# relative error of level 0, halved by every level, of a motion with impacts: their order among the supports is decided
+# by rounding, and two levels agree better by chance (measured: 4e-4 between levels 1 to 4)
+MIN_ERROR_WITH_IMPACTS = 4e-3
 MIN_RELATIVE_ERROR = 1e-6  # of a peak: smaller errors are not measured
 MAX_CONVERGED_ERROR = 0.3  # relative: beyond it successive levels are different motions
 SMALLEST_CHANGE = 1e-290  # keeps a rate finite
@@ -45,6 +48,13 @@ def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> 
     change = safety * change * (1.0 + lag(levels[-2], model)) / (rate - 1.0)
     level_error: Array = np.maximum(change, levels[-1].error_floor * last)
     return level_error + peaks[-1].sampling + levels[-1].rounding + MIN_RELATIVE_ERROR * last
+
+
+def widened_by_impacts(errors: Array, run: EngineRun, number: int) -> Array:
+    """Errors (N,) of a run at level `number`, which impacts do not let fall below a share of the peaks."""
+    if not run.impacts:
+        return errors
+    return np.maximum(errors, MIN_ERROR_WITH_IMPACTS / 2.0**number * run.peaks.value)
 
 
 def widened_without_convergence(errors: Array, run: EngineRun) -> Array:

@@ -26,6 +26,7 @@ from multibody.integration.estimate import (
     from_sharing,
     measured_per_load,
     share_of_change,
+    widened_by_impacts,
     widened_without_convergence,
 )
 from multibody.integration.level import COMPLIANCE_RATIO, MAX_WARPING_COMPLIANCE, Level, levels_of
@@ -45,7 +46,7 @@ MAX_WORK_GROWTH = 2.0  # steps of a level over those of the level before
 STEPS_AFTER_SETTLING = 20.0  # largest steps from the last large value of a run to the end of the next
 # change between two levels over what separates later values from the largest: beyond it a run goes to the end after all
 MAX_EARLY_CHANGE = 0.2
-MAX_SHARING_ERROR = 16.0  # over the error from levels: beyond it further levels hardly help
+MAX_SHARING_ERROR = 2.0  # over the error from levels: beyond it further levels hardly help
 MAX_DIFFERENT_MOTIONS = 2  # successive levels with impacts that are another motion than the level before
 MIN_END_MARGIN = 0.1  # of the first run from the rim, in rho, and contact force, in weights: closer, all go to the end
 
@@ -128,7 +129,7 @@ def refine(
             if compliances[0] != compliances[-2]:
                 finished = finished[-2:]
         sharing = from_sharing(run, per_load)
-        errors = from_levels(finished, remaining[: number + 1], model)
+        errors = widened_by_impacts(from_levels(finished, remaining[: number + 1], model), run, number)
         uneven = lifted and (sharing > np.maximum(tolerance * run.peaks.value, MAX_SHARING_ERROR * errors)).all()
         errors = widened_without_convergence(errors + sharing, run)
         before = (runs[-2], share_of_change(remaining[number - 1], model))
