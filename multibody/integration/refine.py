@@ -47,7 +47,7 @@ STEPS_AFTER_SETTLING = 20.0  # largest steps from the last large value of a run 
 # change between two levels over what separates later values from the largest: beyond it a run goes to the end after all
 MAX_EARLY_CHANGE = 0.2
 MAX_SHARING_ERROR = 2.0  # over the error from levels: beyond it further levels hardly help
-MAX_DIFFERENT_MOTIONS = 2  # successive levels with impacts that are another motion than the level before
+MAX_DIFFERENT_MOTIONS = 3  # successive levels with impacts that are another motion than the level before
 MIN_END_MARGIN = 0.1  # of the first run from the rim, in rho, and contact force, in weights: closer, all go to the end
 
 

@@ -197,7 +197,7 @@ def test_levels_that_impacts_take_elsewhere_are_given_up_with_a_wide_error(monke
     result = multibody.amplification(tower(1.0), [(0.3, 1.1)], model="spatial", tolerance=1e-2)
     assert result.status.tolist() == ["tolerance not met"]
     assert (result.error >= result.mu).all()
-    assert len(ran) <= 5, "three levels, two of which went to the end after all"
+    assert len(ran) <= 7, "four levels, three of which went to the end after all"
 
 
 @pytest.mark.parametrize("wrong", [-0.1, 1.5, math.nan, "0.5"])
