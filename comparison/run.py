@@ -30,10 +30,11 @@ from comparison.analysis.targets import targets_met
 from comparison.analysis.tradeoff.trade import load as stored_trades
 from comparison.analysis.unanswered import with_silent_models
 from comparison.cli.arguments import command, writing
+from comparison.cli.budgeted import allotment, drawings_first, spend
 from comparison.cli.closing import print_closing, print_errors
 from comparison.cli.computing import ending_early
 from comparison.cli.options import Options, parsed
-from comparison.cli.terminal import print_plan, print_study_plan
+from comparison.cli.terminal import print_plan, print_tolerance
 from comparison.execution.cache import Cache, store_beside
 from comparison.execution.executors import Pool
 from comparison.execution.keys import batch_key, task_key
@@ -42,16 +43,16 @@ from comparison.execution.processes import process_pool
 from comparison.execution.progress import wide_console
 from comparison.execution.provenance import provenance
 from comparison.execution.resume import command_line, resume_hint
-from comparison.execution.runner import Computed, Runner
+from comparison.execution.runner import Computed, Runner, longest_first
 from comparison.execution.task_results import TaskResults
 from comparison.execution.workers import workers
-from comparison.registry import affordable, analysis_cost, chosen_analyses, first_tasks
+from comparison.registry import chosen_analyses, first_tasks
 from comparison.report.assemble import assemble
 from comparison.report.findings import Fault, collect_findings
 from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work
-from comparison.study.planning import BudgetError, StudyPlan, StudyRequest, plan_study
+from comparison.study.planning import StudyPlan, StudyRequest, plan_study
+from comparison.study.refinement import Step
 from comparison.study.study import Study
-from reference.problem import SceneError
 from reference.problem.command import stoppable
 
 
@@ -79,10 +80,12 @@ def main(argv: Sequence[str], hierarchy: Sequence[Model] = MODEL_HIERARCHY, exec
             options = parsed(argv)
             console = wide_console()
             plan = _chosen(options, hierarchy)
+            if options.budget is not None:
+                allotment(plan.study, options.budget, options.jobs)  # refuses what nothing fits
             if options.plan:
-                print_plan(console, affordable(plan.study, plan.with_analyses), options)
-            if options.by_trade:
-                print_study_plan(console, plan, options)
+                print_plan(console, plan.study, options)
+            if options.tolerance is not None:
+                print_tolerance(console, plan, options)
             return 0 if options.plan else _ended(plan, options, console, argv, executor)
         except KeyboardInterrupt:
             print("interrupted before anything was computed", file=sys.stderr)
@@ -90,22 +93,21 @@ def main(argv: Sequence[str], hierarchy: Sequence[Model] = MODEL_HIERARCHY, exec
 
 
 def _chosen(options: Options, hierarchy: Sequence[Model]) -> StudyPlan:
-    """What is computed. Raises SceneError where no study fits the budget."""
+    """What is computed; under a budget, of what as much is computed as fits."""
     if options.max_work is not None:
         hierarchy = with_max_work(hierarchy, options.max_work)
-    asked = (
-        options.tolerance,
-        options.budget,
-        options.grid,
-        options.jobs,
-        options.full,
-        analysis_cost,
-        options.selection,
+    return plan_study(
+        StudyRequest(
+            options.scenes,
+            hierarchy,
+            options.tolerance,
+            options.grid,
+            options.full,
+            budgeted=options.budget is not None,
+            tries=options.plan,
+            selection=options.selection,
+        )
     )
-    try:
-        return plan_study(StudyRequest(options.scenes, hierarchy, *asked))
-    except BudgetError as error:
-        raise SceneError("command line", "--budget", options.budget, str(error)) from None
 
 
 def _ended(plan: StudyPlan, options: Options, console: Console, words: Sequence[str], executor: Pool) -> int:
@@ -131,11 +133,11 @@ def _run(
     executor: Callable[[int], Executor],
     store: Cache,
 ) -> int:
-    from comparison.report.report import write_report  # plotting: not needed to refuse a command or to plan
+    from comparison.report.report import drawing_tasks, write_report  # plotting: not needed to refuse or to plan
 
     begin, began = time.monotonic(), datetime.now(UTC)
     clear_dead(options.out)
-    study = affordable(plan.study, plan.with_analyses)
+    study = plan.study
     analyses = chosen_analyses(study)
     first = first_tasks(study, analyses)
     keys = [batch_key(batch) for batch in study.batches()]
@@ -145,7 +147,13 @@ def _run(
         store.remove(map(task_key, first))
 
     runner = Runner(TaskResults(store, options.fresh), console, options.jobs, executor)
-    computed = runner.run_study(study, first)
+    unfinished: Sequence[tuple[Step, float]] = ()
+    if options.budget is None:
+        computed = runner.run_study(study, first)
+    else:
+        spent, runner = spend(runner, study, options.budget, begin)
+        study, computed, unfinished = spent.study, spent.computed, spent.unfinished
+        analyses = chosen_analyses(study)
     seconds = time.monotonic() - begin
     surfaces = labeled_surfaces(study, computed.batches, computed.answers)
     study = with_silent_models(study, surfaces)
@@ -153,7 +161,7 @@ def _run(
     tasks = [task for analysis in later for task in analysis.tasks(study.selecting(analysis.key), surfaces)]
     if tasks:
         console.print("Computing what the surfaces choose, and drawing the figures of the report.")
-    runner.run_tasks(tasks)
+    runner.run_tasks(tasks, order=longest_first if options.budget is None else drawings_first)
 
     run: dict[str, Any] = {
         "command": command_line(words),
@@ -168,7 +176,9 @@ def _run(
             for stage, part in runner.results.parts.items()
         },
         "jobs": options.jobs,
-        "choice": targets_met(plan, options.tolerance, options.budget, surfaces) if options.by_trade else None,
+        "choice": targets_met(plan, study, options.tolerance, options.budget, unfinished, surfaces)
+        if options.by_trade
+        else None,
         "provenance": provenance(),
     }
     findings = collect_findings(
@@ -185,6 +195,10 @@ def _run(
         tradeoff=None if "tradeoff" in study.absent else _taken_up(stored_trades, options.out),
     )
     results = assemble(findings)
+    drawings = drawing_tasks(results, findings)
+    runner.run_tasks(drawings)
+    files = {task.key: runner.results[task].value for task in drawings}
+    findings = replace(findings, drawings={key: value for key, value in files.items() if value})
 
     console.print("Writing the report.")
     with writing(options.out), atomic_replace(options.out) as report:

@@ -4,6 +4,7 @@ The paper's equations, solved with an error estimate on every value.
 Functions
 ---------
 amplification   factors mu_i of (5.1) for many phase pairs, with errors and outcomes
+worst_phases    the largest factor, or displacement, over all phases
 trajectory      one motion, sampled in time
 demands         what a motion demands of isolator and structure, with errors
 modes           natural frequencies and modes of the frictionless chain (4.8)-(4.11)
@@ -11,6 +12,7 @@ load_scene      a scene from a built-in name or a TOML file
 builtin_scenes  names of the paper's own cases
 example_scenes  names of the examples with a recorded motion
 phase_grid      equally spaced phase pairs
+phase_distribution  mean and fractiles of mu over uniform phases, from its surface
 
 Classes
 -------
@@ -18,6 +20,7 @@ Scene           the system, its loading and the duration
 State           displacement and velocity at the start of a trajectory
 Amplification   what `amplification` returns
 Trajectory      what `trajectory` returns
+PhaseMaximum    what `worst_phases` returns
 Demands         what `demands` returns
 Estimate        a number and its error
 Outcome         how the run of one phase pair ended
@@ -55,18 +58,22 @@ from reference.problem import (
     demands,
     example_scenes,
     load_scene,
+    phase_distribution,
     phase_grid,
 )
 
 if TYPE_CHECKING:
     from reference.motion import trajectory
     from reference.natural_modes import modes
+    from reference.phase_maximum import PhaseMaximum, worst_phases
     from reference.surface import amplification
 
 LOADED_ON_FIRST_USE = {
+    "PhaseMaximum": "reference.phase_maximum",
     "amplification": "reference.surface",
     "modes": "reference.natural_modes",
     "trajectory": "reference.motion",
+    "worst_phases": "reference.phase_maximum",
 }
 
 __all__ = [
@@ -74,6 +81,7 @@ __all__ = [
     "Demands",
     "Estimate",
     "Outcome",
+    "PhaseMaximum",
     "Scene",
     "SceneError",
     "State",
@@ -84,8 +92,10 @@ __all__ = [
     "example_scenes",
     "load_scene",
     "modes",
+    "phase_distribution",
     "phase_grid",
     "trajectory",
+    "worst_phases",
 ]
 
 

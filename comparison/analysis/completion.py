@@ -15,6 +15,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 from scipy.interpolate import RBFInterpolator
+from scipy.spatial.distance import cdist
+from scipy.special import xlogy
 
 from comparison.analysis.steps import RESOLVED, known_mu
 from comparison.analysis.surfaces import common_phases
@@ -161,18 +163,16 @@ def leave_one_out(values: Array, phase: Array) -> Array:
 
     Notes
     -----
-    An even grid without a gap looks the same from every phase pair: one system of equations serves all of them, with
-    the values turned so that each in turn stands at the origin.
+    With the inverse B of the interpolation's matrix and its weights c, point i is missed by c_i / B_ii when it alone is
+    left out (Rippa, 1999): one matrix serves all points.
     """
-    places, count = torus(phase), len(phase)
-    even = np.allclose(np.diff(phase), 2.0 * np.pi / count)
-    if even and np.isfinite(values).all():
-        turned = np.stack([np.roll(values, (-i, -j), (0, 1)).ravel() for i in range(count) for j in range(count)], 1)
-        at_origin: Array = RBFInterpolator(places[1:], turned[1:])(places[:1])[0]
-        return at_origin.reshape(values.shape)
-    flat, predicted = values.ravel(), np.full(values.size, np.nan)
-    known = np.flatnonzero(np.isfinite(flat))
-    for place in known:
-        others = known[known != place]
-        predicted[place] = RBFInterpolator(places[others], flat[others])(places[[place]])[0]
+    known = np.isfinite(values.ravel())
+    places, count = torus(phase)[known], int(known.sum())
+    distance = cdist(places, places)
+    kernel = xlogy(distance**2, distance)  # thin plates, as RBFInterpolator has them, with a linear part
+    linear = np.hstack([np.ones((count, 1)), places])
+    matrix = np.block([[kernel, linear], [linear.T, np.zeros((linear.shape[1],) * 2)]])
+    inverse = np.linalg.inv(matrix)[:count, :count]
+    predicted = np.full(values.size, np.nan)
+    predicted[known] = values.ravel()[known] - inverse @ values.ravel()[known] / np.diag(inverse)
     return predicted.reshape(values.shape)

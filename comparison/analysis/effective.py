@@ -18,7 +18,8 @@ from comparison.analysis.protocol import Analysis
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
-from comparison.study.models import Model, at_samples, models_of
+from comparison.study.costs import at_samples
+from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from reference.problem import GRAVITY, Outcome, Scene, Trajectory, ground_acceleration
 
@@ -69,7 +70,7 @@ def stated(scene: Scene) -> Effective:
 class EffectiveValues(Analysis[list[Effective]]):
     """For every scene what it states, then what the motion of each model shows."""
 
-    key, stage, essential = "effective", "effective values", True
+    key, stage = "effective", "effective values"
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """Every model of every scene."""

@@ -167,7 +167,7 @@ class Effect:
 class Errata(Analysis[list[Effect]]):
     """Every measurable erratum in every scene, in the order scene, erratum."""
 
-    key, stage, essential = "errata", "errata", True
+    key, stage = "errata", "errata"
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One task for each effect."""

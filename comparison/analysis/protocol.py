@@ -25,7 +25,6 @@ class Analysis(Protocol[Result]):
     key: ClassVar[str]  # its name for a selection, and its field of the findings
     stage: ClassVar[str]  # the stage of its tasks, on the terminal and in the table of costs
     needs_surfaces: ClassVar[bool] = False  # whether the surfaces choose its tasks
-    essential: ClassVar[bool] = False  # whether a study that keeps to a budget has it, too
 
     @abstractmethod
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:

@@ -38,7 +38,7 @@ Arguments = tuple[Scene, bool]  # and whether the supremum is taken
 
 def scaled(scene: Scene, s: float) -> Scene:
     """The scene with loading and dry friction times s."""
-    values: dict[str, Any] = {"excitation.amplitudes": s * scene.amplitudes}
+    values: dict[str, Any] = {"excitation.scale": s * (scene.excitation.scale or 1.0)}
     if not scene.lubricated:
         values["isolator.friction"] = s * scene.friction_coefficient
     return scene.with_values(values)

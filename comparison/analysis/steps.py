@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.analysis.surfaces import common_phases
 from comparison.study.models import Model
 
 Array = NDArray[np.float64]
@@ -85,6 +84,11 @@ class Step:
 def known_mu(data: xr.Dataset, model: Model) -> Array:
     """mu of one model in the data of one scene and body; NaN where it is not known to half of itself."""
     mu, error = (np.asarray(data[name].sel(model=model.key), float) for name in ("mu", "error"))
+    return known(mu, error)
+
+
+def known(mu: Array, error: Array) -> Array:
+    """mu where it is known to half of itself, NaN elsewhere."""
     return np.where(error <= WORTHLESS * mu, mu, np.nan)
 
 
@@ -94,13 +98,15 @@ def step(surfaces: xr.Dataset, scene: str, key: str, first: Model, second: Model
 
     A value that is not known to half of itself counts as missing.
     """
-    data = common_phases(surfaces, scene, [first.key, second.key, per.key]).sel(body=body)
+    row, of_model = surfaces.get_index("scene").get_loc(scene), surfaces.get_index("model").get_loc
+    stride = int(max(surfaces["stride"].values[row, of_model(model.key)] for model in (first, second, per)))
+    every = slice(None, None, stride)
+
+    def values(name: str, model: Model) -> Array:
+        return np.asarray(surfaces[name].values[row, of_model(model.key), body - 1, every, every], float)
 
     def mu(model: Model) -> Array:
-        return known_mu(data, model)
-
-    def error(model: Model) -> Array:
-        return np.asarray(data["error"].sel(model=model.key), float)
+        return known(values("mu", model), values("error", model))
 
     unit = mu(per)
     scale = np.where(unit > 0.0, unit, np.nan)
@@ -109,10 +115,10 @@ def step(surfaces: xr.Dataset, scene: str, key: str, first: Model, second: Model
         first=first,
         second=second,
         body=body,
-        alpha1=np.asarray(data["alpha1"]),
-        alpha2=np.asarray(data["alpha2"]),
+        alpha1=surfaces["alpha1"].values[every],
+        alpha2=surfaces["alpha2"].values[every],
         size=(mu(second) - mu(first)) / scale,
-        uncertainty=np.hypot(error(first), error(second)) / scale,
-        stride=int(data["stride"].sel(model=[first.key, second.key, per.key]).max()),
-        recorded=bool(data["recorded"]),
+        uncertainty=np.hypot(values("error", first), values("error", second)) / scale,
+        stride=stride,
+        recorded=bool(surfaces["recorded"].values[row]),
     )

@@ -11,7 +11,7 @@ import xarray as xr
 from comparison.study.batches import Batch, BatchResult
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
-from reference.problem import Scene
+from reference.problem import Scene, phase_axis
 
 NOT_APPLICABLE = "not applicable"  # status of a model that the scene gives nothing to add
 NOT_ASKED = "not asked"  # status of the phases between those of a model that computes every k-th
@@ -59,7 +59,7 @@ def labeled_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[B
             for array in (mu, error, instant, cap_share, status):
                 array[row, column, place] = array[row, column, source]
     square = (len(names), len(models), study.grid, study.grid)
-    axis = 2.0 * np.pi * np.arange(study.grid) / study.grid
+    axis = phase_axis(study.grid)
     surface, point = ("scene", "model", "body", "alpha1", "alpha2"), ("scene", "model", "alpha1", "alpha2")
 
     def per_body(array: np.ndarray) -> np.ndarray:

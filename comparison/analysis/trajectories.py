@@ -17,7 +17,8 @@ from comparison.analysis.protocol import Analysis
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
-from comparison.study.models import Model, at_samples
+from comparison.study.costs import at_samples
+from comparison.study.models import Model
 from comparison.study.study import Study
 from reference.problem import Demands, Outcome, Scene, Trajectory, demands
 

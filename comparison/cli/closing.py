@@ -59,7 +59,7 @@ def print_closing(
     """
     _print_differences(console, results)
     if results.run.choice:
-        _print_targets_met(console, results.run.choice, seconds)
+        _print_targets_met(console, results.run.choice, bool(results.phased))
     console.print(
         f"{seconds:.0f} s with {options.jobs} workers: {results.run.compute_seconds} s of compute "
         f"({results.run.predicted_compute_seconds} s predicted)."
@@ -88,7 +88,7 @@ def next_commands(results: Results, words: Sequence[str]) -> list[str]:
     if filmed:
         largest, source = max(filmed, key=lambda pair: abs(pair[0].maximum))
         lines.append(f"Next: a film of the largest difference: {_film(largest, source)}")
-    if results.phased:
+    if results.phased and not (results.run.choice and results.run.choice.budget):
         finer = command_line([*_without_grid(words), "--grid", str(2 * results.grid), "--plan"])
         lines.append(f"Next: what a finer grid costs: {finer}")
     return lines
@@ -134,15 +134,18 @@ def _print_differences(console: Console, results: Results) -> None:
     console.print(table)
 
 
-def _print_targets_met(console: Console, targets: Targets, seconds: float) -> None:
+def _print_targets_met(console: Console, targets: Targets, phased: bool) -> None:
     """What came of --tolerance and --budget."""
     for model in targets.models:
         error = "no value at more than 1 %" if model.error99 is None else f"{100.0 * model.error99:.2g} % of mu at 99 %"
+        grid = f", {model.phases_per_axis} x {model.phases_per_axis} phases" if phased else ""
         console.print(
-            f"{model.title}: {model.tolerance:g} met at {100.0 * model.met:.4g} % of {model.points} points "
+            f"{model.title}{grid}: {model.tolerance:g} met at {100.0 * model.met:.4g} % of {model.points} points "
             f"by the error estimates, {error} of them."
         )
-    console.print(
-        f"{targets.seconds:.1f} s of compute where {targets.predicted_seconds:.1f} s were expected; {seconds:.0f} s "
-        f"in all where {targets.predicted_wall:.0f} s were."
-    )
+    if targets.budget is None:
+        console.print(f"{targets.seconds:.1f} s of compute where {targets.predicted_seconds:.1f} s were expected.")
+    for step in targets.next_steps[:1]:
+        others = f", and {len(targets.next_steps) - 1} more" if len(targets.next_steps) > 1 else ""
+        line = f"More time would buy {step.what}: {step.seconds:.0f} s of processor time{others}."
+        console.print(line.replace("×", "x"), soft_wrap=True)

@@ -11,7 +11,7 @@ from comparison.analysis.tradeoff.trade import load as stored_trades
 from comparison.cli.arguments import CommandParser, jobs, number, whole_number
 from comparison.execution.cache import refuse_foreign_store
 from comparison.execution.output import destination, refuse_foreign_report
-from comparison.study.planning import DEFAULT_PRESET, DEFAULT_TOLERANCE, STUDY_PRESETS, tightest
+from comparison.study.planning import DEFAULT_GRID, DEFAULT_TOLERANCE, tightest
 from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.study import refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
@@ -38,7 +38,7 @@ class Options:
 
     @property
     def by_trade(self) -> bool:
-        """Whether the measured trade chooses what is computed."""
+        """Whether a tolerance or a budget decides what is computed."""
         return self.tolerance is not None or self.budget is not None
 
     @property
@@ -91,7 +91,7 @@ def parsed(argv: Sequence[str]) -> Options:
     refuse_same_names((source, family.name) for source, family in sources)
     refuse_same_names((source, scene.name) for source, family in sources for scene in family.scenes)
     if words.scheduler is not None and options.budget is not None:
-        rule = "is kept by what this machine is measured to do, --scheduler computes on others: give one of the two"
+        rule = "is kept by ending processes of this machine, --scheduler computes on others: give one of the two"
         raise SceneError("command line", "--budget", words.budget, rule)
     if not options.plan:
         try:
@@ -112,7 +112,7 @@ def _parser() -> CommandParser:
         f"{', '.join(builtin_scenes())}; with a recorded motion: {', '.join(example_scenes())}; in a file one key may "
         "run over a range"
     )
-    parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {STUDY_PRESETS[DEFAULT_PRESET].grid})")
+    parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {DEFAULT_GRID})")
     parser.add_out("report")
     parser.add_computing()
     parser.add_argument(
@@ -120,12 +120,12 @@ def _parser() -> CommandParser:
         metavar="X",
         help="relative error asked of every mu: takes the cheapest settings that are known to meet it, and leaves out "
         "models that cannot; the equations are asked for 1e-6 or better "
-        f"(default {DEFAULT_TOLERANCE:g}, this machine unmeasured)",
+        f"(default {DEFAULT_TOLERANCE:g})",
     )
     parser.add_argument(
         "--budget",
         metavar="SECONDS",
-        help="time for the whole run on this machine: takes the most accurate study that fits",
+        help="time for the whole run: computes from coarse to fine grids and reports the best complete study",
     )
     parser.add_argument("--amplitude", metavar="A", help="largest ground acceleration amplitude of every scene, m/s^2")
     parser.add_argument(

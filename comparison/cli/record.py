@@ -1,5 +1,5 @@
 """
-Records what `--tolerance` and `--budget` of `comparison.run` choose by: `python -m comparison.tradeoff.record`.
+Records the one table of costs, which `--plan` and `--tolerance` of `comparison.run` read, in one run.
 
 For every model of the hierarchy and every tolerance: what a point costs beside one at the usual tolerance, and at which
 share of the points the accuracy was met, on the paper's scenes. Writes comparison/study/accuracy_record.json.
@@ -18,10 +18,18 @@ from comparison.analysis.tradeoff.measure import Measured, Measurement, measure,
 from comparison.analysis.tradeoff.settings import SPATIAL_TIGHT, TIGHT
 from comparison.cli.arguments import CommandParser, command
 from comparison.execution.provenance import provenance
-from comparison.study.accuracy_record import FILE
+from comparison.study.accuracy_record import FILE, recorded
 from comparison.study.batches import imported
-from comparison.study.benchmark import ENGINE_POINTS, machine_benchmark
-from comparison.study.models import MODEL_HIERARCHY, REFERENCE_TOLERANCE, Model
+from comparison.study.models import (
+    EXACT,
+    MODEL_HIERARCHY,
+    REFERENCE_TOLERANCE,
+    REGULARIZED,
+    SPATIAL,
+    TRANSLATIONAL,
+    Model,
+)
+from comparison.study.planning import DEFAULT_GRID, setting
 from reference.problem import Scene, builtin_scenes, load_scene
 from reference.problem.files import write_atomically
 
@@ -38,21 +46,36 @@ def main(argv: Sequence[str]) -> int:
     CommandParser("tradeoff.record", "Cost and accuracy of every model, recorded on this machine.").parse_args(argv)
     scenes = [load_scene(name) for name in builtin_scenes()]
     record: dict[str, Any] = {"machine": provenance()["processor"], "models": {}}
-    took = [machine_benchmark()]  # again after every model: what else the machine does falls on both alike
     seconds: dict[str, dict[str, float]] = {scene.digest(): {} for scene in scenes}
     for model in MODEL_HIERARCHY:
         applying = [scene for scene in scenes if model.applies(scene)]
         rows, costs = _rows(model, applying)
         record["models"][model.key] = {"usual": _usual(model), "tolerances": rows}
-        took.append(machine_benchmark())
         for scene, cost in zip(applying, costs):
             seconds[scene.digest()][model.key] = float(f"{cost:.4g}")
         print(model.key, *(f"{row['tolerance']:.0e}: {row['cost']:.2f}, {row['met']:.3f}" for row in rows), sep="  ")
     record["seconds"] = seconds
-    record["machine_benchmark"] = {side: float(np.median([benchmark[side] for benchmark in took])) for side in took[0]}
     write_atomically(FILE, (json.dumps(record, indent=1) + "\n").encode())
-    print(f"{ENGINE_POINTS} point(s) of the engine in the machine benchmark: {record['machine_benchmark']}; {FILE}")
+    recorded.cache_clear()
+    print(*surface_costs(), FILE, sep="\n")
     return 0
+
+
+def surface_costs() -> list[str]:
+    """What a surface of the default study costs, s, by the accuracy asked: the rows of the table in the README."""
+    rows = []
+    for power in range(2, 9):
+        tolerance, cells = 10.0**-power, []
+        for model in (EXACT, REGULARIZED, TRANSLATIONAL, SPATIAL):
+            if tolerance < recorded().accuracy[model.key].tightest:
+                cells += ["cannot"] if model is TRANSLATIONAL else [""]
+                continue
+            asks = setting(model, model.tolerance(tolerance))
+            each = np.mean([seconds[model.key] for seconds in recorded().seconds.values() if model.key in seconds])
+            seconds = each * recorded().accuracy[model.key].cost(asks) * (model.most or DEFAULT_GRID) ** 2
+            cells += [*([f"{asks:.0e}"] if model in (EXACT, TRANSLATIONAL) else []), f"{float(f'{seconds:.2g}'):g}"]
+        rows.append(f"| 1e-{power} | {' | '.join(cells)} |")
+    return rows
 
 
 def _usual(model: Model) -> float:

@@ -1,5 +1,5 @@
 """
-Speed for accuracy: `python -m comparison.tradeoff [SCENE ...] [--quick] [--out DIR]`.
+Speed for accuracy: `python -m comparison.tradeoff [SCENE ...] [--quick | --growth] [--out DIR]`.
 
 Measures the error of mu_i against compute time per point, for every model and every numerical parameter. Every part of
 a measurement is stored as it is finished: the same command goes on where it stopped, with the times measured then.
@@ -25,6 +25,8 @@ from comparison.analysis.tradeoff.settings import CONSTANT, ENGINE, LEVEL, REFER
 from comparison.analysis.tradeoff.trade import FILE, Trade, as_json, load
 from comparison.cli.arguments import CommandParser, command, jobs, writing
 from comparison.cli.computing import computed
+from comparison.cli.growth import FILE as GROWTH
+from comparison.cli.growth import FILES, growth_files, measured_growth, print_growth
 from comparison.execution.executors import Pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
 from comparison.execution.processes import process_pool
@@ -54,8 +56,10 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     out = destination(options.out)
     _stored(out)  # a file that is no trade is refused before anything is measured
     pictures = [figure_file(scene.name, "tradeoff", ending=f".{end}") for scene in scenes for end in ENDINGS]
-    refuse_foreign_files(out, [FILE, *pictures])
+    refuse_foreign_files(out, [FILE, *pictures, *(FILES if options.growth else ())])
     console = wide_console()
+    if options.growth:
+        return _grown(scenes[0], options, argv, out, console, executor)
     measured = measured_trades(scenes, options, argv, console, executor)
     for scene_trade in measured:
         with writing(out):
@@ -67,6 +71,18 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     for trade in trades.values():
         print_trade(console, trade)
     console.print(f"Trade: {file}, and SCENE-tradeoff.png and .nc beside it.", soft_wrap=True)
+    return 0
+
+
+def _grown(
+    scene: Scene, options: argparse.Namespace, words: Sequence[str], out: Path, console: Console, executor: Pool
+) -> int:
+    """Measure how the cost grows; the exit code."""
+    series = measured_growth(scene, options, words, console, executor)
+    with writing(out):
+        publish(out, growth_files(series), COMMAND)
+    print_growth(console, series)
+    console.print(f"Growth: {out / GROWTH}, and growth.png beside it.", soft_wrap=True)
     return 0
 
 
@@ -169,5 +185,10 @@ def _parser() -> CommandParser:
     parser.add_scenes(DEFAULT)
     parser.add_out("where the files go")
     parser.add_computing()
+    parser.add_argument(
+        "--growth",
+        action="store_true",
+        help="instead: cost against bodies, duration, phase pairs and workers, with slopes",
+    )
     parser.add_argument("--quick", action="store_true", help="fewer points and values: under a minute")
     return parser

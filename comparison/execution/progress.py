@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Iterator, Mapping
@@ -11,6 +12,8 @@ from typing import Protocol
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+from comparison.execution.deadline import Deadline
 
 EVERY = 15.0  # s between plain lines
 PLAIN_WIDTH = 120  # columns of a table that goes to a file or a pipe
@@ -39,10 +42,6 @@ class Stage:
     seconds: float  # compute time predicted for the points that are computed
     before: int = 0  # points that need no computing: an earlier run stored them
 
-    def share(self, points: int) -> float:
-        """Predicted compute time of some of the points, s, if each costs the same."""
-        return self.seconds * points / (self.points - self.before)
-
 
 class Display(Protocol):
     """Told of every finished piece of work and its predicted compute time, s."""
@@ -51,7 +50,9 @@ class Display(Protocol):
 
 
 @contextmanager
-def progress(console: Console, stages: Mapping[str, Stage], jobs: int) -> Iterator[Display]:
+def progress(
+    console: Console, stages: Mapping[str, Stage], jobs: int, deadline: Deadline | None = None
+) -> Iterator[Display]:
     """
     Show what is done and left: live bars on a terminal, plain lines elsewhere.
 
@@ -62,6 +63,8 @@ def progress(console: Console, stages: Mapping[str, Stage], jobs: int) -> Iterat
         The parts of the work by name.
     jobs : int
         Number of workers.
+    deadline : Deadline, optional
+        What is not done then is left out.
 
     Yields
     ------
@@ -69,17 +72,17 @@ def progress(console: Console, stages: Mapping[str, Stage], jobs: int) -> Iterat
         To be told of every finished piece of work.
     """
     if not console.is_terminal:
-        yield Lines(console, stages, jobs)
+        yield Lines(console, stages, jobs, deadline)
         return
     columns = description(), BarColumn(), TextColumn("{task.fields[count]}", markup=False), TimeRemainingColumn()
     with Progress(*columns, console=console) as bars:
-        yield Bars(bars, stages)
+        yield Bars(bars, stages, math.inf if deadline is None else deadline.left * jobs)
 
 
 class Bars:
     """One bar per stage; one for the whole, in which a point weighs what it is predicted to cost."""
 
-    def __init__(self, bars: Progress, stages: Mapping[str, Stage]) -> None:
+    def __init__(self, bars: Progress, stages: Mapping[str, Stage], most: float) -> None:
         self._bars, self._stages = bars, stages
         self._done = {name: stage.before for name, stage in stages.items()}
         width = max(map(len, (*stages, "all")))
@@ -93,7 +96,7 @@ class Bars:
             )
             for name, stage in stages.items()
         }
-        self._whole = bars.add_task("all".ljust(width), total=_seconds(stages), count="")
+        self._whole = bars.add_task("all".ljust(width), total=min(most, _seconds(stages)), count="")
 
     def advance(self, stage: str, points: int, seconds: float) -> None:
         task, whole = self._tasks[stage], self._stages[stage]
@@ -107,8 +110,10 @@ class Bars:
 class Lines:
     """A line when a stage ends, and every EVERY seconds between; the time left from the speed so far."""
 
-    def __init__(self, console: Console, stages: Mapping[str, Stage], jobs: int) -> None:
-        self._console, self._stages, self._jobs = console, stages, jobs
+    def __init__(
+        self, console: Console, stages: Mapping[str, Stage], jobs: int, deadline: Deadline | None = None
+    ) -> None:
+        self._console, self._stages, self._jobs, self._deadline = console, stages, jobs, deadline
         self._done = {name: stage.before for name, stage in stages.items()}
         self._total = _seconds(stages)
         self._spent = 0.0  # predicted compute time of what is done, s
@@ -127,7 +132,8 @@ class Lines:
     def _left(self, now: float) -> float:
         """Predicted time left, corrected by how the prediction has fared so far."""
         left = max(self._total - self._spent, 0.0)
-        return left * (now - self._begin) / self._spent if self._spent > 0.0 else self._total / self._jobs
+        predicted = left * (now - self._begin) / self._spent if self._spent > 0.0 else self._total / self._jobs
+        return predicted if self._deadline is None else max(0.0, min(predicted, self._deadline.left))
 
 
 def _seconds(stages: Mapping[str, Stage]) -> float:

@@ -7,11 +7,13 @@ progress.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from rich.console import Console
 
+from comparison.execution.deadline import Deadline
 from comparison.execution.executors import Pool
 from comparison.execution.keys import batch_key, cached_batch
 from comparison.execution.progress import Stage, progress
@@ -30,9 +32,22 @@ COMPILING = "compiling the reference"
 Piece = Batch | Task
 
 
+def longest_first(piece: Piece) -> float:
+    """The order in which no worker is left with a long task when the others are done."""
+    return -piece.seconds
+
+
+def surfaces_first(piece: Piece) -> float:
+    """The order of the study, then tasks, the longest first."""
+    return -piece.seconds if isinstance(piece, Task) else -math.inf
+
+
 @dataclass(frozen=True)
 class Computed:
-    """`answers` to `batches`, in their order. stored: how many were there before."""
+    """
+    What a sweep has computed of a study. stored: how many batches were there before. batches, answers: in the order of
+    the study; all of them, unless the deadline came first.
+    """
 
     batches: Sequence[Batch]
     answers: Sequence[BatchResult]
@@ -41,14 +56,21 @@ class Computed:
 
 @dataclass(frozen=True)
 class Runner:
-    """Runs batches and tasks on `executor`, or on what it makes for `jobs` workers, and keeps what they return."""
+    """
+    Runs batches and tasks on `executor`, or on what it makes for `jobs` workers, and keeps what they return.
+
+    deadline: what would end after it is not computed.
+    """
 
     results: TaskResults  # of all tasks, with the cache of both
     console: Console
     jobs: int
     executor: Pool
+    deadline: Deadline | None = None
 
-    def run_study(self, study: Study, tasks: Sequence[Task] = ()) -> Computed:
+    def run_study(
+        self, study: Study, tasks: Sequence[Task] = (), order: Callable[[Piece], float] = surfaces_first
+    ) -> Computed:
         """
         Every batch of the study and every task, in one sweep.
 
@@ -58,6 +80,8 @@ class Runner:
             What the surfaces are made of.
         tasks : sequence of Task
             What is computed beside them; `results` has what they return.
+        order : callable
+            Of a batch or task: those with the smallest value come first.
 
         Returns
         -------
@@ -86,19 +110,23 @@ class Runner:
             titles = {WARM_UP: COMPILING, **{model.key: model.title for model in study.hierarchy}}
             compiled = {model.key for model in study.hierarchy if model.side == "reference"}
             self.console.print(COMPILED_ONCE)
-            pieces: list[Piece] = [warm_up(study), *(batches[place] for place in missing), *_longest_first(left)]
-            results = self._sweep(pieces, stages, titles, compiled, pending=True)
-            _, *computed = [result for result in results if isinstance(result, BatchResult)]  # the first is the warm-up
-            answers |= zip(missing, computed)
-        return Computed(batches, [answers[place] for place in range(len(batches))], len(batches) - len(missing))
+            pieces: list[Piece] = [*(batches[place] for place in missing), *left]
+            done = self._sweep([warm_up(study), *sorted(pieces, key=order)], stages, titles, compiled, pending=True)
+            computed = {id(piece): answer for piece, answer in done}
+            answers |= {place: computed[id(batches[place])] for place in missing if id(batches[place]) in computed}
+        places = sorted(answers)
+        return Computed([batches[n] for n in places], [answers[n] for n in places], len(batches) - len(missing))
 
-    def run_tasks(self, tasks: Sequence[Task], compile_first: bool = False) -> None:
+    def run_tasks(
+        self, tasks: Sequence[Task], compile_first: bool = False, order: Callable[[Piece], float] = longest_first
+    ) -> None:
         """
         Every task; `results` has what they return. Raises as `run_study`.
 
-        compile_first: nothing has compiled the reference yet, so one worker does before the tasks that need it.
+        compile_first: nothing has compiled the reference yet, so one worker does before the tasks that need it. A task
+        that the deadline leaves out has a result that says so.
         """
-        left = _longest_first(self.results.missing(tasks))
+        left = sorted(self.results.missing(tasks), key=order)
         if not left:
             return
         stages, pieces = _task_stages(tasks, left), list[Piece](left)
@@ -107,6 +135,9 @@ class Runner:
             stages = {COMPILING: Stage(1, START_UP)} | stages
             pieces.insert(0, compiling_task(COMPILING))
         self._sweep(pieces, stages, {}, set(), pending)
+        for task in left:
+            if task not in self.results:
+                self.results.leave_out(task)
 
     def _sweep(
         self,
@@ -115,39 +146,47 @@ class Runner:
         titles: Mapping[str, str],
         compiled: set[str],
         pending: bool,
-    ) -> list[BatchResult | TaskResult]:
+    ) -> list[tuple[Batch, BatchResult]]:
         """
         Run the pieces in one sweep; the first of them compiles the reference if that is `pending`.
 
-        titles: stages by the models of batches. compiled: the models that wait for the compiled reference.
+        titles: stages by the models of batches. compiled: the models that wait for the compiled reference. Returns the
+        batches that were computed.
         """
         first = pieces[0] if pending else None
         waiting = {id(first)} if pending else set()
-        with progress(self.console, stages, self.jobs) as display:
+        computed: list[tuple[Batch, BatchResult]] = []
+        with progress(self.console, stages, self.jobs, self.deadline) as display:
 
             def done(piece: Piece, answer: BatchResult | TaskResult) -> None:
                 waiting.discard(id(piece))
+                if self.deadline is not None and piece is not first:
+                    self.deadline.learn(piece.kind, piece.seconds, answer.cost)
                 if isinstance(piece, Task):
                     assert isinstance(answer, TaskResult)
                     if piece is not first:
                         self.results.put(piece, answer)
                     display.advance(piece.stage, 1, piece.seconds)
                     return
-                if self.results.cache is not None and piece is not first:
-                    self.results.cache.put(batch_key(piece), answer)
-                stage, points = titles[piece.model], len(piece.phases)
-                display.advance(stage, points, stages[stage].share(points))
+                assert isinstance(answer, BatchResult)
+                if piece is not first:
+                    computed.append((piece, answer))
+                    if self.results.cache is not None:
+                        self.results.cache.put(batch_key(piece), answer)
+                display.advance(titles[piece.model], len(piece.phases), piece.seconds)
 
             def ready(piece: Piece) -> bool:
                 needs = piece.needs_compiled_reference if isinstance(piece, Task) else piece.model in compiled
                 return not (waiting and needs)
 
-            return sweep(pieces, _execute, _unfinished, done, self.jobs, self.executor, ready, _split, _merge)
+            def seconds_left(piece: Piece) -> float:
+                if self.deadline is None:
+                    return math.inf
+                return self.deadline.left if self.deadline.allows(piece.kind, piece.seconds) else 0.0
 
-
-def _longest_first(tasks: Sequence[Task]) -> list[Task]:
-    """No worker is left with a long task when the others are done."""
-    return sorted(tasks, key=lambda task: -task.seconds)
+            execution = self.jobs, self.executor, ready, _split, _merge, seconds_left
+            sweep(pieces, _execute, _unfinished, done, *execution)
+        return computed
 
 
 def _batch_stages(study: Study, batches: Sequence[Batch], missing: Sequence[int]) -> dict[str, Stage]:
@@ -157,7 +196,8 @@ def _batch_stages(study: Study, batches: Sequence[Batch], missing: Sequence[int]
         if points_by_place:
             points = sum(points_by_place.values())
             left = sum(points_by_place[place] for place in missing if place in points_by_place)
-            stages[model.title] = Stage(points, study.seconds(model) * left / points, points - left)
+            seconds = sum(batches[place].seconds for place in missing if place in points_by_place)
+            stages[model.title] = Stage(points, seconds, points - left)
     return stages
 
 

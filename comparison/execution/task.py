@@ -30,10 +30,15 @@ class Task:
     function: Callable[[Any], Any]
     argument: Any
     stage: str  # its name on the terminal and in the table of costs
-    seconds: float  # predicted cost, as `Model.seconds_per_point`
+    seconds: float  # predicted cost, as `costs.seconds_per_point`
     about: Any = None  # what its directory in the cache belongs to
     needs_compiled_reference: bool = True  # on a new installation it waits until one worker has compiled the reference
     timeout: float | None = None  # most processor time, s, rounded up; what takes longer is ended: Outcome.TIME_LIMIT
+
+    @property
+    def kind(self) -> str:
+        """Tasks of one kind cost about as much more or less than predicted."""
+        return self.stage
 
     @cached_property
     def key(self) -> str:
@@ -142,6 +147,8 @@ def fingerprint(value: Any) -> Any:
         return [[key, fingerprint(part)] for key, part in sorted(value.items())]
     if is_dataclass(value) and not isinstance(value, type):
         held = {part.name: getattr(value, part.name) for part in fields(value)}
+        if isinstance(value, Model):
+            del held["most"]  # at which phases a model is asked does not change what it answers
         source = environment_fingerprint(value.amplification) if isinstance(value, Model) else {}
         return [type(value).__qualname__, fingerprint(source), fingerprint(held)]
     if callable(value):

@@ -13,6 +13,7 @@ import numpy as np
 
 from comparison.execution.task import Task
 from comparison.study.batches import Batch
+from comparison.study.overhead import START_UP
 from comparison.study.study import Study
 from reference import amplification
 from reference.problem import Scene, load_scene
@@ -29,7 +30,7 @@ def warm_up(study: Study) -> Batch:
     batches = study.batches()
     batch = next((batch for batch in batches if batch.model == "exact"), batches[0])
     scene = batch.scene.with_values({"duration": DURATION})
-    return replace(batch, model=WARM_UP, scene=scene, phases=batch.phases[:1])
+    return replace(batch, model=WARM_UP, scene=scene, phases=batch.phases[:1], seconds=START_UP)
 
 
 def compiling_task(stage: str) -> Task:

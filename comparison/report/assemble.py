@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from comparison.analysis.claims.table import ClaimTable
+from comparison.analysis.distribution import distributions
 from comparison.analysis.errata import ERRATA
 from comparison.analysis.grid_maxima import grid_maxima
 from comparison.analysis.headline import headline
@@ -26,6 +27,7 @@ from comparison.report.results import (
     Claims,
     Completion,
     Difference,
+    Distribution,
     Effect,
     Effective,
     Erratum,
@@ -46,6 +48,7 @@ from comparison.report.results import (
     Trend,
     Unanswered,
     Waterfall,
+    Worst,
 )
 from comparison.study.models import Model, models_of
 from reference.problem import Family, Outcome, Scene
@@ -79,6 +82,9 @@ def assemble(findings: Findings) -> Results:
         scenes=[_scene(findings, scene, waterfalls[scene.name]) for scene in study.scenes],
         errata=None if "errata" in study.absent else _errata(findings),
         assumptions=None if findings.assumptions is None else Assumptions.model_validate(findings.assumptions.listed()),
+        worst_phases=None
+        if findings.worst_phases is None
+        else [Worst.model_validate(worst) for worst in findings.worst_phases],
         claims=None if findings.claims is None else _claims(findings.claims),
         scaling=_trends(findings.scaling),
         convergence=_trends(findings.convergence),
@@ -116,6 +122,9 @@ def _scene(findings: Findings, scene: Scene, waterfalls: Sequence[BodyWaterfall]
         headlines=[Headline.model_validate(each) for each in headlines],
         waterfalls=[Waterfall.model_validate(each) for each in waterfalls],
         completions=[Completion.model_validate(surface) for surface in of_scene(findings.completions)],
+        distributions=[]
+        if scene.recorded
+        else [Distribution.model_validate(each) for each in distributions(study, surfaces, scene)],
         grid_maxima=[GridMaximum.model_validate(each) for each in grid_maxima(study, surfaces, scene)],
         values=_values(findings, scene) if scene.recorded else [],
         limits=[Limit.model_validate(limit) for limit in of_scene(findings.limits)],

@@ -21,6 +21,7 @@ from comparison.analysis.tradeoff.trade import Trade
 from comparison.analysis.trajectories import StoredMotion
 from comparison.analysis.trends import Trend
 from comparison.analysis.unanswered import Unanswered, unanswered
+from comparison.analysis.worst_phases import Worst
 from comparison.study.study import Study
 from reference.problem import Family
 
@@ -58,6 +59,7 @@ class Findings:
     run: Mapping[str, Any]  # command, times, provenance
     pictures: Mapping[str, bytes] = field(default_factory=dict)  # files of the pictures of the surfaces, by name
     motions: Sequence[StoredMotion] | None = None  # motions at chosen phases
+    worst_phases: Sequence[Worst] | None = None  # the largest values over all phases
     claims: ClaimTable | None = None
     scaling: Sequence[Trend] | None = None
     convergence: Sequence[Trend] | None = None
@@ -65,6 +67,7 @@ class Findings:
     families: Sequence[Family] | None = None  # those of more than one scene
     extremes: Matrix | None = None  # what python -m comparison.extremes left beside the report
     tradeoff: Sequence[Trade] | None = None  # what python -m comparison.tradeoff left beside the report
+    drawings: Mapping[str, Any] = field(default_factory=dict)  # files of the other drawings, by key of their task
 
 
 def collect_findings(
@@ -97,7 +100,8 @@ def collect_findings(
         All of it, with differences, budget, gaps and limits.
     """
     rows, lacking = differences(study, surfaces), unanswered(study, surfaces)
-    optional = {key: collected.get(key) for key in ("motions", "claims", "scaling", "convergence", "assumptions")}
+    names = ("motions", "worst_phases", "claims", "scaling", "convergence", "assumptions")
+    optional: dict[str, Any] = {name: collected.get(name) for name in names}
     completed = [surface for scene in study.scenes for surface in completions(study, surfaces, scene)]
     return Findings(
         study=study,

@@ -19,7 +19,8 @@ from comparison.analysis.claims.table import SIGNS
 from comparison.analysis.effective import PHASES
 from comparison.analysis.extremes.matrix import PICTURE
 from comparison.analysis.extremes.verdicts import Verdict
-from comparison.report.figures.assumptions import assumption_figure_name, draw_assumptions
+from comparison.report.drawings import assumption_tasks, drawn
+from comparison.report.figures.assumptions import assumption_figure_name
 from comparison.report.figures.extremes import MEANING, describe, draw_extremes
 from comparison.report.figures.families import draw_families
 from comparison.report.figures.pictures import smaller
@@ -28,7 +29,15 @@ from comparison.report.findings import Findings
 from comparison.report.glossary import emphasized, term
 from comparison.report.motion_data import packed, packed_motions
 from comparison.report.page_data import page_data
-from comparison.report.page_plots import claim_heat, family_panels, tradeoff_answers, tradeoff_panels, trend_panels
+from comparison.report.page_plots import (
+    claim_heat,
+    distribution_panels,
+    family_panels,
+    tradeoff_answers,
+    tradeoff_panels,
+    trend_panels,
+    worst_lines,
+)
 from comparison.report.results import Alert, Claim, ClaimVerdict, Effect, Erratum, Results, SceneResult, Waterfall
 from comparison.report.verification import CHECKS
 from comparison.report.waterfall_chart import Scale, charts, log_scale, scales
@@ -65,10 +74,10 @@ class Section:
 
 
 def draw_all_assumptions(figures: Path, findings: Findings) -> None:
-    """The picture of every scene that has a spatial model."""
-    if findings.assumptions:
-        for scene in findings.assumptions.scenes:
-            draw_assumptions(figures / assumption_figure_name(scene), scene, findings.assumptions.cells)
+    """One picture for each scene whose assumptions were varied."""
+    for task in assumption_tasks(findings):
+        for name, content in drawn(findings, task):
+            (figures / name).write_bytes(content)
 
 
 def draw_all_trades(figures: Path, findings: Findings) -> None:
@@ -86,6 +95,9 @@ SECTIONS = (
         "a range in a scene file makes one: friction = {range = [0.02, 0.2], steps = 10}",
         draw_families,
         folded=False,
+    ),
+    Section(
+        "worst_phases", "Over all phases", "worst_phases", "python -m comparison.run makes it, of scenes with phases"
     ),
     Section("differences", "Differences"),
     Section("budget", "What makes the difference"),
@@ -183,6 +195,8 @@ def page(figures: Path, findings: Findings, results: Results) -> str:
         dots=log_scale([size for row in rows for size in (row.median, row.maximum)]),
         budget=[entry for scene in results.scenes_with("budget") for entry in scene.budget],
         trend_panels=trend_panels,
+        distribution_panels=distribution_panels(results),
+        worst_lines=worst_lines(results),
         tradeoff_panels=tradeoff_panels,
         tradeoff_answers=tradeoff_answers,
         family_panels=family_panels(results),

@@ -102,6 +102,7 @@ def _model(
     phases: per axis. computed: phase pairs that symmetry did not give. surface: whether its values are drawn as one.
     mu: per body. error: per body, null for a surface. completed: per body, null or through (a model), error (largest
     of leaving out one), reason (why it is not drawn), difference (whether that may be drawn), mu (null where refused).
+    worst: per body, null or alpha1, alpha2 (rad) and the largest mu over all phases.
     """
     data = common_phases(findings.surfaces, scene.name, [model.key]).sel(model=model.key)
     bodies = range(1, len(scene.bodies) + 1)
@@ -116,8 +117,17 @@ def _model(
         "surface": surface,
         "mu": listed("mu", DIGITS),
         "error": None if surface else listed("error", ERROR_DIGITS),
+        "worst": [_worst(findings, scene, model, body) for body in bodies],
         "completed": [_completed(completed.get((model.key, body))) for body in bodies],
     }
+
+
+def _worst(findings: Findings, scene: Scene, model: Model, body: int) -> list[float] | None:
+    place = (scene.name, model.key, "amplification", body)
+    for worst in findings.worst_phases or ():
+        if (worst.scene, worst.model, worst.quantity, worst.body) == place and np.isfinite(worst.value):
+            return [*(round(phase, 4) for phase in worst.phases), float(f"{worst.value:.{DIGITS}g}")]
+    return None
 
 
 def _completed(completion: Completion | None) -> dict[str, Any] | None:

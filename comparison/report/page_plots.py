@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import Any
 
+from comparison.analysis.distribution import CURVE
 from comparison.analysis.tradeoff.trade import Answered, Entry, Trade
-from comparison.report.results import FamilyResult, Results, Trend
-from comparison.wording import scientific
+from comparison.report.results import FamilyResult, Results, Trend, Worst
+from comparison.wording import scientific, significant
 
 Panel = dict[str, Any]  # title, and plot: see plot.js
 
@@ -43,6 +44,49 @@ def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
         }
         panels.append({"title": scene, "plot": plot})
     return panels
+
+
+def distribution_panels(results: Results) -> list[Panel]:
+    """One panel for each scene and body: the share of all phases at which mu stays below a value, by model."""
+    titles = {model.key: model.title for model in results.models}
+    panels = []
+    for scene in results.scenes_with("worst_phases"):
+        for body in range(1, scene.bodies + 1):
+            curves = [each for each in scene.distributions if each.body == body]
+            series = [
+                {"name": titles[each.model], "x": _plain(each.curve), "y": CURVE.tolist(), "color": number}
+                for number, each in enumerate(curves)
+            ]
+            name = f"{scene.name}, μ_{body}"
+            plot = {
+                "label": f"{name}: share of the phases at which it stays below a value, by model",
+                "x": {"title": f"μ_{body}"},
+                "y": {"title": "share of the phases"},
+                "series": series,
+            }
+            panels += [{"title": name, "plot": plot}] if series else []
+    return panels
+
+
+def worst_lines(results: Results) -> list[dict[str, Any]]:
+    """Rows of the table of worst phases, each with its model's title and what stands there."""
+    titles = {model.key: model.title for model in results.models}
+    return [
+        {"worst": worst, "title": titles[worst.model], "kind": _kind(worst)} for worst in results.worst_phases or ()
+    ]
+
+
+def _kind(worst: Worst) -> str:
+    if worst.reason:
+        return worst.reason
+    if worst.kind == "nearby":
+        if not math.isfinite(worst.at_start):
+            return "the engine's largest value beside the phases above, at which it has none"
+        return f"the engine's largest value beside the phases above, where it has {significant(worst.at_start)}"
+    if worst.kind == "jump":
+        first, second = (f"{side:+.2f}" for side in worst.side)
+        return f"beside a jump, approached from ({first}, {second})"
+    return "on an edge of the surface" if worst.kind == "kink" else "on a smooth hill"
 
 
 def tradeoff_panels(trade: Trade) -> list[Panel]:

@@ -10,7 +10,8 @@ from importlib import resources
 from importlib.util import find_spec
 from pathlib import Path
 
-from comparison.report.figures.print_maps import draw_maps
+from comparison.execution.task import Task
+from comparison.report.drawings import drawn, map_task
 from comparison.report.findings import Findings
 from comparison.report.pdf_data import largest_headlines, pdf_data, short_title, size_of
 from comparison.report.results import Headline, Results, SceneResult
@@ -36,7 +37,7 @@ def write_pdf(path: Path, results: Results, findings: Findings) -> None:
     import typst  # an optional extra
 
     shown = largest_headlines(results)
-    maps = _maps(results, findings, shown)
+    maps = [(about, drawn(findings, task)[0][1]) for about, task in map_tasks(results, findings)]
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         source = resources.files("comparison.report") / "templates" / TEMPLATE
@@ -49,12 +50,12 @@ def write_pdf(path: Path, results: Results, findings: Findings) -> None:
         typst.compile(str(folder / TEMPLATE), output=str(path), root=str(folder))
 
 
-def _maps(results: Results, findings: Findings, shown: Sequence[Headline]) -> list[tuple[dict[str, str], bytes]]:
-    """Title, note and SVG of the scenes with phases that have the largest differences."""
+def map_tasks(results: Results, findings: Findings) -> list[tuple[dict[str, str], Task]]:
+    """Title, note and task of the maps of the scenes with phases that have the largest differences."""
     largest: dict[str, list[Headline]] = {}
-    for headline in sorted(shown, key=size_of, reverse=True):
+    for headline in sorted(largest_headlines(results), key=size_of, reverse=True):
         largest.setdefault(headline.scene, []).append(headline)
-    study, drawn = findings.study, []
+    study, tasks = findings.study, []
     phased = [name for name in largest if any(scene.name == name for scene in study.phased)][:MAX_MAPS]
     for scene, result in zip(study.scenes, results.scenes):
         if scene.name not in phased or "surfaces" not in result.analyses:
@@ -64,12 +65,11 @@ def _maps(results: Results, findings: Findings, shown: Sequence[Headline]) -> li
         if second is models[0]:
             continue
         bodies = sorted(headline.body for headline in largest[scene.name][:2])
-        completed = [surface for surface in findings.completions if surface.scene == scene.name]
         counts = [result.models[model.key] for model in (models[0], second)]
         sizes = [f"{c.phases_per_axis} × {c.phases_per_axis}, {c.computed} computed" for c in counts]
         about = {"title": short_title(result), "note": f"{models[0].title}: {sizes[0]}; {second.title}: {sizes[1]}"}
-        drawn.append((about, draw_maps(findings.surfaces, scene, (models[0], second), bodies, completed)))
-    return drawn
+        tasks.append((about, map_task(findings, scene, (models[0], second), bodies)))
+    return tasks
 
 
 def _engine(models: Sequence[Model], result: SceneResult) -> Model:

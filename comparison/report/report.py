@@ -8,12 +8,20 @@ from __future__ import annotations
 from pathlib import Path
 
 from comparison.execution.output import on_stderr
+from comparison.execution.task import Task
+from comparison.report.drawings import assumption_tasks
 from comparison.report.findings import Findings
 from comparison.report.junit import junit
 from comparison.report.page import SECTIONS, page
-from comparison.report.pdf import write_pdf
+from comparison.report.pdf import map_tasks, write_pdf
 from comparison.report.results import Results, schema_json
 from comparison.report.summary_text import summary_text
+
+
+def drawing_tasks(results: Results, findings: Findings) -> list[Task]:
+    """What workers draw before the report is written."""
+    maps = [] if results.no_pdf else [task for _, task in map_tasks(results, findings)]
+    return [*maps, *assumption_tasks(findings)]
 
 
 def write_report(folder: Path, results: Results, findings: Findings) -> None:

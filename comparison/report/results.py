@@ -69,12 +69,23 @@ class TargetOfModel(Part):
     """relative error that was to be met"""
     asked: float
     """tolerance that the model was given for it"""
+    phases_per_axis: int
+    """of its grid; 1 in a study without phases"""
     points: int
     """phase pairs of all its surfaces"""
     met: float
     """fraction of them whose error estimates meet the tolerance"""
     error99: float | None
     """relative error estimate that 99 % do not exceed; null if more than 1 % have no value"""
+
+
+class NextStep(Part):
+    """What more time would buy."""
+
+    what: Text
+    """a finer grid of a model, or an analysis"""
+    seconds: float
+    """processor time that it still takes, s"""
 
 
 class Targets(Part):
@@ -88,10 +99,10 @@ class Targets(Part):
     """compute time expected for the surfaces, s"""
     seconds: float
     """compute time they took, s"""
-    predicted_wall: float
-    """wall time expected for the whole run, s"""
     left_out: list[Text]
     """models left out, and why"""
+    next_steps: list[NextStep]
+    """what the budget did not buy, in the order in which it would be computed"""
     models: list[TargetOfModel]
     """what every model met"""
 
@@ -360,6 +371,82 @@ class Completion(Part):
     """why the surface may not be drawn; empty where it may"""
 
 
+class Worst(Part):
+    """The largest value of one model over all phases."""
+
+    scene: str
+    """name of the scene"""
+    model: str
+    """key of the model"""
+    quantity: Literal["amplification", "displacement"]
+    """mu of the body, or the displacement of the platform, m"""
+    body: int
+    """number of the body; 1 is the platform"""
+    value: Number
+    """largest value; null without an answer"""
+    error: Number
+    """estimated absolute error of it"""
+    phases: Phases
+    """(alpha1, alpha2), rad"""
+    kind: Literal["smooth", "kink", "jump", "nearby", ""]
+    """what the surface has there; "nearby": the largest of an engine beside the worst phases of the equations"""
+    side: Phases
+    """direction in the plane of phases from a jump to the large values beside it; null otherwise"""
+    runner_up: Number
+    """the highest other value at which a climb ended"""
+    climbs: int
+    """hills from which a climb started"""
+    reached: int
+    """climbs that ended at the maximum"""
+    evaluations: int
+    """phase pairs that were computed"""
+    at_start: Number
+    """an engine's value at the worst phases of the equations"""
+    start_error: Number
+    """estimated absolute error of it"""
+    reason: Text
+    """why there is no value, or empty"""
+
+
+class Mean(Part):
+    """A mean with its error."""
+
+    value: Number
+    """mean"""
+    error: Number
+    """estimated absolute error, sampling included; null where it is not known"""
+
+
+class Fractile(Part):
+    """The value that mu stays below with a probability."""
+
+    probability: float
+    """probability"""
+    value: Number
+    """fractile of mu"""
+    error: Number
+    """estimated absolute error, sampling included; null where it is not known"""
+
+
+class Distribution(Part):
+    """mu of one model and body over phases that are independent and uniform."""
+
+    model: str
+    """key of the model"""
+    body: int
+    """number of the body; 1 is the platform"""
+    points: int
+    """phase pairs that it was taken from"""
+    unknown: float
+    """share of them without an answer"""
+    mean: Mean
+    """mean over all phases"""
+    fractiles: list[Fractile]
+    """by rising probability"""
+    curve: list[Number]
+    """mu at 50 probabilities from 0.01 to 0.99"""
+
+
 class GridMaximum(Part):
     """The largest value of one surface on the phases that were computed."""
 
@@ -510,6 +597,8 @@ class SceneResult(Part):
     """one per body"""
     completions: list[Completion]
     """one per body of every model that lacks phases of the study"""
+    distributions: list[Distribution]
+    """mu over uniform phases by model and body; empty under a record"""
     grid_maxima: list[GridMaximum]
     """one per model and body"""
     values: list[RecordValue]
@@ -847,6 +936,8 @@ class Results(Part):
     """in the order of the paper; null where they were not asked for"""
     assumptions: Assumptions | None
     """how far the paper's assumptions carry; null without a spatial model"""
+    worst_phases: list[Worst] | None
+    """the largest values over all phases; null if not computed"""
     claims: Claims | None
     """the paper's statements about its figures; null unless every scene of the paper was studied"""
     scaling: list[Trend] | None

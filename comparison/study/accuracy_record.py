@@ -41,13 +41,11 @@ class AccuracyRecord:
 @dataclass(frozen=True)
 class RecordedModels:
     """
-    machine_benchmark: processor time of a fixed piece of work of each side, s, on the machine of the record. accuracy:
-    by the key of the model. seconds: of a point at the usual tolerance, by the digest of the scene and the key of the
-    model.
+    machine: where it was recorded. accuracy: by the key of the model. seconds: processor time of a point at the usual
+    tolerance, by the digest of the scene and the key of the model.
     """
 
     machine: str
-    machine_benchmark: Mapping[str, float]
     accuracy: Mapping[str, AccuracyRecord]
     seconds: Mapping[str, Mapping[str, float]]
 
@@ -68,4 +66,4 @@ def recorded() -> RecordedModels:
         )
         for key, model in content["models"].items()
     }
-    return RecordedModels(content["machine"], content["machine_benchmark"], accuracy, content["seconds"])
+    return RecordedModels(content["machine"], accuracy, content["seconds"])

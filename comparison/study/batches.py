@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Batch:
-    """Phase pairs number `first` ... `first` + len(phases) - 1 of the model's grid, phases (M, 2), rad."""
+    """Phase pairs number `first` ... `first` + len(phases) - 1 of those the model solves, phases (M, 2), rad."""
 
     scene: Scene
     model: str
@@ -26,6 +26,13 @@ class Batch:
     settings: Mapping[str, object]
     first: int
     phases: Array
+    level: int = 0  # of the nested grids, the first that has these phases
+    seconds: float = 0.0  # predicted processor time
+
+    @property
+    def kind(self) -> tuple[str, str]:
+        """Batches of one kind cost about as much more or less than predicted."""
+        return self.scene.name, self.model
 
 
 @dataclass(frozen=True)

@@ -1,25 +1,37 @@
-"""What a phase pair of a scene costs under a model on this machine: from the record, or from a pilot of the scene."""
+"""
+What a phase pair of a scene costs under a model: recorded, guessed from what was recorded, or tried.
+
+The record (accuracy_record.json) is the one table of costs. Scenes that are not in it are guessed from those that are;
+a guess may be wrong by much, so `--plan` tries such scenes at a few phase pairs.
+"""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 
 from comparison.study.accuracy_record import recorded
 from comparison.study.batches import imported
-from comparison.study.benchmark import machine_benchmark
-from comparison.study.models import MODEL_HIERARCHY, REFERENCE_TOLERANCE, Model, at_samples
-from reference.problem import Scene
+from comparison.study.models import MODEL_HIERARCHY, REFERENCE_TOLERANCE, Model
+from comparison.study.speedup import speedup
+from reference.problem import Scene, load_scene
 
 USUAL = {"reference": REFERENCE_TOLERANCE, "engine": 1e-3}  # tolerances of the recorded seconds per point
-# phase pairs of a scene that is not in the record; others go by these. Of 16 pairs of the reference every thread has
-# one at a time, and each costs twice what it does in a batch
-TRIAL_POINTS = {"reference": 96, "translational": 3}
+DURATION, BODIES = 20.0, 2  # of the recorded scenes
+STEPS_AT_SAMPLES = 6.0  # times the cost of a point, for the shipped records: steps end at their samples
+TYPICAL = "fig3-I"  # scene from which nothing is left out but what is left out of every scene
+# phase pairs of a scene that is tried. Of 16 pairs of the reference every thread has one at a time, and each costs
+# twice what it does in a batch
+TRIAL_POINTS = {"reference": 96, "engine": 2}
 TRIAL_SCENES = 2  # scenes that are tried: a family's others cost what these do
 SEED = 4
+
+
+def at_samples(scene: Scene) -> float:
+    """How many times more a motion costs whose steps end at the samples of a record."""
+    return STEPS_AT_SAMPLES if scene.recorded else 1.0
 
 
 def is_recorded(model: Model) -> bool:
@@ -31,104 +43,70 @@ def is_recorded(model: Model) -> bool:
     )
 
 
-@dataclass(frozen=True)
-class Costs:
+def seconds_per_point(scene: Scene, model: Model, full: bool = False) -> float:
     """
-    seconds: processor time of a point at the usual tolerance, by name of the scene and key of the model, of the models
-    of the record alone. measured: whether this machine was; else it is taken for that of the record. speed: how many
-    times as long as there it takes, about.
-    """
-
-    seconds: Mapping[tuple[str, str], float]
-    measured: bool
-    speed: float = 1.0
-
-    def of(self, scene: Scene, model: Model, tolerance: float) -> float | None:
-        """Processor time of a point, s; None for a model that is not in the record."""
-        usual = self.seconds.get((scene.name, model.key))
-        return None if usual is None else usual * recorded().accuracy[model.key].cost(tolerance)
-
-
-def costs(scenes: Sequence[Scene], hierarchy: Sequence[Model], measure: bool, full: bool = False) -> Costs:
-    """
-    Seconds per point of every model on every scene.
-
-    A scene of the record costs what was recorded, times what a fixed piece of work takes here beside what it took then.
-    Another is tried at a few phase pairs if `measure`, and else in proportion to its duration.
+    Processor time of a phase pair at the usual tolerance, s, without computing one.
 
     Parameters
     ----------
-    scenes : sequence of Scene
-    hierarchy : sequence of Model
-    measure : bool
-        Whether this machine is measured, which takes a second or two.
+    scene : Scene
+    model : Model
+        Another model under a recorded key is taken for that of the record.
     full : bool
         Whether nothing is reduced.
 
     Returns
     -------
-    Costs
+    float
+        As recorded, or guessed: in proportion to the duration and the number of bodies.
     """
-    record, models = recorded(), [model for model in hierarchy if is_recorded(model)]
-    now = machine_benchmark() if measure and models else record.machine_benchmark
-    speed = {side: now[side] / record.machine_benchmark[side] for side in now}
-    seconds: dict[tuple[str, str], float] = {}
-    uncalibrated: list[Scene] = []
-    for scene in scenes:
-        recorded_seconds = record.seconds.get(scene.digest())
-        if recorded_seconds is None or full:
-            uncalibrated.append(scene)
-            continue
-        seconds |= {
-            (scene.name, r.key): recorded_seconds[r.key] * speed[r.side]
-            for r in models
-            if r.key in recorded_seconds and r.applies(scene)
-        }
-    if uncalibrated and models:
-        seconds |= _uncalibrated(uncalibrated, models, speed, measure, full)
-    return Costs(seconds, measure and bool(models), float(np.mean(list(speed.values()))))
+    in_scene = recorded().seconds.get(scene.digest(), {})
+    if model.key in in_scene and not full:
+        return in_scene[model.key]
+    alike = [seconds[model.key] for seconds in recorded().seconds.values() if model.key in seconds]
+    saved = speedup(load_scene(TYPICAL), model) / (1.0 if full else speedup(scene, model))
+    size = scene.duration / DURATION * len(scene.bodies) / BODIES
+    return float(np.mean(alike or [1.0])) * saved * size * at_samples(scene)
 
 
-def _uncalibrated(
-    scenes: Sequence[Scene], models: Sequence[Model], speed: Mapping[str, float], measure: bool, full: bool
+def tried_costs(
+    scenes: Sequence[Scene], hierarchy: Sequence[Model], full: bool = False
 ) -> dict[tuple[str, str], float]:
-    """Seconds per point of scenes that are not in the record."""
-    usual = {model.key: _typical(model) * speed[model.side] for model in models}
-    phased = [
-        scene for scene in scenes if not scene.recorded
-    ]  # a recorded motion has one point: trying it is all of it
-    tried = [phased[place] for place in np.unique(np.linspace(0, len(phased) - 1, TRIAL_SCENES).astype(int)) if phased]
-    factors: dict[str, list[float]] = {"reference": [1.0], "engine": [1.0]}
-    trials: dict[tuple[str, str], float] = {}
-    if measure:
-        factors = {"reference": [], "engine": []}
-        for scene in tried:
-            for model in models:
-                key = model.key if model.side == "engine" else "reference"
-                if key in TRIAL_POINTS and model.applies(scene):
-                    seconds = _trial_run(
-                        scene, model, TRIAL_POINTS[key] if len(tried) == 1 else max(1, TRIAL_POINTS[key] // 2), full
-                    )
-                    trials[scene.name, model.key] = seconds
-                    factors[model.side].append(seconds / (usual[model.key] * scene.duration / 20.0))
-    factor = {side: float(np.mean(values)) if values else 1.0 for side, values in factors.items()}
-    return {
-        (scene.name, model.key): trials.get(
-            (scene.name, model.key), usual[model.key] * factor[model.side] * scene.duration / 20.0 * at_samples(scene)
-        )
-        for scene in scenes
-        for model in models
-        if model.applies(scene)
-    }
+    """
+    Processor time of a phase pair of the scenes that are not in the record, measured at a few pairs.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+    hierarchy : sequence of Model
+        Models that are not those of the record are not tried.
+    full : bool
+        Whether nothing is reduced.
+
+    Returns
+    -------
+    dict
+        s by name of the scene and key of the model. Of many scenes the first and the last are tried; the others cost
+        what the guess says, corrected by these.
+    """
+    unknown = [scene for scene in scenes if full or scene.digest() not in recorded().seconds]
+    if not unknown:
+        return {}
+    places = np.unique(np.linspace(0, len(unknown) - 1, TRIAL_SCENES).astype(int))
+    seconds: dict[tuple[str, str], float] = {}
+    for model in filter(is_recorded, hierarchy):
+        tried = {
+            scene.name: _trial_run(scene, model, full) for scene in (unknown[n] for n in places) if model.applies(scene)
+        }
+        guessed = {scene.name: seconds_per_point(scene, model, full) for scene in unknown if model.applies(scene)}
+        factor = float(np.mean([tried[name] / guessed[name] for name in tried])) if tried else 1.0
+        seconds |= {(name, model.key): tried.get(name, factor * guess) for name, guess in guessed.items()}
+    return seconds
 
 
-def _typical(model: Model) -> float:
-    """Mean over the recorded scenes."""
-    return float(np.mean([seconds[model.key] for seconds in recorded().seconds.values() if model.key in seconds]))
-
-
-def _trial_run(scene: Scene, model: Model, points: int, full: bool) -> float:
-    """Processor time of a point, s, from a few."""
+def _trial_run(scene: Scene, model: Model, full: bool) -> float:
+    """Processor time of a phase pair, s, from a few."""
+    points = 1 if scene.recorded else TRIAL_POINTS[model.side]
     phases = np.random.default_rng(SEED).uniform(0.0, 2.0 * np.pi, (points, 2))
     asked = {**model.settings, "tolerance": USUAL[model.side], **({"full": True} if full else {})}
     answer = imported(model.amplification)

@@ -18,12 +18,6 @@ REFERENCE_TOLERANCE = (
     1e-6  # the reference is cheap: asked for at least this, so that its error never blurs a difference
 )
 RECORDED_ON = "one core of a 2-core AMD EPYC (x86-64) virtual machine"
-STEPS_AT_SAMPLES = 6.0  # times the cost of a point, for the shipped records
-
-
-def at_samples(scene: Scene) -> float:
-    """How many times more a motion costs whose steps end at the samples of a record."""
-    return STEPS_AT_SAMPLES if scene.recorded else 1.0
 
 
 def dry(scene: Scene) -> bool:
@@ -54,12 +48,11 @@ def has_spatial_data(scene: Scene) -> bool:
 class Model:
     """
     One model. `adds`: the sentence the report prints. `settings`: keyword arguments of its functions.
-    `assumptions`: its row in the report's table of equations. `seconds_per_point`: recorded cost of one phase pair of
-    a built-in scene with 20 s of motion, on RECORDED_ON. `applies`: whether the scene gives it anything to add. `most`:
-    phases per axis that its cost allows, or None; of a finer study it computes every k-th phase. `symmetric`: whether
-    mirrored phases (symmetry.py) are known to give mirrored motions of the scene and are not computed again. `asks`:
-    the tolerance that was chosen for it (planning.py). `refusal`: the function that tells from the scene alone why all
-    phase pairs would be refused, or "" ("package:function", the contract of `multibody.refusal`).
+    `assumptions`: its row in the report's table of equations. `applies`: whether the scene gives it anything to add.
+    `most`: phases per axis that its cost allows, or None; of a finer study it computes every k-th phase. `symmetric`:
+    whether mirrored phases (symmetry.py) are known to give mirrored motions of the scene and are not computed again.
+    `asks`: the tolerance that was chosen for it (planning.py). `refusal`: the function that tells from the scene alone
+    why all phase pairs would be refused, or "" ("package:function", the contract of `multibody.refusal`).
     """
 
     key: str
@@ -70,7 +63,6 @@ class Model:
     trajectory: str
     settings: Mapping[str, object]
     assumptions: Mapping[str, str]
-    seconds_per_point: float
     batch: int  # phase pairs solved in one call: about a second of work
     most: int | None = None
     symmetric: Callable[[Scene], bool] = field(default=never)
@@ -84,10 +76,6 @@ class Model:
         if self.asks is not None:
             return self.asks
         return min(asked, REFERENCE_TOLERANCE) if self.side == "reference" else asked
-
-    def seconds(self, scene: Scene, points: int) -> float:
-        """Predicted cost of `points` phase pairs, s on one core: the recorded cost, in proportion to the duration."""
-        return points * self.seconds_per_point * scene.duration / 20.0 * at_samples(scene)
 
 
 @dataclass(frozen=True)
@@ -168,7 +156,6 @@ SMALL = Model(
         "unknowns": "2 N horizontal displacements; the vertical one follows from the sphere (2.1)",
         "mu_i": "supremum of (5.1) with one-sided limits at stops, in closed form",
     },
-    seconds_per_point=0.002,
     batch=64,
     symmetric=any_scene,
 )
@@ -194,7 +181,6 @@ RESOLVED = _next(
     adds="The same motion, read only at rest and while sliding faster than v_c = 1e-3 m/s: what the one-sided "
     "limits at stops, which no sampling reaches, are worth.",
     settings={**EXACT.settings, "cutoff": V_REG},
-    seconds_per_point=0.002,
     applies=dry,
 )
 REGULARIZED = _next(
@@ -205,7 +191,6 @@ REGULARIZED = _next(
     effect="friction smoothed near rest",
     adds="Friction linear below v_reg = 1e-3 m/s, as an engine has it: no true rest, no jump at a stop.",
     settings={"equations": "exact", "regularization": V_REG},
-    seconds_per_point=0.003,
     applies=dry,
 )
 TRANSLATIONAL = _next(
@@ -226,10 +211,9 @@ TRANSLATIONAL = _next(
     trajectory="multibody:trajectory",
     refusal="multibody:refusal",
     settings={"model": "translational", "regularization": V_REG},
-    seconds_per_point=0.26,
     batch=2,
     applies=any_scene,
-    most=16,
+    most=24,
 )
 SPATIAL = _next(
     TRANSLATIONAL,
@@ -244,10 +228,9 @@ SPATIAL = _next(
     adds="Every body free to turn, at its height, on a ring of supports: overturning shares the load unequally, "
     "friction twists the platform, supports may lift off.",
     settings={"model": "spatial", "regularization": V_REG},
-    seconds_per_point=0.65,
     batch=1,
     applies=has_spatial_data,
-    most=4,
+    most=8,
     symmetric=on_an_even_ring,
 )
 

@@ -9,13 +9,16 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from comparison.study.accuracy_record import recorded
 from comparison.study.batches import Batch
+from comparison.study.costs import seconds_per_point
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, models_of, pairs_of
+from comparison.study.nesting import levels
 from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.speedup import speedup
-from comparison.study.symmetry import sources
 from reference.problem import Scene, SceneError, phase_grid
 from reference.problem.analyses import ANALYSES
+from reference.problem.symmetry import sources
 
 
 def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
@@ -49,9 +52,9 @@ class Study:
     are multiples of one another, so that of any two models the coarser grid is part of the finer. Phases whose motion
     is the mirror image of another's are not computed again, and models leave out what the scene does not require,
     unless the study is `full`. A scene with a recorded motion has no phases: every model computes the one point (0, 0).
-    costs: processor time of a point, s, by name of the scene and key of the model, where it is known better than from
-    the model hierarchy (costs.py). silent: by name of the scene, the models that have no value there: comparisons pass
-    over them (analysis/unanswered.py). selection: the analyses that are made of each scene.
+    costs: processor time of a point at the usual tolerance, s, by name of the scene and key of the model, where it was
+    tried (costs.py); else it is that of the record. silent: by name of the scene, the models that have no value there:
+    comparisons pass over them (analysis/unanswered.py). selection: the analyses that are made of each scene.
     """
 
     scenes: tuple[Scene, ...]
@@ -129,47 +132,59 @@ class Study:
             else places
         )
 
+    def solved_by_level(self, scene: Scene, model: Model) -> list[NDArray[np.intp]]:
+        """The places that the model is asked for, by the nested grid of its phases that is the first with them."""
+        solved, stride = np.unique(self.sources(scene, model)), self.stride(model, scene)
+        level = levels(len(self.axis(model, scene)))
+        first = np.maximum(*(level[position // stride] for position in np.divmod(solved, self.grid)))
+        return [solved[first == number] for number in range(level.max() + 1)]
+
     def solved(self, scene: Scene, model: Model) -> NDArray[np.intp]:
-        """The places that the model is asked for."""
-        return np.unique(self.sources(scene, model))
+        """The places that the model is asked for, from coarse to fine."""
+        return np.concatenate(self.solved_by_level(scene, model))
 
     def batches(self) -> list[Batch]:
         """
-        The whole work, model by model.
+        The whole work, model by model, and of each from coarse to fine: a finer study begins with the same batches.
 
         The cut depends on the study alone, never on the number of workers: a result must not depend on scheduling.
         """
-        phases = phase_grid(self.grid)
-        work = [
-            (model, scene, self.solved(scene, model))
+        return [
+            batch
             for model in self.hierarchy
             for scene in self.scenes
             if model.applies(scene)
+            for batch in self._batches_of(scene, model)
         ]
+
+    def _batches_of(self, scene: Scene, model: Model) -> list[Batch]:
+        phases = phase_grid(self.grid)
         asked = {"full": True} if self.full else {}
-        return [
-            Batch(
-                scene=scene,
-                model=model.key,
-                amplification=model.amplification,
-                settings={**model.settings, "tolerance": model.tolerance(self.tolerance), **asked},
-                first=first,
-                phases=phases[places[first : first + size]],
-            )
-            for model, scene, places in work
-            for size in [model.batch * max(1, round(self.speedup(scene, model)))]
-            for first in range(0, len(places), size)
-        ]
+        settings = {**model.settings, "tolerance": model.tolerance(self.tolerance), **asked}
+        size = model.batch * max(1, round(self.speedup(scene, model)))
+        batches, first, each = [], 0, self.seconds_per_point(scene, model)
+        for level, places in enumerate(self.solved_by_level(scene, model)):
+            for start in range(0, len(places), size):
+                part = phases[places[start : start + size]]
+                about = first + start, part, level, each * len(part)
+                batches.append(Batch(scene, model.key, model.amplification, settings, *about))
+            first += len(places)
+        return batches
 
     def speedup(self, scene: Scene, model: Model) -> float:
         """How many times less a point costs for what the model leaves out of this scene."""
         return 1.0 if self.full else speedup(scene, model)
 
+    def seconds_per_point(self, scene: Scene, model: Model) -> float:
+        """Predicted processor time of a phase pair, s."""
+        tried = (self.costs or {}).get((scene.name, model.key))
+        usual = seconds_per_point(scene, model, self.full) if tried is None else tried
+        accuracy = recorded().accuracy.get(model.key)
+        return usual * (accuracy.cost(model.tolerance(self.tolerance)) if accuracy else 1.0)
+
     def seconds_of(self, scene: Scene, model: Model) -> float:
         """Predicted cost of one model on one scene, s on one core."""
-        if self.costs is not None and (scene.name, model.key) in self.costs:
-            return self.costs[scene.name, model.key] * len(self.solved(scene, model))
-        return model.seconds(scene, len(self.solved(scene, model))) / self.speedup(scene, model)
+        return self.seconds_per_point(scene, model) * len(self.solved(scene, model))
 
     def seconds(self, model: Model) -> float:
         """Predicted cost of one model on every scene it applies to, s on one core."""

@@ -32,6 +32,7 @@ Array = NDArray[np.float64]
 
 FIRST_DIVISIONS = 2  # of the largest step in the first chunk: the contact settles
 MAX_CHUNK_STEPS, DIVIDED_CHUNK_STEPS = 256, 32  # steps in a chunk at the largest step, at smaller ones
+CHUNK_GROWTH = 2  # of the steps in a chunk over those of the chunk before
 FREE_ITERATIONS = 2  # of Newton's method in a step; further ones count as steps
 GAP_RATE_STEPS = 4  # over which the rate of a gap is taken
 KINK_STEP_RATIO = 4.0  # first step behind a kink of the loading over slip_change times the relaxation of friction
@@ -53,6 +54,16 @@ class Budget:
 
 
 @dataclass
+class Place:
+    """Where a run is, and how it goes on from there."""
+
+    state: EngineState
+    time: float = 0.0  # in units of time
+    divisions: int = FIRST_DIVISIONS  # of the largest step
+    next_count: int = MAX_CHUNK_STEPS  # steps of the next chunk at the largest step
+
+
+@dataclass
 class EngineRun:
     """The result of one run from the start of the loading to its end, or to where the run terminates."""
 
@@ -70,6 +81,8 @@ class EngineRun:
     undisturbed: float = -math.inf  # contact forces have settled after the last impact: peaks are read from here on
     impacts: int = 0  # of supports that closed again
     min_load: float = math.inf  # smallest contact force, in weights, of a model that ends where the contact opens
+    opened: bool = False  # whether any contact carried no load
+    looked_over: float = math.inf  # from here on the motion was only looked over in larger steps, in units of time
     chunks: list[Motion] = field(default_factory=list)  # the motion, if it is kept
 
     def terminated(self, outcome: Outcome, instant: float) -> EngineRun:
@@ -94,13 +107,35 @@ def run_adaptively(
 
     stop: do not go on after this instant. Up to there the steps are those of a run to `end`.
     """
-    model = engine.model
-    result = EngineRun(Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near), stop)
+    result = begin_run(engine.model, stop)
     if not budget.allows(min(end, stop), level):
         return result.terminated(Outcome.STEP_LIMIT, 0.0)
+    go_on(result, Place(start), engine, end, ground, level, budget, keep=keep)
+    return result
+
+
+def begin_run(model: EngineModel, stop: float = math.inf) -> EngineRun:
+    """The result of a run that has taken no step yet."""
+    return EngineRun(Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near), stop)
+
+
+def go_on(
+    result: EngineRun,
+    place: Place,
+    engine: Engine,
+    end: float,
+    ground: Callable[[Array], Array],
+    level: Level,
+    budget: Budget,
+    *,
+    keep: bool = False,
+    pause: Callable[[float], bool] = lambda time: False,
+) -> Place:
+    """Go on with a run from `place`; where it ends. Before every chunk `pause` says whether to end at its instant."""
+    model = engine.model
     openings = None if model.impact is None else Openings(engine, model.impact, level.penetration)
-    state, time, divisions, next_count = start, 0.0, FIRST_DIVISIONS, MAX_CHUNK_STEPS
-    while time < min(end, stop) * (1.0 - 1e-12):
+    state, time, divisions, next_count = place.state, place.time, place.divisions, place.next_count
+    while time < min(end, result.stop) * (1.0 - 1e-12) and not pause(time):
         divisions = max(divisions, level.min_divisions(time))
         step = level.step / STEP_RATIO**divisions
         count = next_count if divisions == 0 else DIVIDED_CHUNK_STEPS
@@ -110,16 +145,18 @@ def run_adaptively(
         result.steps += count if motion is None else len(motion.time) - 1
         budget.left -= max(count, engine.iterations / FREE_ITERATIONS)
         if budget.left < 0.0:
-            return result.terminated(Outcome.STEP_LIMIT, time)
+            result.terminated(Outcome.STEP_LIMIT, time)
+            break
         if motion is None or not np.isfinite(motion.accelerations).all():
             if divisions == level.max_divisions:
-                return result.terminated(Outcome.SOLVER_FAILED, time)
+                result.terminated(Outcome.SOLVER_FAILED, time)
+                break
             divisions += 1
             continue
         if openings is not None:
             motion = openings.with_gaps(motion)
-        absolute = absolute_accelerations(model, motion, ground)
-        step_ratio = _step_ratio(motion, engine, absolute, float(result.peaks.value[0]), step / level.slip_change)
+        size = absolute_accelerations(model, motion, ground)
+        step_ratio = _step_ratio(motion, engine, size[:, 0], float(result.peaks.value[0]), step / level.slip_change)
         last = len(motion.time) - 1
         failing = np.flatnonzero(step_ratio > 1.0)
         rejected = divisions < level.max_divisions and len(failing) > 0
@@ -130,17 +167,17 @@ def run_adaptively(
             last, rejected = event.row, False
         if last > 0:
             accepted = motion.until(last)
-            if not _record(result, accepted, absolute[: last + 1], model, level, keep):
-                return result
+            if not _record(result, accepted, size[: last + 1], model, level, keep):
+                break
             state, time = accepted.state(last), float(accepted.time[last])
-            next_count = _steps_ahead(accepted, engine, level)
+            next_count = min(_steps_ahead(accepted, engine, level), CHUNK_GROWTH * last)
             if rejected:
                 state = model.settle(state, _gap_rate(accepted), level.penetration)
         if openings is not None and event is not None:
             state, time, going_on = _pass(event, openings, state, time, step, result, ground, level, keep)
             budget.left -= 1.0
             if not going_on:
-                return result
+                break
             if event.closes:
                 divisions = max(divisions, _divisions_behind_impact(level))
             next_count = DIVIDED_CHUNK_STEPS
@@ -149,7 +186,7 @@ def run_adaptively(
             divisions = min(divisions, level.max_divisions)
         elif divisions > 0 and step_ratio[-RECENT_ROWS:].max() * STEP_RATIO < 1.0:
             divisions -= 1
-    return result
+    return Place(state, time, divisions, next_count)
 
 
 def _pass(
@@ -167,9 +204,9 @@ def _pass(
     model = openings.engine.model
     motion = openings.located(state, time, step, event)
     if motion is not None:
-        absolute = absolute_accelerations(model, motion, ground)
+        size = absolute_accelerations(model, motion, ground)
         motion = openings.touching(motion, event.which) if event.closes else openings.with_gaps(motion)
-        if not _record(result, motion, absolute, model, level, keep):
+        if not _record(result, motion, size, model, level, keep):
             return state, time, False
         state, time = motion.state(-1), float(motion.time[-1])
     if not event.closes:
@@ -188,13 +225,20 @@ def _divisions_behind_impact(level: Level) -> int:
 
 
 def absolute_accelerations(model: EngineModel, motion: Motion, ground: Callable[[Array], Array]) -> Array:
-    """Accelerations of the bodies with that of the plate, (T, N, 3), in units of the model."""
+    """Sizes of the bodies' accelerations with that of the plate, (T, N), in units of the model."""
     plate = motion.plate[:, 2] if model.moving_plate else ground(motion.time)
-    absolute: Array = motion.accelerations[:, model.bodies] + plate[:, None, :]
-    return absolute
+    absolute = motion.accelerations[:, model.bodies]
+    absolute += plate[:, None, :]
+    return _length(absolute)
 
 
-def _record(result: EngineRun, motion: Motion, absolute: Array, model: EngineModel, level: Level, keep: bool) -> bool:
+def _length(vectors: Array) -> Array:
+    """Of vectors along the last axis; for few of them faster than `numpy.linalg.norm`."""
+    length: Array = np.sqrt(np.einsum("...k,...k->...", vectors, vectors))
+    return length
+
+
+def _record(result: EngineRun, motion: Motion, size: Array, model: EngineModel, level: Level, keep: bool) -> bool:
     """Add an accepted chunk to the result, up to where the model's validity ends; whether it goes on."""
     outcome, row = termination(motion, model)
     if keep:
@@ -204,32 +248,40 @@ def _record(result: EngineRun, motion: Motion, absolute: Array, model: EngineMod
         return False
     _record_warping(result, motion, model, level)
     axes = model.bodies[0, :2]
-    displacement = largest_displacement(motion.time, motion.coordinates[:, axes], motion.velocities[:, axes])
-    result.max_displacement = max(result.max_displacement, displacement)
-    read = slice(int(np.searchsorted(motion.time, result.undisturbed)), None)
-    if len(motion.time[read]):
-        result.peaks.add(motion.time[read], absolute[read], motion.slip[read])
-        _record_settling(result, motion.since(read.start), absolute[read], model)
+    place = motion.coordinates[:, axes]
+    distance = _length(place)
+    if distance.max() > CANDIDATE_FRACTION * result.max_displacement:
+        displacement = largest_displacement(motion.time, place, motion.velocities[:, axes])
+        result.max_displacement = max(result.max_displacement, displacement)
+    first = int(np.searchsorted(motion.time, result.undisturbed))
+    if first < len(motion.time):
+        result.peaks.add(motion.time[first:], size[first:], motion.slip[first:])
+        _record_settling(result, motion.time[first:], size[first:], distance[first:])
+    gap = float(motion.gap.max())
+    result.opened |= gap >= 0.0
     if not model.allows_liftoff:
-        result.min_load = min(result.min_load, -float(motion.gap.max()) / level.penetration)
+        result.min_load = min(result.min_load, -gap / level.penetration)
     return True
 
 
-def _record_settling(result: EngineRun, motion: Motion, absolute: Array, model: EngineModel) -> None:
+def _record_settling(result: EngineRun, time: Array, size: Array, displacement: Array) -> None:
     """Record when something that is asked for last came near its largest value so far."""
-    near = (np.linalg.norm(absolute, axis=-1) >= SETTLED_FRACTION * result.peaks.value).any(axis=1)
-    displacement = np.linalg.norm(motion.coordinates[:, model.bodies[0, :2]], axis=-1)
+    near = (size >= SETTLED_FRACTION * result.peaks.value).any(axis=1)
     near |= displacement >= SETTLED_FRACTION * result.max_displacement
-    rows = np.flatnonzero(near)
-    if len(rows):
-        result.settled = float(motion.time[rows[-1]])
+    if near.any():
+        result.settled = float(time[len(time) - 1 - near[::-1].argmax()])
 
 
-def _step_ratio(motion: Motion, engine: Engine, absolute: Array, peak: float, per_change: float) -> Array:
-    """Each step over what is allowed there, (T,). per_change: step over the allowed change of the slip velocity."""
-    return np.maximum(
-        _slip_change(motion, engine, per_change), _behind_kinks(motion, absolute[:, 0], engine, peak, per_change)
-    )
+def _step_ratio(motion: Motion, engine: Engine, platform: Array, peak: float, per_change: float) -> Array:
+    """
+    Each step over what is allowed there, (T,).
+
+    platform: size of its absolute acceleration, (T,). per_change: step over the allowed change of the slip velocity.
+    """
+    step_ratio = _slip_change(motion, engine, per_change)
+    if len(engine.model.ground.knots):
+        step_ratio = np.maximum(step_ratio, _behind_kinks(motion, platform, engine, peak, per_change))
+    return step_ratio
 
 
 def _slip_change(motion: Motion, engine: Engine, per_change: float) -> Array:
@@ -238,9 +290,9 @@ def _slip_change(motion: Motion, engine: Engine, per_change: float) -> Array:
     if not np.isfinite(corner):
         return np.zeros(len(motion.time))
     acceleration = motion.accelerations[:, engine.model.bodies[0]]
-    size = np.linalg.norm(acceleration, axis=-1)
+    size = _length(acceleration)
     # an acceleration that changes within a step counts twice: it says more about the steps that follow
-    size[1:] = np.maximum(size[1:], 2.0 * np.linalg.norm(np.diff(acceleration, axis=0), axis=-1))
+    size[1:] = np.maximum(size[1:], 2.0 * _length(acceleration[1:] - acceleration[:-1]))
     step_ratio: Array = per_change * size / np.maximum(_loaded_slip(motion), corner)
     return step_ratio
 
@@ -251,7 +303,7 @@ def _loaded_slip(motion: Motion) -> Array:
     return slip
 
 
-def _behind_kinks(motion: Motion, platform: Array, engine: Engine, peak: float, per_change: float) -> Array:
+def _behind_kinks(motion: Motion, size: Array, engine: Engine, peak: float, per_change: float) -> Array:
     """
     First step behind a kink of the loading over what is allowed, (T,), where the peak may be: zero elsewhere.
 
@@ -261,7 +313,6 @@ def _behind_kinks(motion: Motion, platform: Array, engine: Engine, peak: float, 
     step_ratio, model = np.zeros(len(motion.time)), engine.model
     rows = kinks(motion.time, model.ground.knots, model.ground.near)
     if len(rows) and np.isfinite(model.corner):
-        size = np.linalg.norm(platform, axis=-1)
         rows = rows[
             (size[rows] > CANDIDATE_FRACTION * max(peak, float(size.max())))
             & (motion.slip[rows].min(axis=1) < model.corner)

@@ -22,7 +22,7 @@ EXPLICIT = {"RK44": "RK44", "velocity Verlet": "VelocityVerlet"}  # integrators,
 INTEGRATORS = ("generalized alpha", "trapezoidal", *EXPLICIT)
 
 MAX_DENSE_COORDINATES = 40  # beyond them a sparse solver takes less time a step (measured: a third at 360)
-MAX_CONTRACTIVITY = 0.05  # of modified Newton, above which the Jacobian is renewed: fewest iterations (measured)
+MAX_CONTRACTIVITY = 0.2  # of modified Newton, above which the Jacobian is renewed: least time (measured)
 
 
 @dataclass(frozen=True)
@@ -50,10 +50,6 @@ class Motion:
     def until(self, row: int) -> Motion:
         """The rows up to and including `row`."""
         return Motion(*(getattr(self, column.name)[: row + 1] for column in fields(self)))
-
-    def since(self, row: int) -> Motion:
-        """The rows from `row` on."""
-        return Motion(*(getattr(self, column.name)[row:] for column in fields(self)))
 
     @staticmethod
     def concatenated(chunks: list[Motion]) -> Motion:
@@ -137,10 +133,11 @@ class Engine:
         """`count` steps from `state` at time `begin`; None if the engine could not solve one of them."""
         set_initial_state(self.model, state)
         self.model.ground.begin(begin)
-        self.settings.timeIntegration.startTime = begin
-        self.settings.timeIntegration.endTime = begin + count * step
-        self.settings.timeIntegration.numberOfSteps = count
-        self.settings.timeIntegration.minimumStepSize = step / MAX_STEP_REDUCTION
+        integration = self.settings.timeIntegration
+        integration.startTime = begin
+        integration.endTime = begin + count * step
+        integration.numberOfSteps = count
+        integration.minimumStepSize = step / MAX_STEP_REDUCTION
         solver = exudyn.MainSolverExplicit() if self.explicit else exudyn.MainSolverImplicitSecondOrder()
         try:
             if not solver.SolveSystem(self.model.mbs, self.settings):
@@ -158,8 +155,10 @@ class Engine:
         time = stored(recorders.contact[0])[:, 0]
 
         def columns(sensors: list[Any]) -> Array:
+            if not sensors:
+                return np.empty((len(time), 0))
             parts = [stored(sensor)[:, 1:] for sensor in sensors]
-            return np.hstack(parts) if parts else np.empty((len(time), 0))
+            return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
 
         motion = [columns(recorders.coordinates), columns(recorders.velocities), columns(recorders.accelerations)]
         plate = np.zeros((len(time), 3, 3))

@@ -12,7 +12,7 @@ exponential.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,6 +40,7 @@ WEAK_LOADING = 1e-4  # of g: below, the loading itself is the peak that rounding
 MAX_WEAK_PENETRATION = 4e-4  # of rho, under such a loading: the contact force hardly changes
 MAX_WARPING_COMPLIANCE = 4e-4  # of rho under the weight, as of real bearings
 COMPLIANCE_RATIO = 4.0  # of the penetrations of two successive levels
+SCAN_RATIO, SCAN_NEWTON_RATIO = 4.0, 10.0  # of steps and tolerances that look ahead over those of the level
 STEP_RATIO = 4  # between neighboring step sizes
 MIN_DIVISIONS = 7  # least number of step sizes below the largest step
 MIN_STEP_AT_STOP = 0.05  # smallest step over the step that is allowed at a stop
@@ -103,6 +104,16 @@ class Level:
     def residual(self) -> float:
         """Smallest residual that Newton's iteration is asked for, in weights."""
         return max(1e-3 * self.newton * self.strength, self.rounding)
+
+    def coarsened(self) -> Level:
+        """The same contact in steps `SCAN_RATIO` times as large, to look ahead."""
+        return replace(
+            self,
+            step=SCAN_RATIO * self.step,
+            slip_change=SCAN_RATIO * self.slip_change,
+            newton=SCAN_NEWTON_RATIO * self.newton,
+            decays=tuple((until, SCAN_RATIO * step) for until, step in self.decays),
+        )
 
     def min_divisions(self, time: float) -> int:
         """How often the largest step must be divided at `time` for the decay of the loading."""

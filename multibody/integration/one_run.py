@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +13,10 @@ from multibody.integration.adaptive import Budget, EngineRun, absolute_accelerat
 from multibody.integration.balance import balanced_start
 from multibody.integration.constant_step import Engine
 from multibody.integration.level import Level
+from multibody.integration.look_ahead import looks_ahead, run_looking_ahead
 from multibody.integration.peak import Peaks
 from multibody.models.system import EngineModel, EngineState
-from reference.problem import Outcome, Scene, State, ground_acceleration
+from reference.problem import Outcome, Scene, State, exponents, ground_acceleration
 
 Array = NDArray[np.float64]
 
@@ -27,6 +29,7 @@ class PhasePair:
     model: EngineModel
     phase: Array  # (2,), rad
     initial: State | None = None  # at rest without
+    whole: bool = False  # whether every run without a stop takes its own steps to the end of the motion
 
     @property
     def end(self) -> float:
@@ -35,8 +38,19 @@ class PhasePair:
 
     def ground(self, time: Array) -> Array:
         """The plate's acceleration (T, 3) at times (T,), in units of the model."""
+        if self.scene.recorded:
+            units = self.model.units
+            return ground_acceleration(self.scene, self.phase, time * units.time) / units.acceleration
+        rates, amplitudes = self._harmonics
+        acceleration: Array = (np.exp(np.multiply.outer(time, rates)) @ amplitudes).real
+        return acceleration
+
+    @cached_property
+    def _harmonics(self) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Exponents of the two harmonics (2,) and their complex amplitudes (2, 3), in units of the model."""
         units = self.model.units
-        return ground_acceleration(self.scene, self.phase, time * units.time) / units.acceleration
+        turned: NDArray[np.complex128] = np.exp(1j * np.asarray(self.phase, float))
+        return exponents(self.scene) * units.time, turned[:, None] * (self.scene.amplitudes.T / units.acceleration)
 
     def at_level(
         self, level: Level, budget: Budget, stop: float = math.inf, *, keep: bool = False, residual: float | None = None
@@ -44,12 +58,15 @@ class PhasePair:
         """
         Run with the steps that `level` allows.
 
-        stop: do not go on after this instant, in units of time. residual: of Newton's iteration, if not that of the
-        level.
+        stop: do not go on after this instant, in units of time. Without it the run may leave out an end in which
+        nothing large comes (`look_ahead`), unless its motion is kept. residual: of Newton's iteration, if not that of
+        the level.
         """
         engine = Engine(self.model, level.newton, level.residual if residual is None else residual)
         self.model.set_contact(level.penetration, level.warping_compliance)
         start = self._start(engine, level.penetration)
+        if stop == math.inf and not (keep or self.whole) and looks_ahead(self.model, level):
+            return run_looking_ahead(engine, start, self.end, self.ground, level, budget)
         return run_adaptively(engine, start, self.end, self.ground, level, budget, stop=stop, keep=keep)
 
     def at_constant_step(

@@ -42,13 +42,18 @@ class Peaks:
         self._size = np.empty((0, bodies))
         self._slip = np.empty((0, 0))
 
-    def add(self, time: Array, absolute: Array, slip: Array) -> None:
-        """Samples (T,), (T, N, 3) and slip speeds (T, K), whose first row repeats the last one of the chunk before."""
-        size = np.sqrt((absolute**2).sum(axis=-1))
+    def add(self, time: Array, size: Array, slip: Array) -> None:
+        """Sizes (T, N) at times (T,), slip speeds (T, K); their first row repeats the last one of the chunk before."""
         if len(self._time):
             time = np.concatenate([self._time, time[1:]])
             size = np.concatenate([self._size, size[1:]])
             slip = np.concatenate([self._slip, slip[1:]])
+        if (size.max(axis=0) > CANDIDATE_FRACTION * self.value).any():
+            self._read_between(time, size, slip)
+        self._time, self._size, self._slip = time[-CARRIED_SAMPLES:], size[-CARRIED_SAMPLES:], slip[-CARRIED_SAMPLES:]
+
+    def _read_between(self, time: Array, size: Array, slip: Array) -> None:
+        """Read the samples, and what lies between them."""
         beyond = slip > self._threshold
         corners = np.flatnonzero((beyond[1:] != beyond[:-1]).any(axis=1))
         # each corner is read once, as soon as there are samples behind it
@@ -58,7 +63,6 @@ class Peaks:
             self._scan(body, time, size[:, body], slip, corners, bends, ready)
         if ready:
             self._read = float(time[ready[-1]])
-        self._time, self._size, self._slip = time[-CARRIED_SAMPLES:], size[-CARRIED_SAMPLES:], slip[-CARRIED_SAMPLES:]
 
     def restart(self) -> None:
         """Read nothing across this instant: velocities jump, and the next chunk need not begin here."""

@@ -5,8 +5,8 @@ The difference of two levels, at the rate that is seen or at two, is the error o
 Newton's iteration together. Where rounding forbids a stiffer contact the levels share one. One more run with a softer
 contact then shows the error that its compliance leaves.
 
-A run to the end shows when the last large value comes. Runs at further levels stop soon after it, as long as they
-differ from the run before by much less than what separates later values from the largest.
+The first run shows when the last large value comes (`look_ahead`). Runs at further levels stop soon after it, as long
+as they differ from the run before by much less than what separates later values from the largest.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from multibody.integration.estimate import (
     widened_without_convergence,
 )
 from multibody.integration.level import COMPLIANCE_RATIO, MAX_WARPING_COMPLIANCE, Level, levels_of
+from multibody.integration.look_ahead import longest_steps
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import Peaks
 from multibody.models.system import EngineModel
@@ -82,10 +83,10 @@ def refine(
     levels: those of `levels_of` if None. keep: the motions of the last run and of `coarser`. whole: every run goes to
     the end of the motion, as it does where motions are kept. max_work: steps that all runs together may take.
     """
-    pair = PhasePair(scene, model, phase, initial)
+    pair = PhasePair(scene, model, phase, initial, whole)
     budget = Budget(max_work)
     remaining = levels_of(scene, model, tolerance) if levels is None else list(levels)
-    if not budget.allows(pair.end, remaining[0]):
+    if not budget.allows(pair.end, longest_steps(model, remaining[0], keep or whole)):
         no_run = EngineRun(Peaks(len(model.bodies), model.corner), math.inf, Outcome.STEP_LIMIT, 0.0)
         return _no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
     runs: list[EngineRun] = []
@@ -153,7 +154,8 @@ def refine(
 
 def _work_of_next(run: EngineRun, stop: float, end: float) -> float:
     """Steps of the run at the level after that of `run`, up to `stop`."""
-    shorter = min(stop, end) / min(run.stop, end) if run.outcome == Outcome.OK else 1.0
+    own = min(run.looked_over, end)  # both runs look over what comes later
+    shorter = min(stop, own) / min(run.stop, own) if run.outcome == Outcome.OK else 1.0
     return MAX_WORK_GROWTH * shorter * run.steps
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from multibody.integration.adaptive import Budget
 from multibody.integration.constant_step import silence
 from multibody.integration.level import STEPS_PER_PERIOD, levels_of
+from multibody.integration.look_ahead import longest_steps
 from multibody.integration.refine import MAX_WORK, MAX_WORK_GROWTH
 from multibody.models.assembly import assemble, required_model
 from reference.problem import Scene
@@ -52,17 +53,19 @@ def refusal(
     with silence():
         built = assemble(scene, required_model(scene, model, full), regularization)
     first = levels_of(scene, built, tolerance)[0]
-    if Budget(max_work).allows(scene.duration / built.units.time, first):
+    longest = longest_steps(built, first, full)
+    if Budget(max_work).allows(scene.duration / built.units.time, longest):
         return ""
-    step = first.step * built.units.time
+    step = longest.step * built.units.time
     needed = scene.duration / step
-    tried = scene.duration * max_work / needed
-    enough = tried / WHOLE_POINT
+    tried = max_work * step
+    enough = max_work * first.step * built.units.time / WHOLE_POINT
+    work = WHOLE_POINT * scene.duration / (first.step * built.units.time)
     return (
         f"refused before any step: it needs {needed:.2g} steps of the engine or more, and a phase pair may take "
         f"{max_work:.2g} ({built.coordinates} coordinates in steps of {step:.2g} s over {scene.duration:g} s; the "
-        f"fastest period is {STEPS_PER_PERIOD * step:.2g} s). Allow more work (max_work or --max-work, about "
-        f"{_two_digits(WHOLE_POINT * needed, math.ceil):g} steps), shorten the duration to about "
+        f"fastest period is {STEPS_PER_PERIOD * first.step * built.units.time:.2g} s). Allow more work (max_work or "
+        f"--max-work, about {_two_digits(work, math.ceil):g} steps), shorten the duration to about "
         f"{_two_digits(enough, math.floor):g} s (above {_two_digits(tried, math.ceil):g} s no step is taken), "
         "or take a longer period; a looser tolerance does not help"
     )

@@ -9,7 +9,8 @@ ground_acceleration, ground_velocity, ground_displacement       motion of the gr
 exponents, loading_period                                       of the loading
 ground_peak                                                     denominator of (5.1)
 demands                                                         what a motion demands of isolator and structure
-checked_phase, checked_phases, phase_grid                       phase pairs
+phase_distribution                                              mean and fractiles of mu over uniform phases
+checked_phase, checked_phases, phase_axis, phase_grid           phase pairs
 half_turn, own_axes, planar, planar_chain, linear, no_friction,
 untilted, even_ring, unused_harmonics, in_plane                 what a scene does not require
 verbatim                                                        a text of a scene for matplotlib
@@ -18,7 +19,8 @@ Classes
 -------
 Scene, Family                       the system with its loading; the scenes of one file
 State, Amplification, Trajectory    arguments and results of both sides
-Demands, Estimate, Accuracy         numbers of one motion, one of them with its error, what errors are made from
+Demands, PhaseDistribution           numbers of one motion; of mu over all phases
+Estimate, Accuracy                  a number with its error; what errors are made from
 Outcome, Reduction, SceneError      why a point has no answer; why work is left out; what is wrong with a scene
 
 Constants
@@ -30,6 +32,7 @@ ADVICE     what to try, for every `Outcome`
 from reference.problem.constants import GRAVITY
 from reference.problem.definition import ground_peak
 from reference.problem.demands import Demands, Estimate, demands
+from reference.problem.distribution import PhaseDistribution, phase_distribution
 from reference.problem.excitation import (
     exponents,
     ground_acceleration,
@@ -40,7 +43,7 @@ from reference.problem.excitation import (
 from reference.problem.families import Family, load_family
 from reference.problem.figure_text import verbatim
 from reference.problem.outcome import ADVICE, Outcome
-from reference.problem.phases import checked_phase, checked_phases, phase_grid
+from reference.problem.phases import checked_phase, checked_phases, phase_axis, phase_grid
 from reference.problem.reductions import (
     Reduction,
     even_ring,
@@ -68,6 +71,7 @@ __all__ = [
     "Estimate",
     "Family",
     "Outcome",
+    "PhaseDistribution",
     "Reduction",
     "Scene",
     "SceneError",
@@ -93,6 +97,8 @@ __all__ = [
     "no_friction",
     "own_axes",
     "parse_scene",
+    "phase_axis",
+    "phase_distribution",
     "phase_grid",
     "planar",
     "planar_chain",

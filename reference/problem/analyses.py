@@ -18,6 +18,7 @@ ANALYSES = (
     "families",
     "surfaces",
     "motions",
+    "worst_phases",
     "claims",
     "errata",
     "assumptions",

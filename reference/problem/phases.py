@@ -73,6 +73,33 @@ def checked_phase(phase: ArrayLike) -> Array:
     return checked_phases(pair.reshape(1, 2))[0]
 
 
+def phase_axis(points: int) -> Array:
+    """
+    Equally spaced phases on [0, 2 pi), the same to the last bit on every axis that has them.
+
+    Parameters
+    ----------
+    points : int
+        Number of phases.
+
+    Returns
+    -------
+    ndarray, (points,), rad
+        2 pi k / points, from the fraction k / points in lowest terms.
+
+    Examples
+    --------
+    >>> phase_axis(4).round(3).tolist()
+    [0.0, 1.571, 3.142, 4.712]
+    >>> bool((phase_axis(48)[::6] == phase_axis(8)).all())
+    True
+    """
+    steps = np.arange(points)
+    shared = np.gcd(steps, points)
+    axis: Array = 2.0 * np.pi * (steps // shared) / (points // shared)
+    return axis
+
+
 def phase_grid(points: int) -> Array:
     """
     All pairs of equally spaced phases on [0, 2 pi).
@@ -92,5 +119,5 @@ def phase_grid(points: int) -> Array:
     >>> phase_grid(2).round(3).tolist()
     [[0.0, 0.0], [0.0, 3.142], [3.142, 0.0], [3.142, 3.142]]
     """
-    axis = 2.0 * np.pi * np.arange(points) / points
+    axis = phase_axis(points)
     return np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)

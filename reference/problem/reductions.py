@@ -224,6 +224,7 @@ def in_plane(scene: Scene) -> Scene:
     direction = horizontal[:, np.abs(horizontal).sum(axis=0).argmax()]
     length = float(np.hypot(*direction))
     along = direction @ horizontal / length if length > 0.0 else np.zeros(2)
+    table["excitation"].pop("scale", None)  # it is in the amplitudes
     table["excitation"]["amplitudes"] = [along.tolist(), [0.0, 0.0], scene.amplitudes[2].tolist()]
     return Scene.model_validate(table)
 

@@ -94,8 +94,8 @@ class Scene(Table):
             except ValueError as error:
                 raise MisfitError(f"bodies.{number}", body.model_dump(exclude_none=True), str(error)) from None
         self._check_derived()
-        if isinstance(self.excitation, Record) and not np.isfinite(self.record).all():
-            raise MisfitError("excitation.scale", self.excitation.scale, "must leave every sample finite")
+        if not np.isfinite(self.record if isinstance(self.excitation, Record) else self.amplitudes).all():
+            raise MisfitError("excitation.scale", self.excitation.scale, "must leave every acceleration finite")
         return self
 
     def __eq__(self, other: object) -> bool:
@@ -225,7 +225,7 @@ class Scene(Table):
     @cached_property
     def amplitudes(self) -> NDArray[np.float64]:
         """
-        Amplitude matrix a_ki of (5.4), (3, 2), m/s^2, rows x, y, z; zero vertical row if none is given.
+        Amplitude matrix a_ki of (5.4), scaled, (3, 2), m/s^2, rows x, y, z; zero vertical row if none is given.
 
         Raises ValueError for a record, which has none: to call its loading zero would be a wrong answer.
         """
@@ -233,7 +233,8 @@ class Scene(Table):
             raise ValueError(f"{self.name}: a recorded motion has no amplitudes, periods, decay or phases")
         matrix = np.zeros((3, 2))
         matrix[: len(self.excitation.amplitudes)] = self.excitation.amplitudes
-        return matrix
+        with np.errstate(over="ignore"):  # refused by validation
+            return matrix * (1.0 if self.excitation.scale is None else self.excitation.scale)
 
     @cached_property
     def record(self) -> NDArray[np.float64]:
@@ -276,7 +277,7 @@ class Scene(Table):
         if largest == 0.0:
             key = "record" if self.recorded else "amplitudes"
             raise SceneError(self.name, f"excitation.{key}", 0.0, "all entries are 0: nothing to scale")
-        if isinstance(self.excitation, Record):
+        if self.excitation.scale is not None:
             return self.with_values({"excitation.scale": self.excitation.scale * (amplitude / largest)})
         return self.with_values({"excitation.amplitudes": (self.amplitudes / largest) * amplitude})
 
@@ -302,7 +303,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "acceptance": tuple(Acceptance.model_fields),
     "analyses": tuple(Analyses.model_fields),
     **{f"acceptance.{pair}": tuple(Limits.model_fields) for pair in ("like_for_like", "total", "translational")},
-    "excitation": (*Excitation.model_fields, "record", "scale"),
+    "excitation": (*Excitation.model_fields, "record"),
     f"excitation.{EXCITATIONS[0]}": tuple(Excitation.model_fields),
     f"excitation.{EXCITATIONS[1]}": ("record", "scale"),
 }

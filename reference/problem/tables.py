@@ -162,6 +162,7 @@ class Excitation(Table):
     ]
     periods: Annotated[Periods, about("periods T_i of the two harmonics", "s", ALL)]
     decay: Annotated[Decay, about("rates of decay lambda_i of the two harmonics", "1/s", ALL)]
+    scale: Annotated[Positive | None, about("factor of all amplitudes; 1 without it", "", ALL)] = None
 
 
 class Record(Table):

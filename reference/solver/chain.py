@@ -13,7 +13,8 @@ import numpy as np
 
 from reference.solver.collocation import A2, CHANNELS, EIGENVALUES, FROM_CHANNELS, NODES, STAGES, TO_CHANNELS, A
 from reference.solver.compiled import compiled
-from reference.solver.system import System, Work
+from reference.solver.system import Ground, System
+from reference.solver.work import Work
 
 ONES_IN_CHANNELS = TO_CHANNELS.sum(axis=1)
 NODES_IN_CHANNELS = TO_CHANNELS @ NODES
@@ -125,7 +126,7 @@ def move_chain(system: System, work: Work, h: float) -> None:
 
 
 @compiled
-def chain_acceleration(system: System, work: Work, ux: float, uy: float) -> None:
+def chain_acceleration(system: System, work: Work, ground: Ground) -> None:
     """Accelerations a0 of the bodies above the platform in the state x, v."""
     bodies = work.x.shape[0]
     for i in range(1, bodies):
@@ -133,4 +134,4 @@ def chain_acceleration(system: System, work: Work, ux: float, uy: float) -> None
             pull = system.below[i, axis] * (work.x[i - 1, axis] - work.x[i, axis])
             if i < bodies - 1:
                 pull += system.above[i, axis] * (work.x[i + 1, axis] - work.x[i, axis])
-            work.a0[i, axis] = pull - (ux if axis == 0 else uy)
+            work.a0[i, axis] = pull - (ground.x if axis == 0 else ground.y)

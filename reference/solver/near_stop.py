@@ -9,134 +9,203 @@ speed. The chain above the platform, slow on this time scale, follows by iterati
 
 from __future__ import annotations
 
-from math import exp, log
+from math import exp, inf, log
 
 from reference.solver.collocation import NODES, STAGES, A
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import heading
-from reference.solver.contact.platform import directed
+from reference.solver.contact.platform import directed, load_at_stage
+from reference.solver.events import lowest
 from reference.solver.ground import ground_at
 from reference.solver.linear_solve import factorize, solve
 from reference.solver.steps import absolute_accelerations, beyond_rim
-from reference.solver.system import SLIDING, SOLVED, UNSOLVED, Array, System, Work
+from reference.solver.system import OPEN, SLIDING, SOLVED, UNSOLVED, System
+from reference.solver.work import (
+    ACROSS,
+    ACROSS_SLOPE,
+    ALONG,
+    ALONG_SLOPE,
+    CLOCK,
+    COSINE,
+    DIRECTION,
+    DRIVE,
+    LOG_RATIO,
+    POSITION,
+    REACTION,
+    SIGMA,
+    SINE,
+    SPEED,
+    SPEED2,
+    VELOCITY,
+    Work,
+)
 
 MAX_ITERATIONS = 40  # of Newton's method
 ROUNDING_ANGLE = 1e-13  # rad: change of the angles by rounding alone
 DIRECTION_DIFFERENCE = 1e-6  # rad: step of the difference quotient by the direction, needed to a few digits only
-
-# rows of Work.turning
-DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, LOG_RATIO, SPEED, COSINE, SINE = range(11)
+MAX_GUESSED_TURN = 0.5  # rad: a turn is at most towards the force, which the guess must not overshoot
+DIVERGED = 1e3  # change of angle or logarithm of the speed that ends the iteration
 
 
 @compiled
-def near_stop_step(
-    system: System, phase: Array, work: Work, t: float, h: float, angle: float, log_speed: float, tolerance: float
-) -> int:
+def near_stop_step(system: System, work: Work, h: float, tolerance: float) -> int:
     """
-    One step of length h in tau from the state x, v = exp(log_speed) e(angle).
+    One step of length h in tau from the state x, v = exp(work.log_speed) e(work.angle).
 
     Fills a, total and `turning` at the stages and x1, v1 at the end; `tolerance` bounds the last change of the angle.
     """
-    bodies = work.x.shape[0]
-    x, v, a, xs, vs = work.x, work.v, work.a, work.chain, work.velocity
-    turn, ground, stage, residual = work.turning, work.ground, work.stage, work.residual[:STAGES]
-    matrix, pivots = work.matrix[:STAGES, :STAGES], work.pivots[:STAGES]
-    ex, ey = heading(angle, system.axes)
+    guess_turning(system, work, h)
+    before = 0.0
+    for iteration in range(MAX_ITERATIONS):
+        move_bodies(system, work, h)
+        change = pull_bodies(system, work, h)
+        if not inside_rim(system, work):
+            return beyond_rim(system, work)
+        turn_platform(system, work)
+        change = max(change, correct_turning(work, h))
+        if not change < DIVERGED or (iteration > 4 and change > 2.0 * before):
+            return UNSOLVED
+        before = change
+        if change <= max(tolerance, ROUNDING_ANGLE):
+            for i in range(work.x.shape[0]):
+                for axis in range(system.axes):
+                    work.x1[i, axis] = work.chain[i, axis, STAGES - 1]
+                    work.v1[i, axis] = work.velocity[i, axis, STAGES - 1]
+            for k in range(STAGES):
+                work.levels[k] = work.turning[SIGMA, k] + work.turning[LOG_RATIO, k]
+            absolute_accelerations(system, work, SLIDING)
+            return SOLVED if lowest(work.stage[REACTION]) > 0.0 else OPEN
+    return UNSOLVED
+
+
+@compiled
+def guess_turning(system: System, work: Work, h: float) -> None:
+    """Direction and speed at the stages, and the chain's accelerations, from those at the start of the step."""
+    ex, ey = heading(work.angle, system.axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
     across = work.a0[0, 1] * ex - work.a0[0, 0] * ey
     for k in range(STAGES):
-        turn[DIRECTION, k] = angle
-        turn[SIGMA, k] = log_speed + h * NODES[k] * along
-        # a turn is at most towards the force: do not overshoot it in the guess
-        turn[DIRECTION, k] += max(-0.5, min(0.5, h * NODES[k] * across))
-        for i in range(bodies):
+        turn = max(-MAX_GUESSED_TURN, min(MAX_GUESSED_TURN, h * NODES[k] * across))
+        work.turning[DIRECTION, k] = work.angle + turn
+        work.turning[SIGMA, k] = work.log_speed + h * NODES[k] * along
+        for i in range(work.x.shape[0]):
             for axis in range(system.axes):
-                xs[i, axis, k] = x[i, axis]
-                a[i, axis, k] = work.a0[i, axis]
-    reach = 0.0
-    for iteration in range(MAX_ITERATIONS):
-        moved = 0.0
-        for k in range(STAGES):
-            turn[SPEED, k] = exp(turn[SIGMA, k])
-            turn[COSINE, k], turn[SINE, k] = heading(turn[DIRECTION, k], system.axes)
-        for k in range(STAGES):
-            elapsed = 0.0
-            for m in range(STAGES):
-                elapsed += A[k, m] * turn[SPEED, m]
-            turn[CLOCK, k] = t + h * elapsed
-        for i in range(bodies):
-            for axis in range(system.axes):
-                for k in range(STAGES):
-                    if i == 0:
-                        vs[i, axis, k] = turn[SPEED, k] * turn[COSINE + axis, k]
-                    else:
-                        gained = 0.0
-                        for m in range(STAGES):
-                            gained += A[k, m] * turn[SPEED, m] * a[i, axis, m]
-                        vs[i, axis, k] = v[i, axis] + h * gained
-                for k in range(STAGES):
-                    shift = 0.0
+                work.a[i, axis, k] = work.a0[i, axis]
+
+
+@compiled
+def move_bodies(system: System, work: Work, h: float) -> None:
+    """Speed, time, velocities and positions at the stages."""
+    x, v, a, turning = work.x, work.v, work.a, work.turning
+    speeds = turning[SPEED]
+    for k in range(STAGES):
+        speeds[k] = exp(turning[SIGMA, k])
+        turning[COSINE, k], turning[SINE, k] = heading(turning[DIRECTION, k], system.axes)
+    for k in range(STAGES):
+        elapsed = 0.0
+        for m in range(STAGES):
+            elapsed += A[k, m] * speeds[m]
+        turning[CLOCK, k] = work.time + h * elapsed
+    for i in range(x.shape[0]):
+        for axis in range(system.axes):
+            velocity, position = work.velocity[i, axis], work.chain[i, axis]
+            for k in range(STAGES):
+                if i == 0:
+                    velocity[k] = speeds[k] * turning[COSINE + axis, k]
+                else:
+                    gained = 0.0
                     for m in range(STAGES):
-                        shift += A[k, m] * turn[SPEED, m] * vs[i, axis, m]
-                    xs[i, axis, k] = x[i, axis] + h * shift
-        for k in range(STAGES):
-            ux, uy, uz = ground_at(system, phase, turn[CLOCK, k])
-            ground[0, k], ground[1, k], ground[2, k] = ux, uy, uz
+                        gained += A[k, m] * speeds[m] * a[i, axis, m]
+                    velocity[k] = v[i, axis] + h * gained
+            for k in range(STAGES):
+                shift = 0.0
+                for m in range(STAGES):
+                    shift += A[k, m] * speeds[m] * velocity[m]
+                position[k] = x[i, axis] + h * shift
+
+
+@compiled
+def pull_bodies(system: System, work: Work, h: float) -> float:
+    """
+    Ground, accelerations of the chain and drive of the platform at the stages.
+
+    Returns the largest change of the chain's accelerations, as a change of velocity over the speed.
+    """
+    place, stage, ground = work.chain, work.stage, work.ground
+    bodies = work.x.shape[0]
+    change = 0.0
+    for k in range(STAGES):
+        here = ground_at(system, work, work.turning[CLOCK, k])
+        ground[0, k], ground[1, k], ground[2, k] = here.x, here.y, here.z
+        duration = work.turning[SPEED, k] * h
+        for axis in range(system.axes):
             for i in range(1, bodies):
-                for axis in range(system.axes):
-                    pull = system.below[i, axis] * (xs[i - 1, axis, k] - xs[i, axis, k])
-                    if i < bodies - 1:
-                        pull += system.above[i, axis] * (xs[i + 1, axis, k] - xs[i, axis, k])
-                    pull -= ground[axis, k]
-                    moved = max(moved, abs(pull - a[i, axis, k]) * turn[SPEED, k] * h)
-                    a[i, axis, k] = pull
-            fx, fy = -ux, -uy
+                pull = system.below[i, axis] * (place[i - 1, axis, k] - place[i, axis, k])
+                if i < bodies - 1:
+                    pull += system.above[i, axis] * (place[i + 1, axis, k] - place[i, axis, k])
+                pull -= ground[axis, k]
+                change = max(change, abs(pull - work.a[i, axis, k]) * duration)
+                work.a[i, axis, k] = pull
+        for axis in range(2):
+            drive = -ground[axis, k]
             if bodies > 1:
-                fx += system.above[0, 0] * (xs[1, 0, k] - xs[0, 0, k])
-                fy += system.above[0, 1] * (xs[1, 1, k] - xs[0, 1, k])
-            speed, ex, ey = turn[SPEED, k], turn[COSINE, k], turn[SINE, k]
-            px, py, pressure = xs[0, 0, k], xs[0, 1, k], system.gravity + uz
-            if px * px + py * py >= system.radius**2:
-                return beyond_rim(system, work)
-            ax, ay, reaction, ratio = directed(system, px, py, fx, fy, ux, uy, pressure, speed, ex, ey)
-            gx, gy = ex - DIRECTION_DIFFERENCE * ey, ey + DIRECTION_DIFFERENCE * ex
-            bx, by, _, _ = directed(system, px, py, fx, fy, ux, uy, pressure, speed, gx, gy)
-            a[0, 0, k], a[0, 1, k] = ax, ay
-            turn[ALONG, k] = ax * ex + ay * ey
-            turn[ACROSS, k] = ay * ex - ax * ey
-            turn[ALONG_SLOPE, k] = (bx * gx + by * gy - turn[ALONG, k]) / DIRECTION_DIFFERENCE
-            turn[ACROSS_SLOPE, k] = (by * gx - bx * gy - turn[ACROSS, k]) / DIRECTION_DIFFERENCE
-            turn[LOG_RATIO, k] = log(ratio)
-            stage[0, k], stage[1, k] = px, py
-            stage[2, k], stage[3, k] = speed * ex, speed * ey
-            stage[4, k], stage[5, k] = fx, fy
-            stage[6, k], stage[7, k] = reaction, (speed * ratio) ** 2
-        for k in range(STAGES):
-            residual[k] = angle - turn[DIRECTION, k]
-            for m in range(STAGES):
-                residual[k] += h * A[k, m] * turn[ACROSS, m]
-                matrix[k, m] = -h * A[k, m] * turn[ACROSS_SLOPE, m]
-            matrix[k, k] += 1.0
-        if not factorize(matrix, pivots):
-            return UNSOLVED
-        solve(matrix, pivots, residual)
-        for k in range(STAGES):
-            turn[DIRECTION, k] += residual[k]
-            moved = max(moved, abs(residual[k]))
-        for k in range(STAGES):
-            level = log_speed
-            for m in range(STAGES):
-                level += h * A[k, m] * (turn[ALONG, m] + turn[ALONG_SLOPE, m] * residual[m])
-            moved = max(moved, abs(level - turn[SIGMA, k]))
-            turn[SIGMA, k] = level
-        if not moved < 1e3 or (iteration > 4 and moved > 2.0 * reach):
-            return UNSOLVED
-        reach = moved
-        if moved <= max(tolerance, ROUNDING_ANGLE):
-            for i in range(bodies):
-                for axis in range(system.axes):
-                    work.x1[i, axis] = xs[i, axis, STAGES - 1]
-                    work.v1[i, axis] = vs[i, axis, STAGES - 1]
-            absolute_accelerations(system, work, SLIDING)
-            return SOLVED
-    return UNSOLVED
+                drive += system.above[0, axis] * (place[1, axis, k] - place[0, axis, k])
+            stage[POSITION + axis, k] = place[0, axis, k]
+            stage[VELOCITY + axis, k] = work.velocity[0, axis, k]
+            stage[DRIVE + axis, k] = drive
+    return change
+
+
+@compiled
+def inside_rim(system: System, work: Work) -> bool:
+    """Whether the platform is within the cap at every stage (4.1)."""
+    for k in range(STAGES):
+        if not work.stage[POSITION, k] ** 2 + work.stage[POSITION + 1, k] ** 2 < system.radius**2:
+            return False
+    return True
+
+
+@compiled
+def turn_platform(system: System, work: Work) -> None:
+    """Acceleration of the platform at the stages, along and across its direction, and their slopes by the direction."""
+    turning, stage = work.turning, work.stage
+    for k in range(STAGES):
+        speed, ex, ey = turning[SPEED, k], turning[COSINE, k], turning[SINE, k]
+        load = load_at_stage(work, k)
+        ax, ay, reaction, ratio = directed(system, load, speed, ex, ey)
+        gx, gy = ex - DIRECTION_DIFFERENCE * ey, ey + DIRECTION_DIFFERENCE * ex
+        bx, by, _, _ = directed(system, load, speed, gx, gy)
+        work.a[0, 0, k], work.a[0, 1, k] = ax, ay
+        turning[ALONG, k] = ax * ex + ay * ey
+        turning[ACROSS, k] = ay * ex - ax * ey
+        turning[ALONG_SLOPE, k] = (bx * gx + by * gy - turning[ALONG, k]) / DIRECTION_DIFFERENCE
+        turning[ACROSS_SLOPE, k] = (by * gx - bx * gy - turning[ACROSS, k]) / DIRECTION_DIFFERENCE
+        turning[LOG_RATIO, k] = log(ratio)
+        stage[REACTION, k], stage[SPEED2, k] = reaction, (speed * ratio) ** 2
+
+
+@compiled
+def correct_turning(work: Work, h: float) -> float:
+    """One iteration of Newton's method for the directions, the speeds behind them; the largest change, or infinity."""
+    turning, residual = work.turning, work.residual[:STAGES]
+    matrix, pivots = work.matrix[:STAGES, :STAGES], work.pivots[:STAGES]
+    for k in range(STAGES):
+        residual[k] = work.angle - turning[DIRECTION, k]
+        for m in range(STAGES):
+            residual[k] += h * A[k, m] * turning[ACROSS, m]
+            matrix[k, m] = -h * A[k, m] * turning[ACROSS_SLOPE, m]
+        matrix[k, k] += 1.0
+    if not factorize(matrix, pivots):
+        return inf
+    solve(matrix, pivots, residual)
+    change = 0.0
+    for k in range(STAGES):
+        level = work.log_speed
+        for m in range(STAGES):
+            level += h * A[k, m] * (turning[ALONG, m] + turning[ALONG_SLOPE, m] * residual[m])
+        change = max(change, abs(residual[k]), abs(level - turning[SIGMA, k]))
+        turning[DIRECTION, k] += residual[k]
+        turning[SIGMA, k] = level
+        if not change < DIVERGED:
+            return inf
+    return change

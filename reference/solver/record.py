@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.near_stop import CLOCK
-from reference.solver.system import TIME, Record, Work
+from reference.solver.system import Record
+from reference.solver.work import CLOCK, REACTION, Work
 
 
 @compiled
@@ -15,11 +15,11 @@ def record_step(work: Work, record: Record, h: float, contact: int) -> None:
     record.made[0] += 1
     if n >= record.start.shape[0]:
         return
-    record.start[n] = work.run[TIME]
+    record.start[n] = work.time
     record.length[n] = h
     record.contact[n] = contact
     for k in range(STAGES):
-        record.reaction[n, k] = work.stage[6, k]
+        record.reaction[n, k] = work.stage[REACTION, k]
         record.clock[n, k] = work.turning[CLOCK, k]
         for i in range(work.x.shape[0]):
             for axis in range(3):

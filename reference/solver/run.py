@@ -13,20 +13,15 @@ from __future__ import annotations
 from math import pi, sqrt
 
 from reference.solver.compiled import cached_entry_point, compiled, inlined
-from reference.solver.contact.platform import rest_excess
+from reference.solver.contact.platform import load_in_state, rest_excess
 from reference.solver.ground import ground_at
-from reference.solver.phases.rest import rest_phase
-from reference.solver.phases.sliding import barely_slips, sliding_phase, speed2
-from reference.solver.phases.smooth import smooth_phase
-from reference.solver.phases.stopping import stopping_phase
-from reference.solver.step_control import drive, remaining
+from reference.solver.phases.follow import follow
+from reference.solver.phases.sliding import barely_slips, speed2
+from reference.solver.step_control import remaining
 from reference.solver.system import (
     CREEPING,
-    HELD,
-    LENGTH,
     LUBRICATED,
     LUBRICATED_SLIDING,
-    REACH,
     REGULARIZED,
     REST,
     RIM,
@@ -34,26 +29,24 @@ from reference.solver.system import (
     SLIDING,
     SOLVED,
     STEP_LIMIT,
-    STEPS,
-    TIME,
     UNSOLVED,
     Array,
     Demand,
     Record,
     System,
-    Work,
-    workspace,
 )
+from reference.solver.work import RecordReference, SystemReference, Work, start_anew, workspace
 
 FIRST_STEP = 0.02  # of the period (Demand.period)
 NEGLIGIBLE_REMAINDER = 1e-8  # of the period: a run that fails so shortly before its end counts as finished
 RIM_SQUARED_FRACTION = 0.998  # of the squared radius: a run that fails beyond it has reached the rim
 HOLDING_TIME = 1e-6  # of the period: time in rest or creep of a state on the border of two phases
+MAX_IDLE_PHASES = 4  # phases without time: beyond them the state is on the border of two that each gives to the other
 MAX_CRAWL_SPEED = 1e-8  # of the loading's velocity: a slide that cannot go on at this speed has not moved
 
 
 @compiled
-def first_contact(system: System, phase: Array, work: Work) -> int:
+def first_contact(system: System, work: Work) -> int:
     """What the contact does in the initial state."""
     if system.law == LUBRICATED:
         return LUBRICATED_SLIDING
@@ -62,63 +55,50 @@ def first_contact(system: System, phase: Array, work: Work) -> int:
         return CREEPING if speed < system.v_reg**2 else SLIDING
     if speed > 0.0:
         return SLIDING
-    ux, uy, uz = ground_at(system, phase, 0.0)
-    fx, fy = drive(system, work, ux, uy)
-    excess, reaction = rest_excess(system, work.x[0, 0], work.x[0, 1], fx, fy, ux, uy, system.gravity + uz)
+    excess, reaction = rest_excess(system, load_in_state(system, work, ground_at(system, work, 0.0)))
     return SLIDING if excess > 0.0 and reaction > 0.0 else REST
 
 
 @compiled
 def named(system: System, work: Work, demand: Demand, code: int) -> int:
     """What a run that cannot go on has come to: nearly its end, the rim (4.1), or the trouble that it reports."""
-    if code != STEP_LIMIT and system.duration - work.run[TIME] < NEGLIGIBLE_REMAINDER * demand.period:
+    if code != STEP_LIMIT and system.duration - work.time < NEGLIGIBLE_REMAINDER * demand.period:
         return SOLVED
     at_rim = work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > RIM_SQUARED_FRACTION * system.radius**2
     return RIM if at_rim and code in (UNSOLVED, STEP_LIMIT) else code
 
 
 @compiled
-def crawls(system: System, phase: Array, work: Work, contact: int, demand: Demand) -> bool:
+def crawls(system: System, work: Work, contact: int, demand: Demand) -> bool:
     """Whether a slide that cannot go on hardly moves, under a drive that hardly exceeds the friction limit."""
     if system.law != SET_VALUED or contact == REST:
         return False
     slow2 = (MAX_CRAWL_SPEED * demand.unit * demand.period / (2.0 * pi)) ** 2
-    return speed2(system, work) <= slow2 and barely_slips(system, phase, work)
+    return speed2(system, work) <= slow2 and barely_slips(system, work)
 
 
 @inlined
-def integrate(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> int:
+def integrate(system: System, work: Work, demand: Demand, record: Record) -> int:
     """
-    Follow the motion from the state in work.x, work.v to the end; how it ended (system.py), at time work.run[TIME].
+    Follow the motion from the state in work.x, work.v to the end; how it ended (system.py), at work.time.
 
     work.best (N,) holds the squared peaks of absolute acceleration, m^2/s^4.
     """
-    for i in range(work.x.shape[0]):
-        work.best[i] = work.reading_error[i] = 0.0
-    for index in range(work.run.shape[0]):
-        work.run[index] = 0.0
-    work.run[LENGTH] = min(FIRST_STEP * demand.period, system.duration)
-    contact = first_contact(system, phase, work)
+    start_anew(work, min(FIRST_STEP * demand.period, system.duration))
+    contact = first_contact(system, work)
     before, idle = -1.0, 0
     while remaining(system, work, demand) > 0.0:
-        if contact == REST:
-            code, contact = rest_phase(system, phase, work, demand, record)
-        elif contact == SLIDING:
-            code, contact = sliding_phase(system, phase, work, demand, record)
-        elif contact in (CREEPING, LUBRICATED_SLIDING):
-            code, contact = smooth_phase(system, phase, work, contact, demand, record)
-        else:
-            code, contact = stopping_phase(system, phase, work, demand, record)
-        if code == UNSOLVED and crawls(system, phase, work, contact, demand):
+        code, contact = follow(system, work, contact, demand, record)
+        if code == UNSOLVED and crawls(system, work, contact, demand):
             work.v[0, 0] = work.v[0, 1] = 0.0
-            work.run[HELD] = max(work.run[HELD], HOLDING_TIME * demand.period)
+            work.held = max(work.held, HOLDING_TIME * demand.period)
             code, contact = SOLVED, REST
         if code != SOLVED:
             return named(system, work, demand, code)
-        idle = idle + 1 if work.run[TIME] == before else 0
-        before = work.run[TIME]
-        if idle > 4:  # a state on the border of two phases that each gives to the other
-            work.run[HELD] = max(work.run[HELD], HOLDING_TIME * demand.period)
+        idle = idle + 1 if work.time == before else 0
+        before = work.time
+        if idle > MAX_IDLE_PHASES:
+            work.held = max(work.held, HOLDING_TIME * demand.period)
     return SOLVED
 
 
@@ -135,15 +115,17 @@ def runs(
     the platform's largest displacement.
     """
     work = workspace(peaks.shape[1])
+    system_reference, record_reference = SystemReference(*system), RecordReference(*record)
     for m in range(phases.shape[0]):
+        work.phase[0], work.phase[1] = phases[m, 0], phases[m, 1]
         for i in range(x.shape[0]):
             for axis in range(2):
                 work.x[i, axis] = x[i, axis]
                 work.v[i, axis] = v[i, axis]
-        codes[m] = integrate(system, phases[m], work, demand, record)
-        instants[m] = work.run[TIME]
-        steps[m] = work.run[STEPS]
-        reach[m] = sqrt(work.run[REACH])
+        codes[m] = integrate(system_reference, work, demand, record_reference)
+        instants[m] = work.time
+        steps[m] = work.steps
+        reach[m] = sqrt(work.reach2)
         for i in range(peaks.shape[1]):
             peaks[m, i] = sqrt(work.best[i])
             reading_errors[m, i] = work.reading_error[i]

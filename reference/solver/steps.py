@@ -2,7 +2,8 @@
 One collocation step in time: at rest, or moving under a friction law.
 
 A step reads the state x, v of `Work`, leaves the stage accelerations in `a`, the platform at the stages in `stage`, the
-absolute accelerations in `total` and the end of the step in x1, v1. It returns SOLVED or what stood in the way.
+absolute accelerations in `total` and the end of the step in x1, v1. A moving step returns SOLVED or what stood in the
+way.
 """
 
 from __future__ import annotations
@@ -14,12 +15,25 @@ import numpy as np
 from reference.solver.chain import CHANNEL_ROUNDING, eliminate_chain, feed_back, load_chain, move_chain
 from reference.solver.collocation import A2, AT_START, NODES, STAGES, A
 from reference.solver.compiled import compiled
-from reference.solver.contact.platform import moving, slopes
+from reference.solver.contact.platform import load_at_stage, moving
+from reference.solver.contact.slopes import slopes
 from reference.solver.equations import vertical_acceleration
 from reference.solver.events import lowest
 from reference.solver.ground import ground_at_stages
 from reference.solver.linear_solve import factorize, solve
-from reference.solver.system import OPEN, PAINLEVE, REST, RIM, SOLVED, UNSOLVED, Array, System, Work
+from reference.solver.system import OPEN, PAINLEVE, REST, RIM, SOLVED, UNSOLVED, System
+from reference.solver.work import (
+    BY_DRIVE,
+    BY_POSITION,
+    BY_VELOCITY,
+    DETERMINANT,
+    DRIVE,
+    POSITION,
+    REACTION,
+    SPEED2,
+    VELOCITY,
+    Work,
+)
 
 MAX_ITERATIONS = 14  # of Newton's method
 SLOW_CONVERGENCE = 0.1  # of the change before: a larger change asks for a new derivative
@@ -29,24 +43,23 @@ RIM_SQUARED_FRACTION = 0.99  # of the squared radius: an iteration that starts b
 
 
 @compiled
-def rest_step(system: System, phase: Array, work: Work, t: float, h: float) -> int:
+def rest_step(system: System, work: Work, h: float) -> None:
     """The platform stays; the chain above it vibrates (4.4)."""
-    ground_at_stages(system, phase, t, h, work)
+    ground_at_stages(system, work, h)
     eliminate_chain(system, work, h)
     load_chain(system, work, h)
     for axis in range(system.axes):
         for k in range(STAGES):
             work.a[0, axis, k] = 0.0
-            work.stage[axis, k] = work.x[0, axis]
-            work.stage[2 + axis, k] = 0.0
-            work.stage[4 + axis, k] = work.free[axis, k]
+            work.stage[POSITION + axis, k] = work.x[0, axis]
+            work.stage[VELOCITY + axis, k] = 0.0
+            work.stage[DRIVE + axis, k] = work.free[axis, k]
     move_chain(system, work, h)
     absolute_accelerations(system, work, REST)
-    return SOLVED
 
 
 @compiled
-def moving_step(system: System, phase: Array, work: Work, contact: int, t: float, h: float, tolerance: float) -> int:
+def moving_step(system: System, work: Work, contact: int, h: float, tolerance: float) -> int:
     """
     Newton's method for the stage accelerations of the platform, the chain eliminated exactly.
 
@@ -54,43 +67,24 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
     derivative serves several iterations while these converge fast, so what is left is far smaller. A tolerance below
     what rounding does to the accelerations is met at that level.
     """
-    ground_at_stages(system, phase, t, h, work)
+    ground_at_stages(system, work, h)
     eliminate_chain(system, work, h)
     load_chain(system, work, h)
     feed_back(system, work, h)
-    a, stage = work.a, work.stage
+    pivots = work.pivots[: system.axes * STAGES]
     fresh, before = True, 0.0
     for iteration in range(MAX_ITERATIONS):
         place_platform(work, h, system.axes)
-        size = 0.0
-        for k in range(STAGES):
-            if stage[0, k] ** 2 + stage[1, k] ** 2 >= system.radius**2:
-                return beyond_rim(system, work)
-            ax, ay, reaction, determinant, speed2 = moving(
-                system, contact,
-                stage[0, k], stage[1, k], stage[2, k], stage[3, k], stage[4, k], stage[5, k],
-                work.ground[0, k], work.ground[1, k], system.gravity + work.ground[2, k],
-            )  # fmt: skip
-            stage[6, k] = reaction
-            stage[7, k] = speed2
-            if not determinant > 0.0:
-                return PAINLEVE
-            stage[8, k] = determinant
-            size = max(size, abs(ax) + abs(ay))
-            work.residual[k] = ax - a[0, 0, k]
-            work.residual[STAGES + k] = ay - a[0, 1, k]
+        code, size = set_residual(system, work, contact)
+        if code != SOLVED:
+            return code
         if fresh:
             slopes(system, contact, work)
             set_matrix(work, h, system.axes)
-            if not factorize(work.matrix, work.pivots[: system.axes * STAGES]):
+            if not factorize(work.matrix, pivots):
                 return UNSOLVED
-        solve(work.matrix, work.pivots[: system.axes * STAGES], work.residual)
-        change = 0.0
-        for axis in range(system.axes):
-            for k in range(STAGES):
-                correction = work.residual[axis * STAGES + k]
-                a[0, axis, k] += correction
-                change = max(change, abs(correction))
+        solve(work.matrix, pivots, work.residual)
+        change = correct(work, system.axes)
         settled = change <= max(tolerance, ROUNDING_CHANGE * size)
         if not np.isfinite(change) or (iteration > 1 and fresh and change > before and not settled):
             return UNSOLVED
@@ -98,10 +92,44 @@ def moving_step(system: System, phase: Array, work: Work, contact: int, t: float
             place_platform(work, h, system.axes)
             move_chain(system, work, h)
             absolute_accelerations(system, work, contact)
-            return SOLVED if lowest(stage[6]) > 0.0 else OPEN
+            return SOLVED if lowest(work.stage[REACTION]) > 0.0 else OPEN
         fresh = iteration > 0 and change > SLOW_CONVERGENCE * before
         before = change
     return UNSOLVED
+
+
+@compiled
+def set_residual(system: System, work: Work, contact: int) -> tuple[int, float]:
+    """What the accelerations of the platform miss at the stages; (what stands in the way, their size in m/s^2)."""
+    a, stage = work.a, work.stage
+    size = 0.0
+    for k in range(STAGES):
+        load = load_at_stage(work, k)
+        if load.px**2 + load.py**2 >= system.radius**2:
+            return beyond_rim(system, work), size
+        ax, ay, stage[REACTION, k], stage[DETERMINANT, k], stage[SPEED2, k] = moving(
+            system, contact, load, stage[VELOCITY, k], stage[VELOCITY + 1, k]
+        )
+        if not stage[DETERMINANT, k] > 0.0:
+            return PAINLEVE, size
+        size = max(size, abs(ax) + abs(ay))
+        work.residual[k] = ax - a[0, 0, k]
+        work.residual[STAGES + k] = ay - a[0, 1, k]
+    return SOLVED, size
+
+
+@compiled
+def correct(work: Work, axes: int) -> float:
+    """Add Newton's correction, in `residual`, to the stage accelerations of the platform; its largest entry."""
+    change = 0.0
+    for axis in range(axes):
+        for k in range(STAGES):
+            correction = work.residual[axis * STAGES + k]
+            work.a[0, axis, k] += correction
+            change = max(change, abs(correction))
+            if not np.isfinite(correction):
+                return np.nan
+    return change
 
 
 @compiled
@@ -117,9 +145,9 @@ def place_platform(work: Work, h: float, axes: int) -> None:
                 velocity += A[k, m] * a[0, axis, m]
                 position += A2[k, m] * a[0, axis, m]
                 drive += feedback[axis, k, m] * a[0, axis, m]
-            stage[axis, k] = work.x[0, axis] + h * (NODES[k] * work.v[0, axis] + h * position)
-            stage[2 + axis, k] = work.v[0, axis] + h * velocity
-            stage[4 + axis, k] = drive
+            stage[POSITION + axis, k] = work.x[0, axis] + h * (NODES[k] * work.v[0, axis] + h * position)
+            stage[VELOCITY + axis, k] = work.v[0, axis] + h * velocity
+            stage[DRIVE + axis, k] = drive
 
 
 @compiled
@@ -129,9 +157,9 @@ def set_matrix(work: Work, h: float, axes: int) -> None:
     for row in range(axes):
         for column in range(axes):
             for k in range(STAGES):
-                by_position = h * h * slope[2 * column + row, k]
-                by_velocity = h * slope[4 + 2 * column + row, k]
-                by_drive = slope[8 + 2 * column + row, k]
+                by_position = h * h * slope[BY_POSITION + 2 * column + row, k]
+                by_velocity = h * slope[BY_VELOCITY + 2 * column + row, k]
+                by_drive = slope[BY_DRIVE + 2 * column + row, k]
                 for m in range(STAGES):
                     matrix[row * STAGES + k, column * STAGES + m] = -(
                         by_position * A2[k, m] + by_velocity * A[k, m] + by_drive * feedback[column, k, m]
@@ -162,8 +190,10 @@ def absolute_accelerations(system: System, work: Work, contact: int) -> None:
     for k in range(STAGES):
         vertical = ground[2, k]
         if contact != REST:
-            vx, vy = stage[2, k], stage[3, k]
-            vertical += lifted(system, stage[0, k], stage[1, k], vx, vy, a[0, 0, k], a[0, 1, k])
+            vertical += lifted(
+                system, stage[POSITION, k], stage[POSITION + 1, k], stage[VELOCITY, k], stage[VELOCITY + 1, k],
+                a[0, 0, k], a[0, 1, k],
+            )  # fmt: skip
         for i in range(work.x.shape[0]):
             total[i, 0, k] = a[i, 0, k] + ground[0, k]
             total[i, 1, k] = a[i, 1, k] + ground[1, k]
@@ -182,7 +212,7 @@ def step_error(work: Work, tolerance: float) -> float:
     total, total0 = work.total, work.total0
     load = abs(total0[0, 2])
     for k in range(STAGES):
-        load = max(load, abs(work.stage[4, k]) + abs(work.stage[5, k]))
+        load = max(load, abs(work.stage[DRIVE, k]) + abs(work.stage[DRIVE + 1, k]))
         # friction may decelerate a platform that nothing drives
         load = max(load, abs(work.a[0, 0, k]) + abs(work.a[0, 1, k]))
     noise = FORCE_ROUNDING * load

@@ -1,17 +1,14 @@
-"""A scene as numbers for compiled code, and the arrays one run works in."""
+"""A scene, what is asked of a run and the steps that it keeps, as tuples of numbers and arrays."""
 
 from __future__ import annotations
 
 from typing import NamedTuple, cast
 
 import numpy as np
-from numba import types
-from numba.experimental import structref
 from numpy.typing import NDArray
 
 from reference.problem import GRAVITY, Scene, exponents
-from reference.solver.collocation import CHANNELS, STAGES
-from reference.solver.compiled import compiled
+from reference.solver.collocation import STAGES
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -25,8 +22,6 @@ CONSISTENT, PRINTED = 0, 1
 REST, SLIDING, CREEPING, LUBRICATED_SLIDING, STOPPING = cast("tuple[int, ...]", tuple(map(np.int64, range(5))))
 # how the equations of one step, or a whole run, ended
 SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT = range(6)
-# entries of Work.run, the state of a run that is not an array
-TIME, LENGTH, OLD_LENGTH, ANGLE, LOG_SPEED, HELD, STEPS, LEFT, REACH = range(9)
 
 
 class System(NamedTuple):
@@ -50,50 +45,24 @@ class System(NamedTuple):
     fastest: float  # rad/s, bound of the chain's natural frequencies
 
 
-@structref.register
-class _WorkType(types.StructRef):  # type: ignore[misc]
-    """Numba's type of Work."""
+class Ground(NamedTuple):
+    """Acceleration of the ground at one instant, m/s^2."""
+
+    x: float  # xi''
+    y: float  # eta''
+    z: float  # zeta''
 
 
-class Work(structref.StructRefProxy):  # type: ignore[misc]
-    """
-    Arrays of one run: nothing is allocated while it goes on, and nothing grows with its duration.
+class Load(NamedTuple):
+    """Where the platform is and what acts on it at one instant (equations.py)."""
 
-    Compiled code passes it by reference: as a tuple, every call would copy and compile all its fields again.
-    """
-
-    x: Array  # (N, 2) position at the start of the step
-    v: Array  # (N, 2) velocity
-    a0: Array  # (N, 2) acceleration there
-    total0: Array  # (N, 3) absolute acceleration there
-    x1: Array  # (N, 2) at the end of the step
-    v1: Array
-    a: Array  # (N, 2, S) acceleration at the stages
-    ground: Array  # (3, S) ground acceleration at the stages
-    total: Array  # (N, 3, S) absolute acceleration at the stages
-    free: Array  # (2, S) driving acceleration of the platform if it kept its velocity
-    feedback: Array  # (2, S, S) what its own stage accelerations add to that
-    pivot: Complex  # (N, 2, CHANNELS) eliminated chain
-    load: Complex  # (N, 2, CHANNELS)
-    gain: Complex  # (2, CHANNELS) what the chain gives back to the platform
-    stage: Array  # (9, S) platform at the stages: px, py, vx, vy, fx, fy, reaction, speed2, inertia determinant
-    slopes: Array  # (12, S) derivative of its acceleration
-    matrix: Array  # (2 S, 2 S)
-    residual: Array  # (2 S,)
-    pivots: Array  # (2 S,) rows of the factorized matrix
-    chain: Array  # (N, 2, S) position of the bodies at the stages of a step near a stop
-    velocity: Array  # (N, 2, S)
-    turning: Array  # (11, S) direction, speed and time there
-    powers: Array  # (5, S) coefficients of the powers of theta where a step is looked at closely
-    guess: Array  # (2, S) coefficients of the platform's acceleration in the step before
-    scale: Array  # (N,) m/s^2, what errors are measured against
-    run: Array  # (9,)
-    best: Array  # (N,) largest squared absolute acceleration so far
-    reading_error: Array  # (N,) m/s^2, error of reading it inside its step
-    defect: Array  # (N,) m/s^2, interpolation error of the step at its start
-
-
-structref.define_proxy(Work, _WorkType, list(Work.__annotations__))
+    px: float  # m
+    py: float
+    fx: float  # driving acceleration, m/s^2
+    fy: float
+    ux: float  # acceleration of the ground, m/s^2
+    uy: float
+    uz: float
 
 
 class Record(NamedTuple):
@@ -149,43 +118,6 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
         duration=float(scene.duration),
         axes=axes,
         fastest=float(np.sqrt(2.0 * (below + above).max())),  # Gershgorin's bound
-    )
-
-
-@compiled
-def workspace(bodies: int) -> Work:
-    """Arrays for runs with this many bodies."""
-    n, s, c = bodies, STAGES, CHANNELS
-    return Work(
-        x=np.zeros((n, 2)),
-        v=np.zeros((n, 2)),
-        a0=np.zeros((n, 2)),
-        total0=np.zeros((n, 3)),
-        x1=np.zeros((n, 2)),
-        v1=np.zeros((n, 2)),
-        a=np.zeros((n, 2, s)),
-        ground=np.zeros((3, s)),
-        total=np.zeros((n, 3, s)),
-        free=np.zeros((2, s)),
-        feedback=np.zeros((2, s, s)),
-        pivot=np.zeros((n, 2, c), np.complex128),
-        load=np.zeros((n, 2, c), np.complex128),
-        gain=np.zeros((2, c), np.complex128),
-        stage=np.zeros((9, s)),
-        slopes=np.zeros((12, s)),
-        matrix=np.zeros((2 * s, 2 * s)),
-        residual=np.zeros(2 * s),
-        pivots=np.zeros(2 * s),
-        chain=np.zeros((n, 2, s)),
-        velocity=np.zeros((n, 2, s)),
-        turning=np.zeros((11, s)),
-        powers=np.zeros((5, s)),
-        guess=np.zeros((2, s)),
-        scale=np.zeros(n),
-        run=np.zeros(9),
-        best=np.zeros(n),
-        reading_error=np.zeros(n),
-        defect=np.zeros(n),
     )
 
 

@@ -38,9 +38,9 @@ class Candidate:
     keep: tuple[Any, ...]
 
 
-def rigid_body(scene: Scene, penetration: float, v_reg: float = V_REG) -> Candidate:
-    """The package's own: a rigid body that cannot turn for its inertia, and a linear chain."""
-    model = assemble(scene, "translational", v_reg)
+def rigid_body(scene: Scene, penetration: float, v_reg: float = V_REG, model_name: str = "translational") -> Candidate:
+    """The package's own: a rigid body that cannot turn for its inertia, and a linear chain; or bodies that turn."""
+    model = assemble(scene, model_name, v_reg)
     model.set_contact(penetration)
 
     def start(phase: Array) -> tuple[Array, Array, Array]:

@@ -13,8 +13,7 @@ from known_analyses import analyses_are, known_others
 from PIL import Image
 
 from comparison.analysis.errata import Effect
-from comparison.report import page
-from comparison.report.figures import budget, pairs, paper
+from comparison.report.figures import assumptions, budget, pairs, paper
 from comparison.run import main
 from comparison.study.models import Model
 
@@ -44,7 +43,7 @@ def quick_figures(patch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Run]:
     """The command line with fake models in threads of this process and quick figures; --out in an empty directory."""
-    monkeypatch.setattr(page, "draw_assumptions", quick_figure)
+    monkeypatch.setattr(assumptions, "draw_assumptions", quick_figure)
     quick_figures(monkeypatch)
     analyses_are(monkeypatch, motions=[])
 

@@ -20,6 +20,7 @@ from comparison.study.models import MODEL_HIERARCHY, Model, never
 from comparison.study.study import Study
 from reference.problem import GRAVITY, Amplification, Demands, Estimate, Outcome, Scene, Trajectory
 
+MOST = {"translational": 16, "spatial": 4}  # phases per axis: fewer than those of the real models, for small grids
 DEADLY = 2.0 * np.pi * 3 / 4  # alpha1, alpha2 of the one point of a 4 x 4 grid that a failing model fails at
 
 
@@ -197,6 +198,7 @@ def errors_in(gaps: Mapping[str, float], error_estimates: Mapping[str, float] | 
             settings={"gap": gaps.get(model.key, 0.0), "claimed": (error_estimates or {}).get(model.key, 1e-5)},
             symmetric=never,
             refusal=None,
+            most=MOST.get(model.key),
         )
         for model in MODEL_HIERARCHY
     )
@@ -222,5 +224,6 @@ def fake_hierarchy(engine: str = "smooth", gap: float = 0.01, batch: int = 4) ->
             "trajectory": "fake_models:forbidden",
             "refusal": None if model.refusal is None else "fake_models:never_refused",
         }
-        models.append(replace(model, **functions, settings=settings, batch=batch, symmetric=never))
+        most = MOST.get(model.key)
+        models.append(replace(model, **functions, settings=settings, batch=batch, symmetric=never, most=most))
     return tuple(models)

@@ -44,10 +44,6 @@ class Known(Analysis[Any]):
     def stage(self) -> str:  # type: ignore[override]
         return self.other.stage
 
-    @property
-    def essential(self) -> bool:  # type: ignore[override]
-        return self.other.essential
-
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         return []
 

@@ -86,7 +86,9 @@ def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on_in_process(
     start = f"--scheduler {workers.address}: the connection to the scheduler was lost: "
     assert run.err.startswith(start)
     assert run.err.count("\n") == 1
-    assert f"{len(stored)} of " in run.err
+    of_surfaces = sum(key.kind == BATCH for key in stored)
+    assert f"{of_surfaces} of " in run.err
+    assert of_surfaces == len(stored) or f" and {len(stored) - of_surfaces} analys" in run.err
     assert f"go on with: python -m comparison.run fig3-I --grid 4 --out {run.report}\n" in run.err, (
         "without the cluster"
     )

@@ -26,8 +26,8 @@ from comparison.study.models import (
 from comparison.study.reductions import reductions
 from comparison.study.speedup import speedup
 from comparison.study.study import Study
-from comparison.study.symmetry import sources
 from reference.problem import Scene, builtin_scenes, load_scene
+from reference.problem.symmetry import sources
 
 GRID = 4
 

@@ -9,9 +9,9 @@ import pytest
 from numpy.typing import NDArray
 
 from comparison.analysis.claims.smoothness import bends
-from comparison.study.symmetry import surface
 from reference import amplification
 from reference.problem import Amplification, Scene, half_turn, load_scene, own_axes, phase_grid
+from reference.problem.symmetry import surface
 
 Array = NDArray[np.float64]
 SHAPES: dict[str, Callable[[Array, Array], Array]] = {

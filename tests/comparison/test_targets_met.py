@@ -29,7 +29,7 @@ def tower() -> Scene:
 
 def chosen(scene: Scene, tolerance: float, grid: int, most: int) -> StudyPlan:
     """What is chosen on a small grid, the engine on a smaller one."""
-    plan = plan_study(StudyRequest((scene,), tolerance=tolerance, grid=grid))
+    plan = plan_study(StudyRequest((scene,), tolerance=tolerance, grid=grid, tries=True))
     models = [replace(model, most=most) if model.side == "engine" else model for model in plan.study.hierarchy]
     return replace(plan, study=replace(plan.study, hierarchy=models))
 
@@ -79,10 +79,9 @@ def test_the_accuracy_asked_is_met_at_99_percent_of_the_points(name: str, tolera
 @pytest.mark.parametrize("names", [builtin_scenes(), ["tower"]], ids=["the paper's scenes", "tower"])
 def test_the_cost_is_within_a_factor_1_5_of_what_was_expected(names: list[str], tolerance: float) -> None:
     """
-    What the record says, times this machine's speed, which is measured before and after: a busy one is not the same
-    throughout.
+    What the record says: a test for the machine of the record.
 
-    The record has one cost per tolerance, a mean over the paper's scenes: it holds for them together, within a factor 2
+    It has one cost per tolerance, a mean over the paper's scenes: it holds for them together, within a factor 2
     for each.
     """
 
@@ -100,7 +99,7 @@ def test_the_cost_is_within_a_factor_1_5_of_what_was_expected(names: list[str], 
         for batch in expected_plan.study.batches():
             execute_batch(batch)
         spent.append(time.process_time() - begin)
-        expected.append(0.5 * (seconds(expected_plan) + seconds(foreseen(scene))))
+        expected.append(seconds(expected_plan))
         print(f"{name} {tolerance:.0e}: {spent[-1]:.2f} s where {expected[-1]:.2f} s were expected")
     ratio = np.divide(spent, expected)
     assert 1.0 / 1.5 <= sum(spent) / sum(expected) <= 1.5

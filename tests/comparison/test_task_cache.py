@@ -115,6 +115,7 @@ def test_a_model_is_known_by_its_source_too(monkeypatch: pytest.MonkeyPatch) -> 
     model = fake_hierarchy()[0]
     before = fingerprint(model)
     assert fingerprint(replace(model, settings={"gap": 2.0})) != before
+    assert fingerprint(replace(model, most=8)) == before, "a study with another grid asks it the same"
     monkeypatch.setattr("comparison.execution.environment.source_digest", lambda name: "changed")
     assert fingerprint(model) != before
 

@@ -40,3 +40,24 @@ def changed(scene: Scene, **tables: Any) -> Scene:
     for key, value in tables.items():
         data[key] = {**data[key], **value} if isinstance(value, dict) else value
     return Scene.model_validate(data)
+
+
+def frame(duration: float, count: int = 6, period: float = 0.17) -> Scene:
+    """Stiffly linked floors on wide supports; period of each link, s."""
+    above = [
+        {"mass": 1e3, "period": [period, period], "height": 0.2 + 3.0 * floor, "size": [12.0, 12.0, 0.4]}
+        for floor in range(1, count)
+    ]
+    return Scene.model_validate(
+        {
+            "title": "frame",
+            "duration": duration,
+            "isolator": {"radius": 2.24, "friction": 0.05, "supports": 4, "ring": 6.0, "sphere_radius": 0.05},
+            "bodies": [{"mass": 1e3, "height": 0.2, "size": [12.0, 12.0, 0.4]}, *above],
+            "excitation": {
+                "amplitudes": [[2.943, 0.0], [0.0, 2.943]],
+                "periods": [0.8, 1.3],
+                "decay": [0.1, 0.1],
+            },
+        }
+    )

@@ -45,7 +45,7 @@ def test_a_held_platform_creeps_with_v_reg_times_force_over_friction_limit() -> 
     assert 0.4 < force / push < 1.0
     # the slope of the sphere, x / rho = 6e-4, enters squared
     assert v == pytest.approx(v_reg * force / (mu * motion.contact_force[-1]), rel=2e-6)
-    assert motion.stick == [(0.0, scene.duration)]
+    assert motion.stick == [(0.0, pytest.approx(scene.duration, rel=1e-14))]  # the engine adds up its steps
 
 
 def test_sliding_stops_after_v_squared_over_two_mu_g() -> None:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import multiprocessing
+from concurrent.futures import ProcessPoolExecutor
+
 import numpy as np
 import pytest
-from scenes_at_hand import changed
+from scenes_at_hand import changed, frame
 
 import multibody
 import reference
@@ -36,10 +39,64 @@ def test_a_whole_surface_lies_within_its_errors(scene: str, tolerance: float, co
     engine = multibody.amplification(load_scene(scene), phases, regularization=V_REG, tolerance=tolerance)
     equations = reference.amplification(load_scene(scene), phases, equations="exact", regularization=V_REG)
     gap = np.abs(engine.mu - equations.mu)
+    share = largest_share(engine.mu, engine.error, equations.mu, equations.error)
+    print(f"\n{scene}: {count} points, largest difference over the errors {share:.2f}")
     assert (engine.status == Outcome.OK).all()
-    assert (gap <= engine.error + equations.error).all()
+    assert share <= 1.0
     assert (gap <= largest * equations.mu).all()
     assert (np.median(gap / equations.mu, axis=0) <= 1e-4).all()
+
+
+def largest_share(values: np.ndarray, errors: np.ndarray, others: np.ndarray, other_errors: np.ndarray) -> float:
+    """Largest difference over the sum of the two errors."""
+    return float((np.abs(values - others) / (errors + other_errors)).max())
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("count", [6, 12, 20])
+def test_every_point_of_a_frame_lies_within_its_errors(count: int) -> None:
+    scene, phases = frame(10.0, count), np.random.default_rng(count).uniform(0.0, 2.0 * np.pi, (64, 2))
+    engine = multibody.amplification(scene, phases)
+    equations = reference.amplification(scene, phases, equations="exact", regularization=V_REG)
+    share = largest_share(engine.mu, engine.error, equations.mu, equations.error)
+    print(f"\n{count} bodies: {len(phases)} points, largest difference over the errors {share:.2f}", end=" ")
+    print(f"{engine.cost / len(phases):.2f} s a point")
+    assert set(engine.status) == set(equations.status) == {Outcome.OK}
+    assert share <= 1.0
+
+
+FINE = 1e-5
+
+
+def mu_of(case: tuple[str, str, list[float], float]) -> tuple[list[float], list[float], str]:
+    """mu, error and status of one point, for a process of its own."""
+    name, model, phase, tolerance = case
+    scene = load_scene(name)
+    regularization = None if scene.lubricated else V_REG
+    point = multibody.amplification(
+        scene, [phase], model=model, regularization=regularization, tolerance=tolerance, max_work=2e7
+    )
+    return point.mu[0].tolist(), point.error[0].tolist(), str(point.status[0])
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("model", ["translational", "spatial"])
+@pytest.mark.parametrize("scene", ["fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"])
+def test_no_finer_run_contradicts_an_answer(scene: str, model: str) -> None:
+    """A tolerance of 1e-5 is met by few points; the error that is left to the others counts as well."""
+    phases = np.random.default_rng(32).uniform(0.0, 2.0 * np.pi, (32, 2)).tolist()
+    cases = [(scene, model, phase, tolerance) for tolerance in (1e-3, FINE) for phase in phases]
+    with ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as pool:
+        points = list(pool.map(mu_of, cases))
+    coarse, fine = points[: len(phases)], points[len(phases) :]
+    values, errors = (np.array([point[part] for point in coarse]) for part in (0, 1))
+    finer, finer_errors = (np.array([point[part] for point in fine]) for part in (0, 1))
+    share = largest_share(values, errors, finer, finer_errors)
+    print(f"\n{scene} {model}: {len(phases)} points, largest difference over the errors {share:.2f};", end=" ")
+    print(f"largest error of the finer runs {np.max(finer_errors / finer):.1e}")
+    assert {point[2] for point in coarse} == {Outcome.OK}
+    assert (finer_errors <= 0.5 * errors).all()
+    assert share <= 1.0
 
 
 @pytest.mark.long

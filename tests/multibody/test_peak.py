@@ -20,9 +20,7 @@ def read(signal: Signal, slip: Signal, threshold: float, chunks: int, step: floa
     edges = np.linspace(0, len(time) - 1, chunks + 1).astype(int)
     for begin, end in pairwise(edges):
         t = time[begin : end + 1]
-        absolute = np.zeros((len(t), 1, 3))
-        absolute[:, 0, 0] = signal(t)
-        peaks.add(t, absolute, slip(t)[:, None])
+        peaks.add(t, np.abs(signal(t))[:, None], slip(t)[:, None])
     return peaks
 
 

@@ -85,5 +85,5 @@ def test_a_peak_at_a_kink_is_the_sample_there_and_one_beside_it_is_read_on_its_o
     hump = np.where(time < 0.5, 1.0392 * time, 0.52 - (time - 0.52) ** 2)  # its highest sample is at the kink
     for size, top in ((roof, 1.0), (hump, 0.52)):
         peaks = Peaks(1, np.inf, np.array([0.0, 0.5, 1.0]), 1e-9)
-        peaks.add(time, np.stack([size, 0.0 * size, 0.0 * size], axis=-1)[:, None], np.zeros((21, 1)))
+        peaks.add(time, size[:, None], np.zeros((21, 1)))
         assert peaks.value[0] == pytest.approx(top, rel=1e-12)

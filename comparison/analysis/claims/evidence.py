@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from comparison.analysis.claims.readings import CASES, Reading, settings
 from comparison.analysis.claims.smoothness import Bend, bends
 from comparison.execution.task import TaskResult
-from comparison.study.symmetry import surface
 from reference import amplification, trajectory
 from reference.problem import Amplification, Scene
+from reference.problem.symmetry import surface
 
 Array = NDArray[np.float64]
 

@@ -33,7 +33,7 @@ class Column:
     tolerance: float  # relative error asked
     # how a value is confirmed, in this order until one answers: function, settings, relative error asked
     finer: tuple[tuple[str, Mapping[str, Any], float], ...]
-    seconds: float = 0.5  # processor time of a cell with its finer runs, recorded as `Model.seconds_per_point`
+    seconds: float = 0.5  # processor time of a cell with its finer runs, recorded as `costs.seconds_per_point`
 
 
 # steps of the engine for a phase pair, and for one of a tower by its number of bodies, whose steps cost more: a cell

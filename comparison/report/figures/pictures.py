@@ -18,7 +18,7 @@ from comparison.study.selection import EVERYTHING
 from comparison.study.study import Study
 from reference.problem import Scene
 
-SECONDS = {"pair": 0.45, "budget": 0.6, "paper": 1.0}  # of drawing one, recorded beside `Model.seconds_per_point`
+SECONDS = {"pair": 0.45, "budget": 0.6, "paper": 1.0}  # of drawing one, recorded beside `costs.seconds_per_point`
 SHOWN = ["mu", "error", "stride", "recorded"]  # of the surfaces: what pictures are made of
 
 
@@ -65,7 +65,7 @@ def pictures(study: Study, surfaces: xr.Dataset) -> list[Picture]:
 class Pictures(Analysis[dict[str, bytes]]):
     """Every file of every picture by its name."""
 
-    key, stage, needs_surfaces, essential = "pictures", "pictures", True, True
+    key, stage, needs_surfaces = "pictures", "pictures", True
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One task for each picture."""

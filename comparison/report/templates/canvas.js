@@ -157,21 +157,22 @@ function drawMap(canvas, panel) {
   };
 }
 
-// the largest value: a triangle; stored motions: diamonds, the one shown filled; what is pointed at: a cross
+// the largest value: a triangle, open over all phases; stored motions: diamonds, the one shown filled; what is pointed at: a cross
 function drawMarks(pen, panel, at) {
   const [ink, back, accent] = ["--ink", "--back", "--mark"].map(variable);
   panel.places.forEach((place, i) => diamond(pen, at(place), i === panel.chosen ? 8 : 5, i === panel.chosen ? accent : "", i === panel.chosen ? back : ink));
-  if (panel.largest) {
-    const [x, y] = at(panel.largest);
-    pen.fillStyle = ink;
-    pen.strokeStyle = back;
+  [[panel.largest, 6, ink, back], [panel.worst, 8, "", ink]].forEach(([place, size, fill, edge]) => {
+    if (!place) return;
+    const [x, y] = at(place);
+    pen.fillStyle = fill;
+    pen.strokeStyle = edge;
     pen.lineWidth = 1.2;
     pen.beginPath();
-    [[0, -1], [-6, -12], [6, -12]].forEach(([u, v], i) => i ? pen.lineTo(x + u, y + v) : pen.moveTo(x + u, y + v));
+    [[0, -1], [-size, -2 * size], [size, -2 * size]].forEach(([u, v], i) => i ? pen.lineTo(x + u, y + v) : pen.moveTo(x + u, y + v));
     pen.closePath();
-    pen.fill();
+    if (fill) pen.fill();
     pen.stroke();
-  }
+  });
   if (panel.cursor) {
     const [x, y] = at(panel.cursor);
     pen.strokeStyle = accent;

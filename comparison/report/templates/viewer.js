@@ -64,7 +64,9 @@ function panels() {
     if (!surface.sheet && k === 1 && surface.completed?.reason) notes.push(`points: ${surface.completed.reason}`);
     if (largest) notes.push(`${surface.completed ? "largest computed" : "largest"} ${k === 2 ? percentText(largest.z) : digits(largest.z)} at ${at([largest.a, largest.b])} ▾`);
     else notes.push("no value at any phase pair");
-    return { ...common, ...surface, range: k === 2 ? [-reach, reach] : range, color: k === 2 ? signs : light, largest: largest && [largest.a, largest.b],
+    const worst = k < 2 ? surface.model.worst[body - 1] : null;
+    if (worst) notes.push(`over all phases ${digits(worst[2])} at ${at(worst.slice(0, 2))} ▿`);
+    return { ...common, ...surface, range: k === 2 ? [-reach, reach] : range, color: k === 2 ? signs : light, largest: largest && [largest.a, largest.b], worst: worst && worst.slice(0, 2),
       lines: k === 2 && surface.sheet && !surface.completed ? pair.contours[body - 1] : [], notes,
       title: k === 2 ? "difference, % of the first" : study.titles[k ? pair.second : pair.first], unit: k === 2 ? " %" : "" };
   });

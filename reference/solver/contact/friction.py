@@ -13,66 +13,55 @@ from __future__ import annotations
 from math import cos, sin, sqrt
 
 from reference.solver.compiled import compiled
+from reference.solver.system import Load, System
 
 
 @compiled
-def sliding_speed2(px: float, py: float, vx: float, vy: float, radius: float, small: bool) -> float:
+def sliding_speed2(system: System, px: float, py: float, vx: float, vy: float) -> float:
     """Squared sliding speed: v-bar^2 of (3.8), or the horizontal one in the small equations (4.3)."""
     planar = vx * vx + vy * vy
-    if small:
+    if system.small:
         return planar
     climb = px * vx + py * vy
-    return planar + climb * climb / (radius * radius - px * px - py * py)
+    return planar + climb * climb / (system.radius * system.radius - px * px - py * py)
 
 
 @compiled
-def rest_excess_exact(
-    px: float, py: float, fx: float, fy: float, pressure: float, friction: float, mass_ratio: float, radius: float
-) -> tuple[float, float]:
+def rest_excess_exact(system: System, load: Load) -> tuple[float, float]:
     """
     Consistent condition for rest of the exact equations: (excess, reaction / m1).
 
     The force that holds the platform at rest is (-f, M pressure) per m1; rest is possible while its tangential part is
     at most mu times its normal part N > 0: while the excess |T|^2 - (mu N)^2 is not positive.
     """
-    nx = -px / radius
-    ny = -py / radius
+    nx = -load.px / system.radius
+    ny = -load.py / system.radius
     nz = sqrt(1.0 - nx * nx - ny * ny)
-    rz = mass_ratio * pressure
-    normal = -fx * nx - fy * ny + rz * nz
-    tx = -fx - normal * nx
-    ty = -fy - normal * ny
+    rz = system.mass_ratio * (system.gravity + load.uz)
+    normal = -load.fx * nx - load.fy * ny + rz * nz
+    tx = -load.fx - normal * nx
+    ty = -load.fy - normal * ny
     tz = rz - normal * nz
-    limit = friction * normal
+    limit = system.friction * normal
     return tx * tx + ty * ty + tz * tz - limit * limit, normal
 
 
 @compiled
-def rest_excess_small(
-    px: float,
-    py: float,
-    fx: float,
-    fy: float,
-    ux: float,
-    uy: float,
-    pressure: float,
-    friction: float,
-    mass_ratio: float,
-    radius: float,
-) -> tuple[float, float]:
+def rest_excess_small(system: System, load: Load) -> tuple[float, float]:
     """
     Consistent condition for rest of (4.3): (excess, reaction / m1); rest while |Mf^-1 F_3| <= 1 (4.6, corrected).
 
     Mf = mu (R I - u p^T / rho) with R = M (g + zeta''); F_3 = f - R p / rho. The excess is |adj F_3|^2 - det^2 with
     Mf^-1 = adj / det, so that nothing is divided by a small number.
     """
-    reaction = mass_ratio * pressure
-    gx = fx - reaction * px / radius
-    gy = fy - reaction * py / radius
-    a = friction * (reaction - ux * px / radius)
-    b = -friction * ux * py / radius
-    c = -friction * uy * px / radius
-    d = friction * (reaction - uy * py / radius)
+    px, py, radius, friction = load.px, load.py, system.radius, system.friction
+    reaction = system.mass_ratio * (system.gravity + load.uz)
+    gx = load.fx - reaction * px / radius
+    gy = load.fy - reaction * py / radius
+    a = friction * (reaction - load.ux * px / radius)
+    b = -friction * load.ux * py / radius
+    c = -friction * load.uy * px / radius
+    d = friction * (reaction - load.uy * py / radius)
     hx = d * gx - b * gy
     hy = a * gy - c * gx
     det = a * d - b * c
@@ -81,27 +70,16 @@ def rest_excess_small(
 
 
 @compiled
-def rest_excess_printed(
-    px: float,
-    py: float,
-    fx: float,
-    fy: float,
-    ux: float,
-    uy: float,
-    pressure: float,
-    friction: float,
-    mass_ratio: float,
-    radius: float,
-) -> float:
+def rest_excess_printed(system: System, load: Load) -> float:
     """
     |F_3|^2 - |F_F|^2 of (4.6) as printed: the components of F_F are mu N each, so the limit is sqrt(2) mu N at the
     origin, and F_3 carries gravity and spring with the printed signs. Kept to measure what the slip costs.
     """
-    reaction = mass_ratio * pressure
-    lx = friction * (reaction - ux * (px + py) / radius)
-    ly = friction * (reaction - uy * (px + py) / radius)
-    gx = -(2.0 * ux + fx) + reaction * px / radius  # spring force f + u with its sign turned
-    gy = -(2.0 * uy + fy) + reaction * py / radius
+    reaction = system.mass_ratio * (system.gravity + load.uz)
+    lx = system.friction * (reaction - load.ux * (load.px + load.py) / system.radius)
+    ly = system.friction * (reaction - load.uy * (load.px + load.py) / system.radius)
+    gx = -(2.0 * load.ux + load.fx) + reaction * load.px / system.radius  # spring force f + u with its sign turned
+    gy = -(2.0 * load.uy + load.fy) + reaction * load.py / system.radius
     return gx * gx + gy * gy - lx * lx - ly * ly
 
 
@@ -114,9 +92,7 @@ def heading(angle: float, axes: int) -> tuple[float, float]:
 
 
 @compiled
-def slip_vector(
-    px: float, py: float, ex: float, ey: float, friction: float, radius: float, small: bool
-) -> tuple[float, float, float]:
+def slip_vector(system: System, px: float, py: float, ex: float, ey: float) -> tuple[float, float, float]:
     """Slip vector of dry sliding in the horizontal direction (ex, ey), and the ratio of full to horizontal speed."""
-    ratio = sqrt(sliding_speed2(px, py, ex, ey, radius, small))
-    return friction * ex / ratio, friction * ey / ratio, ratio
+    ratio = sqrt(sliding_speed2(system, px, py, ex, ey))
+    return system.friction * ex / ratio, system.friction * ey / ratio, ratio

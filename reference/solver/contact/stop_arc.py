@@ -11,7 +11,7 @@ from math import cos, pi, sin, sqrt
 
 from reference.solver.compiled import compiled
 from reference.solver.contact.platform import directed
-from reference.solver.system import System
+from reference.solver.system import Load, System
 
 SAMPLES_PER_TURN = 48
 GOLDEN_SECTIONS = 20  # they leave 1e-5 of a sample, and an error of the order of its square
@@ -19,35 +19,28 @@ MAX_ROUNDING_TURN = 1e-9  # of the drive: sideways acceleration that rounding ma
 
 
 @compiled
-def sideways(
-    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float
-) -> float:
+def sideways(system: System, load: Load, angle: float) -> float:
     """a . e_perp: positive when the direction turns counter-clockwise."""
     ex, ey = cos(angle), sin(angle)
-    ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, ex, ey)
+    ax, ay, _, _ = directed(system, load, 0.0, ex, ey)
     return ay * ex - ax * ey
 
 
 @compiled
-def squared_total(
-    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float
-) -> float:
+def squared_total(system: System, load: Load, angle: float) -> float:
     """Squared absolute acceleration of the platform sliding in the direction `angle` at vanishing speed."""
-    ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, cos(angle), sin(angle))
-    az = uz
+    ax, ay, _, _ = directed(system, load, 0.0, cos(angle), sin(angle))
+    az = load.uz
     if not system.small:
-        az += (px * ax + py * ay) / sqrt(system.radius**2 - px * px - py * py)
-    return (ax + ux) ** 2 + (ay + uy) ** 2 + az * az
+        az += (load.px * ax + load.py * ay) / sqrt(system.radius**2 - load.px * load.px - load.py * load.py)
+    return (ax + load.ux) ** 2 + (ay + load.uy) ** 2 + az * az
 
 
 @compiled
-def settled_direction(
-    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float,
-    no_turn: float,
-) -> float:  # fmt: skip
+def settled_direction(system: System, load: Load, angle: float, no_turn: float) -> float:
     """The direction at which the turning from `angle` ends; `angle` itself if it turns by less than no_turn."""
-    here = sideways(system, px, py, fx, fy, ux, uy, uz, angle)
-    drive = sqrt(fx * fx + fy * fy) + system.friction * abs(system.gravity + uz)
+    here = sideways(system, load, angle)
+    drive = sqrt(load.fx * load.fx + load.fy * load.fy) + system.friction * abs(system.gravity + load.uz)
     if abs(here) <= no_turn * drive:
         return angle
     sense = 1.0 if here > 0.0 else -1.0
@@ -55,26 +48,23 @@ def settled_direction(
     outside = angle
     for _ in range(SAMPLES_PER_TURN):
         outside = inside + sense * 2.0 * pi / SAMPLES_PER_TURN
-        if sense * sideways(system, px, py, fx, fy, ux, uy, uz, outside) <= 0.0:
+        if sense * sideways(system, load, outside) <= 0.0:
             break
         inside = outside
-    return turning_ends(system, px, py, fx, fy, ux, uy, uz, inside, outside)
+    return turning_ends(system, load, inside, outside)
 
 
 @compiled
-def turning_ends(
-    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float,
-    inside: float, outside: float,
-) -> float:  # fmt: skip
+def turning_ends(system: System, load: Load, inside: float, outside: float) -> float:
     """The direction between the two that does not turn, by the Illinois variant of regula falsi."""
     low, high = inside, outside
-    at_low = sideways(system, px, py, fx, fy, ux, uy, uz, low)
-    at_high = sideways(system, px, py, fx, fy, ux, uy, uz, high)
+    at_low = sideways(system, load, low)
+    at_high = sideways(system, load, high)
     for _ in range(60):
         if at_low == at_high or abs(high - low) < 1e-15:
             break
         angle = (low * at_high - high * at_low) / (at_high - at_low)
-        here = sideways(system, px, py, fx, fy, ux, uy, uz, angle)
+        here = sideways(system, load, angle)
         if here == 0.0:
             return angle
         if (here > 0.0) == (at_high > 0.0):
@@ -89,16 +79,14 @@ def turning_ends(
 
 
 @compiled
-def arc_peak(
-    system: System, px: float, py: float, fx: float, fy: float, ux: float, uy: float, uz: float, angle: float
-) -> float:
+def arc_peak(system: System, load: Load, angle: float) -> float:
     """Largest squared absolute acceleration of the platform over the arc that begins at `angle`, m^2/s^4."""
-    end = settled_direction(system, px, py, fx, fy, ux, uy, uz, angle, MAX_ROUNDING_TURN)
+    end = settled_direction(system, load, angle, MAX_ROUNDING_TURN)
     samples = 4 + int(abs(end - angle) * SAMPLES_PER_TURN / (2.0 * pi))
     stride = (end - angle) / samples
     best, top = -1.0, 0
     for n in range(samples + 1):
-        value = squared_total(system, px, py, fx, fy, ux, uy, uz, angle + n * stride)
+        value = squared_total(system, load, angle + n * stride)
         if value > best:
             best, top = value, n
     low = angle + max(top - 1, 0) * stride
@@ -107,8 +95,8 @@ def arc_peak(
     for _ in range(GOLDEN_SECTIONS):
         left = high - golden * (high - low)
         right = low + golden * (high - low)
-        at_left = squared_total(system, px, py, fx, fy, ux, uy, uz, left)
-        at_right = squared_total(system, px, py, fx, fy, ux, uy, uz, right)
+        at_left = squared_total(system, load, left)
+        at_right = squared_total(system, load, right)
         best = max(best, at_left, at_right)
         if at_left > at_right:
             high = right

@@ -6,50 +6,32 @@ from math import atan2, log, sqrt
 
 from reference.solver.chain import eliminate_chain, load_chain
 from reference.solver.collocation import STAGES
-from reference.solver.compiled import compiled, inlined
+from reference.solver.compiled import compiled
 from reference.solver.contact.friction import heading, sliding_speed2
-from reference.solver.contact.platform import directed, rest_excess
+from reference.solver.contact.platform import directed, load_in_state, rest_excess
 from reference.solver.contact.stop_arc import settled_direction, squared_total
 from reference.solver.events import first_crossing, lowest
 from reference.solver.ground import ground_at, ground_at_stages
 from reference.solver.step_control import (
     MAX_LENGTH_FACTOR,
     MIN_STEP,
-    NEWTON_FRACTION,
     begin,
     begin_with,
-    commit,
-    drive,
     first_guess,
-    length_factor,
-    next_step,
-    remaining,
-    shortened,
-    too_short,
-    unbroken,
+    plain_length,
 )
-from reference.solver.steps import moving_step, step_error
 from reference.solver.system import (
-    ANGLE,
     CREEPING,
-    HELD,
-    LENGTH,
-    LOG_SPEED,
-    OLD_LENGTH,
     REGULARIZED,
     REST,
     SLIDING,
     SOLVED,
-    STEP_LIMIT,
-    STOPPING,
-    TIME,
     UNSOLVED,
-    Array,
     Demand,
-    Record,
+    Load,
     System,
-    Work,
 )
+from reference.solver.work import SPEED2, VELOCITY, Work
 
 MAX_FIRST_STEP = 0.2  # of the period (Demand.period): longest first step of a slide
 CAUTIOUS_GROWTH = 2.0  # largest growth of a step that had to be shortened
@@ -64,59 +46,77 @@ STIFF_SPEED_FRACTION = 0.03
 MIN_ACCELERATION_FRACTION = 1e-12  # of the drive: a slide that begins has a direction
 BARELY_SLIPPING_EXCESS = 1e-4  # of the squared friction limit: a slide with less excess need not begin yet
 NEGLIGIBLE_STEP = 1e-6  # of the period, or of a step: sliding that cannot begin with a step this long moves nothing
+NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP  # of the period: rest in place of such sliding
+MAX_LENGTH_RATIO = 3.0  # of the step before over one that failed: beyond it the former's polynomial is no guess
 
 
 @compiled
 def speed2(system: System, work: Work) -> float:
     """Squared sliding speed in the state x, v."""
-    return sliding_speed2(work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1], system.radius, system.small)
+    square: float = sliding_speed2(system, work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1])
+    return square
 
 
 @compiled
-def guess_onset(system: System, phase: Array, work: Work, h: float) -> None:
-    """Stage accelerations of a slide that begins: what the drive leaves along the direction of the onset."""
-    ground_at_stages(system, phase, work.run[TIME], h, work)
-    eliminate_chain(system, work, h)
-    load_chain(system, work, h)
-    angle = work.run[ANGLE]
-    ex, ey = heading(angle, system.axes)
-    for k in range(STAGES):
-        ax, ay, _, _ = directed(
-            system, work.x[0, 0], work.x[0, 1], work.free[0, k], work.free[1, k],
-            work.ground[0, k], work.ground[1, k], system.gravity + work.ground[2, k], 0.0, ex, ey,
-        )  # fmt: skip
-        along = max(ax * ex + ay * ey, MIN_ACCELERATION_FRACTION * (abs(work.free[0, k]) + abs(work.free[1, k])))
-        work.a[0, 0, k] = along * ex
-        work.a[0, 1, k] = along * ey
-
-
-@compiled
-def begin_slide(system: System, phase: Array, work: Work, demand: Demand) -> None:
-    """At rest: the direction of the slide, its acceleration at once, and its share in the peak."""
-    ux, uy, uz = ground_at(system, phase, work.run[TIME])
-    fx, fy = drive(system, work, ux, uy)
-    px, py = work.x[0, 0], work.x[0, 1]
-    reaction = system.mass_ratio * (system.gravity + uz)
-    gx, gy = fx - reaction * px / system.radius, fy - reaction * py / system.radius
-    angle = settled_direction(system, px, py, fx, fy, ux, uy, uz, atan2(gy, gx), 0.0)
+def begin_sliding(system: System, work: Work, demand: Demand) -> None:
+    """The accelerations of the state; at rest the direction of the slide, and its share in the peak."""
+    begin(system, work, SLIDING)
+    work.growth = MAX_LENGTH_FACTOR
+    work.start2 = speed2(system, work)
+    if work.start2 > 0.0:
+        return
+    work.length = min(work.length, MAX_FIRST_STEP * demand.period)
+    ground = ground_at(system, work, work.time)
+    load = load_in_state(system, work, ground)
+    reaction = system.mass_ratio * (system.gravity + ground.z)
+    gx, gy = load.fx - reaction * load.px / system.radius, load.fy - reaction * load.py / system.radius
+    work.angle = settled_direction(system, load, atan2(gy, gx), 0.0)
     if demand.cutoff == 0.0:
-        onset = squared_total(system, px, py, fx, fy, ux, uy, uz, angle)
+        onset = squared_total(system, load, work.angle)
         if onset > work.best[0]:
             work.best[0] = onset
             work.reading_error[0] = 0.0
-    work.run[ANGLE] = angle
-    ax, ay, _, _ = directed(system, px, py, fx, fy, ux, uy, system.gravity + uz, 0.0, *heading(angle, system.axes))
-    begin_with(system, work, ax, ay, ux, uy, uz, False)
+    ex, ey = heading(work.angle, system.axes)
+    ax, ay, _, _ = directed(system, load, 0.0, ex, ey)
+    begin_with(system, work, ground, ax, ay, False)
 
 
 @compiled
-def barely_slips(system: System, phase: Array, work: Work) -> bool:
-    """Whether the drive exceeds the friction limit by so little that a slide need not begin yet."""
-    ux, uy, uz = ground_at(system, phase, work.run[TIME])
-    fx, fy = drive(system, work, ux, uy)
-    px, py = work.x[0, 0], work.x[0, 1]
-    excess, reaction = rest_excess(system, px, py, fx, fy, ux, uy, system.gravity + uz)
-    return excess <= BARELY_SLIPPING_EXCESS * (system.friction * reaction) ** 2
+def sliding_length(system: System, work: Work, demand: Demand) -> float:
+    """Length of the next step, s; 0 where the slide is so near its stop that stretched time begins."""
+    h: float = plain_length(system, work, demand)
+    vx, vy = work.v[0, 0], work.v[0, 1]
+    speed = sqrt(vx * vx + vy * vy)
+    if speed == 0.0:
+        return h
+    work.angle = atan2(vy, vx)
+    braking = -(vx * work.a0[0, 0] + vy * work.a0[0, 1]) / speed
+    if braking > 0.0 and speed < max(STOP_WITHIN_STEPS * h, STOP_WITHIN_TIME * demand.period) * braking:
+        if system.fastest * speed <= MAX_CHAIN_ANGLE * braking:
+            work.log_speed = log(speed)
+            return 0.0
+        h = min(h, max(0.5 * speed / braking, MIN_STEP * demand.period))
+    return h
+
+
+@compiled
+def guess_slide(system: System, work: Work, h: float) -> None:
+    """Stage accelerations to start with; of a slide that begins, what the drive leaves along its direction."""
+    speed = sqrt(work.v[0, 0] ** 2 + work.v[0, 1] ** 2)
+    if speed >= STIFF_SPEED_FRACTION * h * system.friction * system.mass_ratio * system.gravity:
+        first_guess(work, h)
+        return
+    ground_at_stages(system, work, h)
+    eliminate_chain(system, work, h)
+    load_chain(system, work, h)
+    ex, ey = heading(work.angle, system.axes)
+    ground, free = work.ground, work.free
+    for k in range(STAGES):
+        load = Load(work.x[0, 0], work.x[0, 1], free[0, k], free[1, k], ground[0, k], ground[1, k], ground[2, k])
+        ax, ay, _, _ = directed(system, load, 0.0, ex, ey)
+        along = max(ax * ex + ay * ey, MIN_ACCELERATION_FRACTION * (abs(load.fx) + abs(load.fy)))
+        work.a[0, 0, k] = along * ex
+        work.a[0, 1, k] = along * ey
 
 
 @compiled
@@ -124,87 +124,53 @@ def turns_too_far(work: Work) -> bool:
     """Whether the velocity turns too far between two stages to be a smooth slide."""
     bx, by = work.v[0, 0], work.v[0, 1]
     for k in range(STAGES):
-        vx, vy = work.stage[2, k], work.stage[3, k]
+        vx, vy = work.stage[VELOCITY, k], work.stage[VELOCITY + 1, k]
         if bx * vx + by * vy < MIN_TURN_COSINE * sqrt((bx * bx + by * by) * (vx * vx + vy * vy)):
             return True
         bx, by = vx, vy
     return False
 
 
-@inlined
-def sliding_phase(system: System, phase: Array, work: Work, demand: Demand, record: Record) -> tuple[int, int]:
-    """(how it went, what the contact does next); see run.py."""
-    run = work.run
-    begin(system, phase, work, SLIDING)
-    start2 = speed2(system, work)
-    if start2 == 0.0:
-        begin_slide(system, phase, work, demand)
-        run[LENGTH] = min(run[LENGTH], MAX_FIRST_STEP * demand.period)
-    growth = MAX_LENGTH_FACTOR
-    floor2 = (system.v_reg * (1.0 - LEVEL_TOLERANCE)) ** 2 if system.law == REGULARIZED else 0.0
-    counted2 = demand.cutoff * demand.cutoff
-    while remaining(system, work, demand) > 0.0:
-        if not next_step(work, demand):
-            return STEP_LIMIT, SLIDING
-        h = min(run[LENGTH], unbroken(system, work, demand))
-        vx, vy = work.v[0, 0], work.v[0, 1]
-        speed = sqrt(vx * vx + vy * vy)
-        braking = -(vx * work.a0[0, 0] + vy * work.a0[0, 1]) / speed if speed > 0.0 else 0.0
-        if braking > 0.0 and speed < max(STOP_WITHIN_STEPS * h, STOP_WITHIN_TIME * demand.period) * braking:
-            if system.fastest * speed <= MAX_CHAIN_ANGLE * braking:
-                run[ANGLE] = atan2(vy, vx)
-                run[LOG_SPEED] = log(speed)
-                return SOLVED, STOPPING
-            h = min(h, max(0.5 * speed / braking, MIN_STEP * demand.period))
-        if speed < STIFF_SPEED_FRACTION * h * system.friction * system.mass_ratio * system.gravity:
-            if speed > 0.0:
-                run[ANGLE] = atan2(vy, vx)
-            guess_onset(system, phase, work, h)
-        else:
-            first_guess(work, h)
-        code = moving_step(
-            system, phase, work, SLIDING, run[TIME], h, NEWTON_FRACTION * demand.tolerance * work.scale[0]
-        )
-        if code == SOLVED and turns_too_far(work):
-            code = UNSOLVED
-        if code != SOLVED:
-            if speed == 0.0 and h < NEGLIGIBLE_STEP * demand.period:
-                if not barely_slips(system, phase, work):
-                    return UNSOLVED, SLIDING
-                run[HELD] = 10.0 * NEGLIGIBLE_STEP * demand.period
-                return SOLVED, REST
-            if too_short(demand, h, code):
-                return code, SLIDING
-            run[LENGTH] = 0.3 * h
-            growth = CAUTIOUS_GROWTH
-            run[OLD_LENGTH] = 0.0 if run[OLD_LENGTH] > 3.0 * h else run[OLD_LENGTH]
-            continue
-        error = step_error(work, demand.tolerance)
-        factor = length_factor(error, demand.tolerance)
-        if not error <= demand.tolerance:
-            if not shortened(work, demand, h, factor):
-                return UNSOLVED, SLIDING
-            continue
-        if lowest(work.stage[7]) < NEAR_LEVEL_FACTOR * floor2:
-            slowed = first_crossing(work.stage[7], max(start2, floor2 * (1.0 + 1e-9)), floor2)
-            if slowed < NEGLIGIBLE_STEP:
-                return SOLVED, CREEPING
-            if slowed < 1.0 - NEGLIGIBLE_STEP:
-                run[LENGTH] = h * slowed
-                continue
-        low, high = 0.0, 1.0
-        end2 = work.stage[7, STAGES - 1]
-        if start2 < counted2 and end2 < counted2:
-            high = 0.0
-        elif start2 < counted2:
-            low = min(1.0, first_crossing(work.stage[7], start2, counted2))
-        elif end2 < counted2:
-            high = min(1.0, first_crossing(work.stage[7], start2, counted2))
-        commit(work, record, h, SLIDING, low, high)
-        start2 = end2
-        if end2 < floor2 * (1.0 + LEVEL_TOLERANCE):
-            return SOLVED, CREEPING
-        if h * factor > run[LENGTH] or h == run[LENGTH]:
-            run[LENGTH] = h * min(factor, growth)
-        growth = MAX_LENGTH_FACTOR
+@compiled
+def barely_slips(system: System, work: Work) -> bool:
+    """Whether the drive exceeds the friction limit by so little that a slide need not begin yet."""
+    excess, reaction = rest_excess(system, load_in_state(system, work, ground_at(system, work, work.time)))
+    return excess <= BARELY_SLIPPING_EXCESS * (system.friction * reaction) ** 2
+
+
+@compiled
+def after_failed_slide(system: System, work: Work, demand: Demand, h: float) -> tuple[int, int]:
+    """(SOLVED to go on, or UNSOLVED; what the contact does then) after a step that failed."""
+    if work.v[0, 0] == 0.0 and work.v[0, 1] == 0.0 and h < NEGLIGIBLE_STEP * demand.period:
+        if not barely_slips(system, work):
+            return UNSOLVED, SLIDING
+        work.held = NEGLIGIBLE_HOLD * demand.period
+        return SOLVED, REST
+    work.growth = CAUTIOUS_GROWTH
+    work.old_length = 0.0 if work.old_length > MAX_LENGTH_RATIO * h else work.old_length
     return SOLVED, SLIDING
+
+
+@compiled
+def slowing_within(system: System, work: Work, h: float) -> tuple[float, int]:
+    """Length of the step up to where the slide comes down to v_reg, 0 at its start; what the contact does then."""
+    if system.law != REGULARIZED:
+        return h, SLIDING
+    floor2 = (system.v_reg * (1.0 - LEVEL_TOLERANCE)) ** 2
+    if lowest(work.stage[SPEED2]) < NEAR_LEVEL_FACTOR * floor2:
+        start = max(work.start2, floor2 * (1.0 + LEVEL_TOLERANCE))
+        slowed = first_crossing(work, work.stage[SPEED2], start, floor2)
+        if slowed < NEGLIGIBLE_STEP:
+            return 0.0, CREEPING
+        if slowed < 1.0 - NEGLIGIBLE_STEP:
+            return h * slowed, SLIDING
+    return h, CREEPING if work.stage[SPEED2, STAGES - 1] < floor2 * (1.0 + LEVEL_TOLERANCE) else SLIDING
+
+
+@compiled
+def adapt_slide(work: Work, h: float, factor: float) -> None:
+    """The length of the next step after one that was made."""
+    if h * factor > work.length or h == work.length:
+        work.length = h * min(factor, work.growth)
+    work.growth = MAX_LENGTH_FACTOR
+    work.start2 = work.stage[SPEED2, STAGES - 1]

@@ -42,7 +42,7 @@ def test_every_number_of_a_scene_has_a_range():
     plain = {key for key in KEYS[""] if key == "duration"}
     tables = {"isolator": "isolator", "bodies": "bodies", "excitation": "excitation.two frequencies"}
     numbers = plain | {f"{name}.{key}" for name, table in tables.items() for key in KEYS[table]}
-    assert numbers == set(SCENE)
+    assert numbers - {"excitation.scale"} == set(SCENE), "a scale is bounded by the accelerations that it makes"
 
 
 @pytest.mark.parametrize("key", SCENE)

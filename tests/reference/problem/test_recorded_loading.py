@@ -143,9 +143,9 @@ def test_the_hash_is_of_the_samples_not_of_their_file(folder):
         ('record = "a.csv"\nperiods = [1.0, 2.0]', "excitation.periods", "a record takes the place"),
         ('record = "a.csv"\nsamples = [[0.0, 0.0, 0.0, 0.0]]', "excitation.samples", "unknown key"),
         ('record = "a.csv"\nscale = 0.0', "excitation.scale", "greater than 0"),
-        ('record = "a.csv"\nscale = 1e308', "excitation.scale", "must leave every sample finite"),
+        ('record = "a.csv"\nscale = 1e308', "excitation.scale", "must leave every acceleration finite"),
         ('record = "a.csv"\nscales = 2.0', "excitation.scales", "unknown key"),
-        ("scale = 2.0", "excitation.scale", "unknown key"),
+        ("scale = 2.0", "excitation.amplitudes", "required"),
     ],
 )
 def test_a_wrong_record_is_refused_in_one_line(folder, excitation, key, said):

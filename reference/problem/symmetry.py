@@ -1,7 +1,7 @@
 """
 Surfaces from half or a quarter of their points, or one line of them, where a symmetry of the motion is exact.
 
-Which symmetries a scene has is decided by reference.problem.reductions; here they become places on a grid of phases.
+Which symmetries a scene has is decided by `reductions`; here they become places on a grid of phases.
 """
 
 from __future__ import annotations
@@ -11,9 +11,30 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.problem import Amplification, Scene, half_turn, own_axes, phase_grid, unused_harmonics
+from reference.problem.phases import phase_grid
+from reference.problem.reductions import half_turn, own_axes, unused_harmonics
+from reference.problem.result import Amplification
+from reference.problem.scene import Scene
 
 Array = NDArray[np.float64]
+
+
+def shifts(scene: Scene) -> Array:
+    """
+    By what phase pairs may be shifted without any change of mu.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    ndarray, (K, 2), rad
+        The first is no shift. A harmonic without amplitude permits any shift of its phase besides.
+    """
+    if own_axes(scene):
+        return np.pi * np.array([[0.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.0, 0.0]])
+    return np.pi * np.array([[0.0, 0.0], [1.0, 1.0]][: 2 if half_turn(scene) else 1])
 
 
 def sources(scene: Scene, grid: int) -> NDArray[np.intp]:

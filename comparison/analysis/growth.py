@@ -1,0 +1,167 @@
+"""
+How the cost of a phase pair grows with bodies and duration, and that of a call with its phase pairs.
+
+Every measurement is one task with a limit on its processor time. An exponent is the slope of a line through the
+logarithms of the larger half of the values, where fixed costs count least.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from comparison.analysis.protocol import Analysis
+from comparison.analysis.tradeoff.measure import Measurement, measure, sample, without_value
+from comparison.execution.task import Task
+from comparison.execution.task_results import TaskResults
+from comparison.study.costs import USUAL
+from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, Model
+from comparison.study.study import Study
+from reference.problem import Scene
+
+BODIES = (2, 4, 8, 16, 32, 64, 100)
+DURATIONS = (10.0, 30.0, 100.0, 300.0, 1000.0)  # s
+PHASES = (1, 4, 16, 64, 256)
+POINTS = {"reference": 16, "engine": 1}  # phase pairs of a measurement over bodies and durations
+TALL_DURATION = 5.0  # s, of scenes with many bodies
+SHAKEN = 3.0  # times the amplitudes of the scene: else friction holds a tall platform, which costs nothing
+STOREY = 1.0  # m between the bodies of a tall scene; its ring is as wide as it is high
+LIMIT = 60.0  # s of processor time of one measurement
+MAX_WORK = 1e9  # steps of the engine: the limit ends what takes too long, not a refusal
+
+
+def tall(scene: Scene, bodies: int) -> Scene:
+    """The scene with its upper body cut into so many less one, each above the other on links of the same period."""
+    table = scene.model_dump(exclude_none=True)
+    first, second = table["bodies"][0], table["bodies"][min(1, len(table["bodies"]) - 1)]
+    height = second.get("height", STOREY)
+    mass = second["mass"] / (bodies - 1)
+    above = [{**second, "mass": mass, "height": height + STOREY * number} for number in range(bodies - 1)]
+    isolator = {**table["isolator"], "ring": max(table["isolator"].get("ring", 1.0), STOREY * bodies)}
+    changed = {"isolator": isolator, "bodies": [first, *above], "duration": TALL_DURATION, "acceptance": {}}
+    return Scene.model_validate(table | changed).with_values({"excitation.amplitudes": SHAKEN * scene.amplitudes})
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What grows. scene: of a value, from the scene of the study. points: phase pairs of a measurement."""
+
+    name: str
+    unit: str
+    values: tuple[float, ...]
+    scene: Callable[[Scene, float], Scene]
+    points: Callable[[Model, float], int]
+    models: tuple[Model, ...]
+
+
+def _usual_points(model: Model, value: float) -> int:
+    return POINTS[model.side]
+
+
+QUANTITIES = (
+    Quantity(
+        "bodies", "", BODIES, lambda scene, n: tall(scene, int(n)), _usual_points, (EXACT, TRANSLATIONAL, SPATIAL)
+    ),
+    Quantity(
+        "duration",
+        "s",
+        DURATIONS,
+        lambda scene, duration: scene.with_values({"duration": duration}),
+        _usual_points,
+        (EXACT, TRANSLATIONAL, SPATIAL),
+    ),
+    Quantity("phase pairs", "", PHASES, lambda scene, n: scene, lambda model, n: int(n), (EXACT,)),
+)
+
+
+@dataclass(frozen=True)
+class Series:
+    """Processor time, s: of a phase pair, or of a call with so many. NaN: more than LIMIT, or no answer."""
+
+    quantity: str
+    unit: str
+    model: str
+    values: tuple[float, ...]
+    seconds: tuple[float, ...]
+
+    @property
+    def slope(self) -> tuple[float, float]:
+        """Exponent, and its standard error, of the larger half of the known values; NaN for fewer than three."""
+        return fitted_slope(self.values, self.seconds)
+
+
+def fitted_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:
+    """
+    Exponent of seconds over values, and its standard error.
+
+    Parameters
+    ----------
+    values, seconds : sequence of float
+        NaN where there is no measurement.
+
+    Returns
+    -------
+    tuple of float
+        Of the larger half of the known values, three at least; NaN for fewer.
+
+    Examples
+    --------
+    >>> [round(number, 6) for number in fitted_slope([1, 2, 4, 8], [3, 12, 48, 192])]
+    [2.0, 0.0]
+    """
+    known = np.isfinite(seconds)
+    x, y = np.log(np.asarray(values, float)[known]), np.log(np.asarray(seconds, float)[known])
+    if len(x) < 3:
+        return float("nan"), float("nan")
+    larger = slice(-max(3, (len(x) + 1) // 2), None)
+    x, y = x[larger] - x[larger].mean(), y[larger] - y[larger].mean()
+    slope = float(x @ y / (x @ x))
+    scatter = float(np.sqrt(((y - slope * x) ** 2).sum() / max(1, len(x) - 2) / (x @ x)))
+    return slope, scatter
+
+
+@dataclass(frozen=True)
+class Growth(Analysis[list[Series]]):
+    """The series of the first scene with phases; quantities: what grows."""
+
+    key, stage = "growth", "growth"
+    quantities: Sequence[Quantity] = QUANTITIES
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """One task for every quantity, model and value."""
+        return [task for _, _, tasks in self._series(study) for task in tasks]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Series]:
+        """In the order of quantities and models."""
+        collected = []
+        for quantity, model, tasks in self._series(study):
+            answers = [results.value(task, without_value) for task in tasks]
+            seconds = tuple(
+                answer.seconds / (1 if quantity.name == "phase pairs" else len(answer.mu))
+                if np.isfinite(answer.mu).all()
+                else float("nan")
+                for answer in answers
+            )
+            collected.append(Series(quantity.name, quantity.unit, model.title, quantity.values, seconds))
+        return collected
+
+    def _series(self, study: Study) -> list[tuple[Quantity, Model, list[Task]]]:
+        scene = study.phased[0]
+        return [
+            (quantity, model, [self._task(quantity, model, scene, value) for value in quantity.values])
+            for quantity in self.quantities
+            for model in quantity.models
+            if model.applies(scene)
+        ]
+
+    def _task(self, quantity: Quantity, model: Model, scene: Scene, value: float) -> Task:
+        settings: dict[str, Any] = {**model.settings, "tolerance": USUAL[model.side]}
+        if model.side == "engine":
+            settings["max_work"] = MAX_WORK
+        phases = sample(quantity.points(model, value))
+        measurement = Measurement(quantity.scene(scene, value), (model.amplification, settings), 0, phases)
+        return Task(measure, measurement, self.stage, LIMIT / 4.0, scene, timeout=LIMIT)

@@ -1,0 +1,195 @@
+"""
+The worst phases of every scene: the largest mu_i and displacement over all phases, and what the engine has there.
+
+The search of `reference.worst_phases` is made for every model of the equations. Beside the largest regularized mu_i,
+the engine under the same assumptions is searched in a square around these phases, so that its own maximum nearby is
+known, too.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from comparison.analysis.protocol import Analysis
+from comparison.execution.task import Task, TaskResult
+from comparison.execution.task_results import TaskResults
+from comparison.study.batches import imported
+from comparison.study.costs import seconds_per_point
+from comparison.study.models import Model, models_of, pairs_of
+from comparison.study.study import Study
+from reference import worst_phases
+from reference.problem import Outcome, Scene, ground_peak
+from reference.problem.climb import Climb, Points, climb_on
+
+Array = NDArray[np.float64]
+
+TOLERANCE = 1e-5  # relative error of mu by the equations
+POINTS = 2000  # of the equations that a search takes
+ENGINE_HALF_WIDTH = 0.02  # rad, of the square in which the engine is searched
+ENGINE_NODES = 3  # of its polynomial along each axis
+SOLVED_BY = "reference:amplification"  # the models that `reference.worst_phases` searches
+NOWHERE = (math.nan, math.nan)
+
+
+@dataclass(frozen=True)
+class Worst:
+    """
+    The largest value of one model over all phases.
+
+    Attributes
+    ----------
+    scene : str
+    model : str
+        Key of the model.
+    quantity : str
+        "amplification" or "displacement".
+    body : int
+        From 1.
+    value, error : float
+        mu_i, or m, with its estimated absolute error. NaN without an answer.
+    phases : tuple of float, rad
+        (alpha_1, alpha_2).
+    kind : str
+        "smooth", "kink" or "jump" (`reference.PhaseMaximum`), or "nearby": the largest of the engine beside `start`.
+    side : tuple of float
+        From which direction a jump is approached. NaN otherwise.
+    runner_up : float
+        The highest other value at which a climb ended. NaN without one.
+    climbs, reached, evaluations : int
+        Climbs, those that ended at the maximum, and phase pairs that were computed.
+    at_start, start_error : float
+        Of the engine: its value at the worst phases of the equations, with its error. NaN otherwise.
+    reason : str
+        Why there is no value, or "".
+    """
+
+    scene: str
+    model: str
+    quantity: str
+    body: int
+    value: float = math.nan
+    error: float = math.nan
+    phases: tuple[float, float] = NOWHERE
+    kind: str = ""
+    side: tuple[float, float] = NOWHERE
+    runner_up: float = math.nan
+    climbs: int = 0
+    reached: int = 0
+    evaluations: int = 0
+    at_start: float = math.nan
+    start_error: float = math.nan
+    reason: str = ""
+
+
+Arguments = tuple[Scene, Model, Model | None, str, int, float]  # model, engine, quantity, body, tolerance of the engine
+
+
+class WorstPhases(Analysis[list[Worst]]):
+    """One search for every scene, body and model; one more for the displacement."""
+
+    key, stage = "worst_phases", "worst phases"
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """Searches of the exact equations, and of the engine beside its counterpart."""
+        tasks = []
+        for scene in study.phased:
+            equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SOLVED_BY]
+            engines = {
+                pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"
+            }
+            searches = [
+                (model, engines.get(model.key), "amplification", body)
+                for model in equations
+                for body in range(1, len(scene.bodies) + 1)
+            ]
+            searches += [(model, None, "displacement", 1) for model in equations if _exact_supremum(model)]
+            for model, engine, quantity, body in searches:
+                seconds = POINTS * seconds_per_point(scene, model)
+                if engine is not None:
+                    seconds += (ENGINE_NODES**2 + 2) * seconds_per_point(scene, engine)
+                argument = (scene, model, engine, quantity, body, study.tolerance)
+                tasks.append(Task(worst_of, argument, self.stage, seconds, scene))
+        return tasks
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Worst] | None:
+        """In the order of the tasks; None for a study without phases."""
+        if not study.phased:
+            return None
+        return [worst for task in self.tasks(study) for worst in results.value(task, _without_value)]
+
+
+def _exact_supremum(model: Model) -> bool:
+    """Whether a model solves the exact equations with friction that sticks, and reads every value."""
+    return model.settings == {"equations": "exact", "regularization": None}
+
+
+def worst_of(task: Arguments) -> list[Worst]:
+    """The largest value of the equations, and of the engine beside it. Runs inside a worker process."""
+    scene, model, engine, quantity, body, tolerance = task
+    settings: dict[str, Any] = dict(model.settings)
+    maximum = worst_phases(scene, body, quantity, tolerance=TOLERANCE, **settings)
+    worst = Worst(scene.name, model.key, quantity, body, **vars(maximum))
+    return [worst] if engine is None else [worst, _engine_beside(worst, scene, engine, tolerance)]
+
+
+def _without_value(task: Arguments, failed: TaskResult) -> list[Worst]:
+    scene, model, engine, quantity, body, _ = task
+    models = [model] if engine is None else [model, engine]
+    return [Worst(scene.name, each.key, quantity, body, reason=failed.reason) for each in models]
+
+
+@dataclass
+class _Engine:
+    """mu of one body by a model, as a surface to climb on."""
+
+    scene: Scene
+    model: Model
+    body: int  # from 0
+    tolerance: float
+    evaluations: int = 0
+    outcome: str = ""  # of the last phase pair without an answer
+
+    def denominator(self, phases: Array) -> Array:
+        return ground_peak(self.scene, phases)
+
+    def at(self, phases: Array) -> Points:
+        amplification = imported(self.model.amplification)
+        result = amplification(self.scene, phases, tolerance=self.tolerance, **self.model.settings)
+        self.evaluations += len(phases)
+        denominator = self.denominator(phases)
+        lacking = [status for status in result.status if not status.startswith(Outcome.OK.value)]
+        self.outcome = lacking[-1] if lacking else self.outcome
+        return Points(phases, result.mu[:, self.body] * denominator, denominator, result.error[:, self.body])
+
+
+def _engine_beside(worst: Worst, scene: Scene, model: Model, tolerance: float) -> Worst:
+    """The engine at the worst phases of the equations, and its largest value in a square around them."""
+    engine = _Engine(scene, model, worst.body - 1, model.tolerance(tolerance))
+    start = engine.at(np.array([worst.phases]))
+    climb = Climb(start.phases[0], float(start.value[0]), float(start.error[0]), ENGINE_HALF_WIDTH)
+    climb_on(engine, [climb], ENGINE_NODES)
+    if not math.isfinite(climb.value):
+        return Worst(scene.name, model.key, worst.quantity, worst.body, reason=engine.outcome)
+    alpha1, alpha2 = (climb.phases % (2.0 * np.pi)).tolist()
+    known = math.isfinite(float(start.value[0]))
+    return Worst(
+        scene=scene.name,
+        model=model.key,
+        quantity=worst.quantity,
+        body=worst.body,
+        value=climb.value,
+        error=climb.error,
+        phases=(alpha1, alpha2),
+        kind="nearby",
+        climbs=1,
+        reached=1,
+        evaluations=engine.evaluations,
+        at_start=float(start.value[0]) if known else math.nan,
+        start_error=float(start.error[0]) if known else math.nan,
+    )

@@ -1,0 +1,102 @@
+"""`python -m comparison.tradeoff --growth`: cost against bodies, duration, phase pairs and workers, with slopes."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+
+import numpy as np
+from rich.console import Console
+
+from comparison.analysis.growth import Growth, Series
+from comparison.analysis.tradeoff.measure import Measurement, measure, sample
+from comparison.cli.computing import computed
+from comparison.cli.terminal import new_table
+from comparison.execution.executors import Pool, cores
+from comparison.execution.output import made_by
+from comparison.execution.processes import process_pool
+from comparison.study.models import EXACT
+from comparison.study.study import Study
+from reference.problem import Scene
+
+FILE, PICTURE = "growth.json", "growth.png"
+FILES = (FILE, PICTURE, "growth.pdf")
+TOLERANCE = 1e-3  # of a study; every measurement has one of its own
+CALLS, PAIRS = 16, 64  # of the equations, shared by the workers
+
+
+def measured_growth(
+    scene: Scene, options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
+) -> list[Series]:
+    """
+    All series of a scene; what is stored is not measured again, but for the workers.
+
+    Parameters
+    ----------
+    scene : Scene
+    options : argparse.Namespace
+        Of the command line.
+    words : sequence of str
+        The command line.
+    console : Console
+    executor : Executor or callable
+        What makes the processes of this machine, or an executor in their place.
+
+    Returns
+    -------
+    list of Series
+    """
+    growth, study = Growth(), Study((scene,), 1, TOLERANCE)
+    models = {task.argument.function[0] for task in growth.tasks(study)}
+    results = computed("tradeoff", options, words, growth.tasks(study), models, console, executor)
+    return [*growth.collect(study, None, results), by_workers(scene, process_pool)]
+
+
+def by_workers(scene: Scene, pool: Callable[[int], Executor], most: int | None = None) -> Series:
+    """Wall time of the same calls of the equations with 1, 2, 4 ... workers of this machine."""
+    most = most or cores()
+    counts = sorted({*(2**n for n in range(most.bit_length()) if 2**n <= most), most})
+    settings = {**EXACT.settings, "tolerance": 1e-6}
+    call = Measurement(scene, (EXACT.amplification, settings), 0, sample(PAIRS))
+    seconds = []
+    for workers in counts:
+        with pool(workers) as executor:
+            list(executor.map(measure, [call] * 2 * workers))  # every worker is warm
+            begin = time.monotonic()
+            list(executor.map(measure, [call] * CALLS))
+            seconds.append(time.monotonic() - begin)
+    return Series("workers", "", EXACT.title, tuple(map(float, counts)), tuple(seconds))
+
+
+def growth_files(series: Sequence[Series]) -> dict[str, bytes]:
+    """Table and figure."""
+    from comparison.report.figures.growth import draw_growth  # plotting: not needed to refuse
+
+    listed = [
+        {
+            "quantity": each.quantity,
+            "unit": each.unit,
+            "model": each.model,
+            "values": each.values,
+            "seconds": [value if np.isfinite(value) else None for value in each.seconds],
+            "slope": each.slope[0] if np.isfinite(each.slope[0]) else None,
+        }
+        for each in series
+    ]
+    files = made_by(lambda folder: draw_growth(folder / PICTURE, series))
+    return {FILE: (json.dumps(listed, indent=1) + "\n").encode(), **files}
+
+
+def print_growth(console: Console, series: Sequence[Series]) -> None:
+    """A row for every value, with the slope of its series."""
+    table = new_table("quantity", "model", "value", "s", "slope")
+    for each in series:
+        slope, error = each.slope
+        for place, (value, seconds) in enumerate(zip(each.values, each.seconds)):
+            known = f"{seconds:.3g}" if np.isfinite(seconds) else "no answer"
+            last = place == len(each.values) - 1 and np.isfinite(slope)
+            table.add_row(each.quantity, each.model, f"{value:g}", known, f"{slope:.2f} ± {error:.2f}" if last else "")
+    console.print(table)

@@ -1,0 +1,82 @@
+"""Drawings of what the analyses say: made by the workers, kept like every result, and drawn here if that failed."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import xarray as xr
+
+from comparison.analysis.assumptions.variations import Cell
+from comparison.analysis.completion import Completion
+from comparison.execution.task import Task
+from comparison.report.figures import assumptions, print_maps
+from comparison.report.figures.pictures import SHOWN, Files, Pictures
+from comparison.report.findings import Findings
+from comparison.study.models import Model
+from reference.problem import Scene
+
+SECONDS = {"maps": 0.7, "assumptions": 0.4}  # of drawing one, recorded beside `pictures.SECONDS`
+
+
+@dataclass(frozen=True)
+class PrintMaps:
+    """The maps of a scene for report.pdf; the fields are the arguments of `draw_maps`."""
+
+    surfaces: xr.Dataset
+    scene: Scene
+    models: tuple[Model, Model]
+    bodies: Sequence[int]
+    completed: Sequence[Completion]
+
+
+@dataclass(frozen=True)
+class AssumptionFigure:
+    """How far the assumptions carry in a scene."""
+
+    scene: Scene
+    cells: Sequence[Cell]
+
+
+def map_task(findings: Findings, scene: Scene, models: tuple[Model, Model], bodies: Sequence[int]) -> Task:
+    """The maps of two models of a scene."""
+    completed = [surface for surface in findings.completions if surface.scene == scene.name]
+    shown = findings.surfaces[SHOWN].sel(scene=[scene.name])
+    return _task(draw_print_maps, PrintMaps(shown, scene, models, tuple(bodies), completed), SECONDS["maps"])
+
+
+def assumption_tasks(findings: Findings) -> list[Task]:
+    """One figure for each scene whose assumptions were varied."""
+    if findings.assumptions is None:
+        return []
+    cells = findings.assumptions.cells
+    return [
+        _task(draw_assumption_figure, AssumptionFigure(scene, cells), SECONDS["assumptions"])
+        for scene in findings.assumptions.scenes
+    ]
+
+
+def drawn(findings: Findings, task: Task) -> Files:
+    """The files of a task: from its worker, or drawn now."""
+    files: Files = findings.drawings.get(task.key) or task.function(task.argument)
+    return files
+
+
+def draw_print_maps(maps: PrintMaps) -> Files:
+    """One SVG. Runs inside a worker process."""
+    content = print_maps.draw_maps(maps.surfaces, maps.scene, maps.models, maps.bodies, maps.completed)
+    return (("maps.svg", content),)
+
+
+def draw_assumption_figure(figure: AssumptionFigure) -> Files:
+    """PNG and PDF. Runs inside a worker process."""
+    with tempfile.TemporaryDirectory() as name:
+        place = Path(name) / assumptions.assumption_figure_name(figure.scene)
+        assumptions.draw_assumptions(place, figure.scene, figure.cells)
+        return tuple((file.name, file.read_bytes()) for file in sorted(Path(name).iterdir()))
+
+
+def _task(function: object, argument: object, seconds: float) -> Task:
+    return Task(function, argument, Pictures.stage, seconds, needs_compiled_reference=False)  # type: ignore[arg-type]

@@ -1,0 +1,67 @@
+"""Nested grids of phases: every grid is part of the next finer one, so that no phase pair is computed twice."""
+
+from __future__ import annotations
+
+from functools import cache
+from itertools import accumulate
+from operator import mul
+
+import numpy as np
+from numpy.typing import NDArray
+
+FIRST_HALVINGS = 3  # the coarsest grids double: 2, 4, 8 phases per axis
+
+
+@cache
+def nested_grids(grid: int) -> tuple[int, ...]:
+    """
+    Grids from coarse to fine, each a part of the next, the last one with `grid` phases per axis.
+
+    Parameters
+    ----------
+    grid : int
+        Phases per axis.
+
+    Returns
+    -------
+    tuple of int
+        Phases per axis. Those of grids that have a common part of the chain share it.
+
+    Examples
+    --------
+    >>> nested_grids(48), nested_grids(96), nested_grids(7)
+    ((2, 4, 8, 24, 48), (2, 4, 8, 24, 48, 96), (7,))
+    """
+    factors, rest = [], grid
+    for prime in range(2, grid + 1):
+        while rest % prime == 0:
+            factors.append(prime)
+            rest //= prime
+    halvings = factors.count(2)
+    odd = [factor for factor in factors if factor != 2]
+    first = [2] * min(halvings, FIRST_HALVINGS)
+    return tuple(accumulate([*first, *odd, *[2] * (halvings - len(first))], mul)) or (1,)
+
+
+def levels(grid: int) -> NDArray[np.intp]:
+    """
+    Which of `nested_grids` is the first with each phase of an axis.
+
+    Parameters
+    ----------
+    grid : int
+        Phases per axis.
+
+    Returns
+    -------
+    ndarray, (grid,)
+
+    Examples
+    --------
+    >>> levels(8).tolist()
+    [0, 2, 1, 2, 0, 2, 1, 2]
+    """
+    level = np.zeros(grid, dtype=np.intp)
+    for coarse in nested_grids(grid)[:-1]:
+        level[np.arange(grid) % (grid // coarse) != 0] += 1
+    return level

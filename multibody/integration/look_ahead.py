@@ -1,0 +1,86 @@
+"""
+A run to the end of the motion that integrates in full only as long as anything large can come.
+
+Once nothing came near a largest value for a while, the rest of the motion is looked over in steps four times as large,
+from the state that the run has reached. If nothing comes near a largest value there either, the rest is left out.
+Otherwise the run goes on from where it was, for a while beyond the instant that was found, and looks ahead again.
+Where a contact opens, motions of different steps are different motions: such a run goes to the end in full.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.integration.adaptive import Budget, EngineRun, Place, begin_run, go_on
+from multibody.integration.constant_step import Engine
+from multibody.integration.level import Level
+from multibody.models.system import EngineModel, EngineState
+from reference.problem import Outcome
+
+Array = NDArray[np.float64]
+
+NEAR_FRACTION = 0.8  # of a largest value: in larger steps later values below it are no larger ones of the run either
+NEAR_LOAD = 0.2  # of the weight: with less on the contact in larger steps it might open in the run
+WAIT = 2.0 * math.pi  # units of time from the last large value to a look ahead: a period of the pendulum
+
+
+def looks_ahead(model: EngineModel, level: Level) -> bool:
+    """Whether larger steps save work: they end at the knots of a record in any case."""
+    return float(np.diff(model.ground.knots).min(initial=math.inf)) >= 2.0 * level.step
+
+
+def longest_steps(model: EngineModel, level: Level, whole: bool) -> Level:
+    """The level of the longest steps in a run; whole: it takes its own steps to the end of the motion."""
+    return level.coarsened() if looks_ahead(model, level) and not whole else level
+
+
+def run_looking_ahead(
+    engine: Engine, start: EngineState, end: float, ground: Callable[[Array], Array], level: Level, budget: Budget
+) -> EngineRun:
+    """As `run_adaptively`, without the steps of a part in which nothing comes near a largest value."""
+    result, place = begin_run(engine.model), Place(start)
+    scan = level.coarsened()
+    if not budget.allows(end, scan):
+        return result.terminated(Outcome.STEP_LIMIT, 0.0)
+    scanning = Engine(engine.model, scan.newton, scan.residual)
+    large_at = 0.0  # the last instant at which a look ahead found something large
+
+    def quiet(time: float) -> bool:
+        return time >= max(large_at, result.settled) + WAIT and not result.opened
+
+    while True:
+        place = go_on(result, place, engine, end, ground, level, budget, pause=quiet)
+        if result.outcome != Outcome.OK or place.time >= end * (1.0 - 1e-12):
+            return result
+        ahead = _ahead_of(result, engine.model)
+        large = partial(_large, ahead, result)
+        reached = go_on(ahead, place, scanning, end, ground, scan, budget, pause=large)
+        if ahead.outcome == Outcome.STEP_LIMIT:
+            return result.terminated(Outcome.STEP_LIMIT, place.time)
+        if ahead.outcome == Outcome.OK and not large(reached.time):
+            result.looked_over = place.time
+            return result
+        large_at = reached.time
+
+
+def _ahead_of(result: EngineRun, model: EngineModel) -> EngineRun:
+    """A run that starts with what is nearly as large as in `result`: what it changes came near that."""
+    ahead = begin_run(model)
+    ahead.peaks.value[:] = NEAR_FRACTION * result.peaks.value
+    ahead.max_displacement = NEAR_FRACTION * result.max_displacement
+    return ahead
+
+
+def _large(ahead: EngineRun, result: EngineRun, time: float) -> bool:
+    """Whether a run ahead, at `time`, came near a largest value of `result`, or near the opening of a contact."""
+    return bool(
+        (ahead.peaks.value > NEAR_FRACTION * result.peaks.value).any()
+        or ahead.max_displacement > NEAR_FRACTION * result.max_displacement
+        or ahead.opened
+        or ahead.min_load < NEAR_LOAD
+    )

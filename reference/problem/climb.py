@@ -1,0 +1,217 @@
+"""
+Climbing on a surface over the phases whose denominator is known exactly.
+
+In a square around the best pair of phases, the numerator is interpolated by a polynomial and divided by the exact
+denominator, and the pair at which this quotient is largest is computed next. The square moves with the best pair, and
+shrinks where that pair lies inside. The exact denominator lets a climb follow its kinks, on which maxima of mu may
+stand and which no polynomial of mu itself can show. Beside a jump of the numerator the square closes on a high pair,
+and `follow_jump` goes along the jump to the highest one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+# Places along each axis of the square at which the quotient is read: at first, and beside the largest of them
+COARSE, FINE = np.linspace(-1.0, 1.0, 25), np.linspace(-1.0, 1.0, 9)
+READINGS = 6  # of the quotient, each four times finer than the one before
+MIN_HALF_WIDTH = 1e-7  # rad, of a square
+MOVED = 0.8  # of the half width: a best pair farther from the center moves the square, which keeps its size
+GOOD_PREDICTION = 0.1  # largest error of a prediction over the differences in the square
+SHRINK, SHRINK_SLOWLY = 0.2, 0.6  # after a good prediction, and after another
+PROMISE = 2.0  # times the differences in its square: a climb that lies farther below the highest one ends
+MAX_MERGED_WIDTH = 0.04  # rad: climbs into a common square that is smaller have found one maximum
+JUMP_HALF_WIDTH = 0.07  # rad, of the first square in which a jump is followed
+JUMP_ROUNDS, JUMP_READINGS = 2, 5
+DIRECTIONS = 32  # in which the surface beside a maximum is looked at
+FAR, NEAR = 1e-3, 1e-4  # rad: distances at which it is
+# The fall at the near distance over that at the far one: 0.01 of a parabola, 0.1 of an edge, 1 of a jump
+KINK_FALL, JUMP_FALL = 0.03, 0.3
+CLEAR_FALL = 10.0  # errors of the value: a smaller fall shows nothing
+
+
+@dataclass(frozen=True)
+class Points:
+    """Computed phase pairs; NaN without an answer."""
+
+    phases: Array  # (M, 2), rad
+    numerator: Array  # (M,)
+    denominator: Array  # (M,)
+    error: Array  # (M,), of the quotient
+
+    @property
+    def value(self) -> Array:
+        """The quotient, -inf without an answer."""
+        return np.where(np.isfinite(self.numerator), self.numerator / self.denominator, -np.inf)
+
+    def part(self, places: slice) -> Points:
+        return Points(self.phases[places], self.numerator[places], self.denominator[places], self.error[places])
+
+
+class Surface(Protocol):
+    """What is climbed."""
+
+    def denominator(self, phases: Array) -> Array:
+        """(M,), exact and cheap, at (M, 2), rad."""
+
+    def at(self, phases: Array) -> Points:
+        """Computed at (M, 2), rad."""
+
+
+@dataclass(eq=False)
+class Climb:
+    """The best phase pair so far, and the square that is searched next."""
+
+    phases: Array  # (2,), rad
+    value: float
+    error: float
+    half_width: float  # rad
+    differences: float = np.inf  # between values in the last square
+    count: int = 1  # climbs that have become this one
+    history: list[tuple[float, float]] = field(default_factory=list)  # half width and value after each round
+
+    def take(self, points: Points) -> None:
+        """Go to the best of the points, if it is better."""
+        top = int(points.value.argmax())
+        if points.value[top] > self.value:
+            self.phases, self.value, self.error = points.phases[top], float(points.value[top]), float(points.error[top])
+
+    def may_reach(self, highest: float) -> bool:
+        """Whether the climb goes on: its square is not closed yet, and can hold the highest value."""
+        return self.half_width > MIN_HALF_WIDTH and self.value + PROMISE * self.differences >= highest
+
+    @property
+    def search_error(self) -> float:
+        """What was gained while the square became ten times smaller for the last time."""
+        width, value = self.history[-1]
+        return value - next((before for wide, before in reversed(self.history) if wide >= 10.0 * width), value)
+
+
+def square_of(nodes: int) -> tuple[Array, Array]:
+    """Places (nodes^2, 2) in [-1, 1], and what makes Chebyshev coefficients of values there."""
+    node = np.cos(np.pi * np.arange(nodes) / (nodes - 1))
+    places = np.stack(np.meshgrid(node, node, indexing="ij"), axis=-1).reshape(-1, 2)
+    return places, np.linalg.inv(chebyshev.chebvander2d(places[:, 0], places[:, 1], [nodes - 1, nodes - 1]))
+
+
+def climb_on(surface: Surface, climbs: Sequence[Climb], nodes: int) -> None:
+    """One round of all climbs at once: their squares, then the pairs predicted to be best."""
+    square_places, _ = square_of(nodes)
+    size = len(square_places)
+    computed = surface.at(np.concatenate([climb.phases + climb.half_width * square_places for climb in climbs]))
+    squares = [computed.part(slice(n * size, (n + 1) * size)) for n in range(len(climbs))]
+    predictions = [_predicted(surface, climb, square) for climb, square in zip(climbs, squares)]
+    best = surface.at(np.array([phases for phases, _ in predictions]))
+    for n, (climb, square, (_, predicted)) in enumerate(zip(climbs, squares, predictions)):
+        center = climb.phases
+        climb.take(square)
+        climb.take(best.part(slice(n, n + 1)))
+        known = square.value[np.isfinite(square.value)]
+        climb.differences = float(np.ptp(known)) if len(known) else 0.0
+        miss = abs(predicted - float(best.value[n]))
+        if np.abs(climb.phases - center).max() < MOVED * climb.half_width:
+            climb.half_width *= SHRINK if miss <= GOOD_PREDICTION * climb.differences else SHRINK_SLOWLY
+        climb.history.append((climb.half_width, climb.value))
+        if max(miss, climb.differences) <= climb.error:
+            climb.half_width = 0.0
+
+
+def _predicted(surface: Surface, climb: Climb, square: Points) -> tuple[Array, float]:
+    """Where the interpolated numerator over the exact denominator is largest in the square, and its value there."""
+    known = np.isfinite(square.numerator)
+    if not known.any():
+        return climb.phases, -np.inf
+    numerator = np.where(known, square.numerator, square.numerator[known].min())
+    nodes = math.isqrt(len(numerator))
+    coefficients = (square_of(nodes)[1] @ numerator).reshape(nodes, nodes)
+
+    def quotient(first: Array, second: Array) -> Array:
+        phases = climb.phases + climb.half_width * np.stack([first, second], axis=-1)
+        denominator = surface.denominator(phases.reshape(-1, 2)).reshape(first.shape)
+        values: Array = chebyshev.chebval2d(first, second, coefficients) / denominator
+        return values
+
+    place, value = _largest(quotient, [COARSE, *[FINE] * (READINGS - 1)])
+    return climb.phases + climb.half_width * place, value
+
+
+def _largest(function: Callable[[Array, Array], Array], readings: list[Array]) -> tuple[Array, float]:
+    """
+    Where a function on the square [-1, 1]^2 is largest, (2,), and its value there.
+
+    From the largest value along the second axis at every place along the first one: an edge or a jump aslant does not
+    hold this up. Each of the readings looks, along one axis, at offsets within the interval that the last one left.
+    """
+
+    def largest_along_second(first: Array) -> tuple[Array, Array]:
+        second, half = np.zeros((len(first), 1)), 1.0
+        for offsets in readings:
+            tried = np.clip(second + half * offsets, -1.0, 1.0)
+            values = function(np.repeat(first[:, None], len(offsets), axis=1), tried)
+            top = values.argmax(axis=1)[:, None]
+            second, half = np.take_along_axis(tried, top, axis=1), half * (offsets[1] - offsets[0])
+        return second[:, 0], np.take_along_axis(values, top, axis=1)[:, 0]
+
+    middle, half = 0.0, 1.0
+    for offsets in readings:
+        first = np.clip(middle + half * offsets, -1.0, 1.0)
+        second, values = largest_along_second(first)
+        top = int(values.argmax())
+        middle, half = float(first[top]), half * (offsets[1] - offsets[0])
+    return np.array([middle, second[top]]), float(values[top])
+
+
+def follow_jump(surface: Surface, climb: Climb) -> None:
+    """From a place beside a jump to the highest one along it, by computed values alone."""
+    center, half_width = climb.phases, JUMP_HALF_WIDTH
+
+    def value(first: Array, second: Array) -> Array:
+        phases = center + half_width * np.stack([first, second], axis=-1)
+        points = surface.at(phases.reshape(-1, 2))
+        climb.take(points)
+        return points.value.reshape(first.shape)
+
+    for _ in range(JUMP_ROUNDS):
+        climb.history.append((half_width, climb.value))
+        _largest(value, [FINE] * JUMP_READINGS)
+        center, half_width = climb.phases, 0.1 * half_width
+    climb.history.append((half_width, climb.value))
+
+
+def merged(climbs: list[Climb], shifted: Array) -> list[Climb]:
+    """Climbs without those whose best pair, shifted by a row of (K, 2), rad, lies in the square of a higher one."""
+    kept: list[Climb] = []
+    for climb in sorted(climbs, key=lambda climb: -climb.value):
+        for higher in kept:
+            apart = climb.phases + shifted - higher.phases
+            apart = np.abs(np.remainder(apart + np.pi, 2.0 * np.pi) - np.pi).max(axis=1).min()
+            width = max(climb.half_width, higher.half_width, MIN_HALF_WIDTH)
+            if apart <= width <= MAX_MERGED_WIDTH:
+                higher.count += climb.count
+                break
+        else:
+            kept.append(climb)
+    return kept
+
+
+def kind_of(surface: Surface, climb: Climb) -> tuple[str, tuple[float, float]]:
+    """What the surface has at the maximum, and to which side of a jump it lies: from its fall at two distances."""
+    angle = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
+    directions = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    far, near = (climb.value - surface.at(climb.phases + distance * directions).value for distance in (FAR, NEAR))
+    clear = near > CLEAR_FALL * climb.error
+    jumps = clear & (near > JUMP_FALL * far)
+    if jumps.any() and not jumps.all():
+        x, y = directions[~jumps].sum(axis=0)
+        return "jump", (float(x / np.hypot(x, y)), float(y / np.hypot(x, y)))
+    nowhere = (float("nan"), float("nan"))
+    return ("kink" if (clear & (near > KINK_FALL * far)).any() else "smooth"), nowhere

@@ -1,0 +1,103 @@
+"""mu as a random variable: initial phases that are independent and uniform over a full turn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reference.problem.demands import Estimate
+
+Array = NDArray[np.float64]
+
+FRACTILES = (0.05, 0.16, 0.5, 0.84, 0.95)
+# Sampling error over the largest difference to a grid of twice the spacing. Measured with the paper's scenes, 8 to 64
+# phases per axis against 256: 1.6 differences at most in 336 values.
+SAMPLING_FACTOR = 2.0
+
+
+@dataclass(frozen=True)
+class PhaseDistribution:
+    """
+    Distribution of mu of one body over uniform phases.
+
+    Attributes
+    ----------
+    mean : Estimate
+    fractiles : tuple of Estimate
+        At the probabilities FRACTILES: the value that mu stays below with this probability.
+    points : int
+        Phase pairs that it was taken from.
+    unknown : float
+        Share of phase pairs without an answer.
+    """
+
+    mean: Estimate
+    fractiles: tuple[Estimate, ...]
+    points: int
+    unknown: float
+
+
+def phase_distribution(mu: ArrayLike, error: ArrayLike) -> PhaseDistribution:
+    """
+    Mean and fractiles of mu over all initial phases, from its values on a grid of equally spaced phases.
+
+    Parameters
+    ----------
+    mu, error : array_like, (n1, n2)
+        Values and their estimated errors on a grid of `phase_grid`, both axes closed at a full turn. NaN without an
+        answer. One phase that has no effect may be left out: an axis of length 1.
+
+    Returns
+    -------
+    PhaseDistribution
+        Each error is the sampling error, the errors of mu, and what unknown values may change, added up.
+
+    Notes
+    -----
+    Sampling error: twice the largest difference to the four grids of twice the spacing that the grid consists of. Pairs
+    without an answer count once as larger and once as smaller than all others. The mean has no such bound.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> alpha = 2.0 * np.pi * np.arange(48) / 48
+    >>> mu = 2.0 + np.cos(alpha)[:, None] + np.zeros(48)
+    >>> distribution = phase_distribution(mu, np.zeros((48, 48)))
+    >>> round(distribution.mean.value, 12), distribution.fractiles[2].error < 0.1
+    (2.0, True)
+    """
+    values, errors = np.asarray(mu, dtype=float), np.asarray(error, dtype=float)
+    known = np.isfinite(values)
+    if values.ndim != 2 or values.shape != errors.shape or not known.any():
+        raise ValueError(f"mu {values.shape}, error {errors.shape}: must be one grid (n1, n2) with a finite value")
+    coarse = [part for part in (values[i::2, j::2] for i in (0, 1) for j in (0, 1)) if np.isfinite(part).any()]
+
+    def mean() -> Estimate:
+        value = float(values[known].mean())
+        sampling = max(abs(float(np.nanmean(part)) - value) for part in coarse)
+        error = SAMPLING_FACTOR * sampling + float(errors[known].mean())
+        return Estimate(value, error if known.all() else float("nan"))
+
+    def fractile(probability: float) -> Estimate:
+        value = _fractile(values[known], probability)
+        sampling = max(abs(_fractile(part[np.isfinite(part)], probability) - value) for part in coarse)
+        higher = _fractile(np.where(known, values + errors, np.inf), probability) - value
+        lower = value - _fractile(np.where(known, values - errors, -np.inf), probability)
+        total = SAMPLING_FACTOR * sampling + max(higher, lower)
+        return Estimate(value, total if np.isfinite(total) else float("nan"))
+
+    return PhaseDistribution(mean(), tuple(map(fractile, FRACTILES)), values.size, float(1.0 - known.mean()))
+
+
+def _fractile(values: Array, probability: float) -> float:
+    """Linear between the values at probabilities (k - 1/2)/M; unknown ones may be infinite."""
+    ordered = np.sort(values, axis=None)
+    place = probability * len(ordered) - 0.5
+    low = int(np.clip(np.floor(place), 0, len(ordered) - 1))
+    high = min(low + 1, len(ordered) - 1)
+    share = min(max(place - low, 0.0), 1.0)
+    if share == 0.0 or ordered[low] == ordered[high]:
+        return float(ordered[low])
+    return float((1.0 - share) * ordered[low] + share * ordered[high])

@@ -1,0 +1,194 @@
+"""The steps of one phase of the contact: each is proposed, made, judged, cut where something happens, committed."""
+
+from __future__ import annotations
+
+from math import log
+
+from reference.solver.compiled import compiled, inlined
+from reference.solver.events import counted_part, lowest
+from reference.solver.near_stop import near_stop_step
+from reference.solver.phases.rest import begin_rest, onset_within, set_reaction
+from reference.solver.phases.sliding import (
+    adapt_slide,
+    after_failed_slide,
+    begin_sliding,
+    guess_slide,
+    sliding_length,
+    slowing_within,
+    turns_too_far,
+)
+from reference.solver.phases.smooth import begin_smooth, decay_rate, speeding_within
+from reference.solver.phases.stopping import (
+    NEAR_STOP_NEWTON_FRACTION,
+    after_stopping_step,
+    begin_stopping,
+    break_within,
+    stretched_length,
+)
+from reference.solver.record import note_stick
+from reference.solver.step_control import (
+    FAILURE_SHORTENING,
+    MAX_SHORTENING,
+    NEWTON_FRACTION,
+    adapt,
+    commit,
+    first_guess,
+    length_factor,
+    next_step,
+    plain_length,
+    remaining,
+    set_length,
+    too_short,
+)
+from reference.solver.steps import moving_step, rest_step, step_error
+from reference.solver.system import (
+    CREEPING,
+    OPEN,
+    REST,
+    SLIDING,
+    SOLVED,
+    STEP_LIMIT,
+    STOPPING,
+    UNSOLVED,
+    Demand,
+    Record,
+    System,
+)
+from reference.solver.work import REACTION, SPEED2, Work
+
+
+@inlined
+def follow(system: System, work: Work, contact: int, demand: Demand, record: Record) -> tuple[int, int]:
+    """Until the contact changes or the motion ends: (how it went, what the contact does next). See run.py."""
+    since = begin_phase(system, work, contact, demand)
+    following = contact
+    while following == contact and remaining(system, work, demand) > 0.0:
+        if not next_step(work, demand):
+            return STEP_LIMIT, contact
+        h = proposed_length(system, work, contact, demand)
+        if h == 0.0:
+            return SOLVED, STOPPING
+        if too_short(work, contact, demand, h, UNSOLVED):
+            return UNSOLVED, contact
+        code = made(system, work, contact, demand, h)
+        if code != SOLVED:
+            if code != UNSOLVED and too_short(work, contact, demand, h, code):
+                return code, contact
+            if contact == SLIDING:
+                code, following = after_failed_slide(system, work, demand, h)
+                if code != SOLVED:
+                    return code, contact
+            set_length(work, contact, FAILURE_SHORTENING * h)
+            continue
+        error = step_error(work, demand.tolerance)
+        factor = length_factor(error, demand.tolerance)
+        if not error <= demand.tolerance:
+            set_length(work, contact, min(MAX_SHORTENING, factor) * h)
+            continue
+        end, following = event_within(system, work, contact, demand, h)
+        if end == 0.0:
+            break
+        if end < h and contact != REST:
+            set_length(work, contact, end)
+            following = contact
+            continue
+        low, high = counted(work, contact, demand)
+        commit(work, record, end, contact, low, high)
+        following = after_step(system, work, contact, following, demand, end, factor)
+    if contact in (REST, CREEPING):
+        note_stick(record, since, work.time)
+    return SOLVED, following
+
+
+@compiled
+def begin_phase(system: System, work: Work, contact: int, demand: Demand) -> float:
+    """Prepare the first step of a phase; since when it lasts, s."""
+    since: float = work.time
+    if contact == REST:
+        since = begin_rest(system, work)
+    elif contact == SLIDING:
+        begin_sliding(system, work, demand)
+    elif contact == STOPPING:
+        begin_stopping(system, work, demand)
+    else:
+        begin_smooth(system, work, contact)
+    return since
+
+
+@compiled
+def proposed_length(system: System, work: Work, contact: int, demand: Demand) -> float:
+    """Length of the next step in the time of the phase; 0 where stretched time begins instead."""
+    if contact == SLIDING:
+        return sliding_length(system, work, demand)
+    if contact == STOPPING:
+        return stretched_length(system, work)
+    h: float = plain_length(system, work, demand)
+    return min(h, work.held) if work.held > 0.0 else h
+
+
+@inlined
+def made(system: System, work: Work, contact: int, demand: Demand, h: float) -> int:
+    """Make the step; SOLVED or what stood in the way."""
+    if contact == STOPPING:
+        code: int = near_stop_step(system, work, h, NEAR_STOP_NEWTON_FRACTION * demand.tolerance)
+        return code
+    if contact == REST:
+        rest_step(system, work, h)
+        set_reaction(system, work)
+        return OPEN if lowest(work.stage[REACTION]) <= 0.0 else SOLVED
+    enough = NEWTON_FRACTION * demand.tolerance * work.scale[0]
+    if contact == SLIDING:
+        guess_slide(system, work, h)
+    else:
+        first_guess(work, h)
+        # where friction is stiff a small error of the acceleration is a large one of the velocity, and so of the force
+        enough /= 1.0 + h * decay_rate(system, contact)
+    code = moving_step(system, work, contact, h, enough)
+    return UNSOLVED if code == SOLVED and contact == SLIDING and turns_too_far(work) else code
+
+
+@inlined
+def event_within(system: System, work: Work, contact: int, demand: Demand, h: float) -> tuple[float, int]:
+    """
+    Length of the step up to the first event inside it, and what the contact does then.
+
+    0 where the phase begins at an event. A step at rest has been made again to its onset, others have not.
+    """
+    if contact == REST:
+        return onset_within(system, work, h)
+    if contact == SLIDING:
+        return slowing_within(system, work, h)
+    if contact == STOPPING:
+        return break_within(system, work, demand, h)
+    return speeding_within(system, work, contact, h)
+
+
+@compiled
+def counted(work: Work, contact: int, demand: Demand) -> tuple[float, float]:
+    """The part of the step, in theta, that counts for the peaks: rest, and sliding faster than the cutoff."""
+    if demand.cutoff == 0.0:
+        return 0.0, 1.0
+    if contact == SLIDING:
+        return counted_part(work, work.stage[SPEED2], work.start2, demand.cutoff * demand.cutoff)
+    if contact == STOPPING:
+        return counted_part(work, work.levels, work.log_speed + work.log_ratio, log(demand.cutoff))
+    return 0.0, 1.0
+
+
+@inlined
+def after_step(
+    system: System, work: Work, contact: int, following: int, demand: Demand, h: float, factor: float
+) -> int:
+    """The length of the next step after one that was made, and what the contact does next."""
+    if contact == STOPPING:
+        going_on = after_stopping_step(system, work, demand, h, factor)
+        return following if following == CREEPING else going_on
+    if contact != SLIDING:
+        work.held = 0.0
+    if following != contact:
+        return following
+    if contact == SLIDING:
+        adapt_slide(work, h, factor)
+    else:
+        adapt(work, h, factor)
+    return contact

@@ -1,0 +1,172 @@
+"""
+The state and the arrays of one run, and how compiled code passes large tuples.
+
+Compiled code passes them by reference: as a tuple, every call would copy and compile all its fields again.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import types
+from numba.experimental import structref
+
+from reference.solver.collocation import CHANNELS, STAGES
+from reference.solver.compiled import compiled
+from reference.solver.system import Array, Complex, Record, System
+
+# rows of Work.stage: position, velocity, drive, reaction / m1, squared speed, inertia determinant; y behind x
+POSITION, VELOCITY, DRIVE, REACTION, SPEED2, DETERMINANT = 0, 2, 4, 6, 7, 8
+# first row of Work.slopes of the derivatives by px, vx, fx; two rows for each of x and y
+BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
+# rows of Work.turning (near_stop.py)
+DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, LOG_RATIO, SPEED, COSINE, SINE = range(11)
+POWERS = STAGES + 2  # coefficients of a polynomial: a position is the second integral of one through the stages
+
+
+@structref.register
+class _SystemType(types.StructRef):  # type: ignore[misc]
+    """Numba's type of SystemReference."""
+
+
+class SystemReference(structref.StructRefProxy):  # type: ignore[misc]
+    """A System, passed by reference."""
+
+
+structref.define_proxy(SystemReference, _SystemType, list(System._fields))
+
+
+@structref.register
+class _RecordType(types.StructRef):  # type: ignore[misc]
+    """Numba's type of RecordReference."""
+
+
+class RecordReference(structref.StructRefProxy):  # type: ignore[misc]
+    """A Record, passed by reference."""
+
+
+structref.define_proxy(RecordReference, _RecordType, list(Record._fields))
+
+
+@structref.register
+class _WorkType(types.StructRef):  # type: ignore[misc]
+    """Numba's type of Work."""
+
+
+class Work(structref.StructRefProxy):  # type: ignore[misc]
+    """One run: nothing is allocated while it goes on, and nothing grows with its duration."""
+
+    phase: Array  # (2,) rad, of the loading
+    # the state at the start of the step
+    time: float  # s
+    x: Array  # (N, 2) position
+    v: Array  # (N, 2) velocity
+    a0: Array  # (N, 2) acceleration
+    total0: Array  # (N, 3) absolute acceleration
+    angle: float  # rad, direction of a slide that begins or stops
+    log_speed: float  # logarithm of the horizontal speed near a stop
+    log_ratio: float  # logarithm of the full speed over the horizontal one near a stop
+    start2: float  # squared speed of a slide, m^2/s^2
+    # the next step
+    length: float  # s
+    stretched: float  # length near a stop, in stretched time
+    growth: float  # bound on the growth of the length
+    held: float  # s, for which rest or creep is held whatever the force; 0 where nothing holds it
+    # the phase of the contact
+    entered: float  # logarithm of the speed at which stretched time began
+    left: float  # s, by which rest is entered early
+    # the step
+    x1: Array  # (N, 2) at its end
+    v1: Array
+    a: Array  # (N, 2, S) acceleration at the stages
+    ground: Array  # (3, S) ground acceleration at the stages
+    total: Array  # (N, 3, S) absolute acceleration at the stages
+    free: Array  # (2, S) driving acceleration of the platform if it kept its velocity
+    feedback: Array  # (2, S, S) what its own stage accelerations add to that
+    pivot: Complex  # (N, 2, CHANNELS) eliminated chain
+    load: Complex  # (N, 2, CHANNELS)
+    gain: Complex  # (2, CHANNELS) what the chain gives back to the platform
+    stage: Array  # (9, S) the platform at the stages
+    slopes: Array  # (12, S) derivative of its acceleration
+    matrix: Array  # (2 S, 2 S)
+    residual: Array  # (2 S,)
+    pivots: Array  # (2 S,) rows of the factorized matrix
+    chain: Array  # (N, 2, S) position of the bodies at the stages of a step near a stop
+    velocity: Array  # (N, 2, S)
+    turning: Array  # (11, S) direction, speed and time there
+    levels: Array  # (S,) a quantity at the stages whose passage of a level ends the step
+    powers: Array  # (5, POWERS) coefficients of the powers of theta where a step is looked at closely
+    scale: Array  # (N,) m/s^2, what errors are measured against
+    defect: Array  # (N,) m/s^2, interpolation error of the step at its start
+    # the step before
+    old_length: float  # s; 0 where its polynomial is no guess for the next step
+    guess: Array  # (2, S) coefficients of the platform's acceleration in it
+    # the run
+    steps: float
+    best: Array  # (N,) largest squared absolute acceleration so far
+    reading_error: Array  # (N,) m/s^2, error of reading it inside its step
+    reach2: float  # m^2, largest squared displacement of the platform
+
+
+structref.define_proxy(Work, _WorkType, list(Work.__annotations__))
+
+
+@compiled
+def workspace(bodies: int) -> Work:
+    """For runs with this many bodies."""
+    n, s, c = bodies, STAGES, CHANNELS
+    return Work(
+        phase=np.zeros(2),
+        time=0.0,
+        x=np.zeros((n, 2)),
+        v=np.zeros((n, 2)),
+        a0=np.zeros((n, 2)),
+        total0=np.zeros((n, 3)),
+        angle=0.0,
+        log_speed=0.0,
+        log_ratio=0.0,
+        start2=0.0,
+        length=0.0,
+        stretched=0.0,
+        growth=0.0,
+        held=0.0,
+        entered=0.0,
+        left=0.0,
+        x1=np.zeros((n, 2)),
+        v1=np.zeros((n, 2)),
+        a=np.zeros((n, 2, s)),
+        ground=np.zeros((3, s)),
+        total=np.zeros((n, 3, s)),
+        free=np.zeros((2, s)),
+        feedback=np.zeros((2, s, s)),
+        pivot=np.zeros((n, 2, c), np.complex128),
+        load=np.zeros((n, 2, c), np.complex128),
+        gain=np.zeros((2, c), np.complex128),
+        stage=np.zeros((9, s)),
+        slopes=np.zeros((12, s)),
+        matrix=np.zeros((2 * s, 2 * s)),
+        residual=np.zeros(2 * s),
+        pivots=np.zeros(2 * s),
+        chain=np.zeros((n, 2, s)),
+        velocity=np.zeros((n, 2, s)),
+        turning=np.zeros((11, s)),
+        levels=np.zeros(s),
+        powers=np.zeros((5, POWERS)),
+        scale=np.zeros(n),
+        defect=np.zeros(n),
+        old_length=0.0,
+        guess=np.zeros((2, s)),
+        steps=0.0,
+        best=np.zeros(n),
+        reading_error=np.zeros(n),
+        reach2=0.0,
+    )
+
+
+@compiled
+def start_anew(work: Work, length: float) -> None:
+    """Forget the run before; `length`, s, of the first step."""
+    work.time = work.angle = work.log_speed = work.log_ratio = work.start2 = 0.0
+    work.length, work.stretched, work.growth, work.old_length = length, 0.0, 0.0, 0.0
+    work.held = work.entered = work.left = work.steps = work.reach2 = 0.0
+    for i in range(work.x.shape[0]):
+        work.best[i] = work.reading_error[i] = 0.0

@@ -1,0 +1,68 @@
+"""mu as a random variable: closed forms, independent samples, and what unknown values may change."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from reference.problem.distribution import FRACTILES, phase_distribution
+
+Array = NDArray[np.float64]
+
+
+def on_grid(points: int, mu) -> Array:  # type: ignore[no-untyped-def]
+    alpha = 2.0 * np.pi * np.arange(points) / points
+    value: Array = mu(alpha[:, None], alpha[None, :])
+    return value
+
+
+@pytest.mark.parametrize("points", [8, 16, 24, 48])
+def test_the_distribution_of_a_cosine_is_the_closed_form(points: int) -> None:
+    mu = on_grid(points, lambda first, second: 2.0 + np.cos(first + 0.3) + 0.0 * second)
+    distribution = phase_distribution(mu, np.zeros_like(mu))
+    assert abs(distribution.mean.value - 2.0) <= distribution.mean.error + 1e-12
+    for probability, fractile in zip(FRACTILES, distribution.fractiles):
+        assert abs(fractile.value - (2.0 + np.cos(np.pi * (1.0 - probability)))) <= fractile.error + 1e-12
+
+
+def folded(first: Array, second: Array) -> Array:
+    """With edges and a jump, as mu has them."""
+    value: Array = np.abs(np.sin(first + 2.0 * second)) + 0.5 * np.cos(second) + (np.sin(first - second) > 0.4)
+    return value
+
+
+@pytest.mark.parametrize("points", [16, 24, 48])
+def test_fractiles_of_a_surface_with_edges_and_jumps_are_those_of_random_phases(points: int) -> None:
+    random = np.random.default_rng(4)
+    samples = folded(*random.uniform(0.0, 2.0 * np.pi, (2, 400_000)))
+    mu = on_grid(points, folded)
+    distribution = phase_distribution(mu, np.zeros_like(mu))
+    assert abs(distribution.mean.value - samples.mean()) <= distribution.mean.error + 5e-3
+    for probability, fractile in zip(FRACTILES, distribution.fractiles):
+        assert abs(fractile.value - np.quantile(samples, probability)) <= fractile.error + 1e-2
+
+
+def test_errors_of_mu_widen_every_number() -> None:
+    mu = on_grid(24, folded)
+    exact, blurred = (phase_distribution(mu, np.full_like(mu, error)) for error in (0.0, 0.1))
+    pairs = zip((exact.mean, *exact.fractiles), (blurred.mean, *blurred.fractiles))
+    assert all(wide.error == pytest.approx(narrow.error + 0.1) for narrow, wide in pairs)
+
+
+def test_unknown_values_widen_the_fractiles_that_they_can_reach() -> None:
+    mu = on_grid(24, folded)
+    complete = phase_distribution(mu, np.zeros_like(mu))
+    partly = mu.copy()
+    partly[np.unravel_index(np.argsort(mu, axis=None)[-40:], mu.shape)] = np.nan  # 7 %, the largest
+    distribution = phase_distribution(partly, np.zeros_like(mu))
+    assert distribution.unknown == pytest.approx(40 / 576)
+    assert np.isnan(distribution.mean.error)
+    assert np.isnan(distribution.fractiles[-1].error)  # 95 % may be anything
+    for known, fractile in zip(complete.fractiles[1:-1], distribution.fractiles[1:-1]):
+        assert abs(fractile.value - known.value) <= fractile.error
+
+
+def test_a_surface_without_values_has_no_distribution() -> None:
+    with pytest.raises(ValueError, match="finite value"):
+        phase_distribution(np.full((4, 4), np.nan), np.full((4, 4), np.nan))

@@ -1,0 +1,144 @@
+"""The largest value over all phases: surfaces with a known maximum, and fine grids of the equations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import reference
+from reference import phase_maximum
+from reference.problem import Amplification, Scene, phase_grid
+from reference.problem.symmetry import shifts
+
+Array = NDArray[np.float64]
+Surface = Callable[[Array], Array]
+
+TOP = np.array([1.234, 4.321])  # of a smooth hill, rad
+EDGE = np.array([0.9, 4.6])  # on a line of slope -1/2 beside it, rad
+
+
+def hill(phases: Array) -> Array:
+    value: Array = 2.0 + np.cos(phases - TOP).sum(axis=1)
+    return value
+
+
+def across(phases: Array) -> Array:
+    """Zero on the line through EDGE, in [-pi, pi)."""
+    line: Array = np.remainder((phases - EDGE) @ [1.0, 2.0] + np.pi, 2.0 * np.pi) - np.pi
+    return line
+
+
+def highest_on_the_edge() -> float:
+    t = np.linspace(-np.pi, np.pi, 2_000_001)
+    return float(hill(EDGE + np.stack([2.0 * t, -t], axis=-1)).max())
+
+
+def scene_with(monkeypatch: pytest.MonkeyPatch, numerator: Surface, denominator: Surface) -> Scene:
+    """A scene without symmetries whose mu_1 is the quotient of two functions of the phases (M, 2), rad."""
+
+    def amplification(scene: Scene, phases: Array, **options: object) -> Amplification:
+        mu = (numerator(phases) / denominator(phases))[:, None]
+        ok, never = np.full(len(phases), "ok"), np.full(len(phases), np.nan)
+        return Amplification(mu, np.full_like(mu, 1e-12), ok, never, 0.0)
+
+    module = phase_maximum
+    monkeypatch.setattr(module, "amplification", amplification)
+    monkeypatch.setattr(module, "ground_peak", lambda scene, phases: denominator(phases))
+    data = reference.load_scene("fig3-I").model_dump(exclude_none=True)
+    data["excitation"]["amplitudes"] = [[1.0, 0.5], [0.3, 1.0], [0.1, 0.1]]
+    scene = Scene.model_validate(data)
+    assert len(shifts(scene)) == 1
+    return scene
+
+
+def level(phases: Array) -> Array:
+    return np.ones(len(phases))
+
+
+def test_a_smooth_maximum_is_found_to_its_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    worst = reference.worst_phases(scene_with(monkeypatch, hill, level))
+    assert worst.kind == "smooth"
+    assert abs(worst.value - 4.0) <= worst.error
+    assert np.allclose(worst.phases, TOP, atol=1e-5)
+
+
+def test_a_maximum_on_an_oblique_edge_of_the_denominator_is_found_to_its_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    worst = reference.worst_phases(scene_with(monkeypatch, hill, lambda phases: 1.0 + 3.0 * abs(across(phases))))
+    assert worst.kind == "kink"
+    assert abs(worst.value - highest_on_the_edge()) <= worst.error
+    assert abs(across(np.array([worst.phases]))[0]) < 1e-6
+
+
+def test_a_maximum_beside_a_jump_is_approached_from_the_named_side(monkeypatch: pytest.MonkeyPatch) -> None:
+    worst = reference.worst_phases(scene_with(monkeypatch, lambda phases: hill(phases) - (across(phases) < 0.0), level))
+    assert worst.kind == "jump"
+    assert np.dot(worst.side, [1.0, 2.0]) > 0.0
+    assert abs(worst.value - highest_on_the_edge()) <= worst.error
+
+
+def test_points_without_an_answer_do_not_hide_the_maximum(monkeypatch: pytest.MonkeyPatch) -> None:
+    def partly(phases: Array) -> Array:
+        return np.where(np.cos(phases - TOP - 2.0).sum(axis=1) > 1.0, np.nan, hill(phases))
+
+    worst = reference.worst_phases(scene_with(monkeypatch, partly, level))
+    assert abs(worst.value - 4.0) <= worst.error
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"body": 0}, "body = 0: must be an integer from 1 to 2"),
+        ({"body": 3}, "body = 3"),
+        ({"quantity": "drift"}, "quantity"),
+        ({"tolerance": 0.0}, "tolerance"),
+    ],
+)
+def test_a_wrong_argument_is_one_line(arguments: dict[str, object], message: str) -> None:
+    with pytest.raises(ValueError, match=message) as failure:
+        reference.worst_phases(reference.load_scene("fig3-I"), **arguments)  # type: ignore[arg-type]
+    assert "\n" not in str(failure.value)
+
+
+def test_a_record_has_no_worst_phases() -> None:
+    with pytest.raises(ValueError, match="no phases"):
+        reference.worst_phases(reference.load_scene("synthetic-pair"))
+
+
+SURFACES = [("fig3-I", {}), ("fig3-I", {"cutoff": 1e-3}), ("fig3-II", {}), ("fig4-dry", {}), ("fig4-viscous", {})]
+
+
+def largest_on(scene: Scene, points: int, **law: Any) -> tuple[Array, float]:
+    """Largest mu of each body (N,) on a grid, and the largest displacement of the platform, m."""
+    phases = phase_grid(points)
+    half = phases[phases[:, 0] < np.pi]  # a half turn gives the others
+    surface = reference.amplification(scene, half, tolerance=1e-5, **law)
+    return np.nanmax(surface.mu - surface.error, axis=0), float(np.nanmax(surface.cap_share)) * scene.radius
+
+
+def test_no_point_of_a_grid_exceeds_the_maximum() -> None:
+    scene = reference.load_scene("fig3-I")
+    mu, _ = largest_on(scene, 64)
+    worst = reference.worst_phases(scene)
+    assert mu[0] <= worst.value + worst.error < mu[0] + 0.1
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "law"), SURFACES)
+def test_no_point_of_a_fine_surface_exceeds_the_maximum(name: str, law: dict[str, Any]) -> None:
+    scene = reference.load_scene(name)
+    mu, displacement = largest_on(scene, 512, **law)
+    for body in (1, 2):
+        worst = reference.worst_phases(scene, body, **law)
+        assert mu[body - 1] <= worst.value + worst.error
+    worst = reference.worst_phases(scene, quantity="displacement", **law)
+    assert displacement <= worst.value + worst.error
+
+
+def test_the_largest_mu_2_of_a_built_in_scene_stands_on_a_kink_of_the_denominator() -> None:
+    worst = reference.worst_phases(reference.load_scene("fig3-I"), body=2)
+    assert worst.kind == "kink"
+    assert worst.value == pytest.approx(3.0663, abs=1e-4)
