@@ -136,7 +136,7 @@ def single_run(
     -------
     Trajectory
         As in `trajectory`. `peak` is read between the samples; it is NaN where the engine gives up. `status` is "ok",
-        "rim reached", "contact lost", "solver failed" or "step limit".
+        "rim reached", "contact lost", "overturned", "solver failed" or "step limit".
 
     Raises
     ------
@@ -209,13 +209,21 @@ def _attitude(model: EngineModel, motion: Motion, time: NDArray[np.float64]) -> 
     open_at = [
         (float(support), *interval)
         for support, gap in enumerate(motion.gap.T)
-        for interval in _intervals(time, gap >= 0.0)
+        for interval in _intervals(time, gap >= 0.0, around=1)
     ]
     tilt = np.arcsin(np.hypot(np.sin(pitch), np.sin(roll) * np.cos(pitch)))
     return {"yaw": yaw, "tilt": tilt, "turns": turns, "liftoff": np.array(open_at).reshape(-1, 3)}
 
 
-def _intervals(time: NDArray[np.float64], holds: NDArray[np.bool_]) -> list[tuple[float, float]]:
-    """First and last instant of every unbroken run of rows in which something holds."""
+def _intervals(time: NDArray[np.float64], holds: NDArray[np.bool_], around: int = 0) -> list[tuple[float, float]]:
+    """
+    First and last instant of every unbroken run of rows in which something holds.
+
+    around: 1 for the instants of the rows before and behind, at which it ceases to hold.
+    """
     edges = np.flatnonzero(np.diff(np.concatenate([[0], holds.astype(int), [0]])))
-    return [(float(time[begin]), float(time[end - 1])) for begin, end in edges.reshape(-1, 2)]
+    last = len(time) - 1
+    return [
+        (float(time[max(begin - around, 0)]), float(time[min(end - 1 + around, last)]))
+        for begin, end in edges.reshape(-1, 2)
+    ]

@@ -70,8 +70,8 @@ def amplification(
     Amplification
         `mu` and its estimated absolute error `error`, both (M, N); `status` (M,); `instant` (M,), s, at which a status
         other than "ok" arose; `cost`, s; `cap_share` (M,). A point without an answer is NaN, with status "rim reached",
-        "contact lost", "solver failed", "step limit", "no ground motion" or "non-finite load". "tolerance not met"
-        keeps its mu with the error that was reached.
+        "contact lost", "overturned", "solver failed", "step limit", "no ground motion" or "non-finite load".
+        "tolerance not met" keeps its mu with the error that was reached.
 
     Raises
     ------
@@ -80,6 +80,9 @@ def amplification(
 
     Notes
     -----
+    Where a support of the spatial model closes again, velocities jump. Accelerations count from 0.04 sqrt(rho / g)
+    after such an impact on.
+
     The error is estimated from runs at two or more levels. It covers step, contact stiffness, iteration, reading of the
     peaks and rounding, and not what the model itself leaves out.
 

@@ -20,7 +20,9 @@ from numpy.typing import NDArray
 
 from multibody.integration.constant_step import Engine, Motion
 from multibody.integration.level import STEP_RATIO, Level
+from multibody.integration.openings import FIRST_STEP, Event, Openings
 from multibody.integration.peak import CANDIDATE_FRACTION, Peaks, kinks
+from multibody.models.depressions import rotation
 from multibody.models.recorded import align_steps
 from multibody.models.system import EngineModel, EngineState
 from reference.problem import Outcome
@@ -76,6 +78,8 @@ class EngineRun:
     # the last instant at which an acceleration or the displacement of the platform came within SETTLED_FRACTION of its
     # largest value, in units of time
     settled: float = 0.0
+    undisturbed: float = -math.inf  # contact forces have settled after the last impact: peaks are read from here on
+    impacts: int = 0  # of supports that closed again
     min_load: float = math.inf  # smallest contact force, in weights, of a model that ends where the contact opens
     opened: bool = False  # whether any contact carried no load
     looked_over: float = math.inf  # from here on the motion was only looked over in larger steps, in units of time
@@ -129,6 +133,7 @@ def go_on(
 ) -> Place:
     """Go on with a run from `place`; where it ends. Before every chunk `pause` says whether to end at its instant."""
     model = engine.model
+    openings = None if model.impact is None else Openings(engine, model.impact, level.penetration)
     state, time, divisions, next_count = place.state, place.time, place.divisions, place.next_count
     while time < min(end, result.stop) * (1.0 - 1e-12) and not pause(time):
         divisions = max(divisions, level.min_divisions(time))
@@ -148,6 +153,8 @@ def go_on(
                 break
             divisions += 1
             continue
+        if openings is not None:
+            motion = openings.with_gaps(motion)
         size = absolute_accelerations(model, motion, ground)
         step_ratio = _step_ratio(motion, engine, size[:, 0], float(result.peaks.value[0]), step / level.slip_change)
         last = len(motion.time) - 1
@@ -155,6 +162,9 @@ def go_on(
         rejected = divisions < level.max_divisions and len(failing) > 0
         if rejected:
             last = max(int(failing[0]) - 1, 0)
+        event = None if openings is None else openings.first_event(motion.until(last))
+        if openings is not None and event is not None:
+            last, rejected = event.row, False
         if last > 0:
             accepted = motion.until(last)
             if not _record(result, accepted, size[: last + 1], model, level, keep):
@@ -163,12 +173,55 @@ def go_on(
             next_count = min(_steps_ahead(accepted, engine, level), CHUNK_GROWTH * last)
             if rejected:
                 state = model.settle(state, _gap_rate(accepted), level.penetration)
-        if rejected:
+        if openings is not None and event is not None:
+            state, time, going_on = _pass(event, openings, state, time, step, result, ground, level, keep)
+            budget.left -= 1.0
+            if not going_on:
+                break
+            if event.closes:
+                divisions = max(divisions, _divisions_behind_impact(level))
+            next_count = DIVIDED_CHUNK_STEPS
+        elif rejected:
             divisions += 1 if step_ratio[failing[0]] < STEP_RATIO else 2
             divisions = min(divisions, level.max_divisions)
         elif divisions > 0 and step_ratio[-RECENT_ROWS:].max() * STEP_RATIO < 1.0:
             divisions -= 1
     return Place(state, time, divisions, next_count)
+
+
+def _pass(
+    event: Event,
+    openings: Openings,
+    state: EngineState,
+    time: float,
+    step: float,
+    result: EngineRun,
+    ground: Callable[[Array], Array],
+    level: Level,
+    keep: bool,
+) -> tuple[EngineState, float, bool]:
+    """State and instant behind an opening or closing of supports, and whether the run goes on."""
+    model = openings.engine.model
+    motion = openings.located(state, time, step, event)
+    if motion is not None:
+        size = absolute_accelerations(model, motion, ground)
+        motion = openings.touching(motion, event.which) if event.closes else openings.with_gaps(motion)
+        if not _record(result, motion, size, model, level, keep):
+            return state, time, False
+        state, time = motion.state(-1), float(motion.time[-1])
+    if not event.closes:
+        openings.opened(event)
+        return state, time, True
+    state = openings.after_impact(state, time, event.which)
+    result.undisturbed, result.impacts = openings.settled, openings.impacts
+    result.peaks.restart()
+    return state, time, True
+
+
+def _divisions_behind_impact(level: Level) -> int:
+    """How often the largest step is divided while contact forces settle."""
+    wanted = math.ceil(math.log(level.step / (FIRST_STEP * math.sqrt(level.penetration)), STEP_RATIO))
+    return min(max(wanted, 0), level.max_divisions)
 
 
 def absolute_accelerations(model: EngineModel, motion: Motion, ground: Callable[[Array], Array]) -> Array:
@@ -200,8 +253,10 @@ def _record(result: EngineRun, motion: Motion, size: Array, model: EngineModel, 
     if distance.max() > CANDIDATE_FRACTION * result.max_displacement:
         displacement = largest_displacement(motion.time, place, motion.velocities[:, axes])
         result.max_displacement = max(result.max_displacement, displacement)
-    result.peaks.add(motion.time, size, motion.slip)
-    _record_settling(result, motion.time, size, distance)
+    first = int(np.searchsorted(motion.time, result.undisturbed))
+    if first < len(motion.time):
+        result.peaks.add(motion.time[first:], size[first:], motion.slip[first:])
+        _record_settling(result, motion.time[first:], size[first:], distance[first:])
     gap = float(motion.gap.max())
     result.opened |= gap >= 0.0
     if not model.allows_liftoff:
@@ -238,8 +293,14 @@ def _slip_change(motion: Motion, engine: Engine, per_change: float) -> Array:
     size = _length(acceleration)
     # an acceleration that changes within a step counts twice: it says more about the steps that follow
     size[1:] = np.maximum(size[1:], 2.0 * _length(acceleration[1:] - acceleration[:-1]))
-    step_ratio: Array = per_change * size / np.maximum(motion.slip.min(axis=1), corner)
+    step_ratio: Array = per_change * size / np.maximum(_loaded_slip(motion), corner)
     return step_ratio
+
+
+def _loaded_slip(motion: Motion) -> Array:
+    """Smallest slip speed of the contacts that carry load, (T,); inf where none does."""
+    slip: Array = np.where(motion.gap < 0.0, motion.slip, np.inf).min(axis=1)
+    return slip
 
 
 def _behind_kinks(motion: Motion, size: Array, engine: Engine, peak: float, per_change: float) -> Array:
@@ -290,7 +351,9 @@ def _steps_ahead(motion: Motion, engine: Engine, level: Level) -> int:
     corner = engine.model.corner
     if len(motion.time) < 2 or not np.isfinite(corner):
         return MAX_CHUNK_STEPS
-    slip = motion.slip[-2:].min(axis=1)
+    slip = _loaded_slip(motion)[-2:]
+    if not np.isfinite(slip).all():
+        return MAX_CHUNK_STEPS
     rate = (slip[1] - slip[0]) / (motion.time[-1] - motion.time[-2])
     target = corner
     if slip[1] > corner:
@@ -303,14 +366,27 @@ def _steps_ahead(motion: Motion, engine: Engine, level: Level) -> int:
 
 def termination(motion: Motion, model: EngineModel) -> tuple[Outcome, int]:
     """The first event that ends the model's validity and its row; OK and the last row if there is none."""
+    count = len(motion.time)
+    if model.depressions is not None:
+        rim, tilt = _first(model.depressions.beyond_rim(motion.coordinates)), _tilt(motion, model)
+        if min(rim, _first(tilt >= 0.5 * math.pi)) == count:
+            return Outcome.OK, count - 1
+        row = min(rim, _first(tilt >= 0.5 * math.pi))
+        return Outcome.OVERTURNED if tilt[row] > model.critical_tilt else Outcome.RIM_REACHED, row
     # by height: the horizontal offset only touches rho at the rim and falls again beyond
     rise = motion.coordinates[:, model.bodies[0, 2]]
-    count = len(motion.time)
     rim = _first(rise >= RIM)
     contact_lost = count if model.allows_liftoff else _first((motion.gap >= 0.0).all(axis=1))
     if min(rim, contact_lost) == count:
         return Outcome.OK, count - 1
     return (Outcome.RIM_REACHED, rim) if rim <= contact_lost else (Outcome.CONTACT_LOST, contact_lost)
+
+
+def _tilt(motion: Motion, model: EngineModel) -> Array:
+    """Angle of the platform's axis to the vertical, (T,), rad."""
+    upright = rotation(motion.coordinates[:, model.bodies[0] + 3])[:, 2, 2]
+    tilt: Array = np.arccos(np.clip(upright, -1.0, 1.0))
+    return tilt
 
 
 def _first(holds: Any) -> int:

@@ -26,6 +26,10 @@ SAFETY_TWO_LEVELS, SAFETY_THREE_LEVELS = 1.5, 1.25  # on the error that so many 
 MIN_RATE, MAX_RATE = 2.0, 4.0  # factor by which a level reduces the error: at stops, in smooth motion
 MAX_CREDIBLE_RATE = 5.0  # a larger factor is accidental
 ERROR_PER_WARPING_LOAD = 0.05  # relative change of a peak over the largest warping load (measured: up to 0.02)
+MIN_ERROR_PER_WARPING_LOAD = 0.005  # likewise, where the scene itself shows less
+# relative error of level 0, halved by every level, of a motion with impacts: their order among the supports is decided
+# by rounding, and two levels agree better by chance (measured: 4e-4 between levels 1 to 4)
+MIN_ERROR_WITH_IMPACTS = 4e-3
 MIN_RELATIVE_ERROR = 1e-6  # of a peak: smaller errors are not measured
 MAX_CONVERGED_ERROR = 0.3  # relative: beyond it successive levels are different motions
 SMALLEST_CHANGE = 1e-290  # keeps a rate finite
@@ -46,6 +50,13 @@ def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> 
     return level_error + peaks[-1].sampling + levels[-1].rounding + MIN_RELATIVE_ERROR * last
 
 
+def widened_by_impacts(errors: Array, run: EngineRun, number: int) -> Array:
+    """Errors (N,) of a run at level `number`, which impacts do not let fall below a share of the peaks."""
+    if not run.impacts:
+        return errors
+    return np.maximum(errors, MIN_ERROR_WITH_IMPACTS / 2.0**number * run.peaks.value)
+
+
 def widened_without_convergence(errors: Array, run: EngineRun) -> Array:
     """
     Errors (N,) of a run, none of them less than the peak itself where the error of any body shows no convergence.
@@ -58,10 +69,23 @@ def widened_without_convergence(errors: Array, run: EngineRun) -> Array:
     return np.maximum(errors, peaks)
 
 
-def from_sharing(run: EngineRun) -> Array:
-    """Error (N,) of a run whose supports do not quite share the load as elastic ones do."""
-    error: Array = ERROR_PER_WARPING_LOAD * run.warping_load * run.peaks.value
+def from_sharing(run: EngineRun, per_load: Array) -> Array:
+    """Error (N,) of a run whose supports do not quite share the load as elastic ones do; per_load: see below."""
+    error: Array = per_load * run.warping_load * run.peaks.value
     return error
+
+
+def measured_per_load(run: EngineRun, stiffer: EngineRun) -> Array:
+    """
+    Relative change of each peak over the largest warping load, (N,), from a run with supports that warp less easily.
+
+    That is stated with a safety factor, and never below what the peaks of other scenes have shown.
+    """
+    relieved = stiffer.warping_load - run.warping_load
+    if relieved <= 0.0:
+        return np.full(len(run.peaks.value), ERROR_PER_WARPING_LOAD)
+    change = np.abs(run.peaks.value - stiffer.peaks.value) / run.peaks.value
+    return np.clip(SAFETY_TWO_LEVELS * change / relieved, MIN_ERROR_PER_WARPING_LOAD, ERROR_PER_WARPING_LOAD)
 
 
 def from_compliance(stiff: Peaks, soft: EngineRun, level: Level, model: EngineModel) -> Array:

@@ -22,7 +22,7 @@ from multibody.models.contact import viscous_relaxation
 from multibody.models.supports import MIN_WARPING_COMPLIANCE
 from multibody.models.system import EngineModel
 from multibody.models.units import link_stiffness
-from reference.problem import Scene, exponents
+from reference.problem import GRAVITY, Scene, exponents
 from reference.problem.ranges import TOLERANCE, checked_number
 
 MAX_LEVELS = 8
@@ -36,6 +36,8 @@ MAX_CONTACT_LAG = 0.3  # x at level 0 where rounding allows: from there on a lev
 NEWTON_TOLERANCE = 1e-5  # relative, of the forces, at level 0
 MAX_ROUNDING_SHARE = 0.25  # of the tolerance, that rounding of the forces may take at a peak of MIN_PEAK
 MIN_PEAK = 0.2  # of g
+WEAK_LOADING = 1e-4  # of g: below, the loading itself is the peak that rounding is held against
+MAX_WEAK_PENETRATION = 4e-4  # of rho, under such a loading: the contact force hardly changes
 MAX_WARPING_COMPLIANCE = 4e-4  # of rho under the weight, as of real bearings
 COMPLIANCE_RATIO = 4.0  # of the penetrations of two successive levels
 SCAN_RATIO, SCAN_NEWTON_RATIO = 4.0, 10.0  # of steps and tolerances that look ahead over those of the level
@@ -71,6 +73,8 @@ class Level:
         Of supports against warping under the weight, of rho.
     decays : tuple of (float, float)
         For everything that dies faster than the largest step resolves: the instant until which it lasts, and its step.
+    strength : float
+        Of a weak loading, in units of g; one for any other. The residual is held against it.
 
     Examples
     --------
@@ -89,6 +93,7 @@ class Level:
     error_floor: float
     warping_compliance: float
     decays: tuple[tuple[float, float], ...] = ()
+    strength: float = 1.0
 
     @property
     def rounding(self) -> float:
@@ -98,7 +103,7 @@ class Level:
     @property
     def residual(self) -> float:
         """Smallest residual that Newton's iteration is asked for, in weights."""
-        return max(1e-3 * self.newton, self.rounding)
+        return max(1e-3 * self.newton * self.strength, self.rounding)
 
     def coarsened(self) -> Level:
         """The same contact in steps `SCAN_RATIO` times as large, to look ahead."""
@@ -155,8 +160,11 @@ def levels(
 def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
     """All levels for a relative error of `tolerance`; the penetration stays where rounding would take over."""
     step = largest_step(scene, model)
-    stiffest = min(model.rounding / (MAX_ROUNDING_SHARE * MIN_PEAK * tolerance), MAX_PENETRATION / COMPLIANCE_RATIO)
+    strength = 1.0 if model.allows_liftoff else weak_strength(scene)  # a tower tilts on soft contacts
+    peak, most = (MIN_PEAK, MAX_PENETRATION) if strength == 1.0 else (strength, MAX_WEAK_PENETRATION)
+    stiffest = min(model.rounding / (MAX_ROUNDING_SHARE * peak * tolerance), most / COMPLIANCE_RATIO)
     softest = float(np.clip(min(MAX_CONTACT_LAG * model.relaxation, 1.0) ** 2, stiffest, MAX_PENETRATION))
+    softest = max(softest, stiffest)
     stiffenings = math.floor(math.log(softest / stiffest, COMPLIANCE_RATIO) + 1e-9)
     penetrations = [softest / COMPLIANCE_RATIO ** min(level, stiffenings) for level in range(MAX_LEVELS)]
     brief = brief_motions(scene, model, step)
@@ -175,9 +183,17 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
             error_floor=MIN_RELATIVE_ERROR / 4.0**level,
             warping_compliance=MIN_WARPING_COMPLIANCE,
             decays=tuple((until, needed / 2.0**level) for until, needed in brief),
+            strength=strength,
         )
         for level, penetration in enumerate(penetrations)
     ]
+
+
+def weak_strength(scene: Scene) -> float:
+    """The largest acceleration of a weak loading along any axis, in units of g; one for any other."""
+    samples = scene.record[:, 1:] if scene.recorded else scene.amplitudes
+    strength = float(np.abs(samples).max()) / GRAVITY
+    return strength if 0.0 < strength < WEAK_LOADING else 1.0
 
 
 def largest_step(scene: Scene, model: EngineModel) -> float:

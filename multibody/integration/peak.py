@@ -64,6 +64,10 @@ class Peaks:
         if ready:
             self._read = float(time[ready[-1]])
 
+    def restart(self) -> None:
+        """Read nothing across this instant: velocities jump, and the next chunk need not begin here."""
+        self._time, self._size, self._slip = self._time[:0], self._size[:0], self._slip[:0]
+
     def _scan(
         self, body: int, time: Array, size: Array, slip: Array, corners: Rows, bends: Rows, ready: list[int]
     ) -> None:

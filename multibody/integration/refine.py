@@ -24,7 +24,9 @@ from multibody.integration.estimate import (
     from_compliance,
     from_levels,
     from_sharing,
+    measured_per_load,
     share_of_change,
+    widened_by_impacts,
     widened_without_convergence,
 )
 from multibody.integration.level import COMPLIANCE_RATIO, MAX_WARPING_COMPLIANCE, Level, levels_of
@@ -45,6 +47,8 @@ MAX_WORK_GROWTH = 2.0  # steps of a level over those of the level before
 STEPS_AFTER_SETTLING = 20.0  # largest steps from the last large value of a run to the end of the next
 # change between two levels over what separates later values from the largest: beyond it a run goes to the end after all
 MAX_EARLY_CHANGE = 0.2
+MAX_SHARING_ERROR = 2.0  # over the error from levels: beyond it further levels hardly help
+MAX_DIFFERENT_MOTIONS = 3  # successive levels with impacts that are another motion than the level before
 MIN_END_MARGIN = 0.1  # of the first run from the rim, in rho, and contact force, in weights: closer, all go to the end
 
 
@@ -86,6 +90,8 @@ def refine(
         no_run = EngineRun(Peaks(len(model.bodies), model.corner), math.inf, Outcome.STEP_LIMIT, 0.0)
         return _no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
     runs: list[EngineRun] = []
+    different = 0  # how many of the last levels with impacts were another motion
+    per_load = np.full(len(model.bodies), ERROR_PER_WARPING_LOAD)
     stop = math.inf  # of the next run, where nothing later can matter
     candidate: _Candidate | None = None
     complete: _Candidate | None = None  # the last candidate whose error lacks nothing
@@ -106,7 +112,7 @@ def refine(
             continue
         candidate = None
         too_stiff = run.warping_load * ERROR_PER_WARPING_LOAD > MAX_WARPING_ERROR_SHARE * tolerance
-        if too_stiff and run.last_open == -math.inf:  # a support that closes again would hit a softer platform
+        if too_stiff:
             rest = slice(number + 1, len(remaining))
             remaining[rest] = [_softer(later, run.warping_load, tolerance) for later in remaining[rest]]
         if number == 0 or runs[-2].outcome != run.outcome:
@@ -116,10 +122,22 @@ def refine(
         if run.outcome != Outcome.OK:
             break
         finished = [other.peaks for other in runs[-3:] if other.outcome == Outcome.OK]
-        errors = from_levels(finished, remaining[: number + 1], model) + from_sharing(run)
-        errors = widened_without_convergence(errors, run)
+        lifted = any(other.last_open > -math.inf for other in runs)
+        if lifted:  # open supports warp the ring: the load of warping is large, and its effect is measured
+            compliances = [other.warping_compliance for other in remaining[max(number - 2, 0) : number + 1]]
+            if compliances[-2] != compliances[-1]:
+                per_load = np.minimum(per_load, measured_per_load(run, runs[-2]))
+            if compliances[0] != compliances[-2]:
+                finished = finished[-2:]
+        sharing = from_sharing(run, per_load)
+        errors = widened_by_impacts(from_levels(finished, remaining[: number + 1], model), run, number)
+        uneven = lifted and (sharing > np.maximum(tolerance * run.peaks.value, MAX_SHARING_ERROR * errors)).all()
+        errors = widened_without_convergence(errors + sharing, run)
         before = (runs[-2], share_of_change(remaining[number - 1], model))
         candidate = _Candidate(run, errors, level.error_floor, (before,), level if shared else None)
+        different = different + 1 if run.impacts and (errors >= run.peaks.value).all() else 0
+        if different == MAX_DIFFERENT_MOTIONS:
+            break  # impacts take every level elsewhere: a further one would, too
         if candidate.meets(tolerance):
             candidate = candidate.completed(pair, budget, keep)
         complete = complete if candidate.without_compliance else candidate
@@ -127,6 +145,8 @@ def refine(
             return _answer(model, candidate, Outcome.OK)
         if (level.rounding > np.maximum(tolerance * run.peaks.value, candidate.errors / COMPLIANCE_RATIO)).any():
             break  # hardly more than rounding is left, and no further level rounds less
+        if uneven and level.warping_compliance == MAX_WARPING_COMPLIANCE:
+            break  # hardly more than the uneven share of the load is left, and no further level shares it better
     if candidate is not None:
         return _beyond_tolerance(pair, candidate.completed(pair, budget, keep), complete)
     return _unfinished(pair, runs)

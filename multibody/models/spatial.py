@@ -26,7 +26,9 @@ from multibody.models.contact import (
     platform_on_sphere,
     set_contact_parameters,
 )
+from multibody.models.depressions import Depressions
 from multibody.models.engine import exudyn, items
+from multibody.models.impact import ImpactLaw
 from multibody.models.loading import Ground, ground_of, symbolic_load
 from multibody.models.plate import plate_for
 from multibody.models.recorders import add_recorders
@@ -81,6 +83,11 @@ def spatial(
 
     index = PER_BODY * np.arange(len(masses))[:, None] + np.arange(3)
     parts = _Parts(mbs, units, index, contacts, links, supports, radius, friction, bearing_penetration)
+    vertical = parts.body_coordinates + supports.vertical
+    under_platform = Depressions(ring, float(heights[0]), radius, vertical)
+    restitution = scene.isolator.restitution or 0.0
+    inertias = _inertias(masses, sizes)
+    law = ImpactLaw(under_platform, masses, inertias, heights, restitution, friction, threshold)
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     return EngineModel(
         mbs=mbs,
@@ -102,6 +109,11 @@ def spatial(
         set_frictionless=parts.set_frictionless,
         warping_displacement=parts.warping_displacement,
         bearing_penetration=bearing_penetration,
+        depressions=under_platform,
+        critical_tilt=_critical_tilt(ring, radius, masses, heights),
+        impact=None if bearing_penetration else law,
+        bar_lags=parts.bar_lags,
+        set_open=parts.set_open,
     )
 
 
@@ -137,6 +149,22 @@ class _Parts:
         for link in self.links:
             set_link_stiffness(self.mbs, *link, 1.0 / (LINK_COMPLIANCE_RATIO * penetration))
 
+    def bar_lags(self, penetration: float) -> Array:
+        """See `EngineModel`."""
+        carried = np.array([mass for _, mass, _, _ in self.links])
+        lags: Array = 2.0 * np.sqrt(carried * LINK_COMPLIANCE_RATIO * penetration)
+        return lags
+
+    def set_open(self, is_open: NDArray[np.bool_], penetration: float) -> None:
+        """See `EngineModel`."""
+        pressed = self.bearing_penetration or penetration
+        radii = [self.radius + pressed, self.radius + 1.0]
+        for contact, opened in zip(self.contacts, is_open):
+            set_contact_parameters(self.mbs, contact, radii, pressed, len(self.contacts))
+            if opened:
+                self.mbs.SetObjectParameter(contact, "contactStiffness", 0.0)
+                self.mbs.SetObjectParameter(contact, "contactDamping", 0.0)
+
     def start(self, initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
         """See `EngineModel`."""
         units, index = self.units, self.index
@@ -170,12 +198,24 @@ class _Parts:
 def _boxes(mbs: Any, masses: Array, heights: Array, sizes: Array) -> tuple[list[Any], list[Any]]:
     """Nodes and bodies of homogeneous boxes."""
     nodes, bodies = [], []
-    for mass, height, size in zip(masses, heights, sizes):
+    for mass, height, inertia in zip(masses, heights, _inertias(masses, sizes)):
         nodes.append(mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0, 0.0, height, 0.0, 0.0, 0.0])))
-        inertia = mass / 12.0 * (size @ size - size**2)
         box = items.ObjectRigidBody(nodeNumber=nodes[-1], mass=mass, inertia=[*inertia, 0.0, 0.0, 0.0])
         bodies.append(mbs.AddObject(box))
     return nodes, bodies
+
+
+def _inertias(masses: Array, sizes: Array) -> Array:
+    """Moments of inertia of homogeneous boxes about their axes, (N, 3)."""
+    inertias: Array = masses[:, None] / 12.0 * ((sizes**2).sum(axis=1)[:, None] - sizes**2)
+    return inertias
+
+
+def _critical_tilt(ring: Array, radius: float, masses: Array, heights: Array) -> float:
+    """Angle from the nearest edge of the ring of supports to the center of mass over it, from the vertical, rad."""
+    edge = float(np.hypot(*ring[0])) * np.cos(np.pi / len(ring))
+    above = float(masses @ heights / masses.sum()) - (1.0 + radius)
+    return float(np.arctan2(edge, above))
 
 
 def _links(mbs: Any, bodies: list[Any], masses: Array, heights: Array, stiffness: Array, ring: float) -> list[Link]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -9,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from multibody.models.depressions import Depressions
+from multibody.models.impact import ImpactLaw
 from multibody.models.loading import Ground
 from multibody.models.units import Units
 from reference.problem import State
@@ -62,6 +65,13 @@ class EngineModel:
     carried: NDArray[np.int_]  # (C, 3), index of the coordinates that the plate carries along x, y, z
     references: tuple[Any, ...]  # the engine's container of the system, and what the engine only points to
     allows_liftoff: bool = False  # whether the model goes on when every contact is open
+    depressions: Depressions | None = None  # of a platform that turns
+    critical_tilt: float = math.inf  # rad, of the platform, beyond which its weight turns it over
+    impact: ImpactLaw | None = None  # of contacts that close; None: their own stiffness decides
+    # damping over stiffness of each link along its bars, (N - 1,), in units of time, for a penetration of the contacts
+    bar_lags: Callable[[float], Array] | None = None
+    # takes contacts (K,) out of the engine, whose penetration is given, and puts the others in
+    set_open: Callable[[NDArray[np.bool_], float], None] | None = None
     set_frictionless: Callable[[bool], None] | None = None  # removes or restores friction; None: starts in balance
     # distance of the supports from a plane, (T,), for coordinates (T, n); None if the supports do not share the load
     warping_displacement: Callable[[Array], Array] | None = None

@@ -21,6 +21,7 @@ class Outcome(StrEnum):
     TOLERANCE_NOT_MET = "tolerance not met"
     RIM_REACHED = "rim reached"
     CONTACT_LOST = "contact lost"
+    OVERTURNED = "overturned"
     PAINLEVE = "painleve paradox"
     NON_FINITE_LOAD = "non-finite load"
     NO_GROUND_MOTION = "no ground motion"
@@ -35,6 +36,7 @@ ADVICE: dict[Outcome, str] = {
     Outcome.TOLERANCE_NOT_MET: "the error shown is larger than asked: loosen the tolerance, or give a cutoff v_c",
     Outcome.RIM_REACHED: "x1^2 + y1^2 reached rho^2 (4.1): lower the amplitude or enlarge the radius",
     Outcome.CONTACT_LOST: "the contact force reached zero: lower the vertical amplitude, or use the spatial model",
+    Outcome.OVERTURNED: "the tower fell over an edge of its supports: widen the ring or lower the amplitude",
     Outcome.PAINLEVE: "the mass matrix of (3.9) lost its sign: lower the friction coefficient or the swing",
     Outcome.NON_FINITE_LOAD: "loads or stiffness overflow double precision: rescale the scene",
     Outcome.NO_GROUND_MOTION: "(5.1) divides by the ground acceleration: give a nonzero amplitude",

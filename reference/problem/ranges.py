@@ -48,6 +48,7 @@ SCENE: dict[str, Range] = {
     "isolator.supports": Range(3, 1000),
     "isolator.ring": Range(1e-6, 1e6, "m"),
     "isolator.support_stiffness": Range(1e-12, 1e18, "N/m"),
+    "isolator.restitution": Range(0.0, 1.0),
     "isolator.sphere_radius": Range(1e-9, 1e6, "m"),
     "bodies.mass": Range(1e-12, 1e15, "kg"),
     "bodies.period": Range(1e-7, 1e9, "s"),

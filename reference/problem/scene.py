@@ -122,7 +122,10 @@ class Scene(Table):
             rule = f"must be at most {MAX_CYCLES:g} periods of {shortest:.4g} s, the shortest of loading and pendulum"
             raise MisfitError("duration", self.duration, rule)
 
-        bearings = self.isolator.support_stiffness
+        bearings, restitution = self.isolator.support_stiffness, self.isolator.restitution
+        if bearings is not None and restitution is not None:
+            rule = "supports with a support_stiffness rebound by it: remove one of the two keys"
+            raise MisfitError("isolator.restitution", restitution, rule)
         if bearings is not None:
             share = self.total_mass * GRAVITY / ((self.isolator.supports or 1) * bearings * self.radius)
             if not share <= MAX_SUPPORT_DEFLECTION:

@@ -113,6 +113,10 @@ class Isolator(Table):
             SPATIAL,
         ),
     ] = None
+    restitution: Annotated[
+        Annotated[NonNegative, within("isolator.restitution")] | None,
+        about("coefficient of restitution of a support that closes again, 0 without", "", SPATIAL),
+    ] = None
 
     @model_validator(mode="after")
     def _alternatives(self) -> Isolator:

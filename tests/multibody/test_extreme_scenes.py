@@ -81,9 +81,9 @@ def test_a_motion_that_was_never_begun_has_no_instants_and_says_why() -> None:
 
 
 def test_levels_that_cannot_round_less_are_not_spent(monkeypatch: pytest.MonkeyPatch) -> None:
-    # 1e-9 m/s^2 is a tenth of what a contact force rounds to
+    # 1e-11 m/s^2 is less than what a contact force rounds to
     done = adaptive_runs(monkeypatch)
-    weak = strong(duration=0.5, excitation={"amplitudes": [[1e-9, 0.0], [0.0, 1e-9]]})
+    weak = strong(duration=0.5, excitation={"amplitudes": [[1e-11, 0.0], [0.0, 1e-11]]})
     result = multibody.amplification(weak, PHASE)
     assert result.status[0] == Outcome.TOLERANCE_NOT_MET
     assert (result.error > 0.1 * result.mu).all()
@@ -122,3 +122,12 @@ def test_without_a_run_about_the_compliance_the_level_before_answers(monkeypatch
     assert result.status[0] == Outcome.TOLERANCE_NOT_MET
     equations = reference.amplification(scene, PHASE, equations="exact", regularization=V_REG, tolerance=1e-8)
     assert (np.abs(result.mu - equations.mu) <= result.error + equations.error).all()
+
+
+def test_a_loading_of_a_millionth_has_the_factors_of_the_equations() -> None:
+    scene = load_scene("fig3-I").with_values({"duration": 3.0}).with_amplitude(1e-6)
+    phases = [(0.3, 1.1), (2.0, 0.7)]
+    engine = multibody.amplification(scene, phases, tolerance=1e-3)
+    equations = reference.amplification(scene, phases, equations="exact", regularization=1e-3, tolerance=1e-6)
+    assert engine.status.tolist() == ["ok", "ok"]
+    assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()

@@ -14,7 +14,6 @@ from multibody.models.engine import exudyn, items
 from multibody.models.spatial import add_link, set_link_stiffness
 from reference.problem import GRAVITY, Outcome, Scene, ground_acceleration, load_scene
 
-LOST = (Outcome.CONTACT_LOST, Outcome.RIM_REACHED, Outcome.SOLVER_FAILED)
 SIZE = [1.0, 1.0, 0.2]
 
 
@@ -223,7 +222,7 @@ def test_errors_hold_against_a_tenth_of_the_tolerance(supports: int) -> None:
 def test_a_tower_on_three_supports_too_close_together_is_lost_by_name() -> None:
     scene = changed(load_scene("fig3-I").with_amplitude(3.0), duration=2.0, isolator={"supports": 3, "ring": 0.05})
     result = multibody.amplification(scene, [(2.0, 0.7)], model="spatial", tolerance=1e-2)
-    assert result.status[0] in LOST
+    assert result.status.tolist() == [Outcome.OVERTURNED]
     assert np.isnan(result.mu).all()
     assert 0.0 < result.instant[0] < 2.0
 

@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 PHYSICS = {
     Outcome.RIM_REACHED,
     Outcome.CONTACT_LOST,
+    Outcome.OVERTURNED,
     Outcome.PAINLEVE,
     Outcome.NON_FINITE_LOAD,
     Outcome.NO_GROUND_MOTION,

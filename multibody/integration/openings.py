@@ -1,0 +1,154 @@
+"""
+Supports that open and close in a run: every closing is an impact, located between two steps of the engine.
+
+A contact whose gap has opened is taken out of the engine, so that every stretch of a run is smooth. The gap is watched
+from the positions. Where it closes, the last step is made again with the length at which the gap is zero, velocities
+jump by `ImpactLaw`, and the run goes on from there. Slow closings, and what is left of the normal motion behind an
+impact, are damped by the contact itself within a time in proportion to the square root of its penetration.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from multibody.integration.constant_step import Engine, Motion
+from multibody.models.impact import ImpactLaw
+from multibody.models.system import EngineState
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+GAP_TOLERANCE = 1e-4  # of the penetration, at a located closing
+SIMULTANEOUS = 1e-7  # units of time: contacts that close within it are hit at once
+MIN_IMPACT_SPEED = 1e-5  # of an approach, in units of velocity: slower ones are left to the contact's damper
+MAX_QUIET_FORCE = 1e-3  # of that damper, in weights: more of it is an impact, too
+IMPACT_TIME = 0.04  # units of time: as long as real bearings, which give way by 4e-4 rho, take to spring back
+SETTLING_TIME = 40.0  # of contact forces behind an impact, in square roots of the penetration
+FIRST_STEP = 0.25  # behind an impact, likewise
+
+
+@dataclass(frozen=True)
+class Event:
+    """The first opening or closing in a chunk."""
+
+    row: int  # the last one before it
+    closes: bool
+    which: Mask  # (K,)
+
+
+@dataclass
+class Openings:
+    """Which contacts are open, and what happened to them."""
+
+    engine: Engine
+    law: ImpactLaw
+    penetration: float
+    is_open: Mask = field(init=False)  # (K,)
+    settled: float = -math.inf  # when contact forces have settled after the last impact, in units of time
+    impacts: int = 0
+
+    def __post_init__(self) -> None:
+        self._set_open(np.zeros(len(self.law.depressions.ring), bool))
+
+    def _set_open(self, is_open: Mask) -> None:
+        self.is_open = is_open
+        set_open = self.engine.model.set_open
+        assert set_open is not None
+        set_open(is_open, self.penetration)
+
+    def gaps(self, coordinates: Array) -> Array:
+        """Gap (T, K) of every contact for coordinates (T, n)."""
+        return self.law.depressions.clearance(coordinates) - self.penetration
+
+    def with_gaps(self, motion: Motion) -> Motion:
+        """`motion` with the gaps of open contacts, which the engine takes for whole hollow spheres."""
+        if not self.is_open.any():
+            return motion
+        contact = motion.contact.copy()
+        contact[:, 0::4][:, self.is_open] = np.maximum(self.gaps(motion.coordinates)[:, self.is_open], 0.0)
+        return replace(motion, contact=contact)
+
+    def first_event(self, motion: Motion) -> Event | None:
+        """The first opening or closing in the rows of `motion` behind its first one."""
+        opens = (motion.gap[1:] >= 0.0) & ~self.is_open
+        closes = np.zeros_like(opens)
+        if self.is_open.any():
+            gaps = self.gaps(motion.coordinates)
+            closes = (gaps[1:] < 0.0) & (gaps[1:] < gaps[:-1]) & self.is_open
+        rows = np.flatnonzero((opens | closes).any(axis=1))
+        if not len(rows):
+            return None
+        row = int(rows[0])
+        closing = bool(closes[row].any())
+        return Event(row, closing, closes[row] if closing else opens[row])
+
+    def opened(self, event: Event) -> None:
+        """Take the contacts that have opened out of the engine."""
+        self._set_open(self.is_open | event.which)
+
+    def located(self, state: EngineState, time: float, step: float, event: Event) -> Motion | None:
+        """
+        The step from `state`, of length `step` or less, that ends where the first contact of the event opens or closes.
+
+        None if it has no length.
+        """
+        sign = 1.0 if event.closes else -1.0
+        done: dict[float, Motion | None] = {}
+        values: dict[float, float] = {}
+
+        def margin(length: float) -> float:  # positive before the event
+            if length not in values:
+                done[length] = motion = self.engine.run(state, time, length, 1)
+                gaps = None if motion is None else self.gaps(motion.coordinates[-1:])[0, event.which]
+                values[length] = -self.penetration if gaps is None else float((sign * gaps).min())
+            return values[length]
+
+        tolerance = GAP_TOLERANCE * self.penetration
+        begin = values[0.0] = float((sign * self.gaps(state.coordinates[None])[0, event.which]).min())
+        if begin <= tolerance:
+            return None
+        end = margin(step)
+        if end >= 0.0:
+            return done[step]
+        length = float(brentq(margin, 0.0, step, xtol=max(tolerance * step / (begin - end), 1e-300), rtol=1e-15))
+        margin(length)
+        return done.get(length)
+
+    def touching(self, motion: Motion, which: Mask) -> Motion:
+        """`motion`, at whose end contacts touch that were open before."""
+        motion = self.with_gaps(motion)
+        touched = which & (self.gaps(motion.coordinates[-1:])[0] <= GAP_TOLERANCE * self.penetration)
+        motion.contact[-1, 0::4][touched] = -GAP_TOLERANCE * self.penetration
+        return motion
+
+    def after_impact(self, state: EngineState, time: float, which: Mask) -> EngineState:
+        """The state behind the impact of `which`, and of contacts that close at the same instant."""
+        gaps = self.gaps(state.coordinates[None])[0]
+        leaving, relative = self.law.normal_speeds(state.coordinates, state.velocities)
+        hit = which & (gaps <= 2.0 * GAP_TOLERANCE * self.penetration) | self.is_open & (
+            gaps <= SIMULTANEOUS * np.maximum(-relative, 0.0)
+        )
+        if not hit.any():
+            hit = which & (gaps == gaps[which].min())
+        contact = state.contact.copy()
+        contact[0::4][hit] = -GAP_TOLERANCE * self.penetration
+        response = math.sqrt(self.penetration)
+        if -2.0 * relative[hit].min() > MAX_QUIET_FORCE * response:
+            self.settled = time + max(SETTLING_TIME * response, IMPACT_TIME)
+        if -leaving[hit].min() < MIN_IMPACT_SPEED:
+            self._set_open(self.is_open & ~hit)
+            velocities = self.law.with_spheres_along(state.coordinates, state.velocities, hit)
+            return replace(state, velocities=velocities, contact=contact)
+        velocities, is_open = self.law.after(state.coordinates, state.velocities, ~self.is_open & ~hit, hit)
+        self._set_open(is_open)
+        self.impacts += 1
+        bar_lags = self.engine.model.bar_lags
+        assert bar_lags is not None
+        lags = bar_lags(self.penetration)
+        coordinates = self.law.with_bars_at_rest(state.coordinates, state.velocities, velocities, lags)
+        return replace(state, coordinates=coordinates, velocities=velocities, contact=contact)

@@ -1,0 +1,103 @@
+"""
+Where the spheres are in the depressions of a platform that turns, and how fast the platform moves against them.
+
+A depression is the upper half of a hollow sphere. The engine's contact is a whole one: it would press from the other
+side once the platform has risen by twice rho. So the clearance between platform and spheres is computed here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Depressions:
+    """The platform's depressions over spheres on the plate, in units of the model, where rho is one."""
+
+    ring: Array  # (K, 2), places of the spheres
+    height: float  # of the platform's center of mass above the centers of the depressions
+    radius: float  # of the spheres
+    vertical: NDArray[np.int_]  # (K,) or (0,), index of each sphere's vertical coordinate
+
+    def centers(self, coordinates: Array) -> tuple[Array, Array]:
+        """
+        Centers of the spheres from those of the depressions, in the axes of the plate and of the platform.
+
+        coordinates: (T, n). Returns two arrays (T, K, 3).
+        """
+        turned = rotation(coordinates[:, 3:6])
+        local = np.column_stack([self.ring, np.full(len(self.ring), -self.height)])
+        place = coordinates[:, None, :3] + [0.0, 0.0, self.height] + np.einsum("tij,kj->tki", turned, local)
+        spheres = np.empty((len(coordinates), len(self.ring), 3))
+        spheres[:, :, :2] = self.ring
+        spheres[:, :, 2] = 1.0
+        if len(self.vertical):
+            spheres[:, :, 2] += coordinates[:, self.vertical]
+        apart = spheres - place
+        return apart, np.einsum("tij,tki->tkj", turned, apart)
+
+    def clearance(self, coordinates: Array) -> Array:
+        """Distance (T, K) from platform to spheres for coordinates (T, n), without penetration; negative: pressed."""
+        _, inside = self.centers(coordinates)
+        across, upward = np.hypot(inside[..., 0], inside[..., 1]), inside[..., 2]
+        # a sphere below the rim of its depression may come no nearer than the rim
+        clear: Array = 1.0 - np.where(upward > 0.0, np.hypot(across, upward), across)
+        return clear
+
+    def beyond_rim(self, coordinates: Array) -> NDArray[np.bool_]:
+        """Whether a sphere has left its depression, (T,), for coordinates (T, n)."""
+        _, inside = self.centers(coordinates)
+        outside = (inside[..., 2] <= 0.0) & (np.hypot(inside[..., 0], inside[..., 1]) >= 1.0)
+        return np.asarray(outside.any(axis=1))
+
+    def motion_at_contacts(self, coordinates: Array) -> tuple[Array, Array]:
+        """
+        Normals (K, 3) on the platform at its points of contact for coordinates (n,), and the Jacobian of these points.
+
+        Jacobian: (K, 3, 6), velocities of the points over velocity and angular velocity of the platform.
+        """
+        apart, _ = self.centers(coordinates[None])
+        normals = apart[0] / np.linalg.norm(apart[0], axis=1)[:, None]
+        spheres = np.column_stack([self.ring, np.ones(len(self.ring))])
+        if len(self.vertical):
+            spheres[:, 2] += coordinates[self.vertical]
+        levers = spheres + self.radius * normals - coordinates[:3] - [0.0, 0.0, self.height]
+        jacobian = np.concatenate([np.tile(np.eye(3), (len(levers), 1, 1)), -cross_matrix(levers)], axis=2)
+        return normals, jacobian
+
+
+def rotation(angles: Array) -> Array:
+    """Matrices (..., 3, 3) of the rotations Rx(a) Ry(b) Rz(c) by angles (..., 3), rad."""
+    about_x, about_y, about_z = (_about(axis, angles[..., axis]) for axis in range(3))
+    product: Array = about_x @ about_y @ about_z
+    return product
+
+
+def angular_velocity_matrix(angles: Array) -> Array:
+    """Matrix (3, 3) of the angular velocity over the rates of angles (3,), rad: columns are the axes turned about."""
+    about_x, about_y = _about(0, angles[0]), _about(1, angles[1])
+    return np.column_stack([[1.0, 0.0, 0.0], about_x[:, 1], (about_x @ about_y)[:, 2]])
+
+
+def cross_matrix(vectors: Array) -> Array:
+    """Matrices (..., 3, 3) that take the cross product of vectors (..., 3) with what they multiply."""
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    zero = np.zeros_like(x)
+    rows = [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def _about(axis: int, angle: Array) -> Array:
+    """Matrices (..., 3, 3) of rotations by `angle` about one axis."""
+    matrix = np.zeros((*np.shape(angle), 3, 3))
+    first, second = (axis + 1) % 3, (axis + 2) % 3
+    matrix[..., axis, axis] = 1.0
+    matrix[..., first, first] = matrix[..., second, second] = np.cos(angle)
+    matrix[..., second, first] = np.sin(angle)
+    matrix[..., first, second] = -np.sin(angle)
+    return matrix

@@ -1,0 +1,199 @@
+"""
+Velocities after an impact of the platform on spheres that had left it.
+
+An impact takes no time: positions stay, velocities jump. The impulses obey Newton's law of restitution along the
+normals and Coulomb's law across them, both stated with the velocities after the impact (Moreau). Spheres that carry
+load may push, too, and not pull. Bars are rigid in tension and bending, as they are beside the contacts' stiffness,
+and give way in shear and twist. The result does not depend on the stiffness of the contacts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.models.depressions import Depressions, angular_velocity_matrix, rotation
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+PER_BODY = 6
+MAX_SWEEPS, SWEEP_TOLERANCE = 2000, 1e-11  # over the contacts; change of a velocity in one over the largest before
+OPENING_SPEED = 1e-5  # units of velocity: contacts that separate faster are open
+
+
+@dataclass(frozen=True)
+class ImpactLaw:
+    """What an impact depends on, in units of the model."""
+
+    depressions: Depressions
+    masses: Array  # (N,)
+    inertias: Array  # (N, 3), about the axes of each body
+    heights: Array  # (N,), of the centers of mass
+    restitution: float
+    friction: float  # coefficient
+    corner: float  # slip speed under which the coefficient is reduced linearly
+
+    def after(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
+        """
+        Velocities (n,) after an impact at coordinates (n,) with velocities (n,), and which contacts (K,) are open then.
+
+        closed, hit: (K,), contacts that carry load, and those that the platform hits.
+        """
+        count = PER_BODY * len(self.masses)
+        turning = self._turning(coordinates)
+        speeds = turning @ velocities[:count]
+        normals, jacobian = self.depressions.motion_at_contacts(coordinates)
+        struck = np.flatnonzero(closed | hit)
+        rows = np.zeros((len(struck), 3, count))
+        rows[:, :, :PER_BODY] = _in_contact_axes(normals[struck]) @ jacobian[struck]
+        before = rows @ speeds
+        if len(self.depressions.vertical):
+            upward = velocities[self.depressions.vertical[struck]]
+            # a sphere that springs up is too light to push the platform
+            upward[hit[struck]] = np.minimum(upward[hit[struck]], 0.0)
+            before -= _in_contact_axes(normals[struck])[:, :, 2] * upward[:, None]
+        response = self._response(coordinates)
+        flat = rows.reshape(-1, count)
+        delassus = flat @ response @ flat.T
+        rebound = np.where(hit[struck], -self.restitution * np.minimum(before[:, 0], 0.0), 0.0)
+        impulses = self._impulses(delassus, before, rebound)
+        after = speeds + response @ flat.T @ impulses.ravel()
+        normal_speed = before[:, 0] + (delassus @ impulses.ravel()).reshape(-1, 3)[:, 0]
+        is_open = ~(closed | hit)
+        is_open[struck] = normal_speed > OPENING_SPEED
+        changed = velocities.copy()
+        changed[:count] = np.linalg.solve(turning, after)
+        return self.with_spheres_along(coordinates, changed, hit & ~is_open), is_open
+
+    def with_spheres_along(self, coordinates: Array, velocities: Array, hit: Mask) -> Array:
+        """Velocities (n,) with those of the spheres that the platform hits, (K,), which are light and follow it."""
+        vertical = self.depressions.vertical
+        if not len(vertical):
+            return velocities
+        normals, _ = self.depressions.motion_at_contacts(coordinates)
+        _, leaving = self.normal_speeds(coordinates, velocities)
+        followed = velocities.copy()
+        followed[vertical[hit]] += (leaving / normals[:, 2])[hit]
+        return followed
+
+    def with_bars_at_rest(self, coordinates: Array, before: Array, after: Array, lags: Array) -> Array:
+        """
+        Coordinates (n,) behind an impact that changed velocities (n,), at which no bar pushes for its damper's sake.
+
+        The engine's damper of a link sees the speed of its two ends along the bars, and takes the turning of bars with
+        an offset for stretching. A small stretch makes up for that; it jumps with the velocities. lags: (N - 1,),
+        damping over stiffness along the bars.
+        """
+        count = PER_BODY * len(self.masses)
+        turned = rotation(coordinates[:count].reshape(-1, PER_BODY)[:, 3:])
+        jump = (self._turning(coordinates) @ (after - before)[:count]).reshape(-1, 2, 3)
+        shifted = coordinates.copy()
+        for link, lag in enumerate(lags):
+            half, along = 0.5 * (self.heights[link + 1] - self.heights[link]), turned[link][:, 2]
+            ends = [
+                jump[link, 0] + half * np.cross(jump[link, 1], along),
+                jump[link + 1, 0] - half * np.cross(jump[link + 1, 1], turned[link + 1][:, 2]),
+            ]
+            for body in range(link + 1, len(self.masses)):
+                shifted[PER_BODY * body : PER_BODY * body + 3] -= lag * float(along @ (ends[1] - ends[0])) * along
+        return shifted
+
+    def normal_speeds(self, coordinates: Array, velocities: Array) -> tuple[Array, Array]:
+        """
+        Speeds (K,) along the normals at which the platform leaves the spheres; negative: it approaches.
+
+        The first are those against spheres that hold still or give way, the second against spheres as they move.
+        """
+        platform = (self._turning(coordinates) @ velocities[: PER_BODY * len(self.masses)])[:PER_BODY]
+        normals, jacobian = self.depressions.motion_at_contacts(coordinates)
+        leaving: Array = np.einsum("ki,kij,j->k", normals, jacobian, platform)
+        if not len(self.depressions.vertical):
+            return leaving, leaving
+        upward = normals[:, 2] * velocities[self.depressions.vertical]
+        return leaving - np.minimum(upward, 0.0), leaving - upward
+
+    def _turning(self, coordinates: Array) -> Array:
+        """Matrix (6 N, 6 N) that makes velocities and angular velocities of the bodies of the engine's velocities."""
+        count = PER_BODY * len(self.masses)
+        turning = np.eye(count)
+        for first in range(0, count, PER_BODY):
+            angles = slice(first + 3, first + PER_BODY)
+            turning[angles, angles] = angular_velocity_matrix(coordinates[angles])
+        return turning
+
+    def _response(self, coordinates: Array) -> Array:
+        """Change of the velocities over an impulse on them, (6 N, 6 N), with bars that do not stretch or bend."""
+        count = PER_BODY * len(self.masses)
+        inverse = np.zeros((count, count))
+        turned = rotation(coordinates[:count].reshape(-1, PER_BODY)[:, 3:])
+        for body, (mass, inertia, axes) in enumerate(zip(self.masses, self.inertias, turned)):
+            place = slice(PER_BODY * body, PER_BODY * body + 3)
+            angles = slice(PER_BODY * body + 3, PER_BODY * (body + 1))
+            inverse[place, place] = np.eye(3) / mass
+            inverse[angles, angles] = axes / inertia @ axes.T
+        bars = self._bars(coordinates, turned)
+        if not len(bars):
+            return inverse
+        held = inverse @ bars.T
+        response: Array = inverse - held @ np.linalg.solve(bars @ held, held.T)
+        return response
+
+    def _bars(self, coordinates: Array, turned: Array) -> Array:
+        """Rates of stretching and bending of each link over the velocities of the bodies, (3 (N - 1), 6 N)."""
+        count = len(self.masses)
+        rows = np.zeros((3 * (count - 1), PER_BODY * count))
+        places = coordinates[: PER_BODY * count].reshape(-1, PER_BODY)[:, :3].copy()
+        places[:, 2] += self.heights
+        for link in range(count - 1):
+            below, above = PER_BODY * link, PER_BODY * (link + 1)
+            half = 0.5 * (self.heights[link + 1] - self.heights[link])
+            levers = half * turned[link][:, 2], -half * turned[link + 1][:, 2]  # from the centers to the middle
+            shift = places[link + 1] + levers[1] - places[link] - levers[0]
+            across, along = turned[link][:, :2].T, turned[link][:, 2]
+            stretch = rows[3 * link]
+            stretch[below : below + 3], stretch[above : above + 3] = -along, along
+            # along (w x lever) = w (lever x along); the axis turns with the mean of both angular velocities
+            turn = -0.5 * np.cross(shift, along)
+            stretch[below + 3 : below + 6] = -np.cross(levers[0], along) + turn
+            stretch[above + 3 : above + 6] = np.cross(levers[1], along) + turn
+            rows[3 * link + 1 : 3 * link + 3, below + 3 : below + 6] = -across
+            rows[3 * link + 1 : 3 * link + 3, above + 3 : above + 6] = across
+        return rows
+
+    def _impulses(self, delassus: Array, before: Array, rebound: Array) -> Array:
+        """
+        Impulses (K, 3), along the normal and across it, by sweeps over the contacts.
+
+        delassus: (3 K, 3 K); before: velocities (K, 3); rebound: least speed along the normal afterwards, (K,).
+        """
+        impulses = np.zeros_like(before)
+        scale = float(np.abs(before).max(initial=0.0))
+        for _ in range(MAX_SWEEPS):
+            change = 0.0
+            for k in range(len(before)):
+                own = slice(3 * k, 3 * k + 3)
+                block, old = delassus[own, own], impulses[k].copy()
+                now = before[k] + delassus[own] @ impulses.ravel()
+                normal = max(0.0, old[0] - (now[0] - rebound[k]) / block[0, 0])
+                across = 0.5 * (block[1, 1] + block[2, 2]) + float(
+                    np.hypot(0.5 * (block[1, 1] - block[2, 2]), block[1, 2])
+                )
+                free = now[1:] - across * old[1:] + block[1:, 0] * (normal - old[0])
+                size, limit = float(np.hypot(*free)), self.friction * normal
+                impulses[k, 0] = normal
+                impulses[k, 1:] = -limit * free / max(size, self.corner + across * limit)
+                change = max(change, float(np.abs(block @ (impulses[k] - old)).max()))
+            if change <= SWEEP_TOLERANCE * scale:
+                break
+        return impulses
+
+
+def _in_contact_axes(normals: Array) -> Array:
+    """Matrices (K, 3, 3) whose rows are the normals (K, 3) and two directions across each."""
+    helper = np.where(np.abs(normals[:, :1]) < 0.5, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
+    first = np.cross(normals, helper)
+    first /= np.linalg.norm(first, axis=1)[:, None]
+    return np.stack([normals, first, np.cross(normals, first)], axis=1)

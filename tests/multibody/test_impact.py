@@ -1,0 +1,214 @@
+"""Supports that lift off and close again: closed forms of impacts and flights, overturning, the key of the scene."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scenes_at_hand import changed, one_body
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import multibody
+from multibody.integration.adaptive import EngineRun
+from multibody.integration.one_run import PhasePair
+from multibody.integration.peak import Peaks
+from multibody.models.depressions import Depressions, rotation
+from multibody.models.impact import ImpactLaw
+from reference.problem import GRAVITY, Scene, SceneError
+
+HALF_WIDTH, HEIGHT, RADIUS = 0.5, 3.0, 0.2  # of the square of supports, of the center of mass, of the spheres
+INERTIA = 0.9  # of the block about horizontal axes
+ARM = HEIGHT - (1.0 + RADIUS)  # of the center of mass above the points of contact
+CORNERS = HALF_WIDTH * np.array([[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]])
+LEFT, RIGHT = np.array([True, True, False, False]), np.array([False, False, True, True])
+NONE, ALL = np.zeros(4, bool), np.ones(4, bool)
+
+
+def block(restitution: float = 0.0, friction: float = 0.0, corner: float = 1e-9) -> ImpactLaw:
+    """A block of mass one on the four corners of a square, with the inertia above."""
+    depressions = Depressions(CORNERS, HEIGHT, RADIUS, np.empty(0, np.int_))
+    inertias = np.array([[INERTIA, INERTIA, 0.7]])
+    return ImpactLaw(depressions, np.ones(1), inertias, np.array([HEIGHT]), restitution, friction, corner)
+
+
+def rocking_about_the_left_edge(pace: float) -> np.ndarray[Any, Any]:
+    """Velocities (6,) of a level block that turns about its left edge, on which it stands, by `pace` about y."""
+    # a turn about y moves a point at (x, z) beside the center by pace * (z, -x); the edge is at (-b, -arm)
+    return np.array([pace * ARM, 0.0, -pace * HALF_WIDTH, 0.0, pace, 0.0])
+
+
+def test_a_rocking_block_on_rough_supports_slows_down_as_housner_says() -> None:
+    before = rocking_about_the_left_edge(0.3)
+    after, is_open = block(friction=1e3).after(np.zeros(6), before, LEFT, RIGHT)
+    moment = INERTIA + ARM**2 + HALF_WIDTH**2  # about either edge
+    ratio = (moment - 2.0 * HALF_WIDTH**2) / moment
+    assert after[4] / before[4] == pytest.approx(ratio, rel=1e-8)
+    np.testing.assert_array_equal(is_open, LEFT)
+    # the block now turns about its right edge
+    np.testing.assert_allclose(after[[0, 2]], [after[4] * ARM, after[4] * HALF_WIDTH], atol=1e-9)
+
+
+def test_a_rocking_block_on_smooth_supports_slows_down_by_its_inertia() -> None:
+    before = rocking_about_the_left_edge(0.3)
+    after, is_open = block().after(np.zeros(6), before, LEFT, RIGHT)
+    ratio = (INERTIA - HALF_WIDTH**2) / (INERTIA + HALF_WIDTH**2)
+    assert after[4] / before[4] == pytest.approx(ratio, rel=1e-10)
+    assert after[0] == before[0]  # nothing acts along the plate
+    np.testing.assert_array_equal(is_open, LEFT)
+
+
+def test_a_wide_block_comes_to_rest_on_all_its_supports() -> None:
+    depressions = Depressions(4.0 * CORNERS, HEIGHT, RADIUS, np.empty(0, np.int_))
+    law = ImpactLaw(depressions, np.ones(1), np.full((1, 3), INERTIA), np.array([HEIGHT]), 0.0, 0.0, 1.0)
+    before = np.array([0.0, 0.0, -0.3 * 4.0 * HALF_WIDTH, 0.0, 0.3, 0.0])
+    after, is_open = law.after(np.zeros(6), before, LEFT, RIGHT)
+    np.testing.assert_allclose(after, 0.0, atol=1e-11)
+    assert not is_open.any()
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.4, 1.0])
+def test_a_level_block_that_falls_on_all_supports_rebounds_by_the_restitution(restitution: float) -> None:
+    fall = np.array([0.0, 0.0, -0.7, 0.0, 0.0, 0.0])
+    after, is_open = block(restitution, friction=0.3).after(np.zeros(6), fall, NONE, ALL)
+    np.testing.assert_allclose(after, [0.0, 0.0, 0.7 * restitution, 0.0, 0.0, 0.0], atol=1e-8)
+    assert is_open.all() == (restitution > 0.0)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_no_impact_adds_energy_or_breaks_the_laws_of_contact(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    friction, corner = random.uniform(0.0, 0.3), 1e-3
+    law = block(0.0, friction, corner)
+    coordinates = np.concatenate([random.uniform(-0.2, 0.2, 3), random.uniform(-0.05, 0.05, 3)])
+    before = random.normal(size=6)
+    hit = random.random(4) < 0.5
+    closed = ~hit & (law.normal_speeds(coordinates, before)[0] > -1e-3) & (random.random(4) < 0.5)
+    after, is_open = law.after(coordinates, before, closed, hit)
+    speeds, _ = law.normal_speeds(coordinates, after)
+    assert (speeds[closed | hit] > -1e-9).all()
+    np.testing.assert_array_equal(is_open[closed | hit], speeds[closed | hit] > 1e-5)
+    axes = rotation(coordinates[3:])
+    inertia = axes @ np.diag([INERTIA, INERTIA, 0.7]) @ axes.T
+    turning = law._turning(coordinates)
+    energies = [0.5 * v[:3] @ v[:3] + 0.5 * v[3:] @ inertia @ v[3:] for v in (turning @ before, turning @ after)]
+    assert energies[1] <= energies[0] * (1.0 + 1e-9)
+
+
+def bouncing(restitution: float, **isolator: Any) -> Scene:
+    """One body over its supports, thrown off by a plate that moves up and down only."""
+    scene = one_body(friction=0.0, duration=0.45, amplitudes=[[0.0, 0.0], [0.0, 0.0], [15.0, 0.0]], periods=(0.4, 0.4))
+    supports = {"supports": 3, "ring": 0.5, "sphere_radius": 0.05, "restitution": restitution, **isolator}
+    return changed(scene, isolator=supports, bodies=[{"mass": 1.0, "height": 0.3, "size": [1.0, 1.0, 0.2]}])
+
+
+def flights(restitution: float, count: int) -> list[tuple[float, float]]:
+    """Start and end of the first flights of a ball on a plate that moves by 15 cos(2 pi t / 0.4) m/s^2, by roots."""
+    pace = 2.0 * math.pi / 0.4
+
+    def fall(t: float) -> float:  # acceleration of the ball against the plate
+        return -GRAVITY - 15.0 * math.cos(pace * t)
+
+    start, speed, done = math.acos(-GRAVITY / 15.0) / pace, 0.0, []
+    for _ in range(count):
+        begin, initial = start, speed
+
+        def height(t: float, begin: float = begin, initial: float = initial) -> float:
+            return initial * (t - begin) + quad(lambda s: (t - s) * fall(s), begin, t, epsabs=1e-14)[0]
+
+        grid = begin + np.linspace(1e-3, 0.4, 400)
+        first = next(k for k, t in enumerate(grid) if height(t) < 0.0)
+        end = float(brentq(height, grid[first - 1], grid[first], xtol=1e-13))
+        done.append((begin, end))
+        start, speed = end, -restitution * (initial + quad(fall, begin, end, epsabs=1e-14)[0])
+    return done
+
+
+def test_flights_between_impacts_begin_and_end_when_free_fall_says() -> None:
+    motion = multibody.trajectory(bouncing(0.5), (0.0, 0.0), model="spatial", tolerance=1e-2)
+    expected = [flight for flight in flights(0.5, 2) if flight[1] < 0.45]
+    assert len(expected) == 2
+    for support in range(3):
+        intervals = motion.extra["liftoff"][motion.extra["liftoff"][:, 0] == support][:2, 1:]
+        # the contact follows the force within the square root of its penetration, some 1e-4 s
+        np.testing.assert_allclose(intervals[0, 0], expected[0][0], atol=2e-4)
+        np.testing.assert_allclose(intervals[:, 1], [end for _, end in expected], atol=3e-5)
+
+
+def test_without_restitution_the_first_landing_is_the_last() -> None:
+    motion = multibody.trajectory(bouncing(0.0), (0.0, 0.0), model="spatial", tolerance=1e-2)
+    (begin, end), *_ = flights(0.0, 1)
+    for support in range(3):
+        intervals = motion.extra["liftoff"][motion.extra["liftoff"][:, 0] == support][:, 1:]
+        assert len(intervals) == 1
+        assert (np.abs(intervals[0] - [begin, end]) < [2e-4, 3e-5]).all()
+
+
+def tower(ring: float) -> Scene:
+    """A tower of two bodies on three supports, shaken by 4 m/s^2."""
+    size = [2.0, 2.0, 0.2]
+    return Scene.model_validate(
+        {
+            "title": "tower",
+            "duration": 3.0,
+            "isolator": {"period": 1.0, "friction": 0.05, "supports": 3, "ring": ring, "sphere_radius": 0.05},
+            "bodies": [
+                {"mass": 1.0, "height": 0.2, "size": size},
+                {"mass": 1.0, "height": 1.2, "size": size, "period": [1.5, 1.2]},
+            ],
+            "excitation": {"amplitudes": [[4.0, 0.0], [0.0, 4.0]], "periods": [0.9, 1.1], "decay": [0.33, 0.27]},
+        }
+    )
+
+
+def test_a_tower_that_overturns_ends_under_that_name_with_the_instant() -> None:
+    results = [
+        multibody.amplification(tower(0.1), [(0.3, 1.1)], model="spatial", tolerance=tolerance, full=True)
+        for tolerance in (1e-2, 1e-3)
+    ]
+    assert [result.status.tolist() for result in results] == [["overturned"], ["overturned"]]
+    assert np.isnan(results[0].mu).all()
+    assert results[0].instant[0] == pytest.approx(results[1].instant[0], rel=5e-3)
+    assert 1.0 < results[0].instant[0] < 3.0
+
+
+def test_a_tower_that_hits_its_supports_has_an_answer_that_a_finer_run_confirms() -> None:
+    coarse, fine = (
+        multibody.amplification(tower(1.0), [(0.3, 1.1)], model="spatial", tolerance=tolerance)
+        for tolerance in (1e-2, 1e-3)
+    )
+    assert coarse.status.tolist() == fine.status.tolist() == ["ok"]
+    assert (np.abs(coarse.mu - fine.mu) <= coarse.error + fine.error).all()
+    assert (fine.error <= 1.000001e-3 * fine.mu).all()
+
+
+def test_levels_that_impacts_take_elsewhere_are_given_up_with_a_wide_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    ran: list[EngineRun] = []
+
+    def elsewhere(pair: PhasePair, *given: Any, **named: Any) -> EngineRun:
+        run = EngineRun(Peaks(2, pair.model.corner), math.inf, steps=1000, impacts=7)
+        run.peaks.value[:] = 2.0 ** len(ran)
+        ran.append(run)
+        return run
+
+    monkeypatch.setattr(PhasePair, "at_level", elsewhere)
+    result = multibody.amplification(tower(1.0), [(0.3, 1.1)], model="spatial", tolerance=1e-2)
+    assert result.status.tolist() == ["tolerance not met"]
+    assert (result.error >= result.mu).all()
+    assert len(ran) <= 7, "four levels, three of which went to the end after all"
+
+
+@pytest.mark.parametrize("wrong", [-0.1, 1.5, math.nan, "0.5"])
+def test_a_restitution_outside_its_range_is_refused_in_one_line(wrong: Any) -> None:
+    with pytest.raises(SceneError) as caught:
+        tower(1.0).with_values({"isolator.restitution": wrong})
+    message = str(caught.value)
+    assert "isolator.restitution" in message
+    assert "\n" not in message
+
+
+def test_restitution_beside_a_stiffness_of_the_supports_is_refused() -> None:
+    with pytest.raises(SceneError, match="remove one of the two keys"):
+        tower(1.0).with_values({"isolator.restitution": 0.5, "isolator.support_stiffness": 1e6})
