@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from reference.problem import Scene, ground_peak, phase_grid
+from reference.problem import Scene, checked_phases, ground_peak, phase_grid
 from reference.problem.climb import Climb, Points, climb_on, follow_jump, kind_of, merged
 from reference.problem.ranges import checked_choice
 from reference.problem.symmetry import shifts, sources
@@ -74,6 +74,7 @@ def worst_phases(
     regularization: float | None = None,
     tolerance: float = 1e-6,
     cutoff: float | None = None,
+    starts: ArrayLike | None = None,
 ) -> PhaseMaximum:
     """
     Largest amplification factor of a body, or displacement of the isolator, over all initial phases.
@@ -88,6 +89,8 @@ def worst_phases(
         mu_i of (5.1), or the largest horizontal displacement of the platform, m.
     equations, regularization, tolerance, cutoff
         As in `amplification`.
+    starts : array_like, (K, 2), rad, optional
+        Where climbs begin. Without it at the hills of a grid of 48 x 48 phases (`hills` finds those of a surface).
 
     Returns
     -------
@@ -117,7 +120,13 @@ def worst_phases(
         raise ValueError(f"scene {scene.name}: a recorded motion has no phases; use amplification")
     law = {"equations": equations, "regularization": regularization, "cutoff": cutoff}
     search = _Search(scene, body - 1, quantity, tolerance, law)
-    climbs = _hills(search)
+    points = search.at(_on_grid(search) if starts is None else checked_phases(starts))
+    climbs = [
+        Climb(points.phases[n], float(points.value[n]), float(points.error[n]), 2.0 * np.pi / GRID)
+        for n in np.flatnonzero(np.isfinite(points.value))
+    ]
+    if not climbs:
+        raise ValueError(f"scene {scene.name}: no phase pair has an answer; amplification says why")
     for _ in range(MAX_ROUNDS):
         highest = max(climb.value for climb in climbs)
         active = [climb for climb in climbs if climb.may_reach(highest)]
@@ -170,20 +179,43 @@ class _Search:
         return Points(phases, displacement, denominator, DISPLACEMENT_ERROR * displacement)
 
 
-def _hills(search: _Search) -> list[Climb]:
-    """Climbs from the points of a grid that are as high as their eight neighbors."""
-    place = sources(search.scene, GRID)
-    computed, back = np.unique(place, return_inverse=True)
-    points = search.at(phase_grid(GRID)[computed], max(search.tolerance, GRID_TOLERANCE))
-    surface = points.value[back].reshape(GRID, GRID)
-    if not np.isfinite(surface).any():
-        raise ValueError(f"scene {search.scene.name}: no phase pair has an answer; amplification says why")
-    around = [np.roll(surface, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
-    hills = np.isfinite(surface) & (surface >= np.max(around, axis=0))
-    lowest = np.min([np.where(np.isfinite(each), each, surface) for each in around], axis=0)
-    may_reach = np.where(hills, surface, 0.0) + 0.5 * np.where(hills, surface - np.where(hills, lowest, 0.0), 0.0)
-    starts = np.flatnonzero(hills.ravel()[computed])
-    order = np.argsort(-may_reach.ravel()[computed][starts], kind="stable")
-    starts = starts[order][:MAX_CLIMBS]
-    spacing = 2.0 * np.pi / GRID
-    return [Climb(points.phases[n], float(points.value[n]), float(points.error[n]), spacing) for n in starts]
+def hills(surface: Array, scene: Scene) -> Array:
+    """
+    Phase pairs of a surface that are as high as their eight neighbors, those first that may rise highest between them.
+
+    Parameters
+    ----------
+    surface : ndarray, (n, n)
+        On `phase_grid(n)`; NaN without an answer.
+    scene : Scene
+        Of pairs that a symmetry of the motion makes alike only one is listed.
+
+    Returns
+    -------
+    ndarray, (K, 2), rad
+        At most MAX_CLIMBS of them.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from reference.problem import load_scene
+    >>> alpha = 2.0 * np.pi * np.arange(8) / 8
+    >>> hills(np.cos(2.0 * alpha)[:, None] + np.cos(2.0 * alpha)[None, :], load_scene("fig3-I")).tolist()
+    [[0.0, 0.0]]
+    """
+    points = len(surface)
+    height = np.where(np.isfinite(surface), surface, -np.inf)
+    around = [np.roll(height, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
+    lowest = np.min([np.where(np.isfinite(each), each, height) for each in around], axis=0)
+    places = np.flatnonzero(np.isfinite(height) & (height >= np.max(around, axis=0)))
+    places = places[sources(scene, points)[places] == places]
+    high, low = height.ravel()[places], lowest.ravel()[places]
+    may_reach = high + 0.5 * (high - low)
+    return phase_grid(points)[places[np.argsort(-may_reach, kind="stable")][:MAX_CLIMBS]]
+
+
+def _on_grid(search: _Search) -> Array:
+    """The hills on a grid of phases."""
+    solved, back = np.unique(sources(search.scene, GRID), return_inverse=True)
+    points = search.at(phase_grid(GRID)[solved], max(search.tolerance, GRID_TOLERANCE))
+    return hills(points.value[back].reshape(GRID, GRID), search.scene)

@@ -1,9 +1,9 @@
 """
 The worst phases of every scene: the largest mu_i and displacement over all phases, and what the engine has there.
 
-The search of `reference.worst_phases` is made for every model of the equations. Beside the largest regularized mu_i,
-the engine under the same assumptions is searched in a square around these phases, so that its own maximum nearby is
-known, too.
+The search of `reference.worst_phases` is made for the printed and the exact equations, and for those that the engine
+answers for. Beside these the engine is searched in a square around the worst phases, so that its own maximum nearby is
+known, too. The searches begin at the hills of the surfaces, if these are as fine as the search's own grid.
 """
 
 from __future__ import annotations
@@ -17,6 +17,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from comparison.analysis.protocol import Analysis
+from comparison.analysis.steps import known_mu
+from comparison.analysis.surfaces import common_phases
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
@@ -24,13 +26,14 @@ from comparison.study.costs import seconds_per_point
 from comparison.study.models import Model, models_of, pairs_of
 from comparison.study.study import Study
 from reference import worst_phases
+from reference.phase_maximum import GRID, hills
 from reference.problem import Outcome, Scene, ground_peak
 from reference.problem.climb import Climb, Points, climb_on
 
 Array = NDArray[np.float64]
 
 TOLERANCE = 1e-5  # relative error of mu by the equations
-POINTS = 2000  # of the equations that a search takes
+POINTS = 1500  # of the equations that a search takes
 ENGINE_HALF_WIDTH = 0.02  # rad, of the square in which the engine is searched
 ENGINE_NODES = 3  # of its polynomial along each axis
 SOLVED_BY = "reference:amplification"  # the models that `reference.worst_phases` searches
@@ -87,59 +90,74 @@ class Worst:
     reason: str = ""
 
 
-Arguments = tuple[Scene, Model, Model | None, str, int, float]  # model, engine, quantity, body, tolerance of the engine
+# scene, model, engine, quantity, body, tolerance of the engine, starts of the climbs (K, 2) or None
+Arguments = tuple[Scene, Model, Model | None, str, int, float, Array | None]
 
 
 class WorstPhases(Analysis[list[Worst]]):
-    """One search for every scene, body and model; one more for the displacement."""
+    """Searches of every scene and body; one more for the displacement."""
 
-    key, stage = "worst_phases", "worst phases"
+    key, stage, needs_surfaces = "worst_phases", "worst phases", True
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """Searches of the exact equations, and of the engine beside its counterpart."""
+        """One task for each search, of the engine with that of its counterpart."""
         tasks = []
         for scene in study.phased:
-            equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SOLVED_BY]
-            engines = {
-                pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"
-            }
-            searches = [
-                (model, engines.get(model.key), "amplification", body)
-                for model in equations
-                for body in range(1, len(scene.bodies) + 1)
-            ]
-            searches += [(model, None, "displacement", 1) for model in equations if _exact_supremum(model)]
-            for model, engine, quantity, body in searches:
-                seconds = POINTS * seconds_per_point(scene, model)
-                if engine is not None:
-                    seconds += (ENGINE_NODES**2 + 2) * seconds_per_point(scene, engine)
-                argument = (scene, model, engine, quantity, body, study.tolerance)
-                tasks.append(Task(worst_of, argument, self.stage, seconds, scene))
+            for model, engine, quantity, body in _searches(study, scene):
+                starts = _starts(study, surfaces, scene, model, body) if quantity == "amplification" else None
+                argument = (scene, model, engine, quantity, body, study.tolerance, starts)
+                tasks.append(Task(worst_of, argument, self.stage, _seconds(scene, model, engine), scene))
         return tasks
+
+    def predicted_seconds(self, study: Study) -> list[float]:
+        """Where the climbs begin does not change how many there are."""
+        return [
+            _seconds(scene, model, engine) for scene in study.phased for model, engine, _, _ in _searches(study, scene)
+        ]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Worst] | None:
         """In the order of the tasks; None for a study without phases."""
         if not study.phased:
             return None
-        return [worst for task in self.tasks(study) for worst in results.value(task, _without_value)]
+        return [worst for task in self.tasks(study, surfaces) for worst in results.value(task, _without_value)]
 
 
-def _exact_supremum(model: Model) -> bool:
-    """Whether a model solves the exact equations with friction that sticks, and reads every value."""
-    return model.settings == {"equations": "exact", "regularization": None}
+def _searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, str, int]]:
+    """Model, engine beside it, quantity and body."""
+    equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SOLVED_BY]
+    exact = [model for model in equations if model.settings == {"equations": "exact", "regularization": None}]
+    engines = {pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"}
+    bodies = range(1, len(scene.bodies) + 1)
+    searched = [model for model in equations if model in exact or model.key in engines]
+    searches = [(model, engines.get(model.key), "amplification", body) for model in searched for body in bodies]
+    return searches + [(model, None, "displacement", 1) for model in exact]
+
+
+def _seconds(scene: Scene, model: Model, engine: Model | None) -> float:
+    seconds = POINTS * seconds_per_point(scene, model)
+    return seconds if engine is None else seconds + (ENGINE_NODES**2 + 2) * seconds_per_point(scene, engine)
+
+
+def _starts(study: Study, surfaces: xr.Dataset | None, scene: Scene, model: Model, body: int) -> Array | None:
+    """The hills of the surface, if it is as fine as the grid of the search."""
+    if surfaces is None or len(study.axis(model, scene)) < GRID:
+        return None
+    data = common_phases(surfaces, scene.name, [model.key]).sel(body=body)
+    starts = hills(known_mu(data, model), scene)
+    return starts if len(starts) else None
 
 
 def worst_of(task: Arguments) -> list[Worst]:
     """The largest value of the equations, and of the engine beside it. Runs inside a worker process."""
-    scene, model, engine, quantity, body, tolerance = task
+    scene, model, engine, quantity, body, tolerance, starts = task
     settings: dict[str, Any] = dict(model.settings)
-    maximum = worst_phases(scene, body, quantity, tolerance=TOLERANCE, **settings)
+    maximum = worst_phases(scene, body, quantity, tolerance=TOLERANCE, starts=starts, **settings)
     worst = Worst(scene.name, model.key, quantity, body, **vars(maximum))
     return [worst] if engine is None else [worst, _engine_beside(worst, scene, engine, tolerance)]
 
 
 def _without_value(task: Arguments, failed: TaskResult) -> list[Worst]:
-    scene, model, engine, quantity, body, _ = task
+    scene, model, engine, quantity, body, *_ = task
     models = [model] if engine is None else [model, engine]
     return [Worst(scene.name, each.key, quantity, body, reason=failed.reason) for each in models]
 

@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 # Places along each axis of the square at which the quotient is read: at first, and beside the largest of them
-COARSE, FINE = np.linspace(-1.0, 1.0, 25), np.linspace(-1.0, 1.0, 9)
-READINGS = 6  # of the quotient, each four times finer than the one before
+COARSE, FINE = np.linspace(-1.0, 1.0, 13), np.linspace(-1.0, 1.0, 9)
+READINGS = 5  # of the quotient, each four times finer than the one before
 MIN_HALF_WIDTH = 1e-7  # rad, of a square
 MOVED = 0.8  # of the half width: a best pair farther from the center moves the square, which keeps its size
 GOOD_PREDICTION = 0.1  # largest error of a prediction over the differences in the square
