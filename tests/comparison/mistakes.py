@@ -30,7 +30,11 @@ IN_THE_COPY = """
 import json, sys, types
 from numba.experimental import structref
 structref.StructRefProxy = types.SimpleNamespace  # what compiled code keeps in a structure of its own
-structref.define_proxy = lambda *rest: None
+def with_fields(proxy, of, fields):
+    def start(self, *values, **named):
+        vars(self).update(zip(fields, values), **named)
+    proxy.__init__ = start
+structref.define_proxy = with_fields
 from reference import amplification
 from reference.problem import Scene
 asked = json.load(sys.stdin)
