@@ -28,7 +28,7 @@ DURATIONS = (10.0, 30.0, 100.0, 300.0, 1000.0)  # s
 PHASES = (1, 4, 16, 64, 256)
 POINTS = {"reference": 16, "engine": 1}  # phase pairs of a measurement over bodies and durations
 TALL_DURATION = 5.0  # s, of scenes with many bodies
-SHAKEN = 3.0  # times the amplitudes of the scene: else friction holds a tall platform, which costs nothing
+SHAKEN = 3.0  # times the loading of the scene: else friction holds a tall platform, which costs nothing
 STOREY = 1.0  # m between the bodies of a tall scene; its ring is as wide as it is high
 LIMIT = 60.0  # s of processor time of one measurement
 MAX_WORK = 1e9  # steps of the engine: the limit ends what takes too long, not a refusal
@@ -43,7 +43,9 @@ def tall(scene: Scene, bodies: int) -> Scene:
     above = [{**second, "mass": mass, "height": height + STOREY * number} for number in range(bodies - 1)]
     isolator = {**table["isolator"], "ring": max(table["isolator"].get("ring", 1.0), STOREY * bodies)}
     changed = {"isolator": isolator, "bodies": [first, *above], "duration": TALL_DURATION, "acceptance": {}}
-    return Scene.model_validate(table | changed).with_values({"excitation.amplitudes": SHAKEN * scene.amplitudes})
+    return Scene.model_validate(table | changed).with_values(
+        {"excitation.scale": SHAKEN * (scene.excitation.scale or 1.0)}
+    )
 
 
 @dataclass(frozen=True)
