@@ -93,6 +93,7 @@ def integrate(system: System, work: Work, demand: Demand, record: Record, stop: 
         if code == UNSOLVED and crawls(system, work, contact, demand):
             work.v[0, 0] = work.v[0, 1] = 0.0
             work.held = max(work.held, HOLDING_TIME * demand.period)
+            work.length = max(work.length, work.held)  # the slide has shortened it to nothing
             code, contact = SOLVED, REST
         if code != SOLVED:
             return named(system, work, demand, code)

@@ -78,7 +78,8 @@ def follow(system: System, work: Work, contact: int, demand: Demand, record: Rec
                 code, following = after_failed_slide(system, work, demand, h)
                 if code != SOLVED:
                     return code, contact
-            set_length(work, contact, FAILURE_SHORTENING * h)
+            if following == contact:
+                set_length(work, contact, FAILURE_SHORTENING * h)
             continue
         error = step_error(work, demand.tolerance)
         factor = length_factor(error, demand.tolerance)
