@@ -227,3 +227,10 @@ def fake_hierarchy(engine: str = "smooth", gap: float = 0.01, batch: int = 4) ->
         most = MOST.get(model.key)
         models.append(replace(model, **functions, settings=settings, batch=batch, symmetric=never, most=most))
     return tuple(models)
+
+
+def busy(seconds: float) -> str:
+    """Compute for so long."""
+    while time.process_time() < seconds:
+        pass
+    return "done"
