@@ -22,7 +22,6 @@ from multibody.integration.constant_step import Engine, Motion
 from multibody.integration.level import STEP_RATIO, Level
 from multibody.integration.openings import FIRST_STEP, Event, Openings
 from multibody.integration.peak import CANDIDATE_FRACTION, Peaks, kinks
-from multibody.models.depressions import rotation
 from multibody.models.recorded import align_steps
 from multibody.models.system import EngineModel, EngineState
 from reference.problem import Outcome
@@ -174,10 +173,11 @@ def go_on(
             if rejected:
                 state = model.settle(state, _gap_rate(accepted), level.penetration)
         if openings is not None and event is not None:
-            state, time, going_on = _pass(event, openings, state, time, step, result, ground, level, keep)
+            passed = _pass(event, openings, state, time, step, result, ground, level, keep)
             budget.left -= 1.0
-            if not going_on:
+            if passed is None:
                 break
+            state, time = passed
             if event.closes:
                 divisions = max(divisions, _divisions_behind_impact(level))
             next_count = DIVIDED_CHUNK_STEPS
@@ -199,23 +199,23 @@ def _pass(
     ground: Callable[[Array], Array],
     level: Level,
     keep: bool,
-) -> tuple[EngineState, float, bool]:
-    """State and instant behind an opening or closing of supports, and whether the run goes on."""
+) -> tuple[EngineState, float] | None:
+    """State and instant behind an opening or closing of supports; None if the run ends before."""
     model = openings.engine.model
     motion = openings.located(state, time, step, event)
     if motion is not None:
         size = absolute_accelerations(model, motion, ground)
         motion = openings.touching(motion, event.which) if event.closes else openings.with_gaps(motion)
         if not _record(result, motion, size, model, level, keep):
-            return state, time, False
+            return None
         state, time = motion.state(-1), float(motion.time[-1])
     if not event.closes:
         openings.opened(event)
-        return state, time, True
+        return state, time
     state = openings.after_impact(state, time, event.which)
     result.undisturbed, result.impacts = openings.settled, openings.impacts
     result.peaks.restart()
-    return state, time, True
+    return state, time
 
 
 def _divisions_behind_impact(level: Level) -> int:
@@ -368,10 +368,10 @@ def termination(motion: Motion, model: EngineModel) -> tuple[Outcome, int]:
     """The first event that ends the model's validity and its row; OK and the last row if there is none."""
     count = len(motion.time)
     if model.depressions is not None:
-        rim, tilt = _first(model.depressions.beyond_rim(motion.coordinates)), _tilt(motion, model)
-        if min(rim, _first(tilt >= 0.5 * math.pi)) == count:
+        tilt = _tilt(motion, model)
+        row = _first(model.depressions.beyond_rim(motion.coordinates) | (tilt >= 0.5 * math.pi))
+        if row == count:
             return Outcome.OK, count - 1
-        row = min(rim, _first(tilt >= 0.5 * math.pi))
         return Outcome.OVERTURNED if tilt[row] > model.critical_tilt else Outcome.RIM_REACHED, row
     # by height: the horizontal offset only touches rho at the rim and falls again beyond
     rise = motion.coordinates[:, model.bodies[0, 2]]
@@ -384,8 +384,8 @@ def termination(motion: Motion, model: EngineModel) -> tuple[Outcome, int]:
 
 def _tilt(motion: Motion, model: EngineModel) -> Array:
     """Angle of the platform's axis to the vertical, (T,), rad."""
-    upright = rotation(motion.coordinates[:, model.bodies[0] + 3])[:, 2, 2]
-    tilt: Array = np.arccos(np.clip(upright, -1.0, 1.0))
+    about_x, about_y = (motion.coordinates[:, axis] for axis in model.bodies[0, :2] + 3)
+    tilt: Array = np.arccos(np.cos(about_x) * np.cos(about_y))
     return tilt
 
 

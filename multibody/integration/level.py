@@ -163,8 +163,7 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
     strength = 1.0 if model.allows_liftoff else weak_strength(scene)  # a tower tilts on soft contacts
     peak, most = (MIN_PEAK, MAX_PENETRATION) if strength == 1.0 else (strength, MAX_WEAK_PENETRATION)
     stiffest = min(model.rounding / (MAX_ROUNDING_SHARE * peak * tolerance), most / COMPLIANCE_RATIO)
-    softest = float(np.clip(min(MAX_CONTACT_LAG * model.relaxation, 1.0) ** 2, stiffest, MAX_PENETRATION))
-    softest = max(softest, stiffest)
+    softest = max(min(min(MAX_CONTACT_LAG * model.relaxation, 1.0) ** 2, MAX_PENETRATION), stiffest)
     stiffenings = math.floor(math.log(softest / stiffest, COMPLIANCE_RATIO) + 1e-9)
     penetrations = [softest / COMPLIANCE_RATIO ** min(level, stiffenings) for level in range(MAX_LEVELS)]
     brief = brief_motions(scene, model, step)
@@ -191,8 +190,7 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
 
 def weak_strength(scene: Scene) -> float:
     """The largest acceleration of a weak loading along any axis, in units of g; one for any other."""
-    samples = scene.record[:, 1:] if scene.recorded else scene.amplitudes
-    strength = float(np.abs(samples).max()) / GRAVITY
+    strength = scene.largest_acceleration / GRAVITY
     return strength if 0.0 < strength < WEAK_LOADING else 1.0
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +15,7 @@ from multibody.integration.level import Level
 from multibody.integration.look_ahead import looks_ahead, run_looking_ahead
 from multibody.integration.peak import Peaks
 from multibody.models.system import EngineModel, EngineState
-from reference.problem import Outcome, Scene, State, exponents, ground_acceleration
+from reference.problem import Outcome, Scene, State, ground_acceleration
 
 Array = NDArray[np.float64]
 
@@ -38,19 +37,8 @@ class PhasePair:
 
     def ground(self, time: Array) -> Array:
         """The plate's acceleration (T, 3) at times (T,), in units of the model."""
-        if self.scene.recorded:
-            units = self.model.units
-            return ground_acceleration(self.scene, self.phase, time * units.time) / units.acceleration
-        rates, amplitudes = self._harmonics
-        acceleration: Array = (np.exp(np.multiply.outer(time, rates)) @ amplitudes).real
-        return acceleration
-
-    @cached_property
-    def _harmonics(self) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        """Exponents of the two harmonics (2,) and their complex amplitudes (2, 3), in units of the model."""
         units = self.model.units
-        turned: NDArray[np.complex128] = np.exp(1j * np.asarray(self.phase, float))
-        return exponents(self.scene) * units.time, turned[:, None] * (self.scene.amplitudes.T / units.acceleration)
+        return ground_acceleration(self.scene, self.phase, time * units.time) / units.acceleration
 
     def at_level(
         self, level: Level, budget: Budget, stop: float = math.inf, *, keep: bool = False, residual: float | None = None

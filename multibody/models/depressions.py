@@ -33,12 +33,7 @@ class Depressions:
         turned = rotation(coordinates[:, 3:6])
         local = np.column_stack([self.ring, np.full(len(self.ring), -self.height)])
         place = coordinates[:, None, :3] + [0.0, 0.0, self.height] + np.einsum("tij,kj->tki", turned, local)
-        spheres = np.empty((len(coordinates), len(self.ring), 3))
-        spheres[:, :, :2] = self.ring
-        spheres[:, :, 2] = 1.0
-        if len(self.vertical):
-            spheres[:, :, 2] += coordinates[:, self.vertical]
-        apart = spheres - place
+        apart = self._spheres(coordinates) - place
         return apart, np.einsum("tij,tki->tkj", turned, apart)
 
     def clearance(self, coordinates: Array) -> Array:
@@ -63,12 +58,17 @@ class Depressions:
         """
         apart, _ = self.centers(coordinates[None])
         normals = apart[0] / np.linalg.norm(apart[0], axis=1)[:, None]
-        spheres = np.column_stack([self.ring, np.ones(len(self.ring))])
-        if len(self.vertical):
-            spheres[:, 2] += coordinates[self.vertical]
-        levers = spheres + self.radius * normals - coordinates[:3] - [0.0, 0.0, self.height]
+        levers = self._spheres(coordinates) + self.radius * normals - coordinates[:3] - [0.0, 0.0, self.height]
         jacobian = np.concatenate([np.tile(np.eye(3), (len(levers), 1, 1)), -cross_matrix(levers)], axis=2)
         return normals, jacobian
+
+    def _spheres(self, coordinates: Array) -> Array:
+        """Centers of the spheres (..., K, 3) in the axes of the plate for coordinates (..., n)."""
+        spheres = np.ones((*coordinates.shape[:-1], len(self.ring), 3))
+        spheres[..., :2] = self.ring
+        if len(self.vertical):
+            spheres[..., 2] += coordinates[..., self.vertical]
+        return spheres
 
 
 def rotation(angles: Array) -> Array:

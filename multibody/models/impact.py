@@ -47,14 +47,15 @@ class ImpactLaw:
         speeds = turning @ velocities[:count]
         normals, jacobian = self.depressions.motion_at_contacts(coordinates)
         struck = np.flatnonzero(closed | hit)
+        axes = _in_contact_axes(normals[struck])
         rows = np.zeros((len(struck), 3, count))
-        rows[:, :, :PER_BODY] = _in_contact_axes(normals[struck]) @ jacobian[struck]
+        rows[:, :, :PER_BODY] = axes @ jacobian[struck]
         before = rows @ speeds
         if len(self.depressions.vertical):
             upward = velocities[self.depressions.vertical[struck]]
             # a sphere that springs up is too light to push the platform
             upward[hit[struck]] = np.minimum(upward[hit[struck]], 0.0)
-            before -= _in_contact_axes(normals[struck])[:, :, 2] * upward[:, None]
+            before -= axes[:, :, 2] * upward[:, None]
         response = self._response(coordinates)
         flat = rows.reshape(-1, count)
         delassus = flat @ response @ flat.T

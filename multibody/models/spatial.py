@@ -14,6 +14,7 @@ More than three supports share the load as elastic bearings do (`supports`), or 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import compress
 from typing import Any
 
 import numpy as np
@@ -141,10 +142,7 @@ class _Parts:
 
     def set_contact(self, penetration: float, warping_compliance: float = MIN_WARPING_COMPLIANCE) -> None:
         """See `EngineModel`."""
-        pressed = self.bearing_penetration or penetration
-        radii = [self.radius + pressed, self.radius + 1.0]
-        for contact in self.contacts:
-            set_contact_parameters(self.mbs, contact, radii, pressed, len(self.contacts))
+        self._press(penetration)
         self.supports.set_stiffness(penetration, warping_compliance)
         for link in self.links:
             set_link_stiffness(self.mbs, *link, 1.0 / (LINK_COMPLIANCE_RATIO * penetration))
@@ -157,13 +155,17 @@ class _Parts:
 
     def set_open(self, is_open: NDArray[np.bool_], penetration: float) -> None:
         """See `EngineModel`."""
+        self._press(penetration)
+        for contact in compress(self.contacts, is_open):
+            self.mbs.SetObjectParameter(contact, "contactStiffness", 0.0)
+            self.mbs.SetObjectParameter(contact, "contactDamping", 0.0)
+
+    def _press(self, penetration: float) -> None:
+        """Stiffness, damping and radii of all contacts, for their penetration under the weight."""
         pressed = self.bearing_penetration or penetration
         radii = [self.radius + pressed, self.radius + 1.0]
-        for contact, opened in zip(self.contacts, is_open):
+        for contact in self.contacts:
             set_contact_parameters(self.mbs, contact, radii, pressed, len(self.contacts))
-            if opened:
-                self.mbs.SetObjectParameter(contact, "contactStiffness", 0.0)
-                self.mbs.SetObjectParameter(contact, "contactDamping", 0.0)
 
     def start(self, initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
         """See `EngineModel`."""

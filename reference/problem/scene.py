@@ -252,6 +252,11 @@ class Scene(Table):
             knots = np.vstack([knots, [2.0 * knots[-1, 0] - knots[-2, 0], 0.0, 0.0, 0.0]])
         return knots
 
+    @property
+    def largest_acceleration(self) -> float:
+        """The largest entry of the amplitude matrix, or the largest sample of a record along any axis, m/s^2."""
+        return float(np.abs(self.record[:, 1:] if self.recorded else self.amplitudes).max())
+
     def with_amplitude(self, amplitude: float) -> Scene:
         """
         The same scene with its loading scaled.
@@ -270,8 +275,7 @@ class Scene(Table):
         SceneError
             For an amplitude outside its range, or a loading that is zero throughout.
         """
-        samples = self.record[:, 1:] if self.recorded else self.amplitudes
-        largest = float(np.abs(samples).max())
+        largest = self.largest_acceleration
         if not (isinstance(amplitude, int | float) and 0.0 < amplitude <= SCENE["excitation.amplitudes"].highest):
             raise SceneError(self.name, "amplitude", amplitude, "must be finite and greater than 0 m/s^2")
         if largest == 0.0:

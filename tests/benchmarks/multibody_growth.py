@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 import multibody
+from comparison.analysis.growth import fitted_slope
 from reference.problem import Scene, load_scene
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "multibody"))
@@ -38,12 +39,6 @@ def cost_of(scene: Scene, model: str) -> tuple[float, str]:
     return point.cost, str(point.status[0])
 
 
-def slope(sizes: list[float], costs: list[float]) -> float:
-    """Exponent of the power law through the larger half of the sizes."""
-    half = len(sizes) // 2
-    return float(np.polyfit(np.log(sizes[half:]), np.log(costs[half:]), 1)[0])
-
-
 def growth() -> None:
     """Cost against bodies and against duration, with slopes."""
     cost_of(frame(1.0, 2), "translational")  # loads what the first call loads
@@ -59,7 +54,8 @@ def growth() -> None:
                 cost, status = cost_of(scene, model)
                 costs.append(cost)
                 print(f"{model}, {quantity} {size:g}: {cost:.2f} s, {status}", flush=True)
-            print(f"{model}: cost grows with {quantity} to the power {slope(list(sizes), costs):.2f}", flush=True)
+            power, _ = fitted_slope(sizes, costs)
+            print(f"{model}: cost grows with {quantity} to the power {power:.2f}", flush=True)
 
 
 def tall_frame(count: int, period: float, record: str) -> Scene:
