@@ -15,8 +15,8 @@ from reference.solver.error_estimate import (
     READING_ERROR_FACTOR,
     ROUNDING_ERROR,
     TOLERANCE_RATIO,
+    peaks_from,
 )
-from reference.solver.run import runs
 from reference.solver.samples import sampled, step_instants
 from reference.solver.system import Array, Demand, Record, System, record_of
 from reference.surface import OUTCOMES, checked_demand, loads_are_finite
@@ -114,10 +114,9 @@ def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) 
     capacity = FIRST_CAPACITY
     while True:
         record = record_of(capacity, bodies)
-        peaks, reading_errors, ends = np.empty((1, bodies)), np.empty((1, bodies)), np.empty((7, 1))
-        runs(system, phase[None], x, v, demand, record, peaks, reading_errors, ends, np.full(1, np.inf))
+        run = peaks_from(x, v, system, phase[None], demand, record)
         if record.made.max() <= capacity:
-            return _Run(OUTCOMES[int(ends[0, 0])], float(ends[1, 0]), record, peaks[0], reading_errors[0])
+            return _Run(OUTCOMES[int(run.code[0])], float(run.instant[0]), record, run.value[0], run.error[0])
         capacity = int(record.made.max())
 
 

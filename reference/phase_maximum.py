@@ -7,21 +7,19 @@ A grid finds the hills of the surface, and from each of the highest ones a climb
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.problem import Scene, checked_phases, ground_peak, phase_grid
-from reference.problem.climb import Climb, Points, climb_on, follow_jump, kind_of, merged
+from reference.problem import Scene, checked_phases, phase_grid
+from reference.problem.climb import Climb, Surface, climb_on, follow_jump, kind_of, merged
 from reference.problem.ranges import checked_choice
-from reference.problem.symmetry import shifts, sources
+from reference.problem.symmetry import distinct, half_turns, sources
 from reference.surface import amplification
 
 Array = NDArray[np.float64]
 
 QUANTITIES = ("amplification", "displacement")
-DISPLACEMENT_ERROR = 1e-3  # relative, of `Amplification.cap_share`
 GRID = 48  # phases per axis on which the hills are found
 GRID_TOLERANCE = 1e-4  # relative error of mu there
 MAX_CLIMBS = 12  # from the hills that may rise highest
@@ -119,27 +117,32 @@ def worst_phases(
     if scene.recorded:
         raise ValueError(f"scene {scene.name}: a recorded motion has no phases; use amplification")
     law = {"equations": equations, "regularization": regularization, "cutoff": cutoff}
-    search = _Search(scene, body - 1, quantity, tolerance, law)
-    points = search.at(_on_grid(search) if starts is None else checked_phases(starts))
+    surface = Surface(scene, amplification, {**law, "tolerance": tolerance}, body - 1, quantity)
+    if starts is None:
+        phases, taken = distinct(scene, GRID)
+        starts = hills(surface.at(phases, tolerance=max(tolerance, GRID_TOLERANCE)).value[taken], scene)
+    points = surface.at(checked_phases(starts))
     climbs = [
         Climb(points.phases[n], float(points.value[n]), float(points.error[n]), 2.0 * np.pi / GRID)
         for n in np.flatnonzero(np.isfinite(points.value))
     ]
     if not climbs:
         raise ValueError(f"scene {scene.name}: no phase pair has an answer; amplification says why")
+    shifts: Array = np.pi * half_turns(scene).astype(float)
     for _ in range(MAX_ROUNDS):
         highest = max(climb.value for climb in climbs)
         active = [climb for climb in climbs if climb.may_reach(highest)]
         if not active:
             break
-        climb_on(search, active, NODES)
-        climbs = merged(climbs, shifts(scene))
+        climb_on(surface, active, NODES)
+        climbs = merged(climbs, shifts)
     least = (1.0 - MAX_SHORTFALL) * max(climb.value for climb in climbs)
-    for climb in climbs:
-        if climb.value >= least and kind_of(search, climb)[0] == "jump":
-            follow_jump(search, climb)
-    best, *others = sorted(merged(climbs, shifts(scene)), key=lambda climb: -climb.value)
-    kind, side = kind_of(search, best)
+    kinds = {climb: kind_of(surface, climb) for climb in climbs if climb.value >= least}
+    for climb in [climb for climb, (kind, _) in kinds.items() if kind == "jump"]:
+        follow_jump(surface, climb)
+        kinds[climb] = kind_of(surface, climb)
+    best, *others = sorted(merged(climbs, shifts), key=lambda climb: -climb.value)
+    kind, side = kinds[best]
     alpha1, alpha2 = (best.phases % (2.0 * np.pi)).tolist()
     return PhaseMaximum(
         value=best.value,
@@ -150,33 +153,8 @@ def worst_phases(
         runner_up=others[0].value if others else float("nan"),
         climbs=sum(climb.count for climb in climbs),
         reached=best.count,
-        evaluations=search.evaluations,
+        evaluations=surface.evaluations,
     )
-
-
-@dataclass
-class _Search:
-    """What is searched, and how many phase pairs it has taken."""
-
-    scene: Scene
-    body: int  # from 0
-    quantity: str
-    tolerance: float
-    law: dict[str, Any]
-    evaluations: int = 0
-
-    def denominator(self, phases: Array) -> Array:
-        """That of (5.1); 1 for a displacement."""
-        return ground_peak(self.scene, phases) if self.quantity == "amplification" else np.ones(len(phases))
-
-    def at(self, phases: Array, tolerance: float | None = None) -> Points:
-        result = amplification(self.scene, phases, tolerance=tolerance or self.tolerance, **self.law)
-        self.evaluations += len(phases)
-        denominator = self.denominator(phases)
-        if self.quantity == "amplification":
-            return Points(phases, result.mu[:, self.body] * denominator, denominator, result.error[:, self.body])
-        displacement = result.cap_share * self.scene.radius
-        return Points(phases, displacement, denominator, DISPLACEMENT_ERROR * displacement)
 
 
 def hills(surface: Array, scene: Scene) -> Array:
@@ -212,10 +190,3 @@ def hills(surface: Array, scene: Scene) -> Array:
     high, low = height.ravel()[places], lowest.ravel()[places]
     may_reach = high + 0.5 * (high - low)
     return phase_grid(points)[places[np.argsort(-may_reach, kind="stable")][:MAX_CLIMBS]]
-
-
-def _on_grid(search: _Search) -> Array:
-    """The hills on a grid of phases."""
-    solved, back = np.unique(sources(search.scene, GRID), return_inverse=True)
-    points = search.at(phase_grid(GRID)[solved], max(search.tolerance, GRID_TOLERANCE))
-    return hills(points.value[back].reshape(GRID, GRID), search.scene)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from comparison.analysis.protocol import Analysis
 from comparison.analysis.steps import known_mu
-from comparison.analysis.surfaces import common_phases
+from comparison.analysis.surfaces import asked_of
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
@@ -27,8 +27,8 @@ from comparison.study.models import Model, models_of, pairs_of
 from comparison.study.study import Study
 from reference import worst_phases
 from reference.phase_maximum import GRID, hills
-from reference.problem import Outcome, Scene, ground_peak
-from reference.problem.climb import Climb, Points, climb_on
+from reference.problem import Scene
+from reference.problem.climb import Climb, Surface, climb_on
 
 Array = NDArray[np.float64]
 
@@ -142,8 +142,7 @@ def _starts(study: Study, surfaces: xr.Dataset | None, scene: Scene, model: Mode
     """The hills of the surface, if it is as fine as the grid of the search."""
     if surfaces is None or len(study.axis(model, scene)) < GRID:
         return None
-    data = common_phases(surfaces, scene.name, [model.key]).sel(body=body)
-    starts = hills(known_mu(data, model), scene)
+    starts = hills(known_mu(asked_of(surfaces, scene, model).sel(body=body), model), scene)
     return starts if len(starts) else None
 
 
@@ -162,40 +161,16 @@ def _without_value(task: Arguments, failed: TaskResult) -> list[Worst]:
     return [Worst(scene.name, each.key, quantity, body, reason=failed.reason) for each in models]
 
 
-@dataclass
-class _Engine:
-    """mu of one body by a model, as a surface to climb on."""
-
-    scene: Scene
-    model: Model
-    body: int  # from 0
-    tolerance: float
-    evaluations: int = 0
-    outcome: str = ""  # of the last phase pair without an answer
-
-    def denominator(self, phases: Array) -> Array:
-        return ground_peak(self.scene, phases)
-
-    def at(self, phases: Array) -> Points:
-        amplification = imported(self.model.amplification)
-        result = amplification(self.scene, phases, tolerance=self.tolerance, **self.model.settings)
-        self.evaluations += len(phases)
-        denominator = self.denominator(phases)
-        lacking = [status for status in result.status if not status.startswith(Outcome.OK.value)]
-        self.outcome = lacking[-1] if lacking else self.outcome
-        return Points(phases, result.mu[:, self.body] * denominator, denominator, result.error[:, self.body])
-
-
 def _engine_beside(worst: Worst, scene: Scene, model: Model, tolerance: float) -> Worst:
     """The engine at the worst phases of the equations, and its largest value in a square around them."""
-    engine = _Engine(scene, model, worst.body - 1, model.tolerance(tolerance))
+    settings = {**model.settings, "tolerance": model.tolerance(tolerance)}
+    engine = Surface(scene, imported(model.amplification), settings, worst.body - 1)
     start = engine.at(np.array([worst.phases]))
     climb = Climb(start.phases[0], float(start.value[0]), float(start.error[0]), ENGINE_HALF_WIDTH)
     climb_on(engine, [climb], ENGINE_NODES)
     if not math.isfinite(climb.value):
         return Worst(scene.name, model.key, worst.quantity, worst.body, reason=engine.outcome)
     alpha1, alpha2 = (climb.phases % (2.0 * np.pi)).tolist()
-    known = math.isfinite(float(start.value[0]))
     return Worst(
         scene=scene.name,
         model=model.key,
@@ -208,6 +183,6 @@ def _engine_beside(worst: Worst, scene: Scene, model: Model, tolerance: float) -
         climbs=1,
         reached=1,
         evaluations=engine.evaluations,
-        at_start=float(start.value[0]) if known else math.nan,
-        start_error=float(start.error[0]) if known else math.nan,
+        at_start=float(start.numerator[0] / start.denominator[0]),
+        start_error=float(start.error[0]),
     )

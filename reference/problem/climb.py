@@ -11,16 +11,23 @@ and `follow_jump` goes along the jump to the highest one.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
+from functools import cache, cached_property
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
+from reference.problem.definition import ground_peak
+from reference.problem.outcome import Outcome
+from reference.problem.result import Amplification
+from reference.problem.scene import Scene
+
 Array = NDArray[np.float64]
 
+DISPLACEMENT_ERROR = 1e-3  # relative, of `Amplification.cap_share`
 # Places along each axis of the square at which the quotient is read: at first, and beside the largest of them
 COARSE, FINE = np.linspace(-1.0, 1.0, 13), np.linspace(-1.0, 1.0, 9)
 READINGS = 5  # of the quotient, each four times finer than the one before
@@ -48,7 +55,7 @@ class Points:
     denominator: Array  # (M,)
     error: Array  # (M,), of the quotient
 
-    @property
+    @cached_property
     def value(self) -> Array:
         """The quotient, -inf without an answer."""
         return np.where(np.isfinite(self.numerator), self.numerator / self.denominator, -np.inf)
@@ -57,14 +64,32 @@ class Points:
         return Points(self.phases[places], self.numerator[places], self.denominator[places], self.error[places])
 
 
-class Surface(Protocol):
-    """What is climbed."""
+@dataclass
+class Surface:
+    """What is climbed: mu of one body, or the displacement of the platform, m."""
+
+    scene: Scene
+    amplification: Callable[..., Amplification]
+    settings: Mapping[str, Any]  # its arguments beside scene and phases
+    body: int  # from 0
+    quantity: str = "amplification"  # or "displacement"
+    evaluations: int = 0  # phase pairs that were computed
+    outcome: str = ""  # of the last phase pair whose outcome was not ok
 
     def denominator(self, phases: Array) -> Array:
-        """(M,), exact and cheap, at (M, 2), rad."""
+        """That of (5.1), exact and cheap, (M,) at (M, 2), rad; 1 for a displacement."""
+        return ground_peak(self.scene, phases) if self.quantity == "amplification" else np.ones(len(phases))
 
-    def at(self, phases: Array) -> Points:
-        """Computed at (M, 2), rad."""
+    def at(self, phases: Array, **changes: Any) -> Points:
+        """Computed at (M, 2), rad, with `changes` of the settings."""
+        result = self.amplification(self.scene, phases, **{**self.settings, **changes})
+        self.evaluations += len(phases)
+        self.outcome = next((str(status) for status in result.status[::-1] if status != Outcome.OK.value), self.outcome)
+        denominator = self.denominator(phases)
+        if self.quantity == "amplification":
+            return Points(phases, result.mu[:, self.body] * denominator, denominator, result.error[:, self.body])
+        displacement = result.cap_share * self.scene.radius
+        return Points(phases, displacement, denominator, DISPLACEMENT_ERROR * displacement)
 
 
 @dataclass(eq=False)
@@ -96,6 +121,7 @@ class Climb:
         return value - next((before for wide, before in reversed(self.history) if wide >= 10.0 * width), value)
 
 
+@cache
 def square_of(nodes: int) -> tuple[Array, Array]:
     """Places (nodes^2, 2) in [-1, 1], and what makes Chebyshev coefficients of values there."""
     node = np.cos(np.pi * np.arange(nodes) / (nodes - 1))

@@ -19,9 +19,9 @@ from reference.problem.scene import Scene
 Array = NDArray[np.float64]
 
 
-def shifts(scene: Scene) -> Array:
+def half_turns(scene: Scene) -> NDArray[np.intp]:
     """
-    By what phase pairs may be shifted without any change of mu.
+    By how many half turns both phases may be shifted without any change of mu.
 
     Parameters
     ----------
@@ -29,12 +29,11 @@ def shifts(scene: Scene) -> Array:
 
     Returns
     -------
-    ndarray, (K, 2), rad
+    ndarray, (K, 2)
         The first is no shift. A harmonic without amplitude permits any shift of its phase besides.
     """
-    if own_axes(scene):
-        return np.pi * np.array([[0.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.0, 0.0]])
-    return np.pi * np.array([[0.0, 0.0], [1.0, 1.0]][: 2 if half_turn(scene) else 1])
+    turns = np.array([[0, 0], [1, 1], [0, 1], [1, 0]], dtype=np.intp)
+    return turns if own_axes(scene) else turns[: 2 if half_turn(scene) else 1]
 
 
 def sources(scene: Scene, grid: int) -> NDArray[np.intp]:
@@ -54,15 +53,32 @@ def sources(scene: Scene, grid: int) -> NDArray[np.intp]:
     ndarray, (grid^2,)
         Places, alpha2 running fastest.
     """
-    place: list[NDArray[np.intp]] = list(np.divmod(np.arange(grid**2), grid))
-    half, unused = grid // 2, unused_harmonics(scene)
-    if grid % 2 == 0 and (own_axes(scene) or (unused and half_turn(scene))):
-        place = [alpha % half for alpha in place]
-    elif grid % 2 == 0 and half_turn(scene):
-        place = [place[0] % half, np.where(place[0] < half, place[1], (place[1] + half) % grid)]
-    for harmonic in unused:
-        place[harmonic] = np.zeros_like(place[harmonic])
-    return grid * place[0] + place[1]
+    steps = np.stack(np.divmod(np.arange(grid**2), grid), axis=-1)
+    shifts = half_turns(scene)[: 1 if grid % 2 else None] * (grid // 2)
+    images = (steps[:, None] + shifts) % grid
+    images[..., unused_harmonics(scene)] = 0
+    first: NDArray[np.intp] = (grid * images[..., 0] + images[..., 1]).min(axis=1)
+    return first
+
+
+def distinct(scene: Scene, grid: int) -> tuple[Array, NDArray[np.intp]]:
+    """
+    The fewest phase pairs that give a surface, and which of them stands at each place of its grid.
+
+    Parameters
+    ----------
+    scene : Scene
+    grid : int
+        Phases 2 pi k / grid per axis.
+
+    Returns
+    -------
+    phases : ndarray, (P, 2), rad
+    taken : ndarray, (grid, grid)
+        Rows of `phases`.
+    """
+    solved, taken = np.unique(sources(scene, grid), return_inverse=True)
+    return phase_grid(grid)[solved], taken.reshape(grid, grid)
 
 
 def surface(scene: Scene, grid: int, solve: Callable[[Scene, Array], Amplification]) -> tuple[Array, Array, list[str]]:
@@ -83,7 +99,6 @@ def surface(scene: Scene, grid: int, solve: Callable[[Scene, Array], Amplificati
     status : list of str
         Every status met.
     """
-    solved, taken = np.unique(sources(scene, grid), return_inverse=True)
-    answer = solve(scene, phase_grid(grid)[solved])
-    mu, error = (values[taken].reshape(grid, grid, -1) for values in (answer.mu, answer.error))
-    return mu, error, sorted(set(map(str, answer.status)))
+    phases, taken = distinct(scene, grid)
+    answer = solve(scene, phases)
+    return answer.mu[taken], answer.error[taken], sorted(set(map(str, answer.status)))

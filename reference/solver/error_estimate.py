@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from reference.solver.peaks import SETTLED_FRACTION
 from reference.solver.run import runs
 from reference.solver.step_control import MIN_SCALE_FRACTION
-from reference.solver.system import SOLVED, Array, Demand, System, record_of
+from reference.solver.system import SOLVED, Array, Demand, Record, System, record_of
 
 TOLERANCE_RATIO = 30.0  # tolerance inside a step of the coarser run over that of the finer run
 # Share of the runs' difference that counts as error of the finer run. 1 / TOLERANCE_RATIO is expected.
@@ -56,13 +56,19 @@ def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float, st
 
     stop: (M,), s, no run goes further. To the end of the motion if None.
     """
-    count, bodies = len(phases), len(system.below)
-    rest = np.zeros((bodies, 2))
+    rest = np.zeros((len(system.below), 2))
+    demand = demand._replace(tolerance=tolerance)
+    return peaks_from(rest, rest, system, phases, demand, record_of(0, len(rest)), stop)
+
+
+def peaks_from(
+    x: Array, v: Array, system: System, phases: Array, demand: Demand, record: Record, stop: Array | None = None
+) -> Peaks:
+    """One run from positions x and velocities v (N, 2) for every phase pair (M, 2), rad; `record` keeps its steps."""
+    count, bodies = len(phases), len(x)
     value, error, ends = np.empty((count, bodies)), np.empty((count, bodies)), np.empty((len(Peaks._fields) - 2, count))
     last = np.full(count, np.inf) if stop is None else stop
-    runs(
-        system, phases, rest, rest, demand._replace(tolerance=tolerance), record_of(0, bodies), value, error, ends, last
-    )
+    runs(system, phases, x, v, demand, record, value, error, ends, last)
     return Peaks(value, error, *ends)
 
 

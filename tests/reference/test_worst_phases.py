@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 import reference
 from reference import phase_maximum
-from reference.problem import Amplification, Scene, phase_grid
-from reference.problem.symmetry import shifts
+from reference.problem import Amplification, Scene, climb, phase_grid
+from reference.problem.symmetry import half_turns
 
 Array = NDArray[np.float64]
 Surface = Callable[[Array], Array]
@@ -45,13 +45,12 @@ def scene_with(monkeypatch: pytest.MonkeyPatch, numerator: Surface, denominator:
         ok, never = np.full(len(phases), "ok"), np.full(len(phases), np.nan)
         return Amplification(mu, np.full_like(mu, 1e-12), ok, never, 0.0)
 
-    module = phase_maximum
-    monkeypatch.setattr(module, "amplification", amplification)
-    monkeypatch.setattr(module, "ground_peak", lambda scene, phases: denominator(phases))
+    monkeypatch.setattr(phase_maximum, "amplification", amplification)
+    monkeypatch.setattr(climb, "ground_peak", lambda scene, phases: denominator(phases))
     data = reference.load_scene("fig3-I").model_dump(exclude_none=True)
     data["excitation"]["amplitudes"] = [[1.0, 0.5], [0.3, 1.0], [0.1, 0.1]]
     scene = Scene.model_validate(data)
-    assert len(shifts(scene)) == 1
+    assert len(half_turns(scene)) == 1
     return scene
 
 

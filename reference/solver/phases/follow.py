@@ -182,8 +182,8 @@ def after_step(
 ) -> int:
     """The length of the next step after one that was made, and what the contact does next."""
     if contact == STOPPING:
-        going_on = after_stopping_step(system, work, demand, h, factor)
-        return following if following == CREEPING else going_on
+        after = after_stopping_step(system, work, demand, h, factor)
+        return following if following == CREEPING else after
     if contact != SLIDING:
         work.held = 0.0
     if following != contact:
