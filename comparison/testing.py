@@ -11,13 +11,12 @@ import xarray as xr
 from comparison.analysis.differences import pair_step
 from comparison.analysis.surfaces import labeled_surfaces
 from comparison.study.batches import execute_batch
-from comparison.study.models import MODEL_HIERARCHY, Pair, has_spatial_data
+from comparison.study.models import MODEL_HIERARCHY, SPATIAL, Model, Pair
 from comparison.study.study import Study
 from reference.problem import Scene, load_scene
 from reference.problem.ranges import Range, checked_number
 
 LIMIT = Range(0.0, 1e6)
-PAIRS = {"like_for_like": "like-for-like", "total": "total"}  # names of arguments, and keys of pairs of models
 
 
 def assert_consistent(
@@ -66,63 +65,60 @@ def assert_consistent(
     >>> assert_consistent("fig4-dry", like_for_like=1e-3, grid=2)
     """
     limits = {
-        ("like_for_like", "median"): like_for_like,
-        ("like_for_like", "maximum"): like_for_like_maximum,
-        ("total", "median"): total,
-        ("total", "maximum"): total_maximum,
+        "like_for_like": like_for_like,
+        "like_for_like_maximum": like_for_like_maximum,
+        "total": total,
+        "total_maximum": total_maximum,
     }
-    stated = {
-        place: checked_number("_".join(place).removesuffix("_median"), limit, LIMIT)
-        for place, limit in limits.items()
-        if limit is not None
-    }
+    stated = {name: checked_number(name, limit, LIMIT) for name, limit in limits.items() if limit is not None}
     if not stated:
-        raise ValueError(
-            f"no limit: give one of {', '.join('_'.join(place).removesuffix('_median') for place in limits)}"
-        )
+        raise ValueError(f"no limit: give one of {', '.join(limits)}")
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
-    compared = {pair for pair, _ in stated}
-    hierarchy = [model for model in MODEL_HIERARCHY if "total" in compared or model.applies is not has_spatial_data]
+    with_total = any(name.startswith("total") for name in stated)
+    hierarchy = [model for model in MODEL_HIERARCHY if with_total or model is not SPATIAL]
     study = Study((scene,), grid, tolerance, hierarchy)
     batches = study.batches()
     surfaces = labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
     pairs = {pair.key: pair for pair in study.pairs(scene)}
     broken = [
         line
-        for (name, measure), limit in stated.items()
-        for line in _broken(surfaces, scene, pairs.get(PAIRS[name]), name, measure, limit)
+        for name, limit in stated.items()
+        for compared, _, measure in [name.partition("_maximum")]
+        for line in _broken(surfaces, scene, pairs.get(compared.replace("_", "-")), compared, bool(measure), limit)
     ]
     if broken:
         raise AssertionError("\n".join(broken))
 
 
 def _broken(
-    surfaces: xr.Dataset, scene: Scene, pair: Pair | None, name: str, measure: str, limit: float
+    surfaces: xr.Dataset, scene: Scene, pair: Pair | None, name: str, maximum: bool, limit: float
 ) -> Iterator[str]:
-    """One line for each body beyond the limit."""
+    """One line for each body beyond the limit, which is on the largest difference or on the median."""
     if pair is None:
         yield f"{scene.name}: {name}: the study has no pair of models for it"
         return
     for body in range(1, len(scene.bodies) + 1):
         step = pair_step(surfaces, scene.name, pair, body)
-        size = np.abs(step.size)
-        beyond = np.where(size > step.uncertainty, size, 0.0)
         if not step.known.any():
             both = f"{pair.first.title} and {pair.second.title}"
             yield f"{scene.name}, body {body}: {name}: no phase pair has a value by {both}"
             continue
-        value = float(np.median(beyond[step.known]) if measure == "median" else beyond[step.known].max())
+        size = np.abs(np.where(step.known, step.size, np.nan))
+        beyond = np.where(size <= step.uncertainty, 0.0, size)
+        value = float(np.nanmax(beyond) if maximum else np.nanmedian(beyond))
         if value <= limit:
             continue
-        row, column = np.unravel_index(np.nanargmax(np.where(step.known, beyond, np.nan)), beyond.shape)
+        row, column = np.unravel_index(np.nanargmax(beyond), beyond.shape)
         at = "under the record" if step.recorded else f"at ({step.alpha1[row]:.4f}, {step.alpha2[column]:.4f}) rad"
-        place = {"body": body, "alpha1": step.alpha1[row], "alpha2": step.alpha2[column]}
-        values = [
-            f"{model.title} {float(found['mu']):.6g} ± {float(found['error']):.1g}"
-            for model in (pair.first, pair.second)
-            for found in [surfaces.sel(scene=scene.name, model=model.key, **place)]
-        ]
+        place = surfaces.sel(scene=scene.name, body=body, alpha1=step.alpha1[row], alpha2=step.alpha2[column])
+        values = ", ".join(_value(place, model) for model in (pair.first, pair.second))
+        measure = "maximum" if maximum else "median"
         yield (
             f"{scene.name}, body {body}: {name}: {measure} difference {value:.3g}, allowed {limit:g}; "
-            f"largest {beyond[row, column]:.3g} {at}: {', '.join(values)}"
+            f"largest {beyond[row, column]:.3g} {at}: {values}"
         )
+
+
+def _value(place: xr.Dataset, model: Model) -> str:
+    mu, error = (float(place[name].sel(model=model.key)) for name in ("mu", "error"))
+    return f"{model.title} {mu:.6g} ± {error:.1g}"

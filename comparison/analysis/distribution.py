@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from comparison.analysis.steps import known_mu
-from comparison.analysis.surfaces import common_phases
+from comparison.analysis.surfaces import asked_of
 from comparison.study.models import models_of
 from comparison.study.study import Study
 from reference.problem import Estimate, Scene, phase_distribution
@@ -57,7 +57,7 @@ def distributions(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Dist
     listed = []
     for model in models_of(scene, study.hierarchy):
         for body in range(1, len(scene.bodies) + 1):
-            data = common_phases(surfaces, scene.name, [model.key]).sel(body=body)
+            data = asked_of(surfaces, scene, model).sel(body=body)
             mu, error = known_mu(data, model), data["error"].sel(model=model.key).values
             known = mu[np.isfinite(mu)]
             if not known.size:

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from comparison.analysis.steps import known_mu
-from comparison.analysis.surfaces import common_phases
+from comparison.analysis.surfaces import asked_of
 from comparison.study.models import models_of
 from comparison.study.study import Study
 from reference.problem import Scene
@@ -30,7 +30,7 @@ def grid_maxima(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[GridMa
     maxima = []
     for model in models_of(scene, study.hierarchy):
         for body in range(1, len(scene.bodies) + 1):
-            data = common_phases(surfaces, scene.name, [model.key]).sel(body=body)
+            data = asked_of(surfaces, scene, model).sel(body=body)
             mu, nan = known_mu(data, model), float("nan")
             if not np.isfinite(mu).any():
                 maxima.append(GridMaximum(model.key, body, nan, nan, (nan, nan)))

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from scipy.stats import linregress
 
 from comparison.analysis.protocol import Analysis
 from comparison.analysis.tradeoff.measure import Measurement, measure, sample, without_value
@@ -120,10 +121,8 @@ def fitted_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[flo
     if len(x) < 3:
         return float("nan"), float("nan")
     larger = slice(-max(3, (len(x) + 1) // 2), None)
-    x, y = x[larger] - x[larger].mean(), y[larger] - y[larger].mean()
-    slope = float(x @ y / (x @ x))
-    scatter = float(np.sqrt(((y - slope * x) ** 2).sum() / max(1, len(x) - 2) / (x @ x)))
-    return slope, scatter
+    line = linregress(x[larger], y[larger])
+    return float(line.slope), float(line.stderr)
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -15,7 +15,7 @@ FILE_FORMAT = ConfigDict(extra="forbid", use_attribute_docstrings=True)
 T = TypeVar("T")
 
 
-def json_text(content: Mapping[str, Any]) -> str:
+def json_text(content: Mapping[str, Any] | Sequence[Any]) -> str:
     """Content of a JSON file, a line for every value. Raises ValueError for NaN, which JSON does not have."""
     return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 

@@ -84,8 +84,8 @@ def allotment(study: Study, budget: float, jobs: int) -> Allotment:
 
 def listed_steps(study: Study) -> list[Step]:
     """The steps of a budget in their order; those of analyses that do not need the surfaces among them."""
-    costs = predicted_costs(study, chosen_analyses(study))
     analyses = [analysis for analysis in chosen_analyses(study) if not analysis.needs_surfaces]
+    costs = predicted_costs(study, analyses)
     return steps(study, {analysis.key: costs[analysis.stage][1] for analysis in analyses})
 
 

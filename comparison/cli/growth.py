@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
@@ -12,6 +11,7 @@ import numpy as np
 from rich.console import Console
 
 from comparison.analysis.growth import Growth, Series
+from comparison.analysis.stored import json_text
 from comparison.analysis.tradeoff.measure import Measurement, measure, sample
 from comparison.cli.computing import computed
 from comparison.cli.terminal import new_table
@@ -50,8 +50,9 @@ def measured_growth(
     list of Series
     """
     growth, study = Growth(), Study((scene,), 1, TOLERANCE)
-    models = {task.argument.function[0] for task in growth.tasks(study)}
-    results = computed("tradeoff", options, words, growth.tasks(study), models, console, executor)
+    tasks = growth.tasks(study)
+    models = {task.argument.function[0] for task in tasks}
+    results = computed("tradeoff", options, words, tasks, models, console, executor)
     return [*growth.collect(study, None, results), by_workers(scene, process_pool)]
 
 
@@ -87,7 +88,7 @@ def growth_files(series: Sequence[Series]) -> dict[str, bytes]:
         for each in series
     ]
     files = made_by(lambda folder: draw_growth(folder / PICTURE, series))
-    return {FILE: (json.dumps(listed, indent=1) + "\n").encode(), **files}
+    return {FILE: json_text(listed).encode(), **files}
 
 
 def print_growth(console: Console, series: Sequence[Series]) -> None:

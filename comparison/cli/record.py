@@ -68,13 +68,14 @@ def surface_costs() -> list[str]:
         tolerance, cells = 10.0**-power, []
         for model in (EXACT, REGULARIZED, TRANSLATIONAL, SPATIAL):
             if tolerance < recorded().accuracy[model.key].tightest:
-                cells += ["cannot"] if model is TRANSLATIONAL else [""]
+                cells += ["cannot", ""] if model is TRANSLATIONAL else [""]
                 continue
             asks = setting(model, model.tolerance(tolerance))
             each = np.mean([seconds[model.key] for seconds in recorded().seconds.values() if model.key in seconds])
             seconds = each * recorded().accuracy[model.key].cost(asks) * (model.most or DEFAULT_GRID) ** 2
-            cells += [*([f"{asks:.0e}"] if model in (EXACT, TRANSLATIONAL) else []), f"{float(f'{seconds:.2g}'):g}"]
-        rows.append(f"| 1e-{power} | {' | '.join(cells)} |")
+            exponent = f"{asks:.0e}".replace("e-0", "e-")
+            cells += [*([exponent] if model in (EXACT, TRANSLATIONAL) else []), f"{float(f'{seconds:.2g}'):g}"]
+        rows.append(f"| 1e-{power} | {' | '.join(cells)} |".replace("|  |", "| |").replace("|  |", "| |"))
     return rows
 
 

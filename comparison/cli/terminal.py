@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
@@ -24,10 +26,11 @@ from comparison.study.study import Study
 
 def print_plan(console: Console, study: Study, options: Options) -> None:
     """What would be computed and its predicted cost."""
-    for line in _refused(study):
-        console.print(f"{line}.", soft_wrap=True)
+    refused = _refused(study)
+    for (scene, title), reason in refused.items():
+        console.print(f"{scene}, {title}: {reason}.", soft_wrap=True)
     if options.budget is None:
-        _print_costs(console, study, options)
+        _print_costs(console, study, options, refused)
     else:
         _print_steps(console, study, options.budget, options.jobs)
     _print_reductions(console, study)
@@ -50,25 +53,24 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
     console.print(f"{'No surface' if tried else 'Nothing'} was computed. The report would go to {options.out}.")
 
 
-def _refused(study: Study) -> list[str]:
-    """Scene, model and reason for every surface that would have no value."""
-    return [
-        f"{scene.name}, {model.title}: {reason}"
+def _refused(study: Study) -> dict[tuple[str, str], str]:
+    """Why a surface would have no value, by name of the scene and title of the model."""
+    return {
+        (scene.name, model.title): reason
         for scene in study.scenes
         for model in models_of(scene, study.hierarchy)
         if (reason := refusal_of(scene, model, model.tolerance(study.tolerance), study.full))
-    ]
+    }
 
 
-def _print_costs(console: Console, study: Study, options: Options) -> None:
+def _print_costs(console: Console, study: Study, options: Options, refused: Mapping[tuple[str, str], str]) -> None:
     """A row for every scene and model, the analyses, and the time of the whole run."""
     table = new_table("scene", "model", "points", "computed", "tolerance", "s on one core")
     total = 0.0
     for scene in study.scenes:
         for model in models_of(scene, study.hierarchy):
             points, computed = study.points(model, scene), len(study.solved(scene, model))
-            refused = refusal_of(scene, model, model.tolerance(study.tolerance), study.full)
-            seconds = 0.0 if refused else study.seconds_of(scene, model)
+            seconds = 0.0 if (scene.name, model.title) in refused else study.seconds_of(scene, model)
             total += seconds
             cells = str(points), str(computed), f"{model.tolerance(study.tolerance):.0e}", f"{seconds:.1f}"
             table.add_row(scene.name, model.title, *cells)

@@ -44,6 +44,7 @@ from comparison.report.waterfall_chart import Scale, charts, log_scale, scales
 from comparison.study.study import Study
 from comparison.wording import degrees, percent, scientific, signed, significant, symbols
 from reference.problem import Outcome
+from reference.problem.distribution import FRACTILES
 
 
 @dataclass(frozen=True)
@@ -197,6 +198,7 @@ def page(figures: Path, findings: Findings, results: Results) -> str:
         trend_panels=trend_panels,
         distribution_panels=distribution_panels(results),
         worst_lines=worst_lines(results),
+        fractiles=[f"{100.0 * probability:g}" for probability in FRACTILES],
         tradeoff_panels=tradeoff_panels,
         tradeoff_answers=tradeoff_answers,
         family_panels=family_panels(results),
@@ -340,7 +342,7 @@ def _inlined(webp: bytes) -> str:
 
 
 def _claim_findings(claim: Claim) -> list[tuple[ClaimVerdict, list[int]]]:
-    """What the checks of a claim findings, each different answer once, with the numbers of its readings from 1 on."""
+    """What the checks of a claim found, each different answer once, with the numbers of its readings from 1 on."""
     groups: dict[tuple[str, str], tuple[ClaimVerdict, list[int]]] = {}
     for number, verdict in enumerate(claim.verdicts, start=1):
         groups.setdefault((verdict.finding, verdict.found), (verdict, []))[1].append(number)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from comparison.cli.record import surface_costs
+
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
@@ -28,3 +30,7 @@ def test_every_file_the_readme_points_to_exists() -> None:
 
 def test_nothing_is_left_to_be_filled_in() -> None:
     assert not re.search(r"TODO|TBD|XXX|<!--|\?\?\?", README)
+
+
+def test_the_table_of_costs_is_that_of_the_record() -> None:
+    assert [row for row in surface_costs() if row not in README.splitlines()] == []
