@@ -49,13 +49,14 @@ def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
 def distribution_panels(results: Results) -> list[Panel]:
     """One panel for each scene and body: the share of all phases at which mu stays below a value, by model."""
     titles = {model.key: model.title for model in results.models}
+    colors = {model.key: number for number, model in enumerate(results.models)}
     panels = []
     for scene in results.scenes_with("worst_phases"):
         for body in range(1, scene.bodies + 1):
             curves = [each for each in scene.distributions if each.body == body]
             series = [
-                {"name": titles[each.model], "x": _plain(each.curve), "y": CURVE.tolist(), "color": number}
-                for number, each in enumerate(curves)
+                {"name": titles[each.model], "x": _plain(each.curve), "y": CURVE.tolist(), "color": colors[each.model]}
+                for each in curves
             ]
             name = f"{scene.name}, μ_{body}"
             plot = {
