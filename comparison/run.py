@@ -25,6 +25,7 @@ from typing import Any
 from rich.console import Console
 
 from comparison.analysis.extremes.matrix import load as stored_extremes
+from comparison.analysis.growth import load as stored_growth
 from comparison.analysis.surfaces import labeled_surfaces
 from comparison.analysis.targets import targets_met
 from comparison.analysis.tradeoff.trade import load as stored_trades
@@ -193,6 +194,7 @@ def _run(
         families=[family for family in options.families if len(family.scenes) > 1] or None,
         extremes=None if "extremes" in study.absent else _taken_up(stored_extremes, options.out),
         tradeoff=None if "tradeoff" in study.absent else _taken_up(stored_trades, options.out),
+        growth=None if "tradeoff" in study.absent else _taken_up(stored_growth, options.out),
     )
     results = assemble(findings)
     drawings = drawing_tasks(results, findings)

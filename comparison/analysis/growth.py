@@ -7,15 +7,18 @@ logarithms of the larger half of the values, where fixed costs count least.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
 from scipy.stats import linregress
 
 from comparison.analysis.protocol import Analysis
+from comparison.analysis.stored import FILE_FORMAT, json_text, load_file
 from comparison.analysis.tradeoff.measure import Measurement, measure, sample, without_value
 from comparison.execution.task import Task
 from comparison.execution.task_results import TaskResults
@@ -24,6 +27,8 @@ from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, Model
 from comparison.study.study import Study
 from reference.problem import Scene
 
+FILE, PICTURE = "growth.json", "growth.png"
+SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"
 BODIES = (2, 4, 8, 16, 32, 64, 100)
 DURATIONS = (10.0, 30.0, 100.0, 300.0, 1000.0)  # s
 PHASES = (1, 4, 16, 64, 256)
@@ -83,18 +88,90 @@ QUANTITIES = (
 
 @dataclass(frozen=True)
 class Series:
-    """Processor time, s: of a phase pair, or of a call with so many. NaN: more than LIMIT, or no answer."""
+    """What one model costs over the values of one quantity."""
+
+    __pydantic_config__ = FILE_FORMAT
 
     quantity: str
+    """what grows"""
     unit: str
+    """its unit; empty for a pure number"""
     model: str
-    values: tuple[float, ...]
-    seconds: tuple[float, ...]
+    """title of the model"""
+    values: Sequence[float]
+    """of the quantity"""
+    seconds: Sequence[float | None]
+    """processor time of a phase pair, over phase pairs and workers of a call; null above the limit, or without an
+    answer"""
+    slope: float | None
+    """exponent of the larger half of the known values; null for fewer than three"""
+    uncertainty: float | None
+    """standard error of the slope"""
 
-    @property
-    def slope(self) -> tuple[float, float]:
-        """Exponent, and its standard error, of the larger half of the known values; NaN for fewer than three."""
-        return fitted_slope(self.values, self.seconds)
+
+@dataclass(frozen=True)
+class MeasuredGrowth:
+    """Content of the file."""
+
+    __pydantic_config__ = FILE_FORMAT
+
+    schema: Literal["phase-resonance/growth"]
+    """what the file is"""
+    scene: str
+    """name of the scene that grows"""
+    title: str
+    """title of the scene"""
+    series: Sequence[Series]
+    """one per quantity and model"""
+    run: Mapping[str, Any]
+    """command, times, provenance"""
+
+    def as_json(self) -> bytes:
+        """The content of the file, which `load` reads."""
+        return json_text(asdict(self)).encode()
+
+
+def load(folder: Path) -> MeasuredGrowth | None:
+    """
+    The growth that a command left in a folder.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder that may hold FILE.
+
+    Returns
+    -------
+    MeasuredGrowth or None
+        None if there is no such file.
+
+    Raises
+    ------
+    ValueError
+        One line, if the file holds no growth of this version.
+    """
+    return load_file(folder / FILE, MeasuredGrowth, "a measured growth", "python -m comparison.tradeoff --growth")
+
+
+def with_slope(quantity: str, unit: str, model: str, values: Sequence[float], seconds: Sequence[float]) -> Series:
+    """
+    The series with its slope.
+
+    Parameters
+    ----------
+    quantity, unit, model : str
+    values, seconds : sequence of float
+        As in `Series`; NaN where there is no measurement.
+
+    Returns
+    -------
+    Series
+    """
+    slope, uncertainty = fitted_slope(values, seconds)
+    known = [value if math.isfinite(value) else None for value in seconds]
+    if not math.isfinite(slope):
+        return Series(quantity, unit, model, list(values), known, None, None)
+    return Series(quantity, unit, model, list(values), known, slope, uncertainty)
 
 
 def fitted_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:
@@ -147,7 +224,7 @@ class Growth(Analysis[list[Series]]):
                 else float("nan")
                 for answer in answers
             )
-            collected.append(Series(quantity.name, quantity.unit, model.title, quantity.values, seconds))
+            collected.append(with_slope(quantity.name, quantity.unit, model.title, quantity.values, seconds))
         return collected
 
     def _series(self, study: Study) -> list[tuple[Quantity, Model, list[Task]]]:

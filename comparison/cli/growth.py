@@ -6,23 +6,24 @@ import argparse
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
+from datetime import UTC, datetime
 
-import numpy as np
 from rich.console import Console
 
-from comparison.analysis.growth import Growth, Series
-from comparison.analysis.stored import json_text
+from comparison.analysis.growth import FILE, PICTURE, SCHEMA, Growth, MeasuredGrowth, Series, with_slope
 from comparison.analysis.tradeoff.measure import Measurement, measure, sample
+from comparison.cli.arguments import jobs
 from comparison.cli.computing import computed
 from comparison.cli.terminal import new_table
 from comparison.execution.executors import Pool, cores
 from comparison.execution.output import made_by
 from comparison.execution.processes import process_pool
+from comparison.execution.provenance import provenance
+from comparison.execution.resume import command_line
 from comparison.study.models import EXACT
 from comparison.study.study import Study
 from reference.problem import Scene
 
-FILE, PICTURE = "growth.json", "growth.png"
 FILES = (FILE, PICTURE, "growth.pdf")
 TOLERANCE = 1e-3  # of a study; every measurement has one of its own
 CALLS, PAIRS = 16, 64  # of the equations, shared by the workers
@@ -30,9 +31,9 @@ CALLS, PAIRS = 16, 64  # of the equations, shared by the workers
 
 def measured_growth(
     scene: Scene, options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
-) -> list[Series]:
+) -> MeasuredGrowth:
     """
-    All series of a scene; what is stored is not measured again, but for the workers.
+    All series of a scene with what is known of their run; what is stored is not measured again, but for the workers.
 
     Parameters
     ----------
@@ -47,13 +48,22 @@ def measured_growth(
 
     Returns
     -------
-    list of Series
+    MeasuredGrowth
     """
+    begin, began = time.monotonic(), datetime.now(UTC)
     growth, study = Growth(), Study((scene,), 1, TOLERANCE)
     tasks = growth.tasks(study)
     models = {task.argument.function[0] for task in tasks}
     results = computed("tradeoff", options, words, tasks, models, console, executor)
-    return [*growth.collect(study, None, results), by_workers(scene, process_pool)]
+    series = [*growth.collect(study, None, results), by_workers(scene, process_pool)]
+    run = {
+        "command": command_line(words, "tradeoff"),
+        "began": began.isoformat(timespec="seconds"),
+        "jobs": jobs(options),
+        "provenance": provenance(),
+        "seconds": round(time.monotonic() - begin, 1),
+    }
+    return MeasuredGrowth(SCHEMA, scene.name, scene.title, series, run)
 
 
 def by_workers(scene: Scene, pool: Callable[[int], Executor], most: int | None = None) -> Series:
@@ -69,35 +79,23 @@ def by_workers(scene: Scene, pool: Callable[[int], Executor], most: int | None =
             begin = time.monotonic()
             list(executor.map(measure, [call] * CALLS))
             seconds.append(time.monotonic() - begin)
-    return Series("workers", "", EXACT.title, tuple(map(float, counts)), tuple(seconds))
+    return with_slope("workers", "", EXACT.title, list(map(float, counts)), seconds)
 
 
-def growth_files(series: Sequence[Series]) -> dict[str, bytes]:
+def growth_files(growth: MeasuredGrowth) -> dict[str, bytes]:
     """Table and figure."""
     from comparison.report.figures.growth import draw_growth  # plotting: not needed to refuse
 
-    listed = [
-        {
-            "quantity": each.quantity,
-            "unit": each.unit,
-            "model": each.model,
-            "values": each.values,
-            "seconds": [value if np.isfinite(value) else None for value in each.seconds],
-            "slope": each.slope[0] if np.isfinite(each.slope[0]) else None,
-        }
-        for each in series
-    ]
-    files = made_by(lambda folder: draw_growth(folder / PICTURE, series))
-    return {FILE: json_text(listed).encode(), **files}
+    return {FILE: growth.as_json(), **made_by(lambda folder: draw_growth(folder / PICTURE, growth.series))}
 
 
 def print_growth(console: Console, series: Sequence[Series]) -> None:
     """A row for every value, with the slope of its series."""
     table = new_table("quantity", "model", "value", "s", "slope")
     for each in series:
-        slope, error = each.slope
+        slope = "" if each.slope is None else f"{each.slope:.2f} ± {each.uncertainty:.2f}"
         for place, (value, seconds) in enumerate(zip(each.values, each.seconds)):
-            known = f"{seconds:.3g}" if np.isfinite(seconds) else "no answer"
-            last = place == len(each.values) - 1 and np.isfinite(slope)
-            table.add_row(each.quantity, each.model, f"{value:g}", known, f"{slope:.2f} ± {error:.2f}" if last else "")
+            known = "no answer" if seconds is None else f"{seconds:.3g}"
+            last = place == len(each.values) - 1
+            table.add_row(each.quantity, each.model, f"{value:g}", known, slope if last else "")
     console.print(table)

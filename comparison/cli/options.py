@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from comparison.analysis.extremes.matrix import load as stored_extremes
+from comparison.analysis.growth import load as stored_growth
 from comparison.analysis.tradeoff.trade import load as stored_trades
 from comparison.cli.arguments import CommandParser, jobs, number, whole_number
 from comparison.execution.cache import refuse_foreign_store
@@ -97,6 +98,7 @@ def parsed(argv: Sequence[str]) -> Options:
         try:
             stored_extremes(options.out)
             stored_trades(options.out)
+            stored_growth(options.out)
         except (OSError, ValueError) as error:
             rule = f"the report cannot take up {error}"
             raise SceneError("command line", "--out", str(options.out), rule) from None

@@ -20,12 +20,12 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
+from comparison.analysis.growth import FILE as GROWTH
 from comparison.analysis.tradeoff.analysis import MeasuredTrade, TradeOff
 from comparison.analysis.tradeoff.settings import CONSTANT, ENGINE, LEVEL, REFERENCE, RUN, SCIPY
 from comparison.analysis.tradeoff.trade import FILE, Trade, as_json, load
 from comparison.cli.arguments import CommandParser, command, jobs, writing
 from comparison.cli.computing import computed
-from comparison.cli.growth import FILE as GROWTH
 from comparison.cli.growth import FILES, growth_files, measured_growth, print_growth
 from comparison.execution.executors import Pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
@@ -78,10 +78,10 @@ def _grown(
     scene: Scene, options: argparse.Namespace, words: Sequence[str], out: Path, console: Console, executor: Pool
 ) -> int:
     """Measure how the cost grows; the exit code."""
-    series = measured_growth(scene, options, words, console, executor)
+    growth = measured_growth(scene, options, words, console, executor)
     with writing(out):
-        publish(out, growth_files(series), COMMAND)
-    print_growth(console, series)
+        publish(out, growth_files(growth), COMMAND)
+    print_growth(console, growth.series)
     console.print(f"Growth: {out / GROWTH}, and growth.png beside it.", soft_wrap=True)
     return 0
 

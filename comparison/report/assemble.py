@@ -90,6 +90,7 @@ def assemble(findings: Findings) -> Results:
         convergence=_trends(findings.convergence),
         extremes=findings.extremes,
         tradeoff=None if findings.tradeoff is None else list(findings.tradeoff),
+        growth=findings.growth,
         families=None
         if findings.families is None
         else [_family(findings, family, waterfalls) for family in findings.families],

@@ -17,6 +17,7 @@ from comparison.analysis.differences import Difference, differences
 from comparison.analysis.effective import Effective
 from comparison.analysis.errata import Effect
 from comparison.analysis.extremes.matrix import Matrix
+from comparison.analysis.growth import MeasuredGrowth
 from comparison.analysis.tradeoff.trade import Trade
 from comparison.analysis.trajectories import StoredMotion
 from comparison.analysis.trends import Trend
@@ -67,6 +68,7 @@ class Findings:
     families: Sequence[Family] | None = None  # those of more than one scene
     extremes: Matrix | None = None  # what python -m comparison.extremes left beside the report
     tradeoff: Sequence[Trade] | None = None  # what python -m comparison.tradeoff left beside the report
+    growth: MeasuredGrowth | None = None  # what python -m comparison.tradeoff --growth left beside the report
     drawings: Mapping[str, Any] = field(default_factory=dict)  # files of the other drawings, by key of their task
 
 

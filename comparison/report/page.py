@@ -19,10 +19,12 @@ from comparison.analysis.claims.table import SIGNS
 from comparison.analysis.effective import PHASES
 from comparison.analysis.extremes.matrix import PICTURE
 from comparison.analysis.extremes.verdicts import Verdict
+from comparison.analysis.growth import PICTURE as GROWTH_PICTURE
 from comparison.report.drawings import assumption_tasks, drawn
 from comparison.report.figures.assumptions import assumption_figure_name
 from comparison.report.figures.extremes import MEANING, describe, draw_extremes
 from comparison.report.figures.families import draw_families
+from comparison.report.figures.growth import draw_growth
 from comparison.report.figures.pictures import smaller
 from comparison.report.figures.tradeoff import draw_tradeoff, tradeoff_figure_name
 from comparison.report.findings import Findings
@@ -33,6 +35,7 @@ from comparison.report.page_plots import (
     claim_heat,
     distribution_panels,
     family_panels,
+    growth_panels,
     tradeoff_answers,
     tradeoff_panels,
     trend_panels,
@@ -87,6 +90,12 @@ def draw_all_trades(figures: Path, findings: Findings) -> None:
         draw_tradeoff(figures / tradeoff_figure_name(trade.scene), trade)
 
 
+def draw_measured_growth(figures: Path, findings: Findings) -> None:
+    """The diagram of how the cost grows, if that was measured."""
+    if findings.growth:
+        draw_growth(figures / GROWTH_PICTURE, findings.growth.series)
+
+
 SECTIONS = (
     Section("surfaces", "Surfaces and motions", title_recorded="Values and motions under the records", folded=False),
     Section(
@@ -138,6 +147,13 @@ SECTIONS = (
         "tradeoff",
         "python -m comparison.tradeoff SCENE makes it, beside the report; the next run of the study shows it",
         draw_all_trades,
+    ),
+    Section(
+        "growth",
+        "How the cost grows",
+        "growth",
+        "python -m comparison.tradeoff SCENE --growth makes it, beside the report; the next run of the study shows it",
+        draw_measured_growth,
     ),
     Section("effective", "Effective values"),
     Section("verification", "What checks each side alone"),
@@ -201,6 +217,7 @@ def page(figures: Path, findings: Findings, results: Results) -> str:
         fractiles=[f"{100.0 * probability:g}" for probability in FRACTILES],
         tradeoff_panels=tradeoff_panels,
         tradeoff_answers=tradeoff_answers,
+        growth_panels=growth_panels(results),
         family_panels=family_panels(results),
         claim_heat=claim_heat(results),
         claim_findings=_claim_findings,

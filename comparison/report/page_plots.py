@@ -115,6 +115,30 @@ def tradeoff_answers(trade: Trade) -> list[dict[str, str]]:
     return answers
 
 
+def growth_panels(results: Results) -> list[Panel]:
+    """One log-log panel for each quantity that grows: seconds over it, the slopes in the legend."""
+    panels: list[Panel] = []
+    if results.growth is None:
+        return panels
+    titles = list(dict.fromkeys(each.model for each in results.growth.series))
+    for quantity, group in groupby(results.growth.series, key=lambda each: each.quantity):
+        curves = list(group)
+        series: list[dict[str, Any]] = []
+        for each in curves:
+            slope = "" if each.slope is None else f": slope {each.slope:.2f} ± {each.uncertainty:.2f}"
+            points = {"x": list(each.values), "y": list(each.seconds), "marks": True}
+            series.append({"name": f"{each.model}{slope}", **points, "color": titles.index(each.model)})
+        time = "wall time, s" if quantity == "workers" else "processor time, s"
+        plot = {
+            "label": f"{time} over {quantity}; " + "; ".join(str(line["name"]) for line in series),
+            "x": {"title": f"{quantity}, {curves[0].unit}".rstrip(", "), "log": True},
+            "y": {"title": time, "log": True},
+            "series": series,
+        }
+        panels.append({"title": quantity, "plot": plot})
+    return panels
+
+
 def family_panels(results: Results) -> list[dict[str, Any]]:
     """For each family: mu of every body by every model over the value that runs, and what each effect adds."""
     scenes = {scene.name: scene for scene in results.scenes}

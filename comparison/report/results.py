@@ -15,6 +15,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
 
 from comparison.analysis.extremes.matrix import Matrix
+from comparison.analysis.growth import MeasuredGrowth
 from comparison.analysis.stored import json_text
 from comparison.analysis.tradeoff.trade import Trade
 from reference.problem.acceptance import Acceptance
@@ -950,6 +951,9 @@ class Results(Part):
     tradeoff: list[Trade] | None
     """error against compute time for every model and parameter; null unless python -m comparison.tradeoff left it
     beside the report"""
+    growth: MeasuredGrowth | None
+    """how the cost grows with bodies, duration, phase pairs and workers; null unless python -m comparison.tradeoff
+    --growth left it beside the report"""
     families: list[FamilyResult] | None
     """families of scenes in which one value runs; null without any"""
     absent: dict[str, str]

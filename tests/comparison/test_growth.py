@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +10,17 @@ import numpy as np
 import pytest
 from known_analyses import collected
 
-from comparison.analysis.growth import QUANTITIES, Growth, Series, fitted_slope, tall
+from comparison.analysis.growth import (
+    QUANTITIES,
+    SCHEMA,
+    Growth,
+    MeasuredGrowth,
+    Series,
+    fitted_slope,
+    load,
+    tall,
+    with_slope,
+)
 from comparison.cli import growth as command
 from comparison.study.study import Study
 from reference.problem import load_scene
@@ -45,15 +54,38 @@ def test_the_cost_of_the_equations_grows_with_bodies_and_phase_pairs() -> None:
     bodies, pairs = collected(Growth(few), Study((SCENE,), 1, 1e-3), executor=lambda jobs: ThreadPoolExecutor(1))
     assert bodies.quantity == "bodies"
     assert pairs.quantity == "phase pairs"
-    assert np.isfinite(bodies.seconds).all()
-    assert pairs.seconds[2] > pairs.seconds[0]
+    assert None not in bodies.seconds
+    first, *_, last = pairs.seconds
+    assert first is not None
+    assert last is not None
+    assert last > first
 
 
-def test_table_and_figure_cope_with_what_has_no_answer(tmp_path: Path) -> None:
-    series = [
-        Series("bodies", "", "exact", (2.0, 4.0), (0.1, float("nan"))),
-        Series("workers", "", "exact", (1.0,), (2.0,)),
-    ]
-    files = command.growth_files(series)
+def test_the_larger_half_of_a_series_gives_its_slope_or_none() -> None:
+    assert with_slope("bodies", "", "exact", (2.0, 4.0), (0.1, float("nan"))).slope is None
+    assert with_slope("bodies", "", "exact", (1.0, 2.0, 4.0), (1.0, 4.0, 16.0)).slope == pytest.approx(2.0)
+
+
+def test_table_and_figure_cope_with_what_has_no_answer_and_are_read_back(tmp_path: Path) -> None:
+    growth = growth_of(
+        with_slope("bodies", "", "exact", (2.0, 4.0), (0.1, float("nan"))),
+        with_slope("workers", "", "exact", (1.0,), (2.0,)),
+    )
+    files = command.growth_files(growth)
     assert set(files) == set(command.FILES)
-    assert json.loads(files["growth.json"])[0]["seconds"] == [0.1, None]
+    assert load(tmp_path) is None
+    (tmp_path / "growth.json").write_bytes(files["growth.json"])
+    assert load(tmp_path) == growth
+    assert growth.series[0].seconds == [0.1, None]
+
+
+def test_a_file_that_is_no_growth_is_refused_in_one_line(tmp_path: Path) -> None:
+    (tmp_path / "growth.json").write_text('{"schema": "phase-resonance/tradeoff"}')
+    with pytest.raises(
+        ValueError, match=r"growth.json: not a measured growth: .*: run python -m comparison.tradeoff --growth"
+    ):
+        load(tmp_path)
+
+
+def growth_of(*series: Series) -> MeasuredGrowth:
+    return MeasuredGrowth(SCHEMA, "fig3-I", "a scene", list(series), {"command": "made up"})

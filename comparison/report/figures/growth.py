@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -24,8 +25,9 @@ def draw_growth(path: Path, series: Sequence[Series]) -> None:
     for axes, quantity in zip(np.atleast_1d(figure.subplots(1, len(quantities))), quantities):
         shown = [each for each in series if each.quantity == quantity]
         for each, color, marker in zip(shown, COLORS, MARKERS):
-            exponent = f", slope {each.slope[0]:.2f}" if np.isfinite(each.slope[0]) else ""
-            axes.loglog(each.values, each.seconds, color=color, marker=marker, ms=4.5, label=f"{each.model}{exponent}")
+            exponent = "" if each.slope is None else f", slope {each.slope:.2f}"
+            seconds = [math.nan if value is None else value for value in each.seconds]
+            axes.loglog(each.values, seconds, color=color, marker=marker, ms=4.5, label=f"{each.model}{exponent}")
         axes.set_xlabel(f"{quantity}, {shown[0].unit}".rstrip(", "))
         axes.set_ylabel("wall time, s" if quantity == "workers" else "processor time, s")
         axes.grid(alpha=0.25)
