@@ -104,7 +104,7 @@ class Series:
     """processor time of a phase pair, over phase pairs and workers of a call; null above the limit, or without an
     answer"""
     slope: float | None
-    """exponent of the larger half of the known values; null for fewer than three"""
+    """exponent of the larger half of the values before the first null; null for fewer than three"""
     uncertainty: float | None
     """standard error of the slope"""
 
@@ -186,17 +186,17 @@ def fitted_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[flo
     Returns
     -------
     tuple of float
-        Of the larger half of the known values, three at least; NaN for fewer.
+        Of the larger half of the values up to the first without a measurement, three at least; NaN for fewer.
 
     Examples
     --------
     >>> [round(number, 6) for number in fitted_slope([1, 2, 4, 8], [3, 12, 48, 192])]
     [2.0, 0.0]
     """
-    known = np.isfinite(seconds)
-    x, y = np.log(np.asarray(values, float)[known]), np.log(np.asarray(seconds, float)[known])
-    if len(x) < 3:
+    known = int(np.isfinite([*seconds, np.nan]).argmin())  # what is behind one without a measurement is no trend
+    if known < 3:
         return float("nan"), float("nan")
+    x, y = np.log(values[:known]), np.log(seconds[:known])
     larger = slice(-max(3, (len(x) + 1) // 2), None)
     line = linregress(x[larger], y[larger])
     return float(line.slope), float(line.stderr)

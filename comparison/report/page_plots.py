@@ -128,11 +128,13 @@ def growth_panels(results: Results) -> list[Panel]:
             slope = "" if each.slope is None else f": slope {each.slope:.2f} ± {each.uncertainty:.2f}"
             points = {"x": list(each.values), "y": list(each.seconds), "marks": True}
             series.append({"name": f"{each.model}{slope}", **points, "color": titles.index(each.model)})
-        time = "wall time, s" if quantity == "workers" else "processor time, s"
+        wall = quantity == "workers"
+        time = "wall time, s" if wall else "processor time, s"
+        longest = max((value for each in curves for value in each.seconds if value is not None), default=1.0)
         plot = {
             "label": f"{time} over {quantity}; " + "; ".join(str(line["name"]) for line in series),
             "x": {"title": f"{quantity}, {curves[0].unit}".rstrip(", "), "log": True},
-            "y": {"title": time, "log": True},
+            "y": {"title": time, "range": [0.0, 1.1 * longest]} if wall else {"title": time, "log": True},
             "series": series,
         }
         panels.append({"title": quantity, "plot": plot})

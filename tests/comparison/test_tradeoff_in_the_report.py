@@ -12,9 +12,12 @@ import xarray as xr
 from conftest import Run
 from jsonschema import Draft202012Validator
 
+from comparison.analysis.growth import FILE as GROWTH
+from comparison.analysis.growth import SCHEMA, MeasuredGrowth, with_slope
 from comparison.analysis.tradeoff.analysis import MeasuredTrade
 from comparison.analysis.tradeoff.trade import FILE, Answered, Entry, Trade, with_pareto_fronts
 from comparison.cli import tradeoff as tradeoff
+from comparison.execution.output import publish
 from reference.problem import load_scene
 
 SMALL = ["fig3-I", "--grid", "2"]
@@ -87,3 +90,25 @@ def test_a_file_of_that_name_which_is_no_trade_is_refused_in_one_line(
     assert run.code == 2
     assert run.err.count("\n") == 1
     assert "not a measured trade" in run.err
+
+
+def test_growth_beside_a_report_is_part_of_it_where_a_value_is_missing_too(
+    command: Callable[..., Run], tmp_path: Path
+) -> None:
+    run_of_growth = {**RUN, "provenance": {"commit": "abc", "processor": "one"}}
+    series = [
+        with_slope("bodies", "", "engine", (2.0, 4.0, 8.0), (1.0, 4.0, 16.0)),
+        with_slope("bodies", "", "slow engine", (2.0, 4.0, 8.0), (1.0, float("nan"), 16.0)),
+        with_slope("workers", "", "equations", (1.0, 2.0), (2.0, 1.0)),
+    ]
+    report = tmp_path / "report"
+    growth = MeasuredGrowth(SCHEMA, "fig3-I", "a scene", series, run_of_growth)
+    publish(report, {GROWTH: growth.as_json()}, tradeoff.COMMAND)
+    run = command(*SMALL)
+    assert run.code == 0, run.err
+    page = (report / "index.html").read_text(encoding="utf-8")
+    for seen in ('id="growth"', "engine: slope 2.00", "no answer", "made by a test"):
+        assert seen in page, seen
+    summary = json.loads((report / "summary.json").read_text(encoding="utf-8"))
+    assert summary["growth"]["series"][1]["slope"] is None
+    assert (report / "figures" / "growth.png").stat().st_size > 0
