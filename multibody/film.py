@@ -58,7 +58,8 @@ class Drawing:
     centers: Array  # (F, N, 3)
     supports: Array  # (K, 2)
     paths: Array  # (F, K, 2) of the contact points
-    swing: Array  # (S, 2), x and z of the curve that the platform's center swings on
+    swing: Array  # (S, 2), x and z of the curve that the platform's center swings on, from its place at rest
+    rest: Array  # (2,), that place
     scales: str  # the factors, in words
 
     @property
@@ -96,7 +97,7 @@ def contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
     The point lies on the sphere of radius r, in the direction from the depression's center to the sphere's.
     """
     supports = _supports(scene)
-    arms = np.column_stack([supports, np.full(len(supports), -(scene.bodies[0].height or 0.0))])
+    arms = np.column_stack([supports - scene.offsets[0], np.full(len(supports), -(scene.bodies[0].height or 0.0))])
     matrices = Rotation.from_euler("XYZ", turns).as_matrix()
     depressions = shift[:, None, :] + arms @ np.swapaxes(matrices, 1, 2) - arms
     lever = (scene.isolator.sphere_radius or SPHERE) / scene.radius
@@ -110,7 +111,7 @@ def drawn_boxes(scene: Scene) -> tuple[Array, Array, float]:
 
     Heights begin at zero. The boxes stay apart as long as an edge moves by no more than MAX_DIP of their distance.
     """
-    width = 2.0 * (scene.isolator.ring or RING)
+    width = 2.0 * (scene.isolator.ring or float(scene.support_distances.max(initial=0.0)) or RING)
     sizes: Array = np.array([body.size or [width, width, THICKNESS * width] for body in scene.bodies])
     width = float(sizes[:, :2].max())
     heights: Array = STORY * width * np.arange(len(sizes), dtype=np.float64)
@@ -134,19 +135,20 @@ def drawing(scene: Scene, motion: Trajectory, stretch: float, count: int) -> Dra
     dip = min(MAX_DRAWN, MAX_DIP * gap / (0.5 * float(np.hypot(*sizes[:, :2].max(axis=0)))))
     tilt, yaw = magnified(turns[..., :2], dip), magnified(turns[..., 2], MAX_DRAWN)
     paths = contact_paths(scene, shifts[:, 0], turns[:, 0])
-    closer = magnified(paths, MAX_DRAWN * float(np.hypot(*_supports(scene)[0])))
+    closer = magnified(paths, MAX_DRAWN * float(np.hypot(*_supports(scene).T).max()))
     scales = f"displacements x {stretch:g}, contact paths x {closer:g}"
     scales += f", tilt x {tilt:g}, yaw x {yaw:g}" if "turns" in motion.extra else ""
     scales += f", heights x {factor:.2g}" if factor != 1.0 else ""
     across = np.linspace(-0.25, 0.25, 101) * scene.radius
     rise = scene.radius - np.sqrt(scene.radius**2 - across**2)
-    centers = heights[:, None] * np.array([0.0, 0.0, 1.0]) + shifts * stretch
+    centers = np.column_stack([scene.offsets, heights]) + shifts * stretch
     return Drawing(
-        corners=box_corners(centers, sizes, turns * np.array([tilt, tilt, yaw])),
+        corners=box_corners(centers, sizes, turns * [tilt, tilt, yaw] + scene.yaws[:, None] * [0.0, 0.0, 1.0]),
         centers=centers,
         supports=_supports(scene),
         paths=_supports(scene) + paths * closer,
         swing=stretch * np.column_stack([across, rise]),
+        rest=scene.offsets[0],
         scales=scales,
     )
 
@@ -218,8 +220,9 @@ class _FromAbove(_View):
         super().__init__(panel, drawn, (0, 1), 0.1)
         panel.set(ylim=(-drawn.reach, drawn.reach))
         panel.set_title("from above", fontsize="small")
-        radius = float(np.hypot(*drawn.supports[0]))
-        panel.add_patch(Circle((0.0, 0.0), radius, fill=False, color="0.5", linestyle=":"))
+        distances = np.hypot(*drawn.supports.T)
+        if np.allclose(distances, distances[0]):
+            panel.add_patch(Circle((0.0, 0.0), float(distances[0]), fill=False, color="0.5", linestyle=":"))
         panel.plot(*drawn.supports.T, "o", color="0.4", markersize=5, label="support")
         style = {"color": "tab:red", "animated": True}
         self.lines = [panel.plot([], [], linewidth=1.0, **style)[0] for _ in drawn.supports]
@@ -247,7 +250,9 @@ class _FromSide(_View):
         for support in drawn.supports[:, axis]:
             panel.plot([support, support], [low, top], color="0.5", linewidth=1.5)
             panel.plot(support, top, "o", color="0.4", markersize=5, clip_on=False)
-        panel.plot(*drawn.swing.T, ":", color="0.2", label="swing of the center")
+        panel.plot(
+            drawn.rest[axis] + drawn.swing[:, 0], drawn.swing[:, 1], ":", color="0.2", label="swing of the center"
+        )
         self.mast = panel.plot([], [], "o-", color="0.2", markersize=3, linewidth=1.0, animated=True)[0]
         self.moving.append(self.mast)
 

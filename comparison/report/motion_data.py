@@ -25,8 +25,9 @@ it are changes: value i is the sum of the numbers up to i, times 2^exponent.
 | yaw | 1, turn of the platform of the spatial model | rad |
 
 The isolator's loop is `isolator_force` over the position of body 1. The path of the contact point on the sphere of
-support k at (X, Y), from the sphere's top, is -lever (x - yaw Y, y + yaw X), with `lever` and `supports` from
-`contact_geometry`; without yaw it is -lever (x, y) at every support.
+support k, at (X, Y) from the center of mass of body 1, begins at the sphere's top and is
+-lever (x - yaw Y, y + yaw X), with `lever` and `supports` from `contact_geometry`; without yaw it is
+-lever (x, y) at every support.
 
 A column is rounded to at most ROUNDING of its swing, less than thinning leaves, so that it compresses well.
 """
@@ -92,13 +93,13 @@ def contact_geometry(scene: Scene) -> dict[str, Any]:
     """
     Where the contact points are.
 
-    lever: radius of the spheres over rho, null where the scene does not state it. supports: [x, y] of each, m, null
-    likewise.
+    lever: radius of the spheres over rho, null where the scene does not state it. supports: [x, y] of each from the
+    center of mass of the platform at rest, m, null likewise.
     """
     sphere, supports = scene.isolator.sphere_radius, scene.support_places
     return {
         "lever": None if sphere is None else sphere / scene.radius,
-        "supports": None if supports is None else supports.tolist(),
+        "supports": None if supports is None else (supports - scene.offsets[0]).tolist(),
     }
 
 

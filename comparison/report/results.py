@@ -563,6 +563,8 @@ class MotionDemands(Part):
     """smallest normal force of a single support, N; null in a model without single supports"""
     support_force_max: UncertainNumber | None
     """largest normal force of a single support, N; null in a model without single supports"""
+    torsion: list[UncertainNumber] | None
+    """largest rotation of every body about the vertical, rad; null where the bodies do not turn"""
     stops: UncertainNumber
     """number of intervals of rest, or of creep below v_reg, after the first slip"""
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
-from reference.problem import Scene, even_ring, no_friction
+from reference.problem import Scene, mirror_symmetric, no_friction
 
 V_REG = 1e-3  # m/s: below it friction grows linearly with the slip velocity, on both sides alike
 REFERENCE_TOLERANCE = (
@@ -33,15 +33,15 @@ def never(scene: Scene) -> bool:
     return False
 
 
-def on_an_even_ring(scene: Scene) -> bool:
-    return even_ring(scene).allowed
+def with_mirrored_supports(scene: Scene) -> bool:
+    return mirror_symmetric(scene).allowed
 
 
 def has_spatial_data(scene: Scene) -> bool:
     """Whether the scene says where its supports are and how high and large its bodies."""
-    isolator = scene.isolator
-    stated = [isolator.supports, isolator.ring, isolator.sphere_radius]
-    return None not in stated and all(body.height is not None and body.size is not None for body in scene.bodies)
+    if scene.support_places is None or scene.isolator.sphere_radius is None:
+        return False
+    return all(body.height is not None and body.size is not None for body in scene.bodies)
 
 
 @dataclass(frozen=True)
@@ -218,20 +218,20 @@ TRANSLATIONAL = _next(
 SPATIAL = _next(
     TRANSLATIONAL,
     {
-        "geometry": "exact spheres on a ring of supports, bodies as boxes at their heights",
+        "geometry": "exact spheres at the supports, bodies as boxes at their heights, offsets and angles",
         "normal contact": "elastic and one-sided at every support: loads differ, a support may lift off",
         "unknowns": "six of every body: translations and rotations",
     },
     key="spatial",
     title="spatial engine",
     effect="turning of the bodies",
-    adds="Every body free to turn, at its height, on a ring of supports: overturning shares the load unequally, "
+    adds="Every body free to turn, at its height, on its supports: overturning shares the load unequally, "
     "friction twists the platform, supports may lift off.",
     settings={"model": "spatial", "regularization": V_REG},
     batch=1,
     applies=has_spatial_data,
     most=8,
-    symmetric=on_an_even_ring,
+    symmetric=with_mirrored_supports,
 )
 
 MODEL_HIERARCHY: tuple[Model, ...] = (SMALL, EXACT, RESOLVED, REGULARIZED, TRANSLATIONAL, SPATIAL)

@@ -20,7 +20,7 @@ class Depressions:
     """The platform's depressions over spheres on the plate, in units of the model, where rho is one."""
 
     ring: Array  # (K, 2), places of the spheres
-    height: float  # of the platform's center of mass above the centers of the depressions
+    center: Array  # (3,), the platform's center of mass at rest, from the middle of the plane of the depressions
     radius: float  # of the spheres
     vertical: NDArray[np.int_]  # (K,) or (0,), index of each sphere's vertical coordinate
 
@@ -31,8 +31,8 @@ class Depressions:
         coordinates: (T, n). Returns two arrays (T, K, 3).
         """
         turned = rotation(coordinates[:, 3:6])
-        local = np.column_stack([self.ring, np.full(len(self.ring), -self.height)])
-        place = coordinates[:, None, :3] + [0.0, 0.0, self.height] + np.einsum("tij,kj->tki", turned, local)
+        local = np.column_stack([self.ring, np.zeros(len(self.ring))]) - self.center
+        place = coordinates[:, None, :3] + self.center + np.einsum("tij,kj->tki", turned, local)
         apart = self._spheres(coordinates) - place
         return apart, np.einsum("tij,tki->tkj", turned, apart)
 
@@ -58,7 +58,7 @@ class Depressions:
         """
         apart, _ = self.centers(coordinates[None])
         normals = apart[0] / np.linalg.norm(apart[0], axis=1)[:, None]
-        levers = self._spheres(coordinates) + self.radius * normals - coordinates[:3] - [0.0, 0.0, self.height]
+        levers = self._spheres(coordinates) + self.radius * normals - coordinates[:3] - self.center
         jacobian = np.concatenate([np.tile(np.eye(3), (len(levers), 1, 1)), -cross_matrix(levers)], axis=2)
         return normals, jacobian
 

@@ -31,7 +31,8 @@ class ImpactLaw:
     depressions: Depressions
     masses: Array  # (N,)
     inertias: Array  # (N, 3), about the axes of each body
-    heights: Array  # (N,), of the centers of mass
+    axes: Array  # (N, 3, 3), these axes at rest, columns
+    centers: Array  # (N, 3), of mass, at rest, from the axis on which the links stand
     restitution: float
     friction: float  # coefficient
     corner: float  # slip speed under which the coefficient is reduced linearly
@@ -93,11 +94,8 @@ class ImpactLaw:
         jump = (self._turning(coordinates) @ (after - before)[:count]).reshape(-1, 2, 3)
         shifted = coordinates.copy()
         for link, lag in enumerate(lags):
-            half, along = 0.5 * (self.heights[link + 1] - self.heights[link]), turned[link][:, 2]
-            ends = [
-                jump[link, 0] + half * np.cross(jump[link, 1], along),
-                jump[link + 1, 0] - half * np.cross(jump[link + 1, 1], turned[link + 1][:, 2]),
-            ]
+            along, levers = turned[link][:, 2], self._levers(link, turned)
+            ends = [jump[body, 0] + np.cross(jump[body, 1], lever) for body, lever in enumerate(levers, start=link)]
             for body in range(link + 1, len(self.masses)):
                 shifted[PER_BODY * body : PER_BODY * body + 3] -= lag * float(along @ (ends[1] - ends[0])) * along
         return shifted
@@ -130,7 +128,7 @@ class ImpactLaw:
         count = PER_BODY * len(self.masses)
         inverse = np.zeros((count, count))
         turned = rotation(coordinates[:count].reshape(-1, PER_BODY)[:, 3:])
-        for body, (mass, inertia, axes) in enumerate(zip(self.masses, self.inertias, turned)):
+        for body, (mass, inertia, axes) in enumerate(zip(self.masses, self.inertias, turned @ self.axes)):
             place = slice(PER_BODY * body, PER_BODY * body + 3)
             angles = slice(PER_BODY * body + 3, PER_BODY * (body + 1))
             inverse[place, place] = np.eye(3) / mass
@@ -147,11 +145,10 @@ class ImpactLaw:
         count = len(self.masses)
         rows = np.zeros((3 * (count - 1), PER_BODY * count))
         places = coordinates[: PER_BODY * count].reshape(-1, PER_BODY)[:, :3].copy()
-        places[:, 2] += self.heights
+        places += self.centers
         for link in range(count - 1):
             below, above = PER_BODY * link, PER_BODY * (link + 1)
-            half = 0.5 * (self.heights[link + 1] - self.heights[link])
-            levers = half * turned[link][:, 2], -half * turned[link + 1][:, 2]  # from the centers to the middle
+            levers = self._levers(link, turned)
             shift = places[link + 1] + levers[1] - places[link] - levers[0]
             across, along = turned[link][:, :2].T, turned[link][:, 2]
             stretch = rows[3 * link]
@@ -163,6 +160,12 @@ class ImpactLaw:
             rows[3 * link + 1 : 3 * link + 3, below + 3 : below + 6] = -across
             rows[3 * link + 1 : 3 * link + 3, above + 3 : above + 6] = across
         return rows
+
+    def _levers(self, link: int, turned: Array) -> tuple[Array, Array]:
+        """From the centers of two neighbors, turned by (N, 3, 3), to the ends (3,) of the link between them."""
+        below, above = self.centers[link : link + 2]
+        half = 0.5 * (above[2] - below[2])
+        return turned[link] @ [-below[0], -below[1], half], turned[link + 1] @ [-above[0], -above[1], -half]
 
     def _impulses(self, delassus: Array, before: Array, rebound: Array) -> Array:
         """

@@ -1,11 +1,16 @@
 """
-The spatial model: rigid bodies free to turn, supports on a ring, contacts that open and close.
+The spatial model: rigid bodies free to turn, supports in the plane, contacts that open and close.
 
 Platform and bodies are boxes with six degrees of freedom at their heights. The platform's underside has one depression
 per support. Each has its own unilateral contact, so supports share the load as overturning demands. A link is a
 set of upright bars clamped at both ends. It is stiff in tension and in bending about the horizontal axes. The scene's
 shear stiffness acts half-way up. Against twist it has the stiffness of bars that stand on the ring,
-ring^2 (kx + ky) / 2. Its forces act on both bodies at the same point, the middle between the two ends.
+ring^2 (kx + ky) / 2, or at the positions of the supports. Its forces act on both bodies at the same point, the middle
+between the two ends.
+
+All links stand on one vertical axis, which is also that of the ring, and of the positions of supports. A center of mass
+may be off it (`offset`). The box of a body and the directions of its link's shear stiffness may be turned (`yaw`). The
+engine's rotations are those against this state of rest.
 
 More than three supports share the load as elastic bearings do (`supports`), or give way by the scene's
 `support_stiffness`. Then the stiffness of the contacts is that of the bearings, and part of the model.
@@ -27,7 +32,7 @@ from multibody.models.contact import (
     platform_on_sphere,
     set_contact_parameters,
 )
-from multibody.models.depressions import Depressions
+from multibody.models.depressions import Depressions, rotation
 from multibody.models.engine import exudyn, items
 from multibody.models.impact import ImpactLaw
 from multibody.models.loading import Ground, ground_of, symbolic_load
@@ -44,7 +49,7 @@ from multibody.models.supports import (
 from multibody.models.system import EngineModel, EngineState
 from multibody.models.units import Units, link_stiffness, units_of
 from reference.problem import Scene, State
-from reference.problem.scene import ring_places
+from reference.problem.supports import edge_distance, ring_places
 
 Array = NDArray[np.float64]
 
@@ -61,12 +66,15 @@ def spatial(
     Raises ValueError if the scene lacks supports, ring, sphere_radius, or the height or size of a body.
     """
     units = units_of(scene)
-    ring, radius, heights, sizes = _geometry(scene, units)
+    ring, radius, centers, sizes = _geometry(scene, units)
     masses = scene.masses / units.mass
+    inertias, axes = _inertias(masses, sizes), rotation(scene.yaws[:, None] * [0.0, 0.0, 1.0])
+    distances = np.hypot(*ring.T) if isinstance(scene.isolator.supports, list) else np.hypot(*ring[:1].T)
     container = exudyn.SystemContainer()
     mbs = container.AddSystem()
-    nodes, bodies = _boxes(mbs, masses, heights, sizes)
-    links = _links(mbs, bodies, masses, heights, link_stiffness(scene, units), float(np.hypot(*ring[0])))
+    nodes, bodies = _boxes(mbs, masses, centers, inertias, axes)
+    shear = axes[1:, :2, :2] @ (link_stiffness(scene, units)[:, :, None] * axes[1:, :2, :2].swapaxes(1, 2))
+    links = _links(mbs, bodies, masses, centers, shear, float((distances**2).mean()))
     ground = ground_of(mbs, scene, units)
     bearings = scene.isolator.support_stiffness
     bearing_penetration = 0.0 if bearings is None else units.force / (len(ring) * bearings * units.length)
@@ -75,7 +83,7 @@ def spatial(
     plate = plate_for(mbs, loading, ground)
     supports = sharing_supports(mbs, plate, ring, spheres) if shared else fixed_supports(mbs, plate, ring)
     friction, threshold = contact_law(scene, regularization, units)
-    depressions = np.column_stack([ring, np.full(len(ring), -heights[0])])
+    depressions = np.column_stack([ring, np.zeros(len(ring))]) - centers[0]
     contacts, contact_nodes = _contacts(mbs, supports.markers, bodies[0], depressions, radius, friction, threshold)
     expressions = [*plate.expressions, *_loads(mbs, bodies, masses, None if plate.moves else ground)]
     forces = contacts if contact_force else []
@@ -85,10 +93,9 @@ def spatial(
     index = PER_BODY * np.arange(len(masses))[:, None] + np.arange(3)
     parts = _Parts(mbs, units, index, contacts, links, supports, radius, friction, bearing_penetration)
     vertical = parts.body_coordinates + supports.vertical
-    under_platform = Depressions(ring, float(heights[0]), radius, vertical)
+    under_platform = Depressions(ring, centers[0], radius, vertical)
     restitution = scene.isolator.restitution or 0.0
-    inertias = _inertias(masses, sizes)
-    law = ImpactLaw(under_platform, masses, inertias, heights, restitution, friction, threshold)
+    law = ImpactLaw(under_platform, masses, inertias, axes, centers, restitution, friction, threshold)
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     return EngineModel(
         mbs=mbs,
@@ -102,7 +109,7 @@ def spatial(
         corner=corner,
         relaxation=relaxation,
         # of places, and of their moments
-        rounding=FORCE_ROUNDING * max(1.0, float(np.hypot(*ring[0])), float(heights.max())) ** 2,
+        rounding=FORCE_ROUNDING * max(1.0, float(distances.max()), float(centers[:, 2].max())) ** 2,
         moving_plate=plate.moves,
         carried=np.vstack([index, parts.body_coordinates + supports.carried]),
         references=(container, expressions),
@@ -111,14 +118,15 @@ def spatial(
         warping_displacement=parts.warping_displacement,
         bearing_penetration=bearing_penetration,
         depressions=under_platform,
-        critical_tilt=_critical_tilt(ring, radius, masses, heights),
+        critical_tilt=_critical_tilt(ring, radius, masses, centers),
         impact=None if bearing_penetration else law,
         bar_lags=parts.bar_lags,
         set_open=parts.set_open,
     )
 
 
-Link = tuple[Any, float, Array, float]  # connector, mass above it, stiffness in shear (2,) and against twist
+# connector; mass above it and that mass times its place (3,); stiffness in shear (2, 2) and against twist
+Link = tuple[Any, Array, Array, float]
 
 
 @dataclass(frozen=True)
@@ -149,7 +157,7 @@ class _Parts:
 
     def bar_lags(self, penetration: float) -> Array:
         """See `EngineModel`."""
-        carried = np.array([mass for _, mass, _, _ in self.links])
+        carried = np.array([carried[0] for _, carried, _, _ in self.links])
         lags: Array = 2.0 * np.sqrt(carried * LINK_COMPLIANCE_RATIO * penetration)
         return lags
 
@@ -197,13 +205,13 @@ class _Parts:
         return largest
 
 
-def _boxes(mbs: Any, masses: Array, heights: Array, sizes: Array) -> tuple[list[Any], list[Any]]:
-    """Nodes and bodies of homogeneous boxes."""
+def _boxes(mbs: Any, masses: Array, centers: Array, inertias: Array, axes: Array) -> tuple[list[Any], list[Any]]:
+    """Nodes and bodies with moments of inertia (N, 3) about `axes` (N, 3, 3), columns."""
     nodes, bodies = [], []
-    for mass, height, inertia in zip(masses, heights, _inertias(masses, sizes)):
-        nodes.append(mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0, 0.0, height, 0.0, 0.0, 0.0])))
-        box = items.ObjectRigidBody(nodeNumber=nodes[-1], mass=mass, inertia=[*inertia, 0.0, 0.0, 0.0])
-        bodies.append(mbs.AddObject(box))
+    for mass, center, tensor in zip(masses, centers, (axes * inertias[:, None, :]) @ axes.swapaxes(1, 2)):
+        nodes.append(mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[*center, 0.0, 0.0, 0.0])))
+        moments = [*np.diag(tensor), tensor[1, 2], tensor[0, 2], tensor[0, 1]]
+        bodies.append(mbs.AddObject(items.ObjectRigidBody(nodeNumber=nodes[-1], mass=mass, inertia=moments)))
     return nodes, bodies
 
 
@@ -213,20 +221,22 @@ def _inertias(masses: Array, sizes: Array) -> Array:
     return inertias
 
 
-def _critical_tilt(ring: Array, radius: float, masses: Array, heights: Array) -> float:
-    """Angle from the nearest edge of the ring of supports to the center of mass over it, from the vertical, rad."""
-    edge = float(np.hypot(*ring[0])) * np.cos(np.pi / len(ring))
-    above = float(masses @ heights / masses.sum()) - (1.0 + radius)
-    return float(np.arctan2(edge, above))
+def _critical_tilt(ring: Array, radius: float, masses: Array, centers: Array) -> float:
+    """Angle from the nearest edge of the supports to the center of mass over it, from the vertical, rad."""
+    center = masses @ centers / masses.sum()
+    return float(np.arctan2(edge_distance(ring, center[:2]), center[2] - (1.0 + radius)))
 
 
-def _links(mbs: Any, bodies: list[Any], masses: Array, heights: Array, stiffness: Array, ring: float) -> list[Link]:
-    """Links between neighbors, with what `set_link_stiffness` needs of them."""
+def _links(
+    mbs: Any, bodies: list[Any], masses: Array, centers: Array, stiffness: Array, square_distance: float
+) -> list[Link]:
+    """Links between neighbors, with what `set_link_stiffness` needs of them; bars so far from the axis, squared."""
     links = []
     for link, shear in enumerate(stiffness):
-        carried = float(masses[link + 1 :].sum())
-        bars = add_link(mbs, bodies[link : link + 2], heights[link : link + 2])
-        links.append((bars, carried, shear, ring**2 * shear.mean()))
+        above = masses[link + 1 :]
+        carried = np.array([above.sum(), *(above @ centers[link + 1 :, :2])])
+        bars = add_link(mbs, bodies[link : link + 2], centers[link : link + 2])
+        links.append((bars, carried, shear, square_distance * np.diag(shear).mean()))
     return links
 
 
@@ -269,43 +279,62 @@ def _loads(mbs: Any, bodies: list[Any], masses: Array, ground: Ground | None) ->
 
 
 def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:
-    """Supports (K, 2), sphere radius, heights (N,), sizes (N, 3), all in units of length. Raises ValueError."""
+    """
+    Supports (K, 2), sphere radius, centers of mass (N, 3) and sizes (N, 3), all in units of length. Raises ValueError.
+    """
     isolator = scene.isolator
-    required = {f"isolator.{key}": getattr(isolator, key) for key in ("supports", "ring", "sphere_radius")}
+    required = {f"isolator.{key}": getattr(isolator, key) for key in ("supports", "sphere_radius")}
+    if not isinstance(isolator.supports, list):
+        required["isolator.ring"] = isolator.ring
     for number, body in enumerate(scene.bodies):
         required |= {f"bodies.{number}.{key}": getattr(body, key) for key in ("height", "size")}
     missing = [key for key, value in required.items() if value is None]
     if missing:
         raise ValueError(f"model: 'spatial': {scene.name} needs {', '.join(missing)}")
-    assert isolator.supports is not None
-    assert isolator.ring is not None
     assert isolator.sphere_radius is not None
-    ring = ring_places(isolator.supports, isolator.ring / units.length)
-    heights = np.array([body.height for body in scene.bodies]) / units.length
+    if isinstance(isolator.supports, list):
+        ring = np.array(isolator.supports) / units.length
+    else:
+        assert isolator.supports is not None
+        assert isolator.ring is not None
+        ring = ring_places(isolator.supports, isolator.ring / units.length)
+    heights = np.array([body.height for body in scene.bodies])
     sizes = np.array([body.size for body in scene.bodies]) / units.length
-    return ring, isolator.sphere_radius / units.length, heights, sizes
+    centers = np.column_stack([scene.offsets, heights]) / units.length
+    return ring, isolator.sphere_radius / units.length, centers, sizes
 
 
-def add_link(mbs: Any, bodies: list[Any], heights: Array) -> Any:
-    """The link between two neighbors, acting half-way between their centers; `set_link_stiffness` completes it."""
-    middle = 0.5 * (heights[1] - heights[0])
+def add_link(mbs: Any, bodies: list[Any], centers: Array) -> Any:
+    """
+    The link between two neighbors with centers of mass (2, 3), half-way up between them and on the vertical axis.
+
+    `set_link_stiffness` completes it.
+    """
+    middle = 0.5 * (centers[1, 2] - centers[0, 2])
     markers = [
-        mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[0.0, 0.0, sign * middle]))
-        for body, sign in zip(bodies, (1.0, -1.0))
+        mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[-center[0], -center[1], sign * middle]))
+        for body, center, sign in zip(bodies, centers, (1.0, -1.0))
     ]
     return mbs.AddObject(
         items.ObjectConnectorRigidBodySpringDamper(markerNumbers=markers, useIntrinsicFormulation=True)
     )
 
 
-def set_link_stiffness(mbs: Any, bars: Any, carried: float, shear: Array, twist: float, stiff: float) -> None:
-    """Give bars the scene's stiffness in shear and twist and `stiff` otherwise; carried: mass above them."""
+def set_link_stiffness(mbs: Any, bars: Any, carried: Array, shear: Array, twist: float, stiff: float) -> None:
+    """
+    Give bars the scene's stiffness in shear (2, 2) and twist, and `stiff` otherwise.
+
+    carried: (3,), mass above them, and that mass times the place x, y of its center.
+    """
+    mass, along_x, along_y = carried
     stiffness = np.array([0.0, 0.0, stiff, stiff, stiff, 0.0])
-    mbs.SetObjectParameter(bars, "stiffness", np.diag([*shear, *stiffness[2:5], twist]))
+    matrix = np.diag([0.0, 0.0, *stiffness[2:5], twist])
+    matrix[:2, :2] = shear
+    mbs.SetObjectParameter(bars, "stiffness", matrix)
     # the stiff directions are damped critically, the others not at all
-    mbs.SetObjectParameter(bars, "damping", np.diag(2.0 * np.sqrt(stiffness * carried)))
+    mbs.SetObjectParameter(bars, "damping", np.diag(2.0 * np.sqrt(stiffness * mass)))
     # at rest the bars carry what stands on them without giving way
-    mbs.SetObjectParameter(bars, "offset", [0.0, 0.0, carried / stiff, 0.0, 0.0, 0.0])
+    mbs.SetObjectParameter(bars, "offset", [0.0, 0.0, mass / stiff, along_y / stiff, -along_x / stiff, 0.0])
 
 
 def _inertial(ground: Ground, mass: float) -> Any:

@@ -12,7 +12,7 @@ demands                                                         what a motion de
 phase_distribution                                              mean and fractiles of mu over uniform phases
 checked_phase, checked_phases, phase_axis, phase_grid           phase pairs
 half_turn, own_axes, planar, planar_chain, linear, no_friction,
-untilted, even_ring, unused_harmonics, in_plane                 what a scene does not require
+untilted, mirror_symmetric, unused_harmonics, in_plane          what a scene does not require
 verbatim                                                        a text of a scene for matplotlib
 
 Classes
@@ -46,10 +46,10 @@ from reference.problem.outcome import ADVICE, Outcome
 from reference.problem.phases import checked_phase, checked_phases, phase_axis, phase_grid
 from reference.problem.reductions import (
     Reduction,
-    even_ring,
     half_turn,
     in_plane,
     linear,
+    mirror_symmetric,
     no_friction,
     own_axes,
     planar,
@@ -81,7 +81,6 @@ __all__ = [
     "checked_phase",
     "checked_phases",
     "demands",
-    "even_ring",
     "example_scenes",
     "exponents",
     "ground_acceleration",
@@ -94,6 +93,7 @@ __all__ = [
     "load_family",
     "load_scene",
     "loading_period",
+    "mirror_symmetric",
     "no_friction",
     "own_axes",
     "parse_scene",

@@ -61,6 +61,8 @@ class Demands:
         Smallest and largest normal force of the isolator.
     support_force_min, support_force_max : Estimate or None, N
         Smallest and largest normal force of a single support. None where the model has no single supports.
+    torsion : tuple of Estimate or None, (N,), rad
+        Largest rotation of every body about the vertical. None where the bodies do not turn.
     stops : Estimate
         Number of intervals of rest after the first slip; with a regularized law of creep below v_reg.
     """
@@ -76,6 +78,7 @@ class Demands:
     contact_force_max: Estimate
     support_force_min: Estimate | None
     support_force_max: Estimate | None
+    torsion: tuple[Estimate, ...] | None
     stops: Estimate
 
 
@@ -112,7 +115,7 @@ def demands(trajectory: Trajectory) -> Demands:
     (0.0267, True)
     """
     read = _Reading(trajectory)
-    radius, links = trajectory.scene.radius, range(len(trajectory.scene.bodies) - 1)
+    radius, bodies = trajectory.scene.radius, range(len(trajectory.scene.bodies))
     displacement = read.extreme(lambda samples: samples.largest(samples.place[:, 0], samples.velocity[:, 0]))
     supported = read.samples.support.shape[1] > 0
     return Demands(
@@ -122,11 +125,12 @@ def demands(trajectory: Trajectory) -> Demands:
         cap_share=Estimate(displacement.value / radius, displacement.error / radius),
         acceleration=read.peaks(),
         base_shear=read.extreme(lambda samples: float(np.linalg.norm(samples.isolator, axis=1).max())),
-        drift=tuple(read.extreme(_drift_of(link)) for link in links),
+        drift=tuple(read.extreme(_drift_of(link)) for link in bodies[:-1]),
         contact_force_min=read.extreme(lambda samples: float(samples.contact.min())),
         contact_force_max=read.extreme(lambda samples: float(samples.contact.max())),
         support_force_min=read.extreme(lambda samples: float(samples.support.min())) if supported else None,
         support_force_max=read.extreme(lambda samples: float(samples.support.max())) if supported else None,
+        torsion=tuple(map(read.extreme, map(_torsion_of, bodies))) if read.samples.rotation.shape[1] else None,
         stops=read.count(_stops),
     )
 
@@ -155,11 +159,20 @@ class _Samples(NamedTuple):
     isolator: Array  # (T, 2)
     contact: Array  # (T,)
     support: Array  # (T, K); K = 0 in a model without single supports
+    rotation: Array  # (T, N), about the vertical; (T, 0) in a model whose bodies do not turn
 
     @staticmethod
     def of(motion: Trajectory) -> _Samples:
         place, velocity = motion.position[:, :, :2], motion.velocity[:, :, :2]
-        return _Samples(motion.time, place, velocity, motion.isolator_force, motion.contact_force, motion.support_force)
+        return _Samples(
+            motion.time,
+            place,
+            velocity,
+            motion.isolator_force,
+            motion.contact_force,
+            motion.support_force,
+            motion.vertical_rotation,
+        )
 
     def thinned(self) -> list[_Samples]:
         """One of THINNING samples, from the first, the second, ... on."""
@@ -227,6 +240,11 @@ def _drift_of(link: int) -> Read:
     return lambda samples: samples.largest(
         samples.place[:, link + 1] - samples.place[:, link], samples.velocity[:, link + 1] - samples.velocity[:, link]
     )
+
+
+def _torsion_of(body: int) -> Read:
+    """Largest rotation of a body about the vertical."""
+    return lambda samples: float(np.abs(samples.rotation[:, body]).max())
 
 
 def _residual(motion: Trajectory) -> float:

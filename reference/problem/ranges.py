@@ -55,10 +55,13 @@ SCENE: dict[str, Range] = {
     "bodies.stiffness": Range(1e-30, 1e30, "N/m"),
     "bodies.height": Range(0.0, 1e6, "m"),
     "bodies.size": Range(1e-9, 1e6, "m"),
+    "bodies.offset": Range(-1e6, 1e6, "m"),
+    "bodies.yaw": Range(-2.0 * math.pi, 2.0 * math.pi, "rad"),
     "excitation.amplitudes": Range(-1e308, 1e308, "m/s^2"),  # from about 1e150 on the outcome is "non-finite load"
     "excitation.periods": Range(1e-9, 1e12, "s"),
     "excitation.decay": Range(0.0, 1e12, "1/s"),
 }
+SUPPORT_POSITION = Range(-1e6, 1e6, "m")  # of a support, along x and y
 MAX_CYCLES = 1e6  # of the loading's shortest period, and of the pendulum's, in the duration
 
 # rad; beyond, neighboring double-precision numbers are more than 1.2e-10 rad apart, the strictest tolerance

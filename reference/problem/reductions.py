@@ -122,8 +122,11 @@ def untilted(scene: Scene) -> Reduction:
     'bodies above the platform: their weight shifts, tilts and twists it'
     """
     isolator = scene.isolator
-    if isolator.supports is None or isolator.ring is None or isolator.sphere_radius is None:
+    if scene.support_places is None or isolator.sphere_radius is None:
         return Reduction(False, "no supports are stated")
+    if not isinstance(isolator.supports, int) or scene.offsets.any():
+        return Reduction(False, "supports or centers of mass at stated places: uneven loads may tilt the platform")
+    assert isolator.ring is not None
     if len(scene.bodies) > 1:
         return Reduction(False, "bodies above the platform: their weight shifts, tilts and twists it")
     if scene.bodies[0].height != 0.0 or scene.bodies[0].size is None:
@@ -229,9 +232,9 @@ def in_plane(scene: Scene) -> Scene:
     return Scene.model_validate(table)
 
 
-def even_ring(scene: Scene) -> Reduction:
+def mirror_symmetric(scene: Scene) -> Reduction:
     """
-    Supports and boxes of the spatial model are their own mirror images: it has the symmetries of the loading.
+    Supports and bodies of the spatial model are their own mirror images: it has the symmetries of the loading.
 
     Parameters
     ----------
@@ -244,10 +247,19 @@ def even_ring(scene: Scene) -> Reduction:
     Examples
     --------
     >>> from reference.problem import load_scene
-    >>> bool(even_ring(load_scene("fig3-I")))
+    >>> bool(mirror_symmetric(load_scene("fig3-I")))
     True
     """
     supports = scene.isolator.supports or 0
+    if scene.offsets.any():
+        return Reduction(False, "a center of mass off the axis: mirrored, it is another one")
+    if scene.yaws.any():
+        return Reduction(False, "a body or link at an angle to the axes: mirrored, it is another one")
+    if isinstance(supports, list):
+        places = {(x, y) for x, y in supports}
+        if not all({(sx * x, sy * y) for x, y in places} == places for sx, sy in ((-1.0, 1.0), (1.0, -1.0))):
+            return Reduction(False, "supports at positions that are no mirror images of themselves about both axes")
+        return Reduction(True, "positions of supports that are mirror images of themselves, boxes centered above them")
     if supports % 2 or supports == 0:
         return Reduction(False, "an odd number of supports: a turned or mirrored ring is another one")
     return Reduction(

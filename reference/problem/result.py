@@ -101,6 +101,12 @@ class Trajectory:
         return force if force.shape[1] > 1 else force[:, :0]  # a single contact is the whole isolator
 
     @property
+    def vertical_rotation(self) -> Array:
+        """Rotation of every body about the vertical, (T, N), rad; (T, 0) in a model whose bodies do not turn."""
+        turns = self.extra.get("turns", np.empty((len(self.time), 0, 3)))
+        return turns[:, :, 2]
+
+    @property
     def isolator_force(self) -> Array:
         """
         Horizontal force of the bodies on the isolator, (T, 2), N: -sum_i m_i a_i, which grows with the displacement.

@@ -18,6 +18,7 @@ from reference.problem.changed_values import put_value
 from reference.problem.constants import GRAVITY
 from reference.problem.ranges import MAX_CYCLES, SCENE
 from reference.problem.scene_error import EXCITATIONS, MisfitError, SceneError, first_error
+from reference.problem.supports import edge_distance, ring_places
 from reference.problem.tables import (
     ALL,
     NONE,
@@ -35,6 +36,7 @@ from reference.problem.tables import (
 )
 
 MAX_BODIES = 10_000
+MIN_EDGE_DISTANCE = 1e-9  # of the largest distance of a support: nearer, a point is on the edge of the supports
 MAX_SUPPORT_DEFLECTION = 0.1  # of the radius: what supports may give way by under the weight
 DERIVED_ROUNDING = 1e-12  # relative, of a value that follows from others
 
@@ -94,6 +96,7 @@ class Scene(Table):
             except ValueError as error:
                 raise MisfitError(f"bodies.{number}", body.model_dump(exclude_none=True), str(error)) from None
         self._check_derived()
+        self._check_supports()
         if not np.isfinite(self.record if isinstance(self.excitation, Record) else self.amplitudes).all():
             raise MisfitError("excitation.scale", self.excitation.scale, "must leave every acceleration finite")
         return self
@@ -127,11 +130,27 @@ class Scene(Table):
             rule = "supports with a support_stiffness rebound by it: remove one of the two keys"
             raise MisfitError("isolator.restitution", restitution, rule)
         if bearings is not None:
-            share = self.total_mass * GRAVITY / ((self.isolator.supports or 1) * bearings * self.radius)
+            share = self.total_mass * GRAVITY / ((self.isolator.support_count or 1) * bearings * self.radius)
             if not share <= MAX_SUPPORT_DEFLECTION:
                 limit = f"must be at most {MAX_SUPPORT_DEFLECTION:g}"
                 rule = f"gives way by {share:.3g} of the radius under the weight: {limit}"
                 raise MisfitError("isolator.support_stiffness", bearings, rule)
+
+    def _check_supports(self) -> None:
+        """The supports must span an area, and the weight must stand inside it."""
+        supports, ring, places = self.isolator.supports, self.isolator.ring, self.support_places
+        if isinstance(supports, list) and ring is not None:
+            raise MisfitError("isolator.ring", ring, "supports at stated positions are on no ring: remove this key")
+        if places is None or not (isinstance(supports, list) or self.offsets.any()):
+            return
+        if len(np.unique(places, axis=0)) < len(places):
+            raise MisfitError("isolator.supports", supports, "two supports are at the same place: remove one of them")
+        least = MIN_EDGE_DISTANCE * self.support_distances.max()
+        if not edge_distance(places, places.mean(axis=0)) > least:
+            raise MisfitError("isolator.supports", supports, "the supports are on one line: move one of them off it")
+        if not edge_distance(places, self.center_of_mass) > least:
+            rule = "must be inside the supports, at whose edge one carries nothing: reduce the offsets or move supports"
+            raise MisfitError("bodies: center of mass of all [x, y] in m", self.center_of_mass.tolist(), rule)
 
     def with_values(self, values: Mapping[str, Any]) -> Scene:
         """
@@ -199,11 +218,37 @@ class Scene(Table):
 
     @property
     def support_places(self) -> NDArray[np.float64] | None:
-        """Places of the supports in the plane, (K, 2), m, evenly spaced on their ring; None if the scene has none."""
-        count, ring = self.isolator.supports, self.isolator.ring
-        if count is None or ring is None:
+        """Places of the supports in the plane, (K, 2), m, about the axis of the links; None if the scene has none."""
+        supports, ring = self.isolator.supports, self.isolator.ring
+        if isinstance(supports, list):
+            return np.array(supports)
+        if supports is None or ring is None:
             return None
-        return ring_places(count, ring)
+        return ring_places(supports, ring)
+
+    @property
+    def support_distances(self) -> NDArray[np.float64]:
+        """Distances of the supports from the axis of the links, m: (1,) on a ring, (K,) elsewhere, (0,) without any."""
+        places = self.support_places
+        if places is None:
+            return np.empty(0)
+        return np.hypot(*places.T) if isinstance(self.isolator.supports, list) else np.array([self.isolator.ring])
+
+    @cached_property
+    def offsets(self) -> NDArray[np.float64]:
+        """Horizontal places of the centers of mass from the axis of the links, (N, 2), m."""
+        return np.array([body.offset or (0.0, 0.0) for body in self.bodies], dtype=float)
+
+    @cached_property
+    def yaws(self) -> NDArray[np.float64]:
+        """Angles about the vertical of the boxes and of the links below them, (N,), rad."""
+        return np.array([body.yaw or 0.0 for body in self.bodies])
+
+    @property
+    def center_of_mass(self) -> NDArray[np.float64]:
+        """Horizontal place of the center of mass of all bodies from the axis of the links, (2,), m."""
+        place: NDArray[np.float64] = self.masses / self.total_mass @ self.offsets
+        return place
 
     @property
     def lubricated(self) -> bool:
@@ -292,12 +337,6 @@ class Scene(Table):
             exclude_none=True,  # a key that is not given changes no result
         )
         return hashlib.sha256(content.encode()).hexdigest()[:16]
-
-
-def ring_places(count: int, radius: float) -> NDArray[np.float64]:
-    """Places (count, 2) on a ring, at angles 2 pi (k + 1/2) / count."""
-    angles = 2.0 * np.pi * (np.arange(count) + 0.5) / count
-    return radius * np.column_stack([np.cos(angles), np.sin(angles)])
 
 
 KEYS: dict[str, tuple[str, ...]] = {

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
 
-from reference.problem.ranges import SCENE
-from reference.problem.scene_error import EXCITATIONS
+from reference.problem.ranges import SCENE, SUPPORT_POSITION, Range
+from reference.problem.scene_error import EXCITATIONS, SUPPORTS
 
 USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
 
@@ -29,7 +29,11 @@ def about(meaning: str, unit: str, models: str) -> Any:
 
 def within(key: str) -> AfterValidator:
     """The rule that a number lies within the range of `key` in `ranges.SCENE`."""
-    allowed = SCENE[key]
+    return in_range(SCENE[key])
+
+
+def in_range(allowed: Range) -> AfterValidator:
+    """The rule that a number lies within a range."""
 
     def check(value: float) -> float:
         if value not in allowed:
@@ -51,6 +55,9 @@ NonNegative = Annotated[float, Field(ge=0.0)]
 LinkPeriods = Annotated[list[Annotated[Positive, within("bodies.period")]], Field(min_length=2, max_length=2)]
 LinkStiffness = Annotated[list[Annotated[Positive, within("bodies.stiffness")]], Field(min_length=2, max_length=2)]
 Size = Annotated[list[Annotated[Positive, within("bodies.size")]], Field(min_length=3, max_length=3)]
+Offset = Annotated[list[Annotated[float, within("bodies.offset")]], Field(min_length=2, max_length=2)]
+Position = Annotated[list[Annotated[float, in_range(SUPPORT_POSITION)]], Field(min_length=2, max_length=2)]
+MAX_SUPPORTS = int(SCENE["isolator.supports"].highest)
 Row = Annotated[list[Annotated[float, within("excitation.amplitudes")]], Field(min_length=2, max_length=2)]
 Periods = Annotated[list[Annotated[Positive, within("excitation.periods")]], Field(min_length=2, max_length=2)]
 Decay = Annotated[list[Annotated[NonNegative, within("excitation.decay")]], Field(min_length=2, max_length=2)]
@@ -94,8 +101,18 @@ class Isolator(Table):
         about("coefficient f_c of lubricated friction (3.14), mu = f_c v; give this or friction", "s/m", ALL),
     ] = None
     supports: Annotated[
-        Annotated[int, Field(ge=3, le=int(SCENE["isolator.supports"].highest))] | None,
-        about("number K of supports, evenly spaced on a ring", "", SPATIAL),
+        Annotated[
+            Annotated[int, Field(ge=3, le=MAX_SUPPORTS), Tag(SUPPORTS[0])]
+            | Annotated[list[Position], Field(min_length=3, max_length=MAX_SUPPORTS), Tag(SUPPORTS[1])],
+            Discriminator(lambda supports: SUPPORTS[int(isinstance(supports, list))]),
+        ]
+        | None,
+        about(
+            "number K of supports, evenly spaced on a ring; or their positions [[x, y], ...] in m about the vertical "
+            "axis on which the links stand, without `ring`",
+            "",
+            SPATIAL,
+        ),
     ] = None
     ring: Annotated[
         Annotated[Positive, within("isolator.ring")] | None,
@@ -124,6 +141,11 @@ class Isolator(Table):
         exactly_one(self, "friction", "lubrication")
         return self
 
+    @property
+    def support_count(self) -> int | None:
+        """Number of supports; None without any."""
+        return len(self.supports) if isinstance(self.supports, list) else self.supports
+
 
 class Body(Table):
     """One rigid body; the first is the platform, every other body is linked to the body before it."""
@@ -149,6 +171,24 @@ class Body(Table):
     size: Annotated[
         Size | None,
         about("edges of the body, a homogeneous box, along x, y and z", "m", SPATIAL),
+    ] = None
+    offset: Annotated[
+        Offset | None,
+        about(
+            "horizontal place [x, y] of the center of mass, and of the box about it, from the vertical axis on which "
+            "the links stand; on it without this key",
+            "m",
+            SPATIAL,
+        ),
+    ] = None
+    yaw: Annotated[
+        Annotated[float, within("bodies.yaw")] | None,
+        about(
+            "angle about the vertical from the axes x and y to those of the box, and to the directions in which "
+            "`period` or `stiffness` of its link act",
+            "rad",
+            SPATIAL,
+        ),
     ] = None
 
 

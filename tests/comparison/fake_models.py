@@ -175,7 +175,8 @@ def known_demands(scene: Scene, supported: bool) -> Demands:
     support = number if supported else None
     return Demands(
         Outcome.OK.value, number, Estimate(np.nan, np.nan), number, (number,) * bodies, number,
-        (number,) * (bodies - 1), number, number, support, support, number,
+        (number,) * (bodies - 1), number, number, support, support,
+        (number,) * bodies if supported else None, number,
     )  # fmt: skip
 
 

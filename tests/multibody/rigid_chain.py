@@ -5,7 +5,8 @@ Rigid bodies with six degrees of freedom each. The platform's depressions stay o
 elastic supports demand: the normal forces are N_k = c0 + c1 x_k + c2 y_k, and the constraints are the three moments of
 the gaps that these forces work on. With three supports that is every gap by itself. A link keeps the distance of its
 two ends along the bars and the tilt between its bodies; shear and twist are elastic. All its forces act at the middle
-between the two ends, on both bodies. Dry friction is linear in the slip velocity below v_reg.
+between the two ends, on both bodies. Dry friction is linear in the slip velocity below v_reg. Supports and centers of
+mass are anywhere in the plane; the links stand on the axis through its origin. Boxes and links may be at an angle.
 """
 
 from __future__ import annotations
@@ -77,20 +78,21 @@ def _rate(theta, omega):
 
 
 @njit(cache=True)
-def _link(place, turn, half, i):
+def _link(place, turn, centers, i):
     """Middle of the link's two ends, middle axes, distance of the ends and relative turn in these axes."""
+    half = 0.5 * (centers[i + 1, 2] - centers[i, 2])
     lower, upper = _rotation(turn[i]), _rotation(turn[i + 1])
     relative = _rotation_vector(np.ascontiguousarray(lower.T) @ upper)
     axes = lower @ _rotation(0.5 * relative)
-    ends = place[i + 1] - half * upper[:, 2] - place[i] - half * lower[:, 2]
-    middle = place[i] + half * lower[:, 2] + 0.5 * ends
-    return middle, axes, _turned(axes.T, ends), relative
+    first = place[i] + _turned(lower, np.array([-centers[i, 0], -centers[i, 1], half]))
+    second = place[i + 1] + _turned(upper, np.array([-centers[i + 1, 0], -centers[i + 1, 1], -half]))
+    return 0.5 * (first + second), axes, _turned(axes.T, second - first), relative
 
 
 @njit(cache=True)
-def _link_rates(place, turn, velocity, omega, half, i):
+def _link_rates(place, turn, velocity, omega, centers, i):
     """Rates of the three constraints of link i: distance along the bars, tilt about two axes."""
-    middle, axes, _, _ = _link(place, turn, half, i)
+    middle, axes, _, _ = _link(place, turn, centers, i)
     upper = velocity[i + 1] + np.cross(omega[i + 1], middle - place[i + 1])
     lower = velocity[i] + np.cross(omega[i], middle - place[i])
     spin = omega[i + 1] - omega[i]
@@ -98,7 +100,7 @@ def _link_rates(place, turn, velocity, omega, half, i):
 
 
 @njit(cache=True)
-def accelerations(state, ground, masses, inertia, heights, shear, twist, ring, radius, sphere, friction, corner):
+def accelerations(state, ground, masses, inertia, centers, shear, twist, ring, radius, sphere, friction, corner):
     """
     Accelerations (N, 6) of the bodies against the plate, and normal forces (K,).
 
@@ -107,7 +109,7 @@ def accelerations(state, ground, masses, inertia, heights, shear, twist, ring, r
     closed = np.ones(len(ring))
     while True:
         accelerated, normals = _solved(
-            state, ground, masses, inertia, heights, shear, twist, ring, radius, sphere, friction, corner, closed
+            state, ground, masses, inertia, centers, shear, twist, ring, radius, sphere, friction, corner, closed
         )
         if normals.min() >= 0.0 or closed.sum() <= 3.0:
             return accelerated, normals
@@ -115,7 +117,7 @@ def accelerations(state, ground, masses, inertia, heights, shear, twist, ring, r
 
 
 @njit(cache=True)
-def _solved(state, ground, masses, inertia, heights, shear, twist, ring, radius, sphere, friction, corner, closed):
+def _solved(state, ground, masses, inertia, centers, shear, twist, ring, radius, sphere, friction, corner, closed):
     bodies, supports = len(masses), len(ring)
     place, turn = state[0], state[1]
     velocity, omega = state[2], state[3]
@@ -123,7 +125,7 @@ def _solved(state, ground, masses, inertia, heights, shear, twist, ring, radius,
     matrix, right = np.zeros((size, size)), np.zeros(size)
     for i in range(bodies):
         r = _rotation(turn[i])
-        tensor = (r * inertia[i]) @ np.ascontiguousarray(r.T)
+        tensor = r @ inertia[i] @ np.ascontiguousarray(r.T)
         matrix[6 * i : 6 * i + 3, 6 * i : 6 * i + 3] = masses[i] * np.eye(3)
         matrix[6 * i + 3 : 6 * i + 6, 6 * i + 3 : 6 * i + 6] = tensor
         right[6 * i : 6 * i + 3] = -masses[i] * (ground + np.array([0.0, 0.0, GRAVITY]))
@@ -134,7 +136,7 @@ def _solved(state, ground, masses, inertia, heights, shear, twist, ring, radius,
         if closed[k] == 0.0:
             continue
         shape = np.array([1.0, ring[k, 0], ring[k, 1]])
-        arm = _turned(platform, np.array([ring[k, 0], ring[k, 1], -heights[0]]))
+        arm = _turned(platform, np.array([ring[k, 0], ring[k, 1], 0.0]) - centers[0])
         away = np.array([ring[k, 0], ring[k, 1], radius]) - place[0] - arm
         length = math.sqrt(_dot(away, away))
         normal = away / length
@@ -157,9 +159,9 @@ def _solved(state, ground, masses, inertia, heights, shear, twist, ring, radius,
             wanted = 2.0 * STABILIZATION * rate + STABILIZATION**2 * gap
             right[first + j] += shape[j] * (bend / length - _dot(normal, turning) + wanted)
     for i in range(bodies - 1):
-        half = 0.5 * (heights[i + 1] - heights[i])
-        middle, axes, ends, relative = _link(place, turn, half, i)
-        pull = _turned(axes, np.array([-shear[i, 0] * ends[0], -shear[i, 1] * ends[1], 0.0]))
+        middle, axes, ends, relative = _link(place, turn, centers, i)
+        sheared = _turned(shear[i], ends[:2])
+        pull = _turned(axes, np.array([-sheared[0], -sheared[1], 0.0]))
         wring = -twist[i] * relative[2] * axes[:, 2]
         row = first + 3 + 3 * i
         for sign, body in ((1.0, i + 1), (-1.0, i)):
@@ -177,9 +179,9 @@ def _solved(state, ground, masses, inertia, heights, shear, twist, ring, radius,
         turn_rate = np.empty_like(turn)
         for body in range(bodies):
             turn_rate[body] = _rate(turn[body], omega[body])
-        later = _link_rates(place + STEP * velocity, turn + STEP * turn_rate, velocity, omega, half, i)
-        before = _link_rates(place - STEP * velocity, turn - STEP * turn_rate, velocity, omega, half, i)
-        now = _link_rates(place, turn, velocity, omega, half, i)
+        later = _link_rates(place + STEP * velocity, turn + STEP * turn_rate, velocity, omega, centers, i)
+        before = _link_rates(place - STEP * velocity, turn - STEP * turn_rate, velocity, omega, centers, i)
+        now = _link_rates(place, turn, velocity, omega, centers, i)
         violated = np.array([ends[2], relative[0], relative[1]])
         right[row : row + 3] = (
             -(later - before) / (2.0 * STEP) - 2.0 * STABILIZATION * now - STABILIZATION**2 * violated
@@ -215,18 +217,24 @@ class SpatialMotion:
 def spatial_motion(scene: Scene, phase: ArrayLike, regularization: float, tolerance: float = 1e-8) -> SpatialMotion:
     """The motion from rest for one phase pair; the supports must stay loaded (RuntimeError otherwise)."""
     isolator, bodies = scene.isolator, len(scene.bodies)
-    angles = 2.0 * np.pi * (np.arange(isolator.supports) + 0.5) / isolator.supports
-    ring = isolator.ring * np.column_stack([np.cos(angles), np.sin(angles)])
+    if isinstance(isolator.supports, list):
+        ring = np.array(isolator.supports)
+    else:
+        angles = 2.0 * np.pi * (np.arange(isolator.supports) + 0.5) / isolator.supports
+        ring = isolator.ring * np.column_stack([np.cos(angles), np.sin(angles)])
     sizes = np.array([body.size for body in scene.bodies])
     inertia = scene.masses[:, None] / 12.0 * ((sizes**2).sum(axis=1)[:, None] - sizes**2)
-    heights = np.array([body.height for body in scene.bodies])
+    centers = np.array([[*(body.offset or (0.0, 0.0)), body.height] for body in scene.bodies])
+    angled = np.array([_rotation(np.array([0.0, 0.0, body.yaw or 0.0])) for body in scene.bodies])
+    tensors = np.array([r @ np.diag(moments) @ r.T for r, moments in zip(angled, inertia)])
+    shear = [r[:2, :2] @ np.diag(k) @ r[:2, :2].T for r, k in zip(angled[1:], scene.stiffness)]
     lubricated = scene.lubricated
     model = (
         scene.masses,
-        inertia,
-        heights,
-        scene.stiffness,
-        isolator.ring**2 * scene.stiffness.mean(axis=1),
+        tensors,
+        centers,
+        np.array(shear).reshape(-1, 2, 2),
+        (ring**2).sum(axis=1).mean() * scene.stiffness.mean(axis=1),
         ring,
         scene.radius,
         isolator.sphere_radius,
@@ -242,7 +250,7 @@ def spatial_motion(scene: Scene, phase: ArrayLike, regularization: float, tolera
         return flow
 
     start = np.zeros((4, bodies, 3))
-    start[0, :, 2] = heights
+    start[0] = centers
     # a first step that resolves the onset of regularized friction
     solver = Radau(
         rate, 0.0, start.ravel(), scene.duration, rtol=tolerance, atol=1e-3 * tolerance, first_step=1e-5, max_step=0.02
@@ -268,7 +276,7 @@ def spatial_motion(scene: Scene, phase: ArrayLike, regularization: float, tolera
             forces.append(normals)
             yaws.append(float(state.reshape(4, bodies, 3)[1, 0, 2]))
         place, turn = solver.y.reshape(4, bodies, 3)[:2]
-        arms = np.column_stack([ring, np.full(len(ring), -heights[0])]) @ _rotation(turn[0]).T
+        arms = (np.column_stack([ring, np.zeros(len(ring))]) - centers[0]) @ _rotation(turn[0]).T
         away = np.column_stack([ring, np.full(len(ring), scene.radius)]) - place[0] - arms
         drift = max(drift, abs(float((np.linalg.norm(away, axis=1) - scene.radius).mean())))
     below = ground_peak(scene, np.reshape(np.asarray(phase, float), (1, -1)))[0]

@@ -20,6 +20,7 @@ from multibody.models.impact import ImpactLaw
 from reference.problem import GRAVITY, Scene, SceneError
 
 HALF_WIDTH, HEIGHT, RADIUS = 0.5, 3.0, 0.2  # of the square of supports, of the center of mass, of the spheres
+CENTER, AXES = np.array([0.0, 0.0, HEIGHT]), np.eye(3)[None]  # of mass, of inertia
 INERTIA = 0.9  # of the block about horizontal axes
 ARM = HEIGHT - (1.0 + RADIUS)  # of the center of mass above the points of contact
 CORNERS = HALF_WIDTH * np.array([[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]])
@@ -29,9 +30,9 @@ NONE, ALL = np.zeros(4, bool), np.ones(4, bool)
 
 def block(restitution: float = 0.0, friction: float = 0.0, corner: float = 1e-9) -> ImpactLaw:
     """A block of mass one on the four corners of a square, with the inertia above."""
-    depressions = Depressions(CORNERS, HEIGHT, RADIUS, np.empty(0, np.int_))
+    depressions = Depressions(CORNERS, CENTER, RADIUS, np.empty(0, np.int_))
     inertias = np.array([[INERTIA, INERTIA, 0.7]])
-    return ImpactLaw(depressions, np.ones(1), inertias, np.array([HEIGHT]), restitution, friction, corner)
+    return ImpactLaw(depressions, np.ones(1), inertias, AXES, CENTER[None], restitution, friction, corner)
 
 
 def rocking_about_the_left_edge(pace: float) -> np.ndarray[Any, Any]:
@@ -61,8 +62,8 @@ def test_a_rocking_block_on_smooth_supports_slows_down_by_its_inertia() -> None:
 
 
 def test_a_wide_block_comes_to_rest_on_all_its_supports() -> None:
-    depressions = Depressions(4.0 * CORNERS, HEIGHT, RADIUS, np.empty(0, np.int_))
-    law = ImpactLaw(depressions, np.ones(1), np.full((1, 3), INERTIA), np.array([HEIGHT]), 0.0, 0.0, 1.0)
+    depressions = Depressions(4.0 * CORNERS, CENTER, RADIUS, np.empty(0, np.int_))
+    law = ImpactLaw(depressions, np.ones(1), np.full((1, 3), INERTIA), AXES, CENTER[None], 0.0, 0.0, 1.0)
     before = np.array([0.0, 0.0, -0.3 * 4.0 * HALF_WIDTH, 0.0, 0.3, 0.0])
     after, is_open = law.after(np.zeros(6), before, LEFT, RIGHT)
     np.testing.assert_allclose(after, 0.0, atol=1e-11)

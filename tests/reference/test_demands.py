@@ -220,6 +220,19 @@ def test_support_forces_are_those_of_the_spatial_model_alone() -> None:
     assert demands(reference.trajectory(scene, PHASE)).support_force_max is None
 
 
+def test_torsion_is_the_largest_rotation_of_every_body_that_turns() -> None:
+    scene = reference.load_scene("fig3-I").with_values({"duration": 1.5, "bodies.1.offset": [0.1, 0.0]})
+    motion = multibody.trajectory(scene, PHASE, "spatial")
+    torsion = demands(motion).torsion
+    assert torsion is not None
+    assert [turn.value for turn in torsion] == np.abs(motion.extra["turns"][:, :, 2]).max(axis=0).tolist()
+    assert torsion[0].value == np.abs(motion.extra["yaw"]).max()
+    assert torsion[1].value > 1e-3
+    assert all(0.0 < turn.error < 0.05 * turn.value for turn in torsion)
+    assert demands(multibody.trajectory(scene, PHASE)).torsion is None
+    assert demands(reference.trajectory(scene, PHASE)).torsion is None
+
+
 def test_a_motion_survives_copies_and_processes_with_its_scene() -> None:
     motion = reference.trajectory(reference.load_scene("fig3-I"), PHASE)
     expected = demands(motion)

@@ -22,6 +22,8 @@ PLACES = {
     "bodies.stiffness": "bodies.1.stiffness",
     "bodies.height": "bodies.1.height",
     "bodies.size": "bodies.1.size.2",
+    "bodies.offset": "bodies.1.offset",
+    "bodies.yaw": "bodies.1.yaw",
     "excitation.amplitudes": "excitation.amplitudes.0.1",
     "excitation.periods": "excitation.periods.0",
     "excitation.decay": "excitation.decay.1",
@@ -33,6 +35,8 @@ def put(scene: Scene, key: str, value: float) -> Scene:
     values: dict[str, object] = {PLACES.get(key, key): value}
     if key in ("isolator.radius", "isolator.lubrication"):
         values |= {"isolator.period": None} if key == "isolator.radius" else {"isolator.friction": None}
+    if key == "bodies.offset":
+        values = {"bodies.1.offset": [0.0, value]}
     if key == "bodies.stiffness":
         values = {"bodies.1.period": None, "bodies.1.stiffness": [value, 1.0]}
     return scene.with_values(values)

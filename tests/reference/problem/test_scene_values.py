@@ -108,6 +108,8 @@ PLACES = [
     ["isolator", "period"],
     ["isolator", "friction"],
     ["isolator", "supports"],
+    ["bodies", 0, "offset"],
+    ["bodies", 1, "yaw"],
     ["bodies"],
     ["bodies", 0],
     ["bodies", 0, "mass"],

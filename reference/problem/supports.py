@@ -1,0 +1,62 @@
+"""Where the supports of the platform stand, and how far inside them a center of mass lies."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def ring_places(count: int, radius: float) -> Array:
+    """Places (count, 2) on a ring, at angles 2 pi (k + 1/2) / count."""
+    angles = 2.0 * np.pi * (np.arange(count) + 0.5) / count
+    return radius * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def edge_distance(places: Array, point: Array) -> float:
+    """
+    Distance from a point to the nearest edge of the convex hull of places.
+
+    Parameters
+    ----------
+    places : ndarray, (K, 2), m
+    point : ndarray, (2,), m
+
+    Returns
+    -------
+    float, m
+        Negative outside the hull. Not positive where the places lie on one line.
+
+    Examples
+    --------
+    >>> edge_distance(np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]]), np.array([1.0, 2.0]))
+    1.0
+    """
+    corners = _hull(places)
+    edges = np.roll(corners, -1, axis=0) - corners
+    lengths = np.hypot(*edges.T)
+    if not lengths.all():
+        return 0.0
+    apart = point - corners
+    inward = (edges[:, 0] * apart[:, 1] - edges[:, 1] * apart[:, 0]) / lengths
+    return float(inward.min())
+
+
+def _hull(places: Array) -> Array:
+    """Corners (C, 2) of the convex hull of places (K, 2), counterclockwise (Andrew's monotone chain)."""
+    ordered = sorted(set(map(tuple, places.tolist())))
+    return np.array([*_lower_chain(ordered), *_lower_chain(ordered[::-1])])
+
+
+def _lower_chain(ordered: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
+    """Corners that turn to the left on the way through ordered points, without the last one."""
+    chain: list[tuple[float, ...]] = []
+    for x, y in ordered:
+        while len(chain) > 1:
+            (ax, ay), (bx, by) = chain[-2:]
+            if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0.0:
+                break
+            chain.pop()
+        chain.append((x, y))
+    return chain[:-1]
