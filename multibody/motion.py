@@ -79,7 +79,7 @@ def trajectory(
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
     max_work = checked_number("max_work", max_work, WORK)
     if initial is not None:
-        initial = State(*checked_state(initial, len(scene.bodies), scene.radius))
+        initial = State(*checked_state(initial, len(scene.bodies), scene.radius, scene.isolator.travel))
     with silence():
         built = assemble(scene, model, regularization, loading=loading, contact_force=True)
         point = refine(scene, built, pair, tolerance, initial=initial, keep=True, max_work=max_work)
@@ -136,7 +136,7 @@ def single_run(
     -------
     Trajectory
         As in `trajectory`. `peak` is read between the samples; it is NaN where the engine gives up. `status` is "ok",
-        "rim reached", "contact lost", "overturned", "solver failed" or "step limit".
+        "rim reached", "travel reached", "contact lost", "overturned", "solver failed" or "step limit".
 
     Raises
     ------

@@ -70,7 +70,8 @@ def amplification(
     Amplification
         `mu` and its estimated absolute error `error`, both (M, N); `status` (M,); `instant` (M,), s, at which a status
         other than "ok" arose; `cost`, s; `cap_share` (M,). A point without an answer is NaN, with status "rim reached",
-        "contact lost", "overturned", "solver failed", "step limit", "no ground motion" or "non-finite load".
+        "travel reached", "contact lost", "overturned", "solver failed", "step limit", "no ground motion" or
+        "non-finite load".
         "tolerance not met" keeps its mu with the error that was reached.
 
     Raises

@@ -80,7 +80,7 @@ def trajectory(
     bodies = len(scene.bodies)
     x, v = np.zeros((bodies, 2)), np.zeros((bodies, 2))
     if initial is not None:
-        x, v = checked_state(initial, bodies, system.radius)
+        x, v = checked_state(initial, bodies, system.radius, scene.isolator.travel)
         demand = demand._replace(unit=demand.unit + _acceleration(system, x, v))
     if not loads_are_finite(system):
         nothing = np.full(bodies, np.nan)

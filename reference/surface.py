@@ -39,6 +39,7 @@ from reference.solver.system import (
     RIM,
     SOLVED,
     STEP_LIMIT,
+    TRAVEL,
     UNSOLVED,
     Array,
     Demand,
@@ -50,6 +51,7 @@ OUTCOMES = {
     SOLVED: Outcome.OK,
     NOT_MET: Outcome.TOLERANCE_NOT_MET,
     RIM: Outcome.RIM_REACHED,
+    TRAVEL: Outcome.TRAVEL_REACHED,
     OPEN: Outcome.CONTACT_LOST,
     PAINLEVE: Outcome.PAINLEVE,
     STEP_LIMIT: Outcome.STEP_LIMIT,
@@ -169,14 +171,14 @@ def amplification(
 
 
 def superposed(scene: Scene, system: System, phases: Array, demand: Demand) -> Peaks:
-    """The peaks of a linear scene, from one motion per harmonic; runs only where it may reach the rim (4.1)."""
-    value, error, reach, at_rim = frictionless_peaks(scene, phases)
+    """The peaks of a linear scene, from one motion per harmonic; runs only where it may reach its end (4.1)."""
+    value, error, reach, ends = frictionless_peaks(scene, phases)
     met = (error <= demand.tolerance * value).all(axis=1)
     code, no_run = np.where(met, SOLVED, NOT_MET), np.zeros((5, len(phases)))
     peaks = Peaks(value, error, code, no_run[0], no_run[1], reach, no_run[2], no_run[3], no_run[4])
-    if at_rim.any():  # whether it does, and when, is for the run to say
-        for whole, ran in zip(peaks, peaks_with_error(system, phases[at_rim], demand)):
-            whole[at_rim] = ran
+    if ends.any():  # whether it does, and when, is for the run to say
+        for whole, ran in zip(peaks, peaks_with_error(system, phases[ends], demand)):
+            whole[ends] = ran
     return peaks
 
 

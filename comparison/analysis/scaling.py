@@ -37,10 +37,12 @@ Arguments = tuple[Scene, bool]  # and whether the supremum is taken
 
 
 def scaled(scene: Scene, s: float) -> Scene:
-    """The scene with loading and dry friction times s."""
+    """The scene with loading, dry friction and travel times s."""
     values: dict[str, Any] = {"excitation.scale": s * (scene.excitation.scale or 1.0)}
     if not scene.lubricated:
         values["isolator.friction"] = s * scene.friction_coefficient
+    if scene.isolator.travel is not None:
+        values["isolator.travel"] = s * scene.isolator.travel
     return scene.with_values(values)
 
 

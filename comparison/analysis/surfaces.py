@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 
@@ -105,6 +106,12 @@ def largest_cap_share(surfaces: xr.Dataset, scene: str, model: str) -> float:
     """Largest displacement of the platform over rho among the phases of a model; NaN where none has an answer."""
     share = surfaces["cap_share"].sel(scene=scene, model=model)
     return float(share.max())  # skips NaN
+
+
+def largest_travel_share(surfaces: xr.Dataset, scene: Scene, model: str) -> float:
+    """Largest displacement of the platform over the isolator's travel; NaN without an answer or a travel."""
+    travel = scene.isolator.travel
+    return math.nan if travel is None else largest_cap_share(surfaces, scene.name, model) * scene.radius / travel
 
 
 def common_phases(surfaces: xr.Dataset, scene: str, models: Sequence[str]) -> xr.Dataset:

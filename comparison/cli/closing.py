@@ -23,6 +23,7 @@ LABELS = {
     "lacking": "Values missing",
     "fault": "solver",
     "swing": "Wide swing",
+    "travel": "Travel nearly used up",
 }
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from comparison.analysis.surfaces import largest_cap_share
+from comparison.analysis.surfaces import largest_cap_share, largest_travel_share
 from comparison.report.findings import Findings
 from comparison.report.results import Alert
 from comparison.study.models import models_of
 
+NEARLY_ALL = 0.9  # of the travel, that a reader must know of
 WIDE = 0.5  # of rho: a displacement of the platform from the middle that a reader must know of
 
 
@@ -15,9 +16,10 @@ def alerts(findings: Findings) -> list[Alert]:
     Every alert of a run, red before amber, otherwise in the order of the kinds and scenes.
 
     Red: a model has no value at any phase pair, or an acceptance limit is broken. Amber: a model lacks a value at some
-    phase pairs, a solver reported an error, or a platform moves so far that the report says so.
+    phase pairs, a solver reported an error, or a platform moves so far that the report says so: over half of rho, or
+    nearly its travel.
     """
-    listed = [*_gaps(findings), *_limits(findings), *_faults(findings), *_swings(findings)]
+    listed = [*_gaps(findings), *_limits(findings), *_faults(findings), *_swings(findings), *_travels(findings)]
     return sorted(listed, key=lambda alert: alert.level != "red")
 
 
@@ -75,4 +77,20 @@ def _swings(findings: Findings) -> list[Alert]:
         for scene in study.scenes
         for model in models_of(scene, study.hierarchy)
         if (share := largest_cap_share(findings.surfaces, scene.name, model.key)) > WIDE
+    ]
+
+
+def _travels(findings: Findings) -> list[Alert]:
+    study = findings.study
+    return [
+        Alert(
+            level="amber",
+            kind="travel",
+            scene=scene.name,
+            text=f"{model.title}: the platform uses up to {100.0 * share:.1f} % of the isolator's travel",
+            help="a larger displacement ends the motion as travel reached",
+        )
+        for scene in study.scenes
+        for model in models_of(scene, study.hierarchy)
+        if (share := largest_travel_share(findings.surfaces, scene, model.key)) > NEARLY_ALL
     ]

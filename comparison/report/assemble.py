@@ -12,7 +12,7 @@ from comparison.analysis.errata import ERRATA
 from comparison.analysis.grid_maxima import grid_maxima
 from comparison.analysis.headline import headline
 from comparison.analysis.parameter import family_curves, family_demands, family_steps
-from comparison.analysis.surfaces import largest_cap_share, outcome_counts
+from comparison.analysis.surfaces import largest_cap_share, largest_travel_share, outcome_counts
 from comparison.analysis.trends import Trend as FittedTrend
 from comparison.analysis.unanswered import advice
 from comparison.analysis.waterfall import Waterfall as BodyWaterfall
@@ -157,6 +157,7 @@ def _model(findings: Findings, scene: Scene, model: Model) -> ModelOutcome:
         outcomes=counts,
         advice={outcome: advice(study, scene, model, outcome) for outcome in counts if outcome != Outcome.OK},
         cap_share=largest_cap_share(surfaces, scene.name, model.key),
+        travel_share=largest_travel_share(surfaces, scene, model.key),
         cost=float(surfaces["cost"].sel(scene=scene.name, model=model.key)),
     )
 

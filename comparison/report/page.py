@@ -236,6 +236,7 @@ def page(figures: Path, findings: Findings, results: Results) -> str:
         peak_share=SHARE,
         peak_shares=(LEAST_SHARE, MOST_SHARE),
         outcomes=outcomes,
+        limited=any(not math.isnan(row["travel_share"]) for row in outcomes),
         most_cost=max((row["cost"] for row in outcomes), default=0.0) or 1.0,
         data=packed(page_data(findings).encode()),
         motions=packed_motions(findings),
@@ -276,6 +277,7 @@ ALERTS = {
     "lacking": ("model without some of its values", "models without some of their values"),
     "fault": ("error of a solver", "errors of solvers"),
     "swing": ("wide swing of the platform", "wide swings of the platform"),
+    "travel": ("travel of the isolator nearly used up", "travels of isolators nearly used up"),
 }  # title of one and of several alerts of a kind
 
 
@@ -403,6 +405,8 @@ def _outcomes(results: Results) -> list[dict[str, Any]]:
             "model": titles[key],
             "points": model.points,
             "cost": model.cost,
+            "cap_share": model.cap_share,
+            "travel_share": model.travel_share,
             "others": [f"{model.outcomes[outcome]} × {outcome}: {text}" for outcome, text in model.advice.items()],
             "ok": model.outcomes.get(Outcome.OK.value, 0),
         }

@@ -165,6 +165,8 @@ class ModelOutcome(Part):
     """by outcome that is not ok: what it means and what to try"""
     cap_share: Number
     """largest horizontal displacement of the platform over rho; null without an answer"""
+    travel_share: Number
+    """the same over the isolator's travel; null without a travel"""
     cost: float
     """compute time, s"""
 
@@ -549,6 +551,8 @@ class MotionDemands(Part):
     """horizontal displacement at the end, m; null where the platform is not at rest then"""
     cap_share: UncertainNumber
     """largest horizontal displacement over rho"""
+    travel_share: UncertainNumber | None
+    """largest horizontal displacement over the isolator's travel; null without a travel"""
     acceleration: list[UncertainNumber]
     """largest absolute acceleration of every body, m/s^2"""
     base_shear: UncertainNumber
@@ -896,7 +900,7 @@ class Alert(Part):
 
     level: Literal["red", "amber"]
     """red: a model refused or a limit is broken; amber: a number is missing or to be read with care"""
-    kind: Literal["refused", "limit", "lacking", "fault", "swing"]
+    kind: Literal["refused", "limit", "lacking", "fault", "swing", "travel"]
     """model without any value, broken acceptance limit, phase pairs without a value, error message of a solver, wide
     swing of the platform"""
     scene: Text

@@ -40,7 +40,8 @@ def summary_text(results: Results) -> str:
 
 def _alerts(results: Results) -> list[str]:
     """What a reader must know before trusting a number; broken limits have a list of their own."""
-    lines = [f"- {_plain(alert.line)}" for alert in results.alerts if alert.kind in ("refused", "lacking", "swing")]
+    kinds = ("refused", "lacking", "swing", "travel")
+    lines = [f"- {_plain(alert.line)}" for alert in results.alerts if alert.kind in kinds]
     return ["\n".join(lines)] if lines else []
 
 

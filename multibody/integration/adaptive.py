@@ -22,6 +22,7 @@ from multibody.integration.constant_step import Engine, Motion
 from multibody.integration.level import STEP_RATIO, Level
 from multibody.integration.openings import FIRST_STEP, Event, Openings
 from multibody.integration.peak import CANDIDATE_FRACTION, Peaks, kinks
+from multibody.integration.travel import travel_reached
 from multibody.models.recorded import align_steps
 from multibody.models.system import EngineModel, EngineState
 from reference.problem import Outcome
@@ -240,11 +241,11 @@ def _length(vectors: Array) -> Array:
 
 def _record(result: EngineRun, motion: Motion, size: Array, model: EngineModel, level: Level, keep: bool) -> bool:
     """Add an accepted chunk to the result, up to where the model's validity ends; whether it goes on."""
-    outcome, row = termination(motion, model)
+    outcome, row, instant = termination(motion, model)
     if keep:
         result.chunks.append(motion.until(row))
     if outcome != Outcome.OK:
-        result.terminated(outcome, float(motion.time[row]))
+        result.terminated(outcome, instant)
         return False
     _record_warping(result, motion, model, level)
     axes = model.bodies[0, :2]
@@ -364,7 +365,16 @@ def _steps_ahead(motion: Motion, engine: Engine, level: Level) -> int:
     return int(np.clip((target - slip[1]) / rate / level.step, DIVIDED_CHUNK_STEPS, MAX_CHUNK_STEPS))
 
 
-def termination(motion: Motion, model: EngineModel) -> tuple[Outcome, int]:
+def termination(motion: Motion, model: EngineModel) -> tuple[Outcome, int, float]:
+    """The first event that ends the motion, its row and its instant; OK and the last row if there is none."""
+    outcome, row = _end_of_validity(motion, model)
+    instant, before = travel_reached(motion, model)
+    if instant <= motion.time[row]:
+        return Outcome.TRAVEL_REACHED, before, instant
+    return outcome, row, float(motion.time[row])
+
+
+def _end_of_validity(motion: Motion, model: EngineModel) -> tuple[Outcome, int]:
     """The first event that ends the model's validity and its row; OK and the last row if there is none."""
     count = len(motion.time)
     if model.depressions is not None:

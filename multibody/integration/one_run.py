@@ -74,11 +74,11 @@ class PhasePair:
         result = EngineRun(Peaks(len(model.bodies), model.corner), math.inf, steps=count)
         if motion is None or not np.isfinite(motion.accelerations).all():
             return result.terminated(Outcome.SOLVER_FAILED, 0.0)
-        outcome, row = termination(motion, model)
+        outcome, row, instant = termination(motion, model)
         motion = motion.until(row)
         result.chunks.append(motion)
         result.peaks.add(motion.time, absolute_accelerations(model, motion, self.ground), motion.slip)
-        return result if outcome == Outcome.OK else result.terminated(outcome, float(motion.time[-1]))
+        return result if outcome == Outcome.OK else result.terminated(outcome, instant)
 
     def _start(self, engine: Engine, penetration: float) -> EngineState:
         """The state at time zero, in balance where the motion starts at rest."""

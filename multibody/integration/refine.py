@@ -49,7 +49,9 @@ STEPS_AFTER_SETTLING = 20.0  # largest steps from the last large value of a run 
 MAX_EARLY_CHANGE = 0.2
 MAX_SHARING_ERROR = 2.0  # over the error from levels: beyond it further levels hardly help
 MAX_DIFFERENT_MOTIONS = 3  # successive levels with impacts that are another motion than the level before
-MIN_END_MARGIN = 0.1  # of the first run from the rim, in rho, and contact force, in weights: closer, all go to the end
+# of the first run from the rim, in rho, and the end of its travel, and contact force, in weights: closer, all go to the
+# end
+MIN_END_MARGIN = 0.1
 
 
 @dataclass(frozen=True)
@@ -105,7 +107,7 @@ def refine(
             run = pair.at_level(level, budget, keep=keep)
         runs.append(run)
         if run.outcome == Outcome.OK and run.stop == math.inf and not (keep or whole):
-            stop = _settled(run, remaining[0].step)
+            stop = _settled(run, model, remaining[0].step)
         if run.outcome in UNFINISHED:
             if candidate is not None or sum(other.outcome in UNFINISHED for other in runs) > 1:
                 break
@@ -159,9 +161,9 @@ def _work_of_next(run: EngineRun, stop: float, end: float) -> float:
     return MAX_WORK_GROWTH * shorter * run.steps
 
 
-def _settled(run: EngineRun, step: float) -> float:
+def _settled(run: EngineRun, model: EngineModel, step: float) -> float:
     """When runs at further levels may stop, after one to the end of the motion; step: the largest of any level."""
-    if run.max_displacement > 1.0 - MIN_END_MARGIN or run.min_load < MIN_END_MARGIN:
+    if run.max_displacement > (1.0 - MIN_END_MARGIN) * min(1.0, model.travel) or run.min_load < MIN_END_MARGIN:
         return math.inf
     return run.settled + STEPS_AFTER_SETTLING * step
 

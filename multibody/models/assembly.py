@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from multibody.models.engine import reset_with
 from multibody.models.plate import LOADINGS
@@ -41,5 +42,7 @@ def assemble(
     elif not scene.lubricated and scene.friction_coefficient > 0.0:
         raise ValueError("regularization: None: the engine's dry friction needs v_reg in m/s, greater than 0")
     built = BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **options)
+    if scene.isolator.travel is not None:
+        built = replace(built, travel=scene.isolator.travel / built.units.length)
     reset_with(built.recorders, built.container)  # a copy of the model with other settings shares them
     return built

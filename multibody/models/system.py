@@ -66,6 +66,7 @@ class EngineModel:
     references: tuple[Any, ...]  # the engine's container of the system, and what the engine only points to
     allows_liftoff: bool = False  # whether the model goes on when every contact is open
     depressions: Depressions | None = None  # of a platform that turns
+    travel: float = math.inf  # largest displacement of the platform that the isolator permits, in units of length
     critical_tilt: float = math.inf  # rad, of the platform, beyond which its weight turns it over
     impact: ImpactLaw | None = None  # of contacts that close; None: their own stiffness decides
     # damping over stiffness of each link along its bars, (N - 1,), in units of time, for a penetration of the contacts

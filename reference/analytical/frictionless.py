@@ -51,7 +51,7 @@ def frictionless_amplification(scene: Scene, phases: ArrayLike) -> Array:
 def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
     """
     Largest absolute accelerations, m/s^2, and their errors, (M, N) each; largest displacement of the platform, m, (M,);
-    at which phases the rim (4.1) may be reached.
+    at which phases the travel, or without one the rim (4.1), may be reached.
 
     Raises as `frictionless_motion`. A motion to the rim has left the small equations: its peaks mean nothing.
     """
@@ -68,7 +68,7 @@ def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array
     peaks, search_error = largest(series, phases)
     rounding = ROUNDING_ERROR * (10.0 + float(natural.frequency.max()) * scene.duration)
     reach = largest(path, phases)[0][:, 0]
-    return peaks, search_error + rounding * series.envelope, reach, reached(path, phases, scene.radius)
+    return peaks, search_error + rounding * series.envelope, reach, reached(path, phases, scene.displacement_limit)
 
 
 def _check(scene: Scene) -> None:

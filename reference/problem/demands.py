@@ -51,6 +51,8 @@ class Demands:
         Horizontal displacement at the end of the motion; NaN where the platform is not at rest then.
     cap_share : Estimate
         Largest displacement over rho.
+    travel_share : Estimate or None
+        Largest displacement over the isolator's travel. None where the scene has no travel.
     acceleration : tuple of Estimate, (N,), m/s^2
         Largest absolute acceleration of every body.
     base_shear : Estimate, N
@@ -71,6 +73,7 @@ class Demands:
     displacement: Estimate
     residual: Estimate
     cap_share: Estimate
+    travel_share: Estimate | None
     acceleration: tuple[Estimate, ...]
     base_shear: Estimate
     drift: tuple[Estimate, ...]
@@ -115,14 +118,15 @@ def demands(trajectory: Trajectory) -> Demands:
     (0.0267, True)
     """
     read = _Reading(trajectory)
-    radius, bodies = trajectory.scene.radius, range(len(trajectory.scene.bodies))
+    scene, bodies = trajectory.scene, range(len(trajectory.scene.bodies))
     displacement = read.extreme(lambda samples: samples.largest(samples.place[:, 0], samples.velocity[:, 0]))
     supported = read.samples.support.shape[1] > 0
     return Demands(
         status=str(trajectory.status),
         displacement=displacement,
         residual=read.single(_residual),
-        cap_share=Estimate(displacement.value / radius, displacement.error / radius),
+        cap_share=_share(displacement, scene.radius),
+        travel_share=None if scene.isolator.travel is None else _share(displacement, scene.isolator.travel),
         acceleration=read.peaks(),
         base_shear=read.extreme(lambda samples: float(np.linalg.norm(samples.isolator, axis=1).max())),
         drift=tuple(read.extreme(_drift_of(link)) for link in bodies[:-1]),
@@ -133,6 +137,11 @@ def demands(trajectory: Trajectory) -> Demands:
         torsion=tuple(map(read.extreme, map(_torsion_of, bodies))) if read.samples.rotation.shape[1] else None,
         stops=read.count(_stops),
     )
+
+
+def _share(displacement: Estimate, limit: float) -> Estimate:
+    """A displacement over its limit, m."""
+    return Estimate(displacement.value / limit, displacement.error / limit)
 
 
 def largest_displacement(time: Array, place: Array, velocity: Array) -> float:

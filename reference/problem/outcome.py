@@ -20,6 +20,7 @@ class Outcome(StrEnum):
     OK = "ok"
     TOLERANCE_NOT_MET = "tolerance not met"
     RIM_REACHED = "rim reached"
+    TRAVEL_REACHED = "travel reached"
     CONTACT_LOST = "contact lost"
     OVERTURNED = "overturned"
     PAINLEVE = "painleve paradox"
@@ -35,6 +36,8 @@ ADVICE: dict[Outcome, str] = {
     Outcome.OK: "nothing to do",
     Outcome.TOLERANCE_NOT_MET: "the error shown is larger than asked: loosen the tolerance, or give a cutoff v_c",
     Outcome.RIM_REACHED: "x1^2 + y1^2 reached rho^2 (4.1): lower the amplitude or enlarge the radius",
+    Outcome.TRAVEL_REACHED: "the platform needs a larger displacement than isolator.travel: lower the amplitude or "
+    "enlarge the travel",
     Outcome.CONTACT_LOST: "the contact force reached zero: lower the vertical amplitude, or use the spatial model",
     Outcome.OVERTURNED: "the tower fell over an edge of its supports: widen the ring or lower the amplitude",
     Outcome.PAINLEVE: "the mass matrix of (3.9) lost its sign: lower the friction coefficient or the swing",

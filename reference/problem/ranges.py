@@ -49,6 +49,7 @@ SCENE: dict[str, Range] = {
     "isolator.ring": Range(1e-6, 1e6, "m"),
     "isolator.support_stiffness": Range(1e-12, 1e18, "N/m"),
     "isolator.restitution": Range(0.0, 1.0),
+    "isolator.travel": Range(1e-9, 1e12, "m"),
     "isolator.sphere_radius": Range(1e-9, 1e6, "m"),
     "bodies.mass": Range(1e-12, 1e15, "kg"),
     "bodies.period": Range(1e-7, 1e9, "s"),
@@ -120,11 +121,11 @@ def _is_masked(values: Any) -> bool:
     return bool(np.ma.is_masked(values))
 
 
-def checked_state(initial: Any, bodies: int, radius: float) -> tuple[Array, Array]:
+def checked_state(initial: Any, bodies: int, radius: float, travel: float | None = None) -> tuple[Array, Array]:
     """
     Position and velocity (N, 2) of an initial `State`, m and m/s. Raises ValueError, one line.
 
-    The platform must start inside the rim (4.1), `radius` in m.
+    The platform must start inside the rim (4.1), `radius` in m, and within `travel`, m, where there is one.
     """
     rule = f"must have finite position and velocity of shape ({bodies}, 2)"
     try:
@@ -138,6 +139,8 @@ def checked_state(initial: Any, bodies: int, radius: float) -> tuple[Array, Arra
             raise ValueError(f"initial: {values.flat[np.abs(values).argmax()]:g}: {allowed.rule}")
     if float(np.hypot(*x[0])) >= radius:
         raise ValueError(f"initial: the platform must start inside the rim (4.1), rho = {radius:.6g} m")
+    if travel is not None and float(np.hypot(*x[0])) > travel:
+        raise ValueError(f"initial: the platform must start within isolator.travel = {travel:.6g} m")
     return x, v
 
 

@@ -125,6 +125,9 @@ class Scene(Table):
             rule = f"must be at most {MAX_CYCLES:g} periods of {shortest:.4g} s, the shortest of loading and pendulum"
             raise MisfitError("duration", self.duration, rule)
 
+        travel = self.isolator.travel
+        if travel is not None and not travel < self.radius:
+            raise MisfitError("isolator.travel", travel, f"must be below the radius, rho = {self.radius:.6g} m")
         bearings, restitution = self.isolator.support_stiffness, self.isolator.restitution
         if bearings is not None and restitution is not None:
             rule = "supports with a support_stiffness rebound by it: remove one of the two keys"
@@ -194,6 +197,11 @@ class Scene(Table):
         assert self.isolator.period is not None
         pace = self.isolator.period / (2.0 * math.pi)
         return GRAVITY * pace * pace  # a product overflows to inf, which validation refuses; a power raises
+
+    @property
+    def displacement_limit(self) -> float:
+        """Horizontal displacement of the platform at which a motion ends, m: the travel, or rho without one."""
+        return self.radius if self.isolator.travel is None else self.isolator.travel
 
     @cached_property
     def masses(self) -> NDArray[np.float64]:

@@ -134,6 +134,15 @@ class Isolator(Table):
         Annotated[NonNegative, within("isolator.restitution")] | None,
         about("coefficient of restitution of a support that closes again, 0 without", "", SPATIAL),
     ] = None
+    travel: Annotated[
+        Annotated[Positive, within("isolator.travel")] | None,
+        about(
+            "largest horizontal displacement that the isolator permits, below the radius; a motion that needs more "
+            "ends as `travel reached`",
+            "m",
+            ALL,
+        ),
+    ] = None
 
     @model_validator(mode="after")
     def _alternatives(self) -> Isolator:

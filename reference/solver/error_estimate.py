@@ -30,7 +30,8 @@ STEP_TOLERANCE_FACTOR = 10.0
 PERIODS_AFTER_SETTLING = 1.0  # Demand.period: from the last large value of a run to the end of the next
 # change between two runs over what separates later values from the largest: beyond it a run goes to the end after all
 MAX_EARLY_CHANGE = 0.2
-# of the first run from the rim in rho, from liftoff in weights, from Painleve's paradox: closer, all go to the end
+# of the first run from the rim in rho, from the end of its travel, from liftoff in weights, from Painleve's paradox:
+# closer, all go to the end
 MIN_END_MARGIN = 0.1
 
 NOT_MET = 100  # code of a run whose error stays above the tolerance; system.py has the other codes
@@ -111,7 +112,7 @@ def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool 
 
 def _settled(system: System, first: Peaks, demand: Demand) -> Array:
     """When further runs may stop, (M,), s, after one to the end of the motion; infinity where nothing allows it."""
-    safe = (first.code == SOLVED) & (first.reach <= (1.0 - MIN_END_MARGIN) * system.radius)
+    safe = (first.code == SOLVED) & (first.reach <= (1.0 - MIN_END_MARGIN) * min(system.radius, system.travel))
     safe &= first.least_reaction >= MIN_END_MARGIN * system.mass_ratio * system.gravity
     safe &= first.least_determinant >= MIN_END_MARGIN
     return np.where(safe, first.settled + PERIODS_AFTER_SETTLING * demand.period, np.inf)

@@ -29,6 +29,7 @@ from reference.solver.system import (
     SLIDING,
     SOLVED,
     STEP_LIMIT,
+    TRAVEL,
     UNSOLVED,
     Array,
     Demand,
@@ -62,6 +63,8 @@ def first_contact(system: System, work: Work) -> int:
 @compiled
 def named(system: System, work: Work, demand: Demand, code: int) -> int:
     """What a run that cannot go on has come to: nearly its end, the rim (4.1), or the trouble that it reports."""
+    if code == TRAVEL:
+        return code
     if code != STEP_LIMIT and work.end - work.time < NEGLIGIBLE_REMAINDER * demand.period:
         return SOLVED
     at_rim = work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > RIM_SQUARED_FRACTION * system.radius**2

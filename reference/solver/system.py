@@ -21,7 +21,7 @@ CONSISTENT, PRINTED = 0, 1
 # numpy integers: numba would build a function once more for every literal it is called with
 REST, SLIDING, CREEPING, LUBRICATED_SLIDING, STOPPING = cast("tuple[int, ...]", tuple(map(np.int64, range(5))))
 # how the equations of one step, or a whole run, ended
-SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT = range(6)
+SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT, TRAVEL = range(7)
 
 
 class System(NamedTuple):
@@ -34,6 +34,7 @@ class System(NamedTuple):
     v_reg: float  # m/s, of the regularized law
     mass_ratio: float  # m_sum / m1
     radius: float  # m
+    travel: float  # m, largest displacement of the platform; infinite without one
     gravity: float  # m/s^2
     below: Array  # (N, 2), k_{i,i-1} / m_i, zero for the platform
     above: Array  # (N, 2), k_{i+1,i} / m_i, zero for the last body
@@ -109,6 +110,7 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
         v_reg=0.0 if v_reg is None else float(v_reg),
         mass_ratio=float(scene.total_mass / masses[0]),
         radius=float(scene.radius),
+        travel=float(np.inf if scene.isolator.travel is None else scene.isolator.travel),
         gravity=GRAVITY,
         below=below,
         above=above,

@@ -174,7 +174,7 @@ def known_demands(scene: Scene, supported: bool) -> Demands:
     number, bodies = Estimate(1.5, 0.25), len(scene.bodies)
     support = number if supported else None
     return Demands(
-        Outcome.OK.value, number, Estimate(np.nan, np.nan), number, (number,) * bodies, number,
+        Outcome.OK.value, number, Estimate(np.nan, np.nan), number, None, (number,) * bodies, number,
         (number,) * (bodies - 1), number, number, support, support,
         (number,) * bodies if supported else None, number,
     )  # fmt: skip

@@ -4,10 +4,17 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
+import pytest
 from conftest import Run
 from fake_models import errors_in, fake_hierarchy, silenced
+
+from comparison.study.models import MODEL_HIERARCHY
+from reference import amplification
+from reference.problem import load_scene, phase_grid
+from reference.problem.scene_file import scene_text
 
 GRID = ["fig3-I", "--grid", "4"]
 
@@ -52,3 +59,18 @@ def test_a_fault_of_a_solver_is_an_alert_with_its_message(command: Callable[...,
     run = command(*GRID, hierarchy=fake_hierarchy("raising"))
     texts = [alert["text"] for alert in listed(run) if alert["kind"] == "fault"]
     assert texts == [f"{model} engine: RuntimeError: the matrix is singular" for model in ("spatial", "translational")]
+
+
+def test_a_travel_that_is_nearly_used_up_is_said_with_its_share(command: Callable[..., Run], tmp_path: Path) -> None:
+    share = amplification(load_scene("fig3-I"), phase_grid(2)).cap_share.max()
+    file = tmp_path / "limited.toml"
+    travel = float(share * load_scene("fig3-I").radius / 0.95)
+    text = scene_text("fig3-I").decode()
+    file.write_text(text.replace("[isolator]", f"[isolator]\ntravel = {travel!r}"), encoding="utf-8")
+    run = command(str(file), "--grid", "2", hierarchy=MODEL_HIERARCHY[:2])
+    assert run.code == 0, run.err
+    texts = [alert["text"] for alert in listed(run) if alert["kind"] == "travel"]
+    assert any("uses up to 95.0 % of the isolator's travel" in text for text in texts)
+    summary = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))
+    assert summary["scenes"][0]["models"]["exact"]["travel_share"] == pytest.approx(0.95, rel=1e-3)
+    assert "% of the travel" in (run.report / "index.html").read_text(encoding="utf-8")

@@ -234,6 +234,8 @@ def _sizes() -> Iterator[Row]:
     yield Row("amplitude, m/s^2", "12, friction 0.02, along the rim", near_rim, PLANAR, phases=PHASES[:1])
     for radius in (1e-3, 3e-2, 30.0, 1e3):
         yield Row("rho, m", f"{radius:g}", scene(radius=radius), ALL)
+    for travel in (1e-6, 0.02, 0.24):
+        yield Row("travel, m", f"{travel:g}", scene(travel=travel), ALL)
 
 
 def _chains() -> Iterator[Row]:
@@ -319,6 +321,7 @@ def _outside_the_rules() -> Iterator[Row]:
         "friction -0.1": scene(friction=-0.1),
         "mass 0": scene(masses=[0.0, 1.0]),
         "duration 0": scene(duration=0.0),
+        "travel beyond the radius": scene(radius=0.25, travel=0.3),
         "radius beyond double precision": scene(period=1e200),
         "amplitude not a number": scene(amplitudes=_along(math.nan)),
     }

@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 
 PHYSICS = {
     Outcome.RIM_REACHED,
+    Outcome.TRAVEL_REACHED,
     Outcome.CONTACT_LOST,
     Outcome.OVERTURNED,
     Outcome.PAINLEVE,

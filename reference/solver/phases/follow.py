@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import log
+from math import inf, log
 
 from reference.solver.compiled import compiled, inlined
 from reference.solver.events import counted_part, lowest
@@ -49,11 +49,13 @@ from reference.solver.system import (
     SOLVED,
     STEP_LIMIT,
     STOPPING,
+    TRAVEL,
     UNSOLVED,
     Demand,
     Record,
     System,
 )
+from reference.solver.travel import travel_reached
 from reference.solver.work import REACTION, SPEED2, Work
 
 
@@ -94,7 +96,11 @@ def follow(system: System, work: Work, contact: int, demand: Demand, record: Rec
             following = contact
             continue
         low, high = counted(work, contact, demand)
+        reached = travel_reached(system, work, contact, end)
         commit(work, record, end, contact, low, high)
+        if reached < inf:
+            work.time = reached
+            return TRAVEL, contact
         following = after_step(system, work, contact, following, demand, end, factor)
     if contact in (REST, CREEPING):
         note_stick(record, since, work.time)

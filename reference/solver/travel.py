@@ -1,0 +1,55 @@
+"""Where a motion ends because the platform needs a larger displacement than the isolator permits."""
+
+from __future__ import annotations
+
+from math import inf
+
+from reference.solver.collocation import DENSE
+from reference.solver.compiled import compiled
+from reference.solver.events import BISECTIONS, expand, value_at
+from reference.solver.peaks import expand_place, largest_square, squares
+from reference.solver.system import REST, STOPPING, System
+from reference.solver.work import CLOCK, Work
+
+
+@compiled
+def travel_reached(system: System, work: Work, contact: int, h: float) -> float:
+    """When the platform's displacement passes the travel within the step just made, s; infinite if it does not."""
+    if contact == REST or system.travel == inf:
+        return inf
+    for axis in range(2):
+        if contact == STOPPING:
+            expand(work.chain[0, axis], work.powers[axis])
+        else:
+            expand_place(work, h, axis)
+    limit = system.travel * system.travel
+    top, place = largest_square(work, 2, 0.0, 1.0)
+    if top <= limit:
+        return inf
+    theta = first_beyond(work, limit, place)
+    if contact != STOPPING:
+        return work.time + h * theta
+    expand(work.turning[CLOCK], work.powers[2])
+    return value_at(work.powers[2], theta)
+
+
+@compiled
+def first_beyond(work: Work, limit: float, place: float) -> float:
+    """First theta up to `place` at which the squared displacement, from its `powers`, is above `limit`."""
+    low, high = 0.0, place
+    for n in range(1, DENSE.shape[0]):
+        if DENSE[n] >= place:
+            break
+        square, _, _ = squares(work, 2, DENSE[n])
+        if square > limit:
+            high = DENSE[n]
+            break
+        low = DENSE[n]
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        square, _, _ = squares(work, 2, middle)
+        if square > limit:
+            high = middle
+        else:
+            low = middle
+    return high

@@ -1,0 +1,162 @@
+"""A motion ends where the platform needs a larger displacement than the isolator permits, at the right instant."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from chains import chain
+from oracle_law import Law
+from scipy.integrate import quad, solve_ivp
+from scipy.optimize import brentq
+
+import reference
+from comparison.analysis.scaling import scaled
+from reference.analytical.frictionless import frictionless_motion
+from reference.problem import GRAVITY, Outcome, Scene, SceneError, State, load_scene, phase_grid
+
+PHASE = (0.3, 1.1)
+TWO = {"masses": (1.0, 1.5), "stiffness": [(20.0, 30.0)], "amplitudes": ((4.0, 1.0), (0.0, 3.0)), "duration": 6.0}
+
+
+def limited(scene: Scene, travel: float) -> Scene:
+    return scene.with_values({"isolator.travel": travel})
+
+
+def test_a_thrown_platform_reaches_its_travel_when_its_energy_says() -> None:
+    """Frictionless from the middle: t = int rho d theta / sqrt(v^2 - 2 g rho (1 - cos theta)) to sin theta = 0.6."""
+    scene = limited(chain(0.25, 0.0, amplitudes=[[1e-9, 0.0], [0.0, 0.0]], duration=1.0), 0.15)
+    speed = 1.6
+    start = State(np.zeros((1, 2)), np.array([[0.6 * speed, 0.8 * speed]]))
+    time, _ = quad(
+        lambda angle: scene.radius / np.sqrt(speed**2 - 2.0 * GRAVITY * scene.radius * (1.0 - np.cos(angle))),
+        0.0, np.arcsin(0.6),
+    )  # fmt: skip
+    run = reference.trajectory(scene, PHASE, initial=start, tolerance=1e-9)
+    assert run.status == Outcome.TRAVEL_REACHED
+    assert run.instant == pytest.approx(time, rel=1e-8)
+    assert np.hypot(*run.position[:, 0, :2].T).max() <= 0.15 * (1.0 + 1e-9)
+
+
+@pytest.mark.parametrize(("law", "v_reg"), [("lubrication", None), ("friction", 1e-2), ("nothing", None)])
+@pytest.mark.parametrize("equations", ["exact", "small"])
+def test_the_instant_is_that_of_an_independent_solution(law: str, v_reg: float | None, equations: str) -> None:
+    """Plain equations of two bodies, SciPy's event where the displacement passes the travel."""
+    coefficient = {"lubrication": 0.3, "friction": 0.03, "nothing": 0.0}[law]
+    scene = chain(friction=coefficient, lubrication=coefficient if law == "lubrication" else None, **TWO)
+    oracle, travel = Law(scene, PHASE, equations), 0.04
+
+    def slope(t: float, state: np.ndarray) -> np.ndarray:
+        q, v = state[:4].tolist(), state[4:].tolist()
+        force, ground = oracle.spring_forces(q), oracle.ground(t)
+        inside = v_reg is not None and oracle.speed_square(q[0], q[1], v[0], v[1]) < v_reg**2
+        ax, ay, _, _ = oracle.smooth(t, q, force, v[0], v[1], v_reg, inside)
+        above = [force[2 + axis] / oracle.mass[1] - ground[axis] for axis in range(2)]
+        return np.array([*v, ax, ay, *above])
+
+    def beyond(t: float, state: np.ndarray) -> float:
+        return float(np.hypot(state[0], state[1]) - travel)
+
+    exact = solve_ivp(slope, (0.0, 6.0), np.zeros(8), "LSODA", events=beyond, rtol=1e-9, atol=1e-11)
+    found = reference.amplification(limited(scene, travel), [PHASE], equations, v_reg)
+    assert found.status.tolist() == [Outcome.TRAVEL_REACHED]
+    assert np.isnan([*found.mu[0], found.cap_share[0]]).all()
+    assert found.instant[0] == pytest.approx(exact.t_events[0][0], abs=2e-6)
+
+
+@pytest.mark.parametrize("v_reg", [None, 1e-3])
+@pytest.mark.parametrize("share", [0.2, 0.7, 0.999, 0.999999])
+def test_the_travel_is_passed_where_the_motion_without_it_passes_it(v_reg: float | None, share: float) -> None:
+    """Up to a hair below the largest displacement, which is taken at a stop, in stretched time."""
+    scene = load_scene("fig3-I")
+    free = reference.trajectory(scene, PHASE, regularization=v_reg, tolerance=1e-9)
+    place = np.hypot(*free.position[:, 0, :2].T)
+    travel = share * place.max()
+    found = reference.amplification(limited(scene, travel), [PHASE], regularization=v_reg, tolerance=1e-8)
+    passed = int(np.argmax(place > travel))
+    assert found.status.tolist() == [Outcome.TRAVEL_REACHED]
+    assert free.time[passed - 1] - 1e-4 <= found.instant[0] <= free.time[passed] + 1e-4
+
+
+def test_a_travel_that_is_not_needed_changes_no_number() -> None:
+    scene, phases = load_scene("fig3-I"), phase_grid(4)
+    free = reference.amplification(scene, phases)
+    most = free.cap_share.max() * scene.radius
+    wide = reference.amplification(limited(scene, 1.2 * most), phases)
+    np.testing.assert_array_equal(wide.mu, free.mu)
+    np.testing.assert_array_equal(wide.error, free.error)
+    narrow = reference.amplification(limited(scene, 0.9 * most), phases)
+    ended = narrow.status == Outcome.TRAVEL_REACHED
+    np.testing.assert_array_equal(ended, free.cap_share > 0.9 * free.cap_share.max())
+    np.testing.assert_allclose(narrow.mu[~ended], free.mu[~ended], rtol=1e-6)
+
+
+def test_a_travel_between_two_tolerances_is_settled_by_the_finer_runs() -> None:
+    """The displacement is known to 1e-7 or so: within 1e-4 of it the outcome is no matter of luck."""
+    scene = load_scene("fig4-dry")
+    share = reference.amplification(scene, [PHASE], tolerance=1e-9).cap_share[0]
+    for factor, outcome in ((1.0 - 1e-4, Outcome.TRAVEL_REACHED), (1.0 + 1e-4, Outcome.OK)):
+        found = reference.amplification(limited(scene, factor * share * scene.radius), [PHASE])
+        assert found.status.tolist() == [outcome]
+
+
+def test_a_displacement_that_grows_late_is_not_lost_by_the_early_end() -> None:
+    """A burst first, then beats of weak friction: the largest accelerations come long before the displacement."""
+    scene = chain(
+        0.25, 0.002, amplitudes=[[6.0, 0.0], [0.0, 0.35]], periods=(0.12, 1.0), decay=(3.0, 0.0), duration=8.0
+    )  # fmt: skip
+    free = reference.trajectory(scene, PHASE)
+    travel = 0.97 * np.hypot(*free.position[:, 0, :2].T).max()
+    for full in (False, True):
+        found = reference.amplification(limited(scene, travel), [PHASE], full=full)
+        assert found.status.tolist() == [Outcome.TRAVEL_REACHED]
+        assert found.instant[0] > 3.0
+
+
+def test_a_sum_of_harmonics_ends_where_its_closed_form_passes_the_travel() -> None:
+    scene = load_scene("fig3-I").with_values({"isolator.friction": 0.0, "duration": 4.0})
+    found = reference.amplification(limited(scene, 0.03), [PHASE], "small", tolerance=1e-9)
+
+    def beyond(t: float) -> float:
+        return float(np.hypot(*frictionless_motion(scene, PHASE, [t])[0][0, 0]) - 0.03)
+
+    times = np.linspace(0.0, 4.0, 4001)
+    first = int(np.argmax(np.hypot(*frictionless_motion(scene, PHASE, times)[0][:, 0].T) > 0.03))
+    assert found.status.tolist() == [Outcome.TRAVEL_REACHED]
+    assert found.instant[0] == pytest.approx(brentq(beyond, times[first - 1], times[first], xtol=1e-13), abs=1e-8)
+
+
+def test_a_travel_beyond_the_radius_and_a_start_beyond_the_travel_are_refused_in_one_line() -> None:
+    with pytest.raises(SceneError, match=r"isolator\.travel = 0\.3: must be below the radius, rho = 0\.24849 m"):
+        limited(load_scene("fig3-I"), 0.3)
+    with pytest.raises(SceneError, match=r"isolator\.travel = -1\.0"):
+        limited(load_scene("fig3-I"), -1.0)
+    scene = limited(chain(0.25, 0.1), 0.1)
+    with pytest.raises(ValueError, match=r"must start within isolator\.travel = 0\.1 m"):
+        reference.trajectory(scene, PHASE, initial=State(np.array([[0.08, 0.07]]), np.zeros((1, 2))))
+
+
+def test_the_demands_state_the_share_of_the_travel() -> None:
+    scene = load_scene("fig3-I")
+    motion = reference.trajectory(limited(scene, 0.1), PHASE)
+    share = reference.demands(motion).travel_share
+    assert share is not None
+    assert share.value == pytest.approx(np.hypot(*motion.position[:, 0, :2].T).max() / 0.1, rel=1e-6)
+    assert reference.demands(reference.trajectory(scene, PHASE)).travel_share is None
+    ended = reference.demands(reference.trajectory(limited(scene, 0.01), PHASE))
+    assert (ended.status, np.isnan(ended.travel_share.value)) == ("travel reached", True)
+
+
+@pytest.mark.parametrize("s", [0.5, 0.125])
+def test_loading_friction_and_travel_scaled_together_end_the_motion_at_one_instant(s: float) -> None:
+    """Frictionless small equations are linear, so the instant is the same; with friction it tends to that like s^2."""
+    scene = limited(chain(0.25, 0.0, **TWO), 0.06)
+    instants = [
+        reference.amplification(each, [PHASE], "small", tolerance=1e-9).instant[0] for each in (scene, scaled(scene, s))
+    ]
+    assert instants[0] == pytest.approx(instants[1], rel=1e-8)
+    dry = limited(chain(0.25, 0.05, **TWO), 0.06)
+    small, exact = (
+        reference.amplification(scaled(dry, 0.02), [PHASE], equations, tolerance=1e-9).instant[0]
+        for equations in ("small", "exact")
+    )
+    assert exact == pytest.approx(small, rel=1e-4)
