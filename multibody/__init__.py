@@ -6,7 +6,9 @@ Functions
 amplification   factors mu_i of (5.1) for many phase pairs, with errors and outcomes
 trajectory      one motion to a tolerance
 single_run      one run at a level of accuracy or a constant step, without an error estimate
-demands         what a motion demands of isolator and structure, with errors
+peak_demands    what the motions at many phase pairs demand of isolator and structure, with errors
+demands         that of one motion
+floor_spectra   response spectra of its floors, with errors
 levels          the levels of accuracy that `amplification` goes through
 refusal         why a model is refused for a scene, or ""
 
@@ -36,25 +38,39 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from multibody.demand_surface import peak_demands
     from multibody.integration.level import Level, levels
     from multibody.integration.refine import MAX_WORK
     from multibody.integration.work_limit import refusal
     from multibody.motion import single_run, trajectory
     from multibody.surface import amplification
-    from reference.problem import demands
+    from reference.problem import demands, floor_spectra
 
 ENGINE = {
     "MAX_WORK": "multibody.integration.refine",
     "Level": "multibody.integration.level",
     "amplification": "multibody.surface",
     "demands": "reference.problem",
+    "floor_spectra": "reference.problem",
     "levels": "multibody.integration.level",
+    "peak_demands": "multibody.demand_surface",
     "refusal": "multibody.integration.work_limit",
     "single_run": "multibody.motion",
     "trajectory": "multibody.motion",
 }
 
-__all__ = ["MAX_WORK", "Level", "amplification", "demands", "levels", "refusal", "single_run", "trajectory"]
+__all__ = [
+    "MAX_WORK",
+    "Level",
+    "amplification",
+    "demands",
+    "floor_spectra",
+    "levels",
+    "peak_demands",
+    "refusal",
+    "single_run",
+    "trajectory",
+]
 
 
 def __getattr__(name: str) -> Any:

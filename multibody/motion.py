@@ -55,8 +55,8 @@ def trajectory(
         the run at the level before, and one with a softer contact where that was run.
         `extra` has slip_speed (T, K), m/s, and support_force (T, K), N, of K contacts (one in the translational model).
         The spatial model adds yaw and tilt of the platform (T,), rad; turns (T, N, 3), rad, the angles a, b, c of
-        every body, which is turned against the plate by Rx(a) Ry(b) Rz(c); and liftoff (L, 3): support, start and
-        end, s, of every time that a contact is open.
+        every body, which is turned against the plate by Rx(a) Ry(b) Rz(c); uplift (T, K), m, the gap of every contact,
+        zero where it presses; and liftoff (L, 3): support, start and end, s, of every time that a contact is open.
 
     Raises
     ------
@@ -183,10 +183,12 @@ def _trajectory(pair: PhasePair, run: EngineRun, status: str, instant: float) ->
     else:
         ground = ground_acceleration(pair.scene, pair.phase, time)
     vectors = motion.force.reshape(len(time), motion.force.shape[1] // 6, 2, 3)  # per contact: force, normal
-    support_force = np.abs((vectors[:, :, 0] * vectors[:, :, 1]).sum(axis=-1)) * units.force
+    normal_force = (vectors[:, :, 0] * vectors[:, :, 1]).sum(axis=-1)
+    friction = np.linalg.norm(vectors[:, :, 0] - normal_force[:, :, None] * vectors[:, :, 1], axis=-1)
+    support_force = np.abs(normal_force) * units.force
     extra = {"slip_speed": motion.slip * units.velocity, "support_force": support_force}
     if model.allows_liftoff:
-        extra |= _attitude(model, motion, time)
+        extra |= _attitude(model, motion, time) | {"uplift": np.maximum(motion.gap, 0.0) * units.length}
     return Trajectory(
         time=time,
         position=motion.coordinates[:, bodies] * units.length,
@@ -199,6 +201,8 @@ def _trajectory(pair: PhasePair, run: EngineRun, status: str, instant: float) ->
         scene=pair.scene,
         extra=extra,
         peak=run.peaks.value * units.acceleration if len(time) else np.full(len(bodies), np.nan),
+        ground=ground,
+        friction_power=(friction * motion.slip).sum(axis=1) * units.force * units.velocity,
     )
 
 

@@ -6,7 +6,9 @@ Functions
 amplification   factors mu_i of (5.1) for many phase pairs, with errors and outcomes
 worst_phases    the largest factor, or displacement, over all phases
 trajectory      one motion, sampled in time
-demands         what a motion demands of isolator and structure, with errors
+peak_demands    what the motions at many phase pairs demand of isolator and structure, with errors
+demands         that of one motion
+floor_spectra   response spectra of its floors, with errors
 modes           natural frequencies and modes of the frictionless chain (4.8)-(4.11)
 load_scene      a scene from a built-in name or a TOML file
 builtin_scenes  names of the paper's own cases
@@ -22,6 +24,9 @@ Amplification   what `amplification` returns
 Trajectory      what `trajectory` returns
 PhaseMaximum    what `worst_phases` returns
 Demands         what `demands` returns
+PeakDemands     what `peak_demands` returns
+Estimates       arrays of numbers and their errors
+FloorSpectra    what `floor_spectra` returns
 Estimate        a number and its error
 Outcome         how the run of one phase pair ended
 SceneError      a scene that cannot be used, in one line
@@ -49,7 +54,10 @@ from reference.problem import (
     Amplification,
     Demands,
     Estimate,
+    Estimates,
+    FloorSpectra,
     Outcome,
+    PeakDemands,
     Scene,
     SceneError,
     State,
@@ -57,12 +65,14 @@ from reference.problem import (
     builtin_scenes,
     demands,
     example_scenes,
+    floor_spectra,
     load_scene,
     phase_distribution,
     phase_grid,
 )
 
 if TYPE_CHECKING:
+    from reference.demand_surface import peak_demands
     from reference.motion import trajectory
     from reference.natural_modes import modes
     from reference.phase_maximum import PhaseMaximum, worst_phases
@@ -72,6 +82,7 @@ LOADED_ON_FIRST_USE = {
     "PhaseMaximum": "reference.phase_maximum",
     "amplification": "reference.surface",
     "modes": "reference.natural_modes",
+    "peak_demands": "reference.demand_surface",
     "trajectory": "reference.motion",
     "worst_phases": "reference.phase_maximum",
 }
@@ -80,7 +91,10 @@ __all__ = [
     "Amplification",
     "Demands",
     "Estimate",
+    "Estimates",
+    "FloorSpectra",
     "Outcome",
+    "PeakDemands",
     "PhaseMaximum",
     "Scene",
     "SceneError",
@@ -90,8 +104,10 @@ __all__ = [
     "builtin_scenes",
     "demands",
     "example_scenes",
+    "floor_spectra",
     "load_scene",
     "modes",
+    "peak_demands",
     "phase_distribution",
     "phase_grid",
     "trajectory",

@@ -8,7 +8,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.problem import Accuracy, Outcome, Scene, State, Trajectory, checked_phase, loading_period
+from reference.problem import (
+    GRAVITY,
+    Accuracy,
+    Outcome,
+    Scene,
+    State,
+    Trajectory,
+    checked_phase,
+    ground_acceleration,
+    loading_period,
+)
 from reference.problem.ranges import checked_array, checked_state
 from reference.solver.error_estimate import (
     DIFFERENCE_FRACTION,
@@ -17,7 +27,7 @@ from reference.solver.error_estimate import (
     TOLERANCE_RATIO,
     peaks_from,
 )
-from reference.solver.samples import sampled, step_instants
+from reference.solver.samples import Samples, sampled, step_instants
 from reference.solver.system import Array, Demand, Record, System, record_of
 from reference.surface import OUTCOMES, checked_demand, loads_are_finite
 
@@ -84,9 +94,10 @@ def trajectory(
         demand = demand._replace(unit=demand.unit + _acceleration(system, x, v))
     if not loads_are_finite(system):
         nothing = np.full(bodies, np.nan)
-        return _motion(scene, system, _Run(Outcome.NON_FINITE_LOAD, 0.0, record_of(0, bodies), nothing, nothing), asked)
+        no_run = _Run(Outcome.NON_FINITE_LOAD, 0.0, record_of(0, bodies), nothing, nothing)
+        return _motion(scene, pair, system, no_run, asked)
     run = _recorded(system, pair, x, v, demand)
-    motion = _motion(scene, system, run, asked)
+    motion = _motion(scene, pair, system, run, asked)
     if run.outcome != Outcome.OK:
         return motion
     other = _recorded(system, pair, x, v, demand._replace(tolerance=TOLERANCE_RATIO * demand.tolerance))
@@ -94,7 +105,7 @@ def trajectory(
         return motion
     floor = MIN_ERROR_FRACTION * demand.tolerance + ROUNDING_ERROR
     error = READING_ERROR_FACTOR * run.reading_error + DIFFERENCE_FRACTION * np.abs(run.peak - other.peak)
-    coarser = _motion(scene, system, other, asked)
+    coarser = _motion(scene, pair, system, other, asked)
     return replace(motion, accuracy=Accuracy(error + floor * run.peak, (coarser,), (DIFFERENCE_FRACTION,), floor))
 
 
@@ -120,7 +131,7 @@ def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) 
         capacity = int(record.made.max())
 
 
-def _motion(scene: Scene, system: System, run: _Run, asked: Array | None) -> Trajectory:
+def _motion(scene: Scene, phase: Array, system: System, run: _Run, asked: Array | None) -> Trajectory:
     """The run at the instants `asked`, or at those of `_instants`."""
     record, early = run.record, run.outcome != Outcome.OK
     steps, sticks = (int(number) for number in record.made)
@@ -129,10 +140,12 @@ def _motion(scene: Scene, system: System, run: _Run, asked: Array | None) -> Tra
     motion = sampled(record, instants)
     height, climb = _vertical(motion.x[:, 0], motion.v[:, 0], system)
     shape = (len(instants), len(scene.bodies), 1)
+    position = np.concatenate([motion.x, np.broadcast_to(height[:, None, None], shape)], axis=-1)
+    velocity = np.concatenate([motion.v, np.broadcast_to(climb[:, None, None], shape)], axis=-1)
     return Trajectory(
         time=instants,
-        position=np.concatenate([motion.x, np.broadcast_to(height[:, None, None], shape)], axis=-1),
-        velocity=np.concatenate([motion.v, np.broadcast_to(climb[:, None, None], shape)], axis=-1),
+        position=position,
+        velocity=velocity,
         absolute_acceleration=motion.total,
         contact_force=motion.reaction * scene.masses[0],
         stick=[(float(a), float(b)) for a, b in record.sticks[:sticks]],
@@ -140,7 +153,23 @@ def _motion(scene: Scene, system: System, run: _Run, asked: Array | None) -> Tra
         instant=run.instant if early else np.nan,
         scene=scene,
         peak=run.peak,
+        ground=ground_acceleration(scene, phase, instants),
+        friction_power=_friction_power(scene, position[:, 0], velocity[:, 0], motion),
     )
+
+
+def _friction_power(scene: Scene, place: Array, velocity: Array, motion: Samples) -> Array:
+    """
+    Power that friction dissipates, (T,), W, of a platform at `place` with `velocity` (T, 3).
+
+    Friction is what the normal force leaves of the force on all bodies, which Newton's law gives.
+    """
+    force = np.einsum("i,tia->ta", scene.masses, motion.total)
+    force[:, 2] += scene.total_mass * GRAVITY
+    normal = np.array([0.0, 0.0, 1.0]) - place / scene.radius
+    friction = force - scene.masses[0] * motion.reaction[:, None] * normal
+    power: Array = -(friction * velocity).sum(axis=1)
+    return power
 
 
 def _acceleration(system: System, x: Array, v: Array) -> float:

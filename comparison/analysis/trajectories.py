@@ -20,7 +20,8 @@ from comparison.study.batches import imported
 from comparison.study.costs import at_samples
 from comparison.study.models import Model
 from comparison.study.study import Study
-from reference.problem import Demands, Outcome, Scene, Trajectory, demands
+from reference.problem import Demands, FloorSpectra, Outcome, Scene, Trajectory, demands, floor_spectra
+from reference.problem.demands import ANSWERED
 
 Array = NDArray[np.float64]
 
@@ -73,6 +74,8 @@ class StoredMotion:
         Turn of the platform about the vertical, of the spatial model.
     demands : Demands or None
         Of the motion before it was thinned. None if it was not computed.
+    spectra : FloorSpectra or None
+        Likewise.
     """
 
     place: Place
@@ -88,6 +91,7 @@ class StoredMotion:
     support_force: Array = field(default_factory=_none)
     yaw: Array = field(default_factory=_none)
     demands: Demands | None = None
+    spectra: FloorSpectra | None = None
 
     def __post_init__(self) -> None:
         bodies = self.position.shape[1:2]
@@ -196,7 +200,7 @@ def moved(task: Arguments) -> StoredMotion:
 
 
 def _stored(place: Place, model: Model, motion: Trajectory) -> StoredMotion:
-    """The motion with its demands, thinned. Raises ValueError for numbers that are not finite."""
+    """The motion with its demands and spectra, thinned. Raises ValueError for numbers that are not finite."""
     whole = StoredMotion(
         place,
         model.key,
@@ -210,6 +214,7 @@ def _stored(place: Place, model: Model, motion: Trajectory) -> StoredMotion:
         support_force=motion.support_force,
         yaw=motion.extra.get("yaw", _none()),
         demands=demands(motion),
+        spectra=floor_spectra(motion) if motion.status in ANSWERED else None,
     )
     values = np.hstack([block for name, block in whole.blocks().items() if name != "time"])
     size = np.linalg.norm(motion.absolute_acceleration, axis=2)

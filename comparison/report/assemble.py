@@ -19,6 +19,7 @@ from comparison.analysis.waterfall import Waterfall as BodyWaterfall
 from comparison.analysis.waterfall import waterfall
 from comparison.report.alerts import alerts
 from comparison.report.findings import Findings
+from comparison.report.motion_data import significant_digits
 from comparison.report.pdf import why_no_pdf
 from comparison.report.results import (
     Assumptions,
@@ -35,6 +36,7 @@ from comparison.report.results import (
     FamilyDemand,
     FamilyResult,
     FamilyStep,
+    FloorSpectra,
     GridMaximum,
     Headline,
     Limit,
@@ -52,6 +54,7 @@ from comparison.report.results import (
 )
 from comparison.study.models import Model, models_of
 from reference.problem import Family, Outcome, Scene
+from reference.problem import FloorSpectra as SpectraOfMotion
 from reference.problem.analyses import ANALYSES
 
 
@@ -142,9 +145,21 @@ def _demands(findings: Findings, scene: Scene) -> list[MotionDemands]:
         place = motion.place
         if place.scene == scene.name and motion.demands is not None:
             phases = (math.nan, math.nan) if scene.recorded else (alpha1[place.row], alpha2[place.column])
-            about = {"model": motion.model, "phases": phases, "why": place.why}
+            about = {"model": motion.model, "phases": phases, "why": place.why, "spectra": _spectra(motion.spectra)}
             listed.append(MotionDemands.model_validate(about | vars(motion.demands)))
     return listed
+
+
+def _spectra(spectra: SpectraOfMotion | None) -> FloorSpectra | None:
+    """Six digits of the values, two of their errors."""
+    if spectra is None:
+        return None
+    return FloorSpectra(
+        period=significant_digits(spectra.period, 6),
+        damping=spectra.damping,
+        acceleration=significant_digits(spectra.acceleration, 6),
+        error=significant_digits(spectra.error, 2),
+    )
 
 
 def _model(findings: Findings, scene: Scene, model: Model) -> ModelOutcome:

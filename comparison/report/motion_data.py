@@ -10,6 +10,8 @@ numbers of one component. A motion in `places` has
     exponents  of every column: its unit is 2^exponent
     demands    by the names of `reference.problem.Demands`: [value, error], null for what is not known, one pair per
                body or link in a list; null as a whole where the motion was not computed
+    spectra    floor response spectra, m/s^2: of body 1 in x and y, of body 2, ..., at the periods of the scene
+               (`spectrum_axis`); null where the motion ended early
 
 so that column c of a block begins at `start + count * (blocks[name][0] + c)`. Its first number is a value, those behind
 it are changes: value i is the sum of the numbers up to i, times 2^exponent.
@@ -50,6 +52,7 @@ from reference.problem import Demands, Estimate, Scene
 Starts = dict[tuple[Place, str], int]
 
 ROUNDING = 7e-4  # of the swing of a column
+DIGITS = 4  # of a spectrum: a line on a screen shows no more
 TIME_ROUNDING = 1e-6  # of the duration
 
 
@@ -83,10 +86,21 @@ def places(findings: Findings, scene: Scene, starts: Starts) -> Iterator[dict[st
                     "blocks": _blocks(motion),
                     "exponents": _exponents(motion).tolist(),
                     "demands": None if motion.demands is None else _listed(motion.demands),
+                    "spectra": None
+                    if motion.spectra is None
+                    else significant_digits(motion.spectra.acceleration, DIGITS),
                 }
                 for motion in motions
             ],
         }
+
+
+def spectrum_axis(findings: Findings, scene: Scene) -> dict[str, Any]:
+    """Periods, s, and damping ratio of the scene's floor response spectra."""
+    for motion in findings.motions or []:
+        if motion.place.scene == scene.name and motion.spectra is not None:
+            return {"period": significant_digits(motion.spectra.period, DIGITS), "damping": motion.spectra.damping}
+    return {"period": [], "damping": 0.0}
 
 
 def contact_geometry(scene: Scene) -> dict[str, Any]:
@@ -134,6 +148,24 @@ def _blocks(motion: StoredMotion) -> dict[str, list[int]]:
     widths = {name: block.shape[1] for name, block in motion.blocks().items()}
     firsts = np.concatenate([[0], np.cumsum(list(widths.values()))]).astype(int).tolist()
     return {name: [first, width] for (name, width), first in zip(widths.items(), firsts)}
+
+
+def significant_digits(values: NDArray[np.float64], digits: int) -> list[Any]:
+    """
+    Nested lists of numbers with so many significant digits.
+
+    Parameters
+    ----------
+    values : ndarray
+    digits : int
+
+    Returns
+    -------
+    list
+    """
+    if values.ndim > 1:
+        return [significant_digits(part, digits) for part in values]
+    return [float(f"{value:.{digits}g}") for value in values]
 
 
 def _listed(demands: Demands) -> dict[str, Any]:

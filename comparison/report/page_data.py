@@ -14,7 +14,7 @@ from comparison.analysis.completion import Completion
 from comparison.analysis.differences import pair_step
 from comparison.analysis.surfaces import common_phases
 from comparison.report.findings import Findings
-from comparison.report.motion_data import contact_geometry, places, starts_of
+from comparison.report.motion_data import contact_geometry, places, spectrum_axis, starts_of
 from comparison.study.models import Model, Pair, models_of
 from reference.problem import Scene
 
@@ -32,8 +32,8 @@ def page_data(findings: Findings) -> str:
     radius (m); pairs, each: key, title, sentence, first, second (models), contours (per body: polylines
     [[alpha1, alpha2], ...], rad, on which |D| = u_D), uncertainty (per body: u_D relative to the first model on the
     phases of both, or null where both are surfaces); models (by key: see `_model`); contact (`contact_geometry`);
-    places (row, column, phases or null under a record, why, and motions: see `motion_data`). A surface
-    is a list of rows, one per alpha1, of values, one per alpha2.
+    places (row, column, phases or null under a record, why, and motions: see `motion_data`); spectra
+    (`spectrum_axis`). A surface is a list of rows, one per alpha1, of values, one per alpha2.
     """
     study = findings.study
     starts = starts_of(findings.motions or [])
@@ -52,6 +52,7 @@ def page_data(findings: Findings) -> str:
                 "models": _models(findings, scene),
                 "contact": contact_geometry(scene),
                 "places": list(places(findings, scene, starts)),
+                "spectra": spectrum_axis(findings, scene),
             }
             for scene in study.scenes
         ],

@@ -534,6 +534,19 @@ class UncertainNumber(Part):
     """estimated absolute error; null where it is not known"""
 
 
+class FloorSpectra(Part):
+    """Floor response spectra of one motion: largest displacement of an oscillator times its squared frequency."""
+
+    period: list[float]
+    """natural periods of the oscillator, s"""
+    damping: float
+    """damping ratio of the oscillator"""
+    acceleration: list[list[list[Number]]]
+    """pseudo-acceleration, m/s^2, by body, direction x and y, and period"""
+    error: list[list[list[Number]]]
+    """estimated absolute error"""
+
+
 class MotionDemands(Part):
     """What one stored motion demands of isolator and structure; no value where the motion ended early."""
 
@@ -571,6 +584,14 @@ class MotionDemands(Part):
     """largest rotation of every body about the vertical, rad; null where the bodies do not turn"""
     stops: UncertainNumber
     """number of intervals of rest, or of creep below v_reg, after the first slip"""
+    uplift: UncertainNumber | None
+    """largest gap of a support that has lifted off, m; null in a model without single supports"""
+    friction_energy: UncertainNumber
+    """energy that friction dissipates, J"""
+    energy_balance: UncertainNumber | None
+    """work of the ground less the energy dissipated and stored, J: zero but for errors; null where bodies turn"""
+    spectra: FloorSpectra | None
+    """floor response spectra; null where the motion ended early"""
 
 
 class SceneResult(Part):

@@ -43,6 +43,7 @@ from reference.problem.excitation import (
 from reference.problem.families import Family, load_family
 from reference.problem.figure_text import verbatim
 from reference.problem.outcome import ADVICE, Outcome
+from reference.problem.peak_demands import Estimates, PeakDemands
 from reference.problem.phases import checked_phase, checked_phases, phase_axis, phase_grid
 from reference.problem.reductions import (
     Reduction,
@@ -61,6 +62,7 @@ from reference.problem.result import Accuracy, Amplification, State, Trajectory
 from reference.problem.scene import Scene
 from reference.problem.scene_error import SceneError
 from reference.problem.scene_file import builtin_scenes, example_scenes, load_scene, parse_scene
+from reference.problem.spectra import FloorSpectra, floor_spectra
 
 __all__ = [
     "ADVICE",
@@ -69,8 +71,11 @@ __all__ = [
     "Amplification",
     "Demands",
     "Estimate",
+    "Estimates",
     "Family",
+    "FloorSpectra",
     "Outcome",
+    "PeakDemands",
     "PhaseDistribution",
     "Reduction",
     "Scene",
@@ -83,6 +88,7 @@ __all__ = [
     "demands",
     "example_scenes",
     "exponents",
+    "floor_spectra",
     "ground_acceleration",
     "ground_displacement",
     "ground_peak",

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from reference.problem.energy import Energy, energy_of
 from reference.problem.outcome import Outcome
 from reference.problem.result import Array, Trajectory
 
@@ -67,6 +68,13 @@ class Demands:
         Largest rotation of every body about the vertical. None where the bodies do not turn.
     stops : Estimate
         Number of intervals of rest after the first slip; with a regularized law of creep below v_reg.
+    uplift : Estimate or None, m
+        Largest gap of a support that has lifted off. None where the model has no single supports.
+    friction_energy : Estimate, J
+        Energy that friction dissipates.
+    energy_balance : Estimate or None, J
+        Work of the ground less `friction_energy` and the energy stored at the end: zero but for errors. None where
+        bodies turn, which takes up energy that the motion does not show.
     """
 
     status: str
@@ -83,6 +91,9 @@ class Demands:
     support_force_max: Estimate | None
     torsion: tuple[Estimate, ...] | None
     stops: Estimate
+    uplift: Estimate | None
+    friction_energy: Estimate
+    energy_balance: Estimate | None
 
 
 def demands(trajectory: Trajectory) -> Demands:
@@ -104,8 +115,9 @@ def demands(trajectory: Trajectory) -> Demands:
     Newton's law it is sum_i m_i a_i with the absolute accelerations a_i. It equals friction and restoring force,
     N (n - mu w) of (3.2).
 
-    An error has two parts. That of sampling is the largest change if only every fifth sample is taken. That of the
-    solution comes from the other runs in `Trajectory.accuracy`. Without these, as for a single run, it is NaN.
+    An error has two parts. That of sampling is the largest change if only every fifth sample is taken; a fourth of it
+    for energies, which the trapezoidal rule adds up: its error grows at least like the spacing. That of the solution
+    comes from the other runs in `Trajectory.accuracy`. Without these, as for a single run, it is NaN.
     The samples do not reach the one-sided limits of accelerations at a stop. `acceleration` does: it is
     `Trajectory.peak`.
 
@@ -136,6 +148,9 @@ def demands(trajectory: Trajectory) -> Demands:
         support_force_max=read.extreme(lambda samples: float(samples.support.max())) if supported else None,
         torsion=tuple(map(read.extreme, map(_torsion_of, bodies))) if read.samples.rotation.shape[1] else None,
         stops=read.count(_stops),
+        uplift=read.extreme(lambda samples: float(samples.uplift.max())) if supported else None,
+        friction_energy=read.energy(Energy.dissipated),
+        energy_balance=None if "turns" in trajectory.extra else read.energy(Energy.missing),
     )
 
 
@@ -169,18 +184,21 @@ class _Samples(NamedTuple):
     contact: Array  # (T,)
     support: Array  # (T, K); K = 0 in a model without single supports
     rotation: Array  # (T, N), about the vertical; (T, 0) in a model whose bodies do not turn
+    uplift: Array  # (T, K)
 
     @staticmethod
     def of(motion: Trajectory) -> _Samples:
-        place, velocity = motion.position[:, :, :2], motion.velocity[:, :, :2]
+        place, velocity, support = motion.position[:, :, :2], motion.velocity[:, :, :2], motion.support_force
+        uplift = motion.extra.get("uplift", np.zeros_like(support))
         return _Samples(
             motion.time,
             place,
             velocity,
             motion.isolator_force,
             motion.contact_force,
-            motion.support_force,
+            support,
             motion.vertical_rotation,
+            uplift,
         )
 
     def thinned(self) -> list[_Samples]:
@@ -221,6 +239,16 @@ class _Reading:
         others = self.accuracy.coarser if self.accuracy else ()
         return Estimate(value, self._of_solution(value, [read(other) for other in others]))
 
+    def energy(self, read: Callable[[Energy], float]) -> Estimate:
+        """An amount of energy, which is added up over the samples."""
+        if not self.answered:
+            return UNKNOWN
+        energy = energy_of(self.motion)
+        value = read(energy)
+        sampling = max(abs(read(part) - value) for part in energy.thinned(THINNING)) / (THINNING - 1)
+        others = [read(energy_of(other)) for other in self.accuracy.coarser] if self.accuracy else []
+        return Estimate(value, sampling + self._of_solution(value, others, energy.dissipated()))
+
     def count(self, read: Callable[[Trajectory], float]) -> Estimate:
         """A number of events: the error is what the runs differ by."""
         if not self.answered:
@@ -237,11 +265,12 @@ class _Reading:
         errors = self.accuracy.peak_error if self.accuracy else np.full(bodies, np.nan)
         return tuple(Estimate(float(value), float(error)) for value, error in zip(self.motion.peak, errors))
 
-    def _of_solution(self, value: float, others: list[float]) -> float:
+    def _of_solution(self, value: float, others: list[float], scale: float | None = None) -> float:
+        """scale: what the lower bound of the relative error belongs to, if not to the value."""
         if self.accuracy is None:
             return math.nan
         changes = (share * abs(value - other) for share, other in zip(self.accuracy.share, others, strict=True))
-        return self.accuracy.floor * abs(value) + sum(changes)
+        return self.accuracy.floor * abs(value if scale is None else scale) + sum(changes)
 
 
 def _drift_of(link: int) -> Read:

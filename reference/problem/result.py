@@ -75,6 +75,10 @@ class Trajectory:
         nothing was run.
     accuracy : Accuracy, optional
         What errors are estimated from. None of a motion that ended early, and of a single run.
+    ground : ndarray, (T, 3), m/s^2
+        Acceleration of the ground.
+    friction_power : ndarray, (T,), W
+        Power that friction in the isolator dissipates.
     """
 
     time: Array
@@ -89,10 +93,14 @@ class Trajectory:
     extra: dict[str, Array] = field(default_factory=dict)
     peak: Array = field(default_factory=lambda: np.empty(0))
     accuracy: Accuracy | None = field(default=None, repr=False)
+    ground: Array = field(default_factory=lambda: np.empty((0, 3)))
+    friction_power: Array = field(default_factory=lambda: np.empty(0))
 
     def __post_init__(self) -> None:
-        if not len(self.peak):
-            object.__setattr__(self, "peak", np.full(self.position.shape[1], np.nan))
+        unknown = {"peak": self.position.shape[1:2], "ground": (len(self.time), 3), "friction_power": self.time.shape}
+        for name, shape in unknown.items():
+            if not len(getattr(self, name)):
+                object.__setattr__(self, name, np.full(shape, np.nan))
 
     @property
     def support_force(self) -> Array:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from comparison.analysis.trajectories import StoredMotion, chosen_places, shown_models
 from comparison.study.models import MODEL_HIERARCHY, Model, never
 from comparison.study.study import Study
-from reference.problem import GRAVITY, Amplification, Demands, Estimate, Outcome, Scene, Trajectory
+from reference.problem import GRAVITY, Amplification, Demands, Estimate, FloorSpectra, Outcome, Scene, Trajectory
 
 MOST = {"translational": 16, "spatial": 4}  # phases per axis: fewer than those of the real models, for small grids
 DEADLY = 2.0 * np.pi * 3 / 4  # alpha1, alpha2 of the one point of a 4 x 4 grid that a failing model fails at
@@ -164,6 +164,7 @@ def known_motions(study: Study, surfaces: xr.Dataset, *rest: object) -> list[Sto
                         support_force=force if model.key == "spatial" else np.zeros(0),
                         yaw=0.001 * np.sin(time) if model.key == "spatial" else np.zeros(0),
                         demands=known_demands(scene, model.key == "spatial"),
+                        spectra=known_spectra(scene),
                     )
                 )
     return found
@@ -176,8 +177,14 @@ def known_demands(scene: Scene, supported: bool) -> Demands:
     return Demands(
         Outcome.OK.value, number, Estimate(np.nan, np.nan), number, None, (number,) * bodies, number,
         (number,) * (bodies - 1), number, number, support, support,
-        (number,) * bodies if supported else None, number,
+        (number,) * bodies if supported else None, number, support, number, None if supported else Estimate(0.0, 0.25),
     )  # fmt: skip
+
+
+def known_spectra(scene: Scene) -> FloorSpectra:
+    """Every number is 1.5 with an error of 0.25."""
+    shape = (len(scene.bodies), 2, 2)
+    return FloorSpectra(np.array([0.1, 1.0]), 0.05, np.full(shape, 1.5), np.full(shape, 0.25))
 
 
 def planted(

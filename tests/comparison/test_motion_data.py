@@ -18,7 +18,7 @@ import multibody
 import reference
 from comparison.analysis.trajectories import SHARE, Place, StoredMotion, moved, swing
 from comparison.execution.cache import Cache, Key
-from comparison.report.motion_data import ROUNDING, contact_geometry, packed_motions, places, starts_of
+from comparison.report.motion_data import ROUNDING, contact_geometry, packed_motions, places, spectrum_axis, starts_of
 from comparison.study.models import REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL, Model
 from multibody.film import contact_paths
 from reference.problem import Scene, builtin_scenes, demands, load_scene
@@ -121,6 +121,16 @@ def test_the_path_of_the_contact_point_follows_from_position_and_yaw_as_the_layo
     assert contact_geometry(bare) == {"lever": None, "supports": None}
 
 
+def test_the_page_has_the_spectra_of_the_whole_motion(scene, motions) -> None:
+    whole = reference.floor_spectra(reference.trajectory(scene, PHASE, equations="small"))
+    [place] = json.loads(json.dumps(list(places(found(*motions), scene, starts_of(motions))), allow_nan=False))
+    axis = spectrum_axis(found(*motions), scene)
+    np.testing.assert_allclose(axis["period"], whole.period, rtol=1e-3)
+    assert axis["damping"] == 0.05
+    np.testing.assert_allclose(place["motions"][0]["spectra"], whole.acceleration, rtol=1e-3)
+    assert spectrum_axis(found(), scene)["period"] == []
+
+
 def test_a_refused_motion_has_no_numbers_and_unknown_demands() -> None:
     long = load_scene("fig3-I").with_values({"duration": 1e5})
     motion = stored(long, TRANSLATIONAL)
@@ -128,6 +138,7 @@ def test_a_refused_motion_has_no_numbers_and_unknown_demands() -> None:
     [about] = place["motions"]
     assert (about["status"], about["count"], about["blocks"]) == ("step limit", 0, {})
     assert about["demands"]["drift"] == [[None, None]]
+    assert about["spectra"] is None
     assert packed_motions(found(motion)) == packed_motions(found())
 
 
@@ -137,6 +148,9 @@ def test_a_stored_motion_is_read_back_from_the_cache_as_it_was(tmp_path: Path, m
         Cache(tmp_path).put(key, (motion, 0.5))
         kept, _ = Cache(tmp_path).get(key, tuple[StoredMotion, float])
         assert repr(kept.demands) == repr(motion.demands), "NaN included"
+        assert kept.spectra is not None
+        assert motion.spectra is not None
+        np.testing.assert_array_equal(kept.spectra.acceleration, motion.spectra.acceleration)
         for name, block in motion.blocks().items():
             np.testing.assert_array_equal(kept.blocks()[name], block)
 
@@ -168,6 +182,10 @@ def test_the_summary_lists_the_demands_of_every_stored_motion(finished: Path) ->
             assert entry["residual"] == {"value": None, "error": None}
             assert (len(entry["acceleration"]), len(entry["drift"])) == (len(scene.bodies), len(scene.bodies) - 1)
             assert (entry["support_force_min"] is None) == (entry["model"] != "spatial")
+            assert (entry["uplift"] is None) == (entry["model"] != "spatial") == (entry["energy_balance"] is not None)
+            assert entry["friction_energy"] == {"value": 1.5, "error": 0.25}
+            assert entry["spectra"]["period"] == [0.1, 1.0]
+            assert entry["spectra"]["acceleration"] == [[[1.5, 1.5]] * 2] * len(scene.bodies)
 
 
 def test_known_demands_have_the_shape_of_real_ones(scene) -> None:

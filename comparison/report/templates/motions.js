@@ -68,11 +68,22 @@ function motionFigures(scene, models, motions) {
       height: 130, x: time, y: { title: "", range: [-0.6, 1.6], ticks: [[0, "2nd"], [1, "1st"]] },
       series: shown.map(({ motion, k }) => ({ ...line(k), dash: "", width: 9, x: motion.about.stick.flatMap(([a, b]) => [a, b, b]), y: motion.about.stick.flatMap(() => [1 - k, 1 - k, null]) })),
     }),
+    ...spectraFigures(scene, shown, line, figure),
     ...(shown.some(({ motion }) => motion.columns("contact_force")) ? [over("contact force of the isolator", "N", motion => motion.column("contact_force") ?? [])] : []),
     ...supports.map(({ motion, k }) => figure(`support forces, ${study.titles[models[k]]}`, {
       x: time, y: { title: "N" }, series: Array.from({ length: motion.columns("support_force") }, (_, i) => ({ name: `support ${i + 1}`, color: i % 7, width: 1.1, x: motion.time, y: motion.column("support_force", i) })),
     })),
   ];
+}
+
+// floor response spectra of the chosen body, one plot per direction
+function spectraFigures(scene, shown, line, figure) {
+  const { period, damping } = scene.spectra, { body } = state, with_spectra = shown.filter(({ motion }) => motion.about.spectra);
+  if (!with_spectra.length) return [];
+  return ["x", "y"].map((axis, i) => figure(`floor spectrum of the ${body === 1 ? "platform" : `body ${body}`} in ${axis}, ${100 * damping} % damping`, {
+    x: { title: "period, s", log: true }, y: { title: "pseudo-acceleration, m/s²" },
+    series: with_spectra.map(({ motion, k }) => ({ ...line(k), x: period, y: motion.about.spectra[body - 1][i] })),
+  }));
 }
 
 // where the contact point goes on the sphere of each support, seen from above; of the platform itself without a stated sphere
@@ -90,6 +101,7 @@ const DEMANDS = [
   ["contact_force_min", "smallest contact force, N", 1], ["contact_force_max", "largest contact force, N", 1],
   ["support_force_min", "smallest support force, N", 1], ["support_force_max", "largest support force, N", 1],
   ["torsion", "largest rotation about the vertical, mrad", 1e3, i => i ? `body ${i + 1}` : "platform"], ["stops", "number of stops", 1],
+  ["uplift", "largest uplift of a support, mm", MM], ["friction_energy", "energy dissipated by friction, J", 1],
 ];
 function demandsTable(scene, place, models) {
   const demands = models.map(key => place.motions.find(motion => motion.model === key)?.demands ?? null);

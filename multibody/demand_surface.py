@@ -1,0 +1,59 @@
+"""Demands of every phase pair of a surface with the engine."""
+
+from __future__ import annotations
+
+from numpy.typing import ArrayLike
+
+from multibody.integration.refine import MAX_WORK
+from multibody.motion import trajectory
+from reference.problem import PeakDemands, Scene, Trajectory
+from reference.problem.peak_demands import demands_of_motions
+
+
+def peak_demands(
+    scene: Scene,
+    phases: ArrayLike,
+    model: str = "translational",
+    regularization: float | None = 1e-3,
+    tolerance: float = 1e-3,
+    loading: str = "inertial",
+    max_work: float = MAX_WORK,
+) -> PeakDemands:
+    """
+    What the motion at every phase pair demands of isolator and structure, with errors.
+
+    Parameters
+    ----------
+    scene : Scene
+    phases : array_like, (M, 2), rad
+        Initial phases of the loading; any under a record.
+    model, regularization, tolerance, loading, max_work
+        As in `trajectory`.
+
+    Returns
+    -------
+    PeakDemands
+        The fields of `Demands` for all pairs; support forces and uplift only of the spatial model. A pair without an
+        answer is NaN; its status says why.
+
+    Raises
+    ------
+    ValueError
+        For wrong arguments.
+
+    Notes
+    -----
+    Every motion goes to its end and the model is never reduced: demands may settle later than accelerations.
+
+    Examples
+    --------
+    >>> import multibody, reference
+    >>> scene = reference.load_scene("fig3-I").with_values({"duration": 1.0})
+    >>> multibody.peak_demands(scene, [(0.3, 1.1)])["displacement"].value.shape
+    (1,)
+    """
+
+    def move(phase: ArrayLike) -> Trajectory:
+        return trajectory(scene, phase, model, regularization, tolerance, loading=loading, max_work=max_work)
+
+    return demands_of_motions(scene, phases, move)

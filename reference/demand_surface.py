@@ -1,0 +1,59 @@
+"""Demands of every phase pair of a surface by the paper's equations."""
+
+from __future__ import annotations
+
+from numpy.typing import ArrayLike
+
+from reference.motion import trajectory
+from reference.problem import PeakDemands, Scene, Trajectory
+from reference.problem.peak_demands import demands_of_motions
+from reference.surface import checked_demand
+
+
+def peak_demands(
+    scene: Scene,
+    phases: ArrayLike,
+    equations: str = "exact",
+    regularization: float | None = None,
+    tolerance: float = 1e-6,
+    rest_condition: str = "consistent",
+) -> PeakDemands:
+    """
+    What the motion at every phase pair demands of isolator and structure, with errors.
+
+    Parameters
+    ----------
+    scene : Scene
+    phases : array_like, (M, 2), rad
+        Initial phases of the loading; any under a record.
+    equations, regularization, tolerance, rest_condition
+        As in `trajectory`.
+
+    Returns
+    -------
+    PeakDemands
+        The fields of `Demands` for all pairs. A pair without an answer is NaN; its status says why.
+
+    Raises
+    ------
+    ValueError
+        For an argument outside its range (`reference.problem.ranges`), in one line.
+
+    Notes
+    -----
+    Every motion goes to its end: a demand may settle later than the accelerations. So a pair takes some twenty times
+    what `amplification` takes.
+
+    Examples
+    --------
+    >>> import reference
+    >>> demands = reference.peak_demands(reference.load_scene("fig3-I"), [(0.3, 1.1), (2.0, 0.7)])
+    >>> demands["drift"].value.shape, bool((demands["base_shear"].error < 1e-2).all())
+    ((2, 1), True)
+    """
+    checked_demand(scene, equations, regularization, tolerance, None, rest_condition)
+
+    def move(phase: ArrayLike) -> Trajectory:
+        return trajectory(scene, phase, equations, regularization, tolerance, rest_condition)
+
+    return demands_of_motions(scene, phases, move)

@@ -1,0 +1,67 @@
+"""The energy of a motion: what the ground puts in, what friction takes out, what is stored."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from reference.problem.constants import GRAVITY
+from reference.problem.result import Array, Trajectory
+
+
+class Energy(NamedTuple):
+    """Powers and stored energy at T instants; NaN where the motion does not tell."""
+
+    time: Array  # (T,) s
+    friction: Array  # (T,) W, power that friction dissipates
+    ground: Array  # (T,) W, power of the inertial forces in the plate's frame
+    stored: Array  # (T,) J, kinetic and elastic energy of the bodies, and that of gravity
+
+    def dissipated(self) -> float:
+        """Energy that friction has dissipated at the end, J."""
+        return float(np.trapezoid(self.friction, self.time))
+
+    def missing(self) -> float:
+        """Work of the ground less what friction dissipates and what is stored, J: zero but for errors."""
+        return float(np.trapezoid(self.ground - self.friction, self.time) - (self.stored[-1] - self.stored[0]))
+
+    def thinned(self, step: int) -> list[Energy]:
+        """One of `step` instants, from the first, the second, ... on, and both ends."""
+        last = len(self.time) - 1
+        kept = [np.unique([0, *range(first, last, step), last]) for first in range(step)]
+        return [Energy(*(part[rows] for part in self)) for rows in kept]
+
+
+def energy_of(motion: Trajectory) -> Energy:
+    """
+    Powers and stored energy of a motion.
+
+    Parameters
+    ----------
+    motion : Trajectory
+
+    Returns
+    -------
+    Energy
+        `ground` and `stored` are NaN where bodies turn, which takes up energy that the motion does not show.
+
+    Notes
+    -----
+    The bodies of the small equations keep their height. Their gravity is that of the paraboloid
+    z = (x^2 + y^2) / (2 rho), on which (4.3) move.
+    """
+    scene, place, velocity = motion.scene, motion.position, motion.velocity
+    masses = scene.masses
+    height, climb = place[:, :, 2], velocity[:, :, 2]
+    if not height.any():
+        height = np.broadcast_to((place[:, :1, :2] ** 2).sum(axis=2) / (2.0 * scene.radius), height.shape)
+        climb = np.broadcast_to((place[:, :1, :2] * velocity[:, :1, :2]).sum(axis=2) / scene.radius, climb.shape)
+    kinetic = 0.5 * (masses[:, None] * velocity**2).sum(axis=(1, 2))
+    elastic = 0.5 * (scene.stiffness * np.diff(place[:, :, :2], axis=1) ** 2).sum(axis=(1, 2))
+    stored = kinetic + elastic + GRAVITY * height @ masses
+    shaking = np.concatenate([velocity[:, :, :2], climb[:, :, None]], axis=2)
+    ground = -np.einsum("i,tia,ta->t", masses, shaking, motion.ground)
+    if "turns" in motion.extra:
+        stored, ground = np.full_like(stored, np.nan), np.full_like(ground, np.nan)
+    return Energy(motion.time, motion.friction_power, ground, stored)

@@ -1,0 +1,151 @@
+"""Floor response spectra: closed forms of an oscillator, an independent solution, the same from both sides."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+
+import multibody
+import reference
+from reference.problem import Scene, Trajectory
+
+PHASE = (2.0, 0.7)
+DAMPING = 0.05
+
+
+def floor(time: np.ndarray, acceleration: np.ndarray) -> Trajectory:
+    """A motion of one body whose absolute acceleration (T, 2) is known."""
+    scene = Scene.model_validate(
+        {
+            "title": "a floor",
+            "duration": float(time[-1]),
+            "isolator": {"radius": 1.0, "friction": 0.1},
+            "bodies": [{"mass": 1.0}],
+            "excitation": {"amplitudes": [[1.0, 0.0], [0.0, 1.0]], "periods": [1.0, 1.0], "decay": [0.0, 0.0]},
+        }
+    )
+    zero = np.zeros((len(time), 1, 3))
+    total = zero.copy()
+    total[:, 0, :2] = acceleration
+    return Trajectory(time, zero, zero.copy(), total, np.zeros(len(time)), [], "ok", np.nan, scene)
+
+
+def harmonic(period: float, duration: float, count: int) -> Trajectory:
+    time = np.linspace(0.0, duration, count)
+    wave = np.sin(2.0 * np.pi / period * time)
+    return floor(time, np.stack([wave, 2.0 * wave], axis=1))
+
+
+def test_both_sides_have_the_same_function() -> None:
+    assert reference.floor_spectra is multibody.floor_spectra
+
+
+def test_an_oscillator_in_resonance_amplifies_by_one_over_twice_its_damping() -> None:
+    spectra = reference.floor_spectra(harmonic(0.8, 80.0, 40_001), [0.8], DAMPING)
+    assert spectra.acceleration[0, 0, 0] == pytest.approx(1.0 / (2.0 * DAMPING), rel=1e-4)
+    assert spectra.acceleration[0, 1, 0] == pytest.approx(2.0 / (2.0 * DAMPING), rel=1e-4), "the other direction"
+
+
+@pytest.mark.parametrize("period", [0.5, 0.9, 2.4])
+def test_a_harmonic_floor_agrees_with_duhamel_s_integral(period) -> None:
+    """u(t) = -1/w_d int a(s) e^(-D w (t - s)) sin(w_d (t - s)) ds."""
+    natural = 2.0 * np.pi / period
+    damped = natural * np.sqrt(1.0 - DAMPING**2)
+
+    def displacement(t: float) -> float:
+        def kernel(s: float) -> float:
+            decay = np.exp(-DAMPING * natural * (t - s)) * np.sin(damped * (t - s))
+            return float(np.sin(2.0 * np.pi / 0.8 * s) * decay)
+
+        return quad(kernel, 0.0, t, limit=400)[0] / damped
+
+    expected = natural**2 * max(abs(displacement(t)) for t in np.linspace(0.01, 6.0, 3000))
+    spectra = reference.floor_spectra(harmonic(0.8, 6.0, 12_001), [period], DAMPING)
+    assert spectra.acceleration[0, 0, 0] == pytest.approx(expected, rel=1e-4)
+
+
+def test_a_jump_of_a_rigid_floor_is_twice_amplified_without_damping() -> None:
+    """u'' + w^2 u = -1 from rest swings up to 2 / w^2."""
+    time = np.array([0.0, 1.0, np.nextafter(1.0, 2.0), 5.0])
+    step = np.array([0.0, 0.0, 1.0, 1.0])
+    spectra = reference.floor_spectra(floor(time, np.stack([step, -step], axis=1)), [0.3, 1.7], 0.0)
+    np.testing.assert_allclose(spectra.acceleration[0], 2.0, rtol=1e-4)
+
+
+def test_an_oscillator_that_is_much_stiffer_than_the_motion_follows_the_floor() -> None:
+    motion = reference.trajectory(reference.load_scene("fig4-viscous"), PHASE)
+    spectra = reference.floor_spectra(motion, [0.01])
+    largest = np.abs(motion.absolute_acceleration[:, :, :2]).max(axis=0)
+    np.testing.assert_allclose(spectra.acceleration[:, 0, 0], largest[:, 0], rtol=2e-2)
+
+
+@pytest.mark.parametrize("name", ["fig3-I", "synthetic-pair"])
+def test_the_floors_of_a_motion_agree_with_an_independent_solution(name) -> None:
+    scene = reference.load_scene(name).with_values({"duration": 4.0})
+    motion = reference.trajectory(scene, PHASE)
+    periods = [0.11, 0.6, 2.0]
+    spectra = reference.floor_spectra(motion, periods)
+    for row, period in enumerate(periods):
+        natural = 2.0 * np.pi / period
+        for body in range(len(scene.bodies)):
+            force = motion.absolute_acceleration[:, body, 0]
+
+            def slope(t, y, natural=natural, force=force):
+                return [y[1], -np.interp(t, motion.time, force) - 2.0 * DAMPING * natural * y[1] - natural**2 * y[0]]
+
+            solution = solve_ivp(slope, (0.0, 4.0), [0.0, 0.0], rtol=1e-7, atol=1e-11, max_step=5e-3)
+            expected = natural**2 * np.abs(solution.y[0]).max()
+            assert spectra.acceleration[body, 0, row] == pytest.approx(expected, rel=2e-3)
+
+
+@pytest.mark.parametrize(("name", "regularization"), [("fig3-I", 1e-3), ("fig4-viscous", None)])
+def test_the_spectra_of_the_two_sides_agree_within_their_errors(name, regularization) -> None:
+    agree(reference.load_scene(name), regularization)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["fig3-II", "fig4-dry", "synthetic-pair"])
+def test_the_spectra_of_the_two_sides_agree_within_their_errors_in_every_scene(name) -> None:
+    agree(reference.load_scene(name), 1e-3)
+
+
+def agree(scene: Scene, regularization: float | None) -> None:
+    ours = reference.floor_spectra(reference.trajectory(scene, PHASE, regularization=regularization))
+    theirs = reference.floor_spectra(multibody.trajectory(scene, PHASE, regularization=regularization))
+    assert (np.abs(ours.acceleration - theirs.acceleration) <= ours.error + theirs.error).all()
+    largest = theirs.acceleration.max(axis=2, keepdims=True)
+    assert (theirs.error <= 2e-2 * np.maximum(theirs.acceleration, 1e-2 * largest)).all()
+
+
+@pytest.mark.parametrize(("name", "regularization"), [("fig3-II", None), ("fig3-II", 1e-3), ("synthetic-pair", None)])
+def test_more_samples_change_less_than_the_error(name, regularization) -> None:
+    scene = reference.load_scene(name).with_values({"duration": 10.0})
+    motion = reference.trajectory(scene, PHASE, regularization=regularization)
+    gaps = np.diff(motion.time) / 4.0
+    between = (motion.time[:-1, None] + gaps[:, None] * np.arange(1, 4))[gaps > 1e-9].ravel()
+    times = np.union1d(motion.time, between)
+    finer = reference.floor_spectra(reference.trajectory(scene, PHASE, regularization=regularization, times=times))
+    spectra = reference.floor_spectra(motion)
+    assert (np.abs(spectra.acceleration - finer.acceleration) <= spectra.error).all()
+    assert np.median(spectra.error / spectra.acceleration) < 2e-3
+
+
+def test_a_motion_that_ended_early_has_no_spectra() -> None:
+    scene = reference.load_scene("fig3-I").with_values(
+        {"excitation.amplitudes": [[9.0, 0.0], [0.0, 9.0]], "isolator.friction": 0.01}
+    )
+    motion = reference.trajectory(scene, PHASE)
+    assert motion.status == "rim reached"
+    assert np.isnan(reference.floor_spectra(motion).acceleration).all()
+
+
+@pytest.mark.parametrize(
+    ("periods", "damping", "rule"),
+    [([0.0, 1.0], 0.05, "periods: must be positive"), ([[1.0]], 0.05, "periods: must be"), ([1.0], -0.1, "damping")],
+)
+def test_misfits_are_refused_in_one_line(periods, damping, rule) -> None:
+    motion = harmonic(0.8, 1.0, 101)
+    with pytest.raises(ValueError, match=rule) as refused:
+        reference.floor_spectra(motion, periods, damping)
+    assert "\n" not in str(refused.value)

@@ -1,0 +1,179 @@
+"""Demands of every phase pair: those of the single motions, the same from both sides, gaps that cost no other pair."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import multibody
+import reference
+from reference.problem import GRAVITY, Estimate, PeakDemands, Scene, demands, ground_acceleration, phase_grid
+
+V_REG = 1e-3
+SHARED = ("displacement", "base_shear", "acceleration", "drift", "contact_force_min", "contact_force_max")
+
+
+def frame() -> Scene:
+    """Six bodies under a recorded pair."""
+    recorded = reference.load_scene("synthetic-pair").model_dump(exclude_none=True)
+    return Scene.model_validate(
+        {
+            "title": "six bodies",
+            "duration": 8.0,
+            "isolator": {"radius": 1.0, "friction": 0.04},
+            "bodies": [{"mass": 50.0}] + [{"mass": 40.0, "period": [0.5, 0.6]} for _ in range(5)],
+            "excitation": recorded["excitation"],
+        }
+    )
+
+
+def same(first: PeakDemands, second: PeakDemands) -> None:
+    """Every number of both sides agrees within the two errors, which are small."""
+    assert set(first.status) == set(second.status) == {"ok"}
+    assert set(first) == set(second)
+    for name in first:
+        ours, theirs = first[name], second[name]
+        known = np.isfinite(ours.value)
+        assert known.all() or name == "residual"
+        assert (known == np.isfinite(theirs.value)).all(), name
+        assert (np.abs(ours.value - theirs.value) <= ours.error + theirs.error)[known].all(), name
+        if name in SHARED:
+            assert (theirs.error <= 1e-2 * theirs.value).all(), name
+
+
+def test_a_surface_has_the_demands_of_its_motions() -> None:
+    scene, phases = reference.load_scene("fig3-I"), phase_grid(2)
+    surface = reference.peak_demands(scene, phases, regularization=V_REG)
+    for row, phase in enumerate(phases):
+        single = demands(reference.trajectory(scene, phase, regularization=V_REG))
+        for name, estimates in surface.items():
+            value = getattr(single, name)
+            listed = [value] if isinstance(value, Estimate) else value
+            np.testing.assert_array_equal(np.atleast_1d(estimates.value[row]), [each.value for each in listed])
+            np.testing.assert_array_equal(np.atleast_1d(estimates.error[row]), [each.error for each in listed])
+
+
+def test_the_accelerations_are_those_of_the_amplification_factors() -> None:
+    scene, phases = reference.load_scene("fig3-II"), phase_grid(3)
+    surface = reference.peak_demands(scene, phases)
+    mu = reference.amplification(scene, phases)
+    ground = reference.problem.ground_peak(scene, phases)[:, None]
+    error = surface["acceleration"].error / ground + mu.error
+    assert (np.abs(surface["acceleration"].value / ground - mu.mu) <= error).all()
+    share = surface["cap_share"].value
+    np.testing.assert_allclose(share, mu.cap_share, rtol=1e-3)
+
+
+@pytest.mark.parametrize("name", ["fig3-I", "fig4-viscous"])
+def test_the_two_sides_agree_within_their_errors_at_four_phases(name) -> None:
+    both_sides(name, 2)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"])
+def test_the_two_sides_agree_within_their_errors_at_64_phases(name) -> None:
+    both_sides(name, 8)
+
+
+def both_sides(name: str, points: int) -> None:
+    scene = reference.load_scene(name)
+    law = None if scene.lubricated else V_REG
+    phases = phase_grid(points) + 0.1
+    same(
+        reference.peak_demands(scene, phases, regularization=law),
+        multibody.peak_demands(scene, phases, regularization=law),
+    )
+
+
+@pytest.mark.long
+def test_the_two_sides_agree_within_their_errors_on_six_bodies_under_a_record() -> None:
+    scene, phase = frame(), [(0.0, 0.0)]
+    same(reference.peak_demands(scene, phase, regularization=V_REG), multibody.peak_demands(scene, phase))
+
+
+@pytest.mark.parametrize("name", ["fig3-I", "fig4-viscous"])
+def test_base_shear_and_contact_force_are_those_of_an_independent_solution(name) -> None:
+    """Equations of two bodies on a sphere, written here, by SciPy: R = sum of m a, N from the curvature."""
+    scene, phase = reference.load_scene(name).with_values({"duration": 8.0}), (2.0, 0.7)
+    law = None if scene.lubricated else 1e-2
+    shear, contact = alone(scene, phase, law)
+    answer = reference.peak_demands(scene, [phase], regularization=law)
+    for name_of, expected in (
+        ("base_shear", shear.max()),
+        ("contact_force_max", contact.max()),
+        ("contact_force_min", contact.min()),
+    ):
+        assert answer[name_of].value[0] == pytest.approx(expected, rel=1e-4), name_of
+
+
+def alone(scene: Scene, phase: tuple[float, float], law: float | None) -> tuple[np.ndarray, np.ndarray]:
+    """Base shear and contact force (T,), N, of two bodies."""
+    lower, upper = scene.masses
+    weight, radius, link = lower + upper, scene.radius, scene.stiffness[0]
+
+    def forces(t: float, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+        """Accelerations of both bodies relative to the plate, and the contact force."""
+        place, above, velocity = y[:2], y[2:4], y[4:6]
+        shaking = ground_acceleration(scene, phase, [t])[0]
+        depth = np.sqrt(radius**2 - place @ place)
+        climb = place @ velocity / depth
+        speed = np.sqrt(velocity @ velocity + climb**2)
+        factor = scene.friction_coefficient * (1.0 if law is None else 1.0 / max(speed, law))
+        normal = np.array([*(-place), depth]) / radius
+        pull = link * (above - place)
+        # unknowns: horizontal acceleration of the platform and the contact force N
+        slip = factor * np.array([*velocity, climb])
+        matrix = np.zeros((3, 3))
+        matrix[:2, :2] = lower * np.eye(2)
+        matrix[:, 2] = -(normal - slip)
+        # vertical: weight * (a_z + g + ground) = N (n_z - slip_z), a_z from the sphere
+        matrix[2, :2] = weight * place / depth
+        bend = (velocity @ velocity + climb**2) / depth
+        right = np.array([*(pull - lower * shaking[:2]), -weight * (bend + GRAVITY + shaking[2])])
+        solution = np.linalg.solve(matrix, right)
+        return solution[:2], -pull / upper - shaking[:2], float(solution[2])
+
+    def slope(t: float, y: np.ndarray) -> np.ndarray:
+        platform, body, _ = forces(t, y)
+        return np.concatenate([y[4:], platform, body])
+
+    duration = scene.duration
+    solution = solve_ivp(
+        slope, (0.0, duration), np.zeros(8), "Radau", rtol=1e-8, atol=1e-10, max_step=0.02, t_eval=None
+    )
+    shear, contact = [], []
+    for t, y in zip(solution.t, solution.y.T):
+        platform, body, force = forces(t, y)
+        shaking = ground_acceleration(scene, phase, [t])[0, :2]
+        shear.append(np.hypot(*(lower * (platform + shaking) + upper * (body + shaking))))
+        contact.append(force)
+    return np.array(shear), np.array(contact)
+
+
+def test_a_pair_without_an_answer_is_nan_and_costs_no_other() -> None:
+    scene = reference.load_scene("fig3-I").with_values(
+        {"excitation.amplitudes": [[9.0, 0.0], [0.0, 9.0]], "isolator.friction": 0.01}
+    )
+    phases = phase_grid(3)
+    surface = reference.peak_demands(scene, phases)
+    lost = surface.status != "ok"
+    assert lost.any()
+    for estimates in surface.values():
+        assert np.isnan(estimates.value[lost]).all()
+    assert np.isfinite(surface.instant[lost]).all()
+    engine = multibody.peak_demands(scene, phases[lost][:1])
+    assert engine.status[0] in ("rim reached", "contact lost")
+    assert np.isnan(engine["drift"].value).all()
+
+
+def test_wrong_arguments_are_refused_in_one_line() -> None:
+    scene = reference.load_scene("fig3-I")
+    with pytest.raises(ValueError, match="equations") as refused:
+        reference.peak_demands(scene, [], equations="exakt")
+    assert "\n" not in str(refused.value)
+
+
+def test_no_phases_give_empty_demands() -> None:
+    surface = reference.peak_demands(reference.load_scene("fig3-I"), np.empty((0, 2)))
+    assert (len(surface), surface.status.shape) == (0, (0,))
