@@ -5,11 +5,24 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    PlainSerializer,
+    PlainValidator,
+    WithJsonSchema,
+    model_validator,
+)
 
+from reference.problem.plain_values import hashable, plain
 from reference.problem.ranges import SCENE
+from reference.problem.record_files import checked_samples
 from reference.problem.scene_error import EXCITATIONS
 
 USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
@@ -60,6 +73,22 @@ class Table(BaseModel):
     """One table of the file: unknown keys, wrong types and numbers outside their range are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+    long_keys: ClassVar[frozenset[str]] = frozenset()  # arrays that stay arrays, and that a hash leaves out
+
+    @model_validator(mode="before")
+    @classmethod
+    def _plain(cls, table: Any) -> Any:
+        """Arrays, tuples and numbers of numpy as a file would have them."""
+        if not isinstance(table, dict):
+            return table
+        return {key: value if key in cls.long_keys else plain(value) for key, value in table.items()}
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, type(self)) and self.model_dump() == other.model_dump()
+
+    def __hash__(self) -> int:
+        short = [hashable(getattr(self, key)) for key in type(self).model_fields if key not in self.long_keys]
+        return hash((type(self).__name__, *short))
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """A copy without changes. Raises ValueError with `update`, which pydantic would not validate."""
@@ -165,8 +194,18 @@ class Excitation(Table):
     scale: Annotated[Positive | None, about("factor of all amplitudes; 1 without it", "", ALL)] = None
 
 
+Samples = Annotated[
+    NDArray[np.float64],
+    PlainValidator(checked_samples),
+    PlainSerializer(np.ndarray.tolist),
+    WithJsonSchema({"type": "array"}),
+]
+
+
 class Record(Table):
-    """Recorded ground acceleration in place of the two frequencies: its files, and the samples read from them."""
+    """Recorded ground acceleration in place of the two frequencies: where it is from, and its samples."""
+
+    long_keys = frozenset({"samples"})
 
     record: Annotated[
         Text | dict[str, Text],
@@ -178,8 +217,7 @@ class Record(Table):
         ),
     ]
     scale: Annotated[Positive, about("factor of every acceleration of the record", "", ALL)] = 1.0
-    # s and m/s^2 along x, y, z, unscaled; read from the files, no key of a scene file
-    samples: list[Annotated[list[float], Field(min_length=4, max_length=4)]]
+    samples: Samples  # (K, 4), s and m/s^2 along x, y, z, unscaled; read from the files, no key of a scene file
 
     @property
     def files(self) -> str:
