@@ -78,7 +78,7 @@ def test_a_motion_that_no_suite_has_is_refused_in_one_line(folder, record, key, 
 
 def test_a_file_of_a_suite_that_is_no_record_is_named(folder):
     (folder / "suite" / "b.csv").write_text("time [s],ax [g]\n0,one\n1,0\n")
-    with pytest.raises(SceneError, match="b.csv: line 2: 'one': must be a number"):
+    with pytest.raises(SceneError, match=r"b\.csv: line 2: 'one': must be a number"):
         load_scene(written(folder, 'suite = "suite", motion = 2'))
 
 
