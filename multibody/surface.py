@@ -19,7 +19,7 @@ from reference.problem import (
     Amplification,
     Outcome,
     Scene,
-    checked_phases,
+    flat_phases,
     ground_peak,
     in_plane,
     planar_chain,
@@ -46,8 +46,8 @@ def amplification(
     Parameters
     ----------
     scene : Scene
-    phases : array_like, shape (M, 2)
-        Initial phases of the two harmonics, rad.
+    phases : array_like, shape (..., 2)
+        Initial phases of the two harmonics, rad, in any shape: one pair, a list of pairs, a grid.
     model : {"translational", "spatial"}
         The paper's degrees of freedom, or bodies that turn on supports that may open.
     regularization : float or None
@@ -68,11 +68,10 @@ def amplification(
     Returns
     -------
     Amplification
-        `mu` and its estimated absolute error `error`, both (M, N); `status` (M,); `instant` (M,), s, at which a status
-        other than "ok" arose; `cost`, s; `cap_share` (M,). A point without an answer is NaN, with status "rim reached",
-        "travel reached", "contact lost", "overturned", "solver failed", "step limit", "no ground motion" or
-        "non-finite load".
-        "tolerance not met" keeps its mu with the error that was reached.
+        `mu` and its estimated absolute error `error`, both (..., N); `status` (...,); `instant` (...,), s, at which a
+        status other than "ok" arose; `cost`, s; `cap_share` (...,). A point without an answer is NaN, with status
+        "rim reached", "travel reached", "contact lost", "overturned", "solver failed", "step limit", "no ground motion"
+        or "non-finite load". "tolerance not met" keeps its mu with the error that was reached.
 
     Raises
     ------
@@ -94,7 +93,7 @@ def amplification(
     >>> multibody.amplification(scene, [(0.3, 1.1)]).status.tolist()
     ['ok']
     """
-    pairs = checked_phases(phases)
+    pairs, leading = flat_phases(phases)
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
     max_work = checked_number("max_work", max_work, WORK)
     clock = time.process_time()
@@ -116,7 +115,8 @@ def amplification(
                 mu[m], error[m] = point.peaks / ground[m], point.errors / ground[m]
                 if np.isfinite(point.peaks).all():
                     cap_share[m] = point.finest.max_displacement
-    return Amplification(mu, error, status, instant, time.process_time() - clock, cap_share)
+    cost = time.process_time() - clock
+    return Amplification(mu, error, status, instant, cost, cap_share, pairs).reshaped(leading)
 
 
 @dataclass(frozen=True)

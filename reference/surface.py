@@ -16,8 +16,8 @@ from reference.problem import (
     Amplification,
     Outcome,
     Scene,
-    checked_phases,
     exponents,
+    flat_phases,
     ground_peak,
     in_plane,
     linear,
@@ -82,8 +82,8 @@ def amplification(
     Parameters
     ----------
     scene : Scene
-    phases : array_like, (M, 2), rad
-        Initial phases (alpha_1, alpha_2) of the loading.
+    phases : array_like, (..., 2), rad
+        Initial phases (alpha_1, alpha_2) of the loading, in any shape: one pair, a list of pairs, a grid.
     equations : {"exact", "small"}
         (3.9)-(3.13), or the equations of small vibration (4.3)-(4.4).
     regularization : float, optional, m/s
@@ -101,7 +101,8 @@ def amplification(
     Returns
     -------
     Amplification
-        A point without an answer is NaN; its status says why. The other points do not depend on it.
+        `mu` and `error` have the shape (..., N). A point without an answer is NaN; its status says why. The other
+        points do not depend on it.
 
     Raises
     ------
@@ -124,7 +125,7 @@ def amplification(
     >>> bool((result.error <= 1e-4 * result.mu).all())
     True
     """
-    pairs = checked_phases(phases)
+    pairs, shape = flat_phases(phases)
     flat = not full and rest_condition == "consistent" and planar(scene).allowed  # (4.6) as printed knows directions
     moving, axes = (in_plane(scene), 1) if flat else (scene, 2)
     system, demand = checked_demand(moving, equations, regularization, tolerance, cutoff, rest_condition, axes)
@@ -133,7 +134,7 @@ def amplification(
     instant, cap_share = np.full(count, np.nan), np.full(count, np.nan)
     status = np.full(count, Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")
     if not loads_are_finite(system):
-        return Amplification(mu, error, status, np.zeros(count), 0.0)
+        return Amplification(mu, error, status, np.zeros(count), 0.0, phases=pairs).reshaped(shape)
 
     summed = system.small and not full and linear(scene).allowed
 
@@ -167,7 +168,7 @@ def amplification(
         solve(slice(0, 1))  # compiled once, before the threads need it
         with ThreadPoolExecutor(threads) as pool:
             cost = sum(pool.map(solve, parts(count, PARTS_PER_THREAD * threads)))
-    return Amplification(mu, error, status, instant, cost, cap_share)
+    return Amplification(mu, error, status, instant, cost, cap_share, pairs).reshaped(shape)
 
 
 def superposed(scene: Scene, system: System, phases: Array, demand: Demand) -> Peaks:

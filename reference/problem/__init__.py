@@ -10,7 +10,8 @@ exponents, loading_period                                       of the loading
 ground_peak                                                     denominator of (5.1)
 demands                                                         what a motion demands of isolator and structure
 phase_distribution                                              mean and fractiles of mu over uniform phases
-checked_phase, checked_phases, phase_axis, phase_grid           phase pairs
+checked_phase, checked_phases, flat_phases, phase_axis,
+phase_grid                                                      phase pairs
 half_turn, own_axes, planar, planar_chain, linear, no_friction,
 untilted, mirror_symmetric, unused_harmonics, in_plane          what a scene does not require
 verbatim                                                        a text of a scene for matplotlib
@@ -44,7 +45,7 @@ from reference.problem.families import Family, load_family
 from reference.problem.figure_text import verbatim
 from reference.problem.outcome import ADVICE, Outcome
 from reference.problem.peak_demands import Estimates, PeakDemands
-from reference.problem.phases import checked_phase, checked_phases, phase_axis, phase_grid
+from reference.problem.phases import checked_phase, checked_phases, flat_phases, phase_axis, phase_grid
 from reference.problem.reductions import (
     Reduction,
     half_turn,
@@ -88,6 +89,7 @@ __all__ = [
     "demands",
     "example_scenes",
     "exponents",
+    "flat_phases",
     "floor_spectra",
     "ground_acceleration",
     "ground_displacement",

@@ -17,8 +17,6 @@ def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapp
     keys: the valid keys of every table, by its name. Raises SceneError.
     """
     parts = key.split(".")
-    if key == "excitation.record":
-        raise SceneError(scene, key, value, "the files of a record are read by load_scene: write a scene file")
     place: Any = data
     for depth, part in enumerate(parts):
         last = depth == len(parts) - 1
@@ -34,6 +32,9 @@ def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapp
             index = part
         if not last:
             place = place[index]
+        elif key == "excitation.record":
+            place["record"] = value
+            place.pop("samples", None)  # those of the record before
         elif value is not None:
             place[index] = value.tolist() if isinstance(value, np.ndarray | np.generic) else value
         elif isinstance(place, dict):

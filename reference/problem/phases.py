@@ -73,6 +73,71 @@ def checked_phase(phase: ArrayLike) -> Array:
     return checked_phases(pair.reshape(1, 2))[0]
 
 
+def flat_phases(phases: ArrayLike) -> tuple[Array, tuple[int, ...]]:
+    """
+    Phase pairs of any shape as a list of pairs.
+
+    Parameters
+    ----------
+    phases : array_like, (..., 2), rad
+
+    Returns
+    -------
+    ndarray, (M, 2), rad
+        The pairs, checked as by `checked_phases`.
+    tuple of int
+        Shape of `phases` before its last axis.
+
+    Raises
+    ------
+    ValueError
+        As `checked_phases`.
+
+    Examples
+    --------
+    >>> pairs, shape = flat_phases([[(0.5, 1.0), (0.5, 2.0)]])
+    >>> pairs.shape, shape
+    ((2, 2), (1, 2))
+    """
+    rule = f"must be (..., 2), {PHASE.rule}"
+    array = checked_array("phases", phases, rule)
+    if array.shape[-1:] != (2,):
+        raise ValueError(f"phases: shape {array.shape}: must be (..., 2), rad")
+    return checked_phases(array.reshape(-1, 2)), array.shape[:-1]
+
+
+def grid_axes(phases: Array) -> tuple[Array, Array] | None:
+    """
+    The two axes of a grid of phases.
+
+    Parameters
+    ----------
+    phases : ndarray, (A, B, 2) or (A B, 2), rad
+        Any other array of pairs is no grid.
+
+    Returns
+    -------
+    tuple of ndarray, (A,) and (B,), rad, or None
+        None if the pairs are no grid of at least 2 x 2 whose alpha_2 runs fastest.
+
+    Examples
+    --------
+    >>> [axis.round(3).tolist() for axis in grid_axes(phase_grid(2))]
+    [[0.0, 3.142], [0.0, 3.142]]
+    """
+    if phases.ndim == 2 and len(phases):
+        turns = np.flatnonzero(phases[:, 0] != phases[0, 0])
+        rows = int(turns[0]) if len(turns) else len(phases)
+        if len(phases) % rows:
+            return None
+        phases = phases.reshape(-1, rows, 2)
+    if phases.ndim != 3 or min(phases.shape[:2]) < 2:
+        return None
+    first, second = phases[:, 0, 0], phases[0, :, 1]
+    grid = np.stack(np.meshgrid(first, second, indexing="ij"), axis=-1)
+    return (first, second) if np.array_equal(grid, phases) else None
+
+
 def phase_axis(points: int) -> Array:
     """
     Equally spaced phases on [0, 2 pi), the same to the last bit on every axis that has them.

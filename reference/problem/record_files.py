@@ -1,8 +1,8 @@
 """
 Recorded accelerograms: CSV, all directions in one file, and PEER NGA .AT2, one direction per file.
 
-Both end as samples (K, 4): time from the first sample on, s, and acceleration along x, y, z, m/s^2, zero along a
-direction that was not recorded. `excitation.py` defines the motion between samples.
+Both, and arrays, end as samples (K, 4): time from the first sample on, s, and acceleration along x, y, z, m/s^2, zero
+along a direction that was not recorded. `excitation.py` defines the motion between samples.
 """
 
 from __future__ import annotations
@@ -12,12 +12,13 @@ import io
 import re
 from collections.abc import Mapping
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reference.problem.constants import GRAVITY
-from reference.problem.ranges import brief
+from reference.problem.ranges import brief, checked_array
 
 Array = NDArray[np.float64]
 
@@ -37,6 +38,7 @@ NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE | re.ASCII)
 MAX_COUNT_DIGITS = 9  # of NPTS
 MAX_ACCELERATION = 1e300  # finite in any unit
 MIN_INTERVAL = 1e-9  # s, between samples
+ACCELERATIONS = "(K,) along x, (K, 2) along x and y or (K, 3), m/s^2"
 STEP_MISMATCH = 1e-6  # relative: DT is printed with four to six digits
 
 
@@ -171,11 +173,49 @@ def _number(line: int, cell: str) -> float:
     return value
 
 
+def array_samples(time: Any, acceleration: Any) -> Array:
+    """
+    Samples (K, 4) of arrays.
+
+    time: (K,), s, rising. acceleration: (K,) along x, (K, 2) along x and y or (K, 3), m/s^2. Raises RecordError.
+    """
+    instants = _numbers("time", time, "(K,), s")
+    values = _numbers("acceleration", acceleration, ACCELERATIONS)
+    columns = values[:, None] if values.ndim == 1 else values
+    if instants.ndim != 1:
+        raise RecordError(f"time: shape {instants.shape}: must be (K,), s")
+    if columns.ndim != 2 or len(columns) != len(instants) or not 1 <= columns.shape[1] <= 3:
+        raise RecordError(f"acceleration: shape {values.shape} at {len(instants)} instants: must be {ACCELERATIONS}")
+    samples = np.zeros((len(instants), 4))
+    samples[:, 0], samples[:, 1 : 1 + columns.shape[1]] = instants, columns
+    return _checked(samples)
+
+
+def checked_samples(samples: Any) -> Array:
+    """Samples (K, 4) that cannot be changed, from what `samples` holds; time counts from the first. RecordError."""
+    array = np.array(_numbers("samples", samples, "(K, 4)"))
+    if array.ndim != 2 or array.shape[1] != 4:
+        raise RecordError(f"samples: shape {array.shape}: must be (K, 4): s and m/s^2 along x, y, z")
+    return _checked(array)
+
+
+def _numbers(name: str, values: Any, shape: str) -> Array:
+    try:
+        array = checked_array(name, values, f"must be {shape}")
+    except ValueError as error:
+        raise RecordError(str(error)) from None
+    if np.abs(array).max(initial=0.0) > MAX_ACCELERATION:
+        raise RecordError(f"{name}: must be at most {MAX_ACCELERATION:g} in size")
+    return array
+
+
 def _checked(samples: Array) -> Array:
+    """The samples with the first at 0 s, read-only."""
     if len(samples) < 2:
         raise RecordError(f"{len(samples)} samples: must have at least 2")
     samples[:, 0] -= samples[0, 0]
     shortest = float(np.diff(samples[:, 0]).min())
     if shortest < MIN_INTERVAL:
         raise RecordError(f"{shortest:g} s from sample to sample: must be at least {MIN_INTERVAL:g} s")
+    samples.setflags(write=False)
     return samples

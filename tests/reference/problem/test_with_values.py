@@ -66,7 +66,7 @@ def test_none_leaves_a_key_out_and_arrays_are_lists():
         ("bodies.1.period", [1.0], "2 items"),
         ("bodies.0.period", [1.0, 1.0], "platform"),
         ("excitation.periods.0", None, "must be a number"),
-        ("excitation.record", "a.csv", "load_scene"),
+        ("excitation.record", "a.csv", "takes the place of amplitudes, periods and decay"),
         ("title", "a\0b", "control characters"),
         ("title", "a\x01b", "control characters"),
         ("name", "a\nb", "control characters"),

@@ -1,0 +1,55 @@
+"""Values from Python as a scene file has them, and as a hash takes them."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from typing import Any
+
+import numpy as np
+
+
+def plain(value: Any) -> Any:
+    """
+    Lists and numbers of Python in place of arrays, tuples and numbers of numpy, at any depth of lists.
+
+    Parameters
+    ----------
+    value : object
+        Tables inside it stay as they are.
+
+    Returns
+    -------
+    object
+
+    Examples
+    --------
+    >>> plain((np.float64(0.5), np.arange(2)))
+    [0.5, [0, 1]]
+    """
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    return [plain(part) for part in value] if isinstance(value, list | tuple) else value
+
+
+def hashable(value: Any) -> Hashable:
+    """
+    Tuples and frozen sets in place of lists and tables, at any depth.
+
+    Parameters
+    ----------
+    value : object
+        Dictionaries and lists of anything that has a hash.
+
+    Returns
+    -------
+    Hashable
+        Equal for equal values.
+
+    Examples
+    --------
+    >>> hash(hashable({"a": [1.0]})) == hash(hashable({"a": [1]}))
+    True
+    """
+    if isinstance(value, dict):
+        return frozenset((key, hashable(part)) for key, part in value.items())
+    return tuple(map(hashable, value)) if isinstance(value, list) else value

