@@ -55,22 +55,23 @@ class Section:
     """
     One section of the page: templates/sections/<name>.html.j2 below its heading, in the order of SECTIONS.
 
-    result: the field of `Results` it shows; where that is None the section is left out and `absent` says which command
-    makes it. draw: writes its pictures into the folder of the figures. title_recorded: title where no scene has phases,
+    shows: fields of `Results`; where all of them are None the section is left out and `absent` says which command makes
+    it. draw: writes its pictures into the folder of the figures. title_recorded: title where no scene has phases,
     "" for the same. folded: whether the reader opens it.
     """
 
     name: str
     title: str
-    result: str = ""
+    shows: tuple[str, ...] = ()
     absent: str = ""
     draw: Callable[[Path, Findings], None] | None = None
     title_recorded: str = ""
     folded: bool = True
 
     def present(self, results: Results) -> bool:
-        """Whether the section was asked for and the results hold what it shows."""
-        return self.name not in results.absent and (not self.result or getattr(results, self.result) is not None)
+        """Whether the section was asked for and the results hold any of what it shows."""
+        held = [getattr(results, name) is not None for name in self.shows]
+        return self.name not in results.absent and (not held or any(held))
 
     def title_of(self, results: Results) -> str:
         """Title of the section in these results."""
@@ -85,13 +86,9 @@ def draw_all_assumptions(figures: Path, findings: Findings) -> None:
 
 
 def draw_all_trades(figures: Path, findings: Findings) -> None:
-    """The diagrams of every scene that has them."""
+    """The diagrams of every scene that has them, and that of how the cost grows."""
     for trade in findings.tradeoff or ():
         draw_tradeoff(figures / tradeoff_figure_name(trade.scene), trade)
-
-
-def draw_measured_growth(figures: Path, findings: Findings) -> None:
-    """The diagram of how the cost grows, if that was measured."""
     if findings.growth:
         draw_growth(figures / GROWTH_PICTURE, findings.growth.series)
 
@@ -101,21 +98,21 @@ SECTIONS = (
     Section(
         "families",
         "Families of scenes",
-        "families",
+        ("families",),
         "a range in a scene file makes one: friction = {range = [0.02, 0.2], steps = 10}",
         draw_families,
         folded=False,
     ),
     Section(
-        "worst_phases", "Over all phases", "worst_phases", "python -m comparison.run makes it, of scenes with phases"
+        "worst_phases", "Over all phases", ("worst_phases",), "python -m comparison.run makes it, of scenes with phases"
     ),
     Section("differences", "Differences"),
     Section("budget", "What makes the difference"),
-    Section("scaling", "Scaling test", "scaling", "python -m comparison.run makes it, of scenes with phases"),
+    Section("scaling", "Scaling test", ("scaling",), "python -m comparison.run makes it, of scenes with phases"),
     Section(
         "convergence",
         "What the steps tend to",
-        "convergence",
+        ("convergence",),
         "python -m comparison.run makes it, of scenes with phases",
     ),
     Section("outcomes", "Outcomes and cost"),
@@ -123,37 +120,30 @@ SECTIONS = (
     Section(
         "claims",
         "The paper's claims",
-        "claims",
+        ("claims",),
         "python -m comparison.run with every scene of the paper makes it, and python -m comparison.claims alone",
     ),
     Section("errata", "Errata of the print"),
     Section(
         "assumptions",
         "How far the paper's assumptions carry",
-        "assumptions",
+        ("assumptions",),
         "no scene with phases says where its supports are and how high and large its bodies, as the spatial model asks",
         draw_all_assumptions,
     ),
     Section(
         "extremes",
         "Stability at the extremes",
-        "extremes",
+        ("extremes",),
         "python -m comparison.extremes makes it, beside the report; the next run of the study shows it",
         lambda figures, findings: draw_extremes(figures / PICTURE, findings.extremes) if findings.extremes else None,
     ),
     Section(
         "tradeoff",
         "Speed for accuracy",
-        "tradeoff",
+        ("tradeoff", "growth"),
         "python -m comparison.tradeoff SCENE makes it, beside the report; the next run of the study shows it",
         draw_all_trades,
-    ),
-    Section(
-        "growth",
-        "How the cost grows",
-        "growth",
-        "python -m comparison.tradeoff SCENE --growth makes it, beside the report; the next run of the study shows it",
-        draw_measured_growth,
     ),
     Section("effective", "Effective values"),
     Section("verification", "What checks each side alone"),

@@ -107,7 +107,7 @@ def test_growth_beside_a_report_is_part_of_it_where_a_value_is_missing_too(
     run = command(*SMALL)
     assert run.code == 0, run.err
     page = (report / "index.html").read_text(encoding="utf-8")
-    for seen in ('id="growth"', "engine: slope 2.00", "no answer", "made by a test"):
+    for seen in ('id="tradeoff"', "engine: slope 2.00", "no answer", "made by a test"):
         assert seen in page, seen
     summary = json.loads((report / "summary.json").read_text(encoding="utf-8"))
     assert summary["growth"]["series"][1]["slope"] is None
