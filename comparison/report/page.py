@@ -7,6 +7,7 @@ import hashlib
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -244,6 +245,7 @@ def content_policy(script: str, style: str) -> str:
     return "; ".join(f"{name} {value}" for name, value in (denied | allowed).items())
 
 
+@cache
 def _environment() -> jinja2.Environment:
     loader = jinja2.PackageLoader("comparison.report", "templates")
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)

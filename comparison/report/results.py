@@ -10,6 +10,7 @@ Two types hold what JSON cannot: `Number` writes NaN as null, and `Text` replace
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
@@ -1018,6 +1019,7 @@ class Results(Part):
         return json_text(self.model_dump(mode="json", by_alias=True))
 
 
+@cache
 def schema_json() -> str:
     """JSON schema (draft 2020-12) of summary.json."""
     schema = Results.model_json_schema(by_alias=True, mode="serialization")
