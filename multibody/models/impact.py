@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.models.depressions import Depressions, angular_velocity_matrix, rotation
+from reference.problem import DryFriction
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -34,7 +35,7 @@ class ImpactLaw:
     axes: Array  # (N, 3, 3), these axes at rest, columns
     centers: Array  # (N, 3), of mass, at rest, from the axis on which the links stand
     restitution: float
-    friction: float  # coefficient
+    friction: DryFriction  # the rate over speeds in units of the model
     corner: float  # slip speed under which the coefficient is reduced linearly
 
     def after(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
@@ -114,6 +115,10 @@ class ImpactLaw:
         upward = normals[:, 2] * velocities[self.depressions.vertical]
         return leaving - np.minimum(upward, 0.0), leaving - upward
 
+    def _coefficient(self, slip: Array) -> float:
+        """Friction coefficient at a slip velocity (2,)."""
+        return float(self.friction.at(np.hypot(*slip))) if self.friction.varies else self.friction.slow
+
     def _turning(self, coordinates: Array) -> Array:
         """Matrix (6 N, 6 N) that makes velocities and angular velocities of the bodies of the engine's velocities."""
         count = PER_BODY * len(self.masses)
@@ -186,7 +191,7 @@ class ImpactLaw:
                     np.hypot(0.5 * (block[1, 1] - block[2, 2]), block[1, 2])
                 )
                 free = now[1:] - across * old[1:] + block[1:, 0] * (normal - old[0])
-                size, limit = float(np.hypot(*free)), self.friction * normal
+                size, limit = float(np.hypot(*free)), self._coefficient(now[1:]) * normal
                 impulses[k, 0] = normal
                 impulses[k, 1:] = -limit * free / max(size, self.corner + across * limit)
                 change = max(change, float(np.abs(block @ (impulses[k] - old)).max()))
