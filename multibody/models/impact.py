@@ -35,7 +35,7 @@ class ImpactLaw:
     axes: Array  # (N, 3, 3), these axes at rest, columns
     centers: Array  # (N, 3), of mass, at rest, from the axis on which the links stand
     restitution: float
-    friction: DryFriction  # the rate over speeds in units of the model
+    friction: DryFriction  # of the slip speed before the impact, in units of the model
     corner: float  # slip speed under which the coefficient is reduced linearly
 
     def after(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
@@ -115,10 +115,6 @@ class ImpactLaw:
         upward = normals[:, 2] * velocities[self.depressions.vertical]
         return leaving - np.minimum(upward, 0.0), leaving - upward
 
-    def _coefficient(self, slip: Array) -> float:
-        """Friction coefficient at a slip velocity (2,)."""
-        return float(self.friction.at(np.hypot(*slip))) if self.friction.varies else self.friction.slow
-
     def _turning(self, coordinates: Array) -> Array:
         """Matrix (6 N, 6 N) that makes velocities and angular velocities of the bodies of the engine's velocities."""
         count = PER_BODY * len(self.masses)
@@ -180,6 +176,7 @@ class ImpactLaw:
         """
         impulses = np.zeros_like(before)
         scale = float(np.abs(before).max(initial=0.0))
+        friction = self.friction.at(np.hypot(before[:, 1], before[:, 2])).tolist()
         for _ in range(MAX_SWEEPS):
             change = 0.0
             for k in range(len(before)):
@@ -191,7 +188,7 @@ class ImpactLaw:
                     np.hypot(0.5 * (block[1, 1] - block[2, 2]), block[1, 2])
                 )
                 free = now[1:] - across * old[1:] + block[1:, 0] * (normal - old[0])
-                size, limit = float(np.hypot(*free)), self._coefficient(now[1:]) * normal
+                size, limit = float(np.hypot(*free)), friction[k] * normal
                 impulses[k, 0] = normal
                 impulses[k, 1:] = -limit * free / max(size, self.corner + across * limit)
                 change = max(change, float(np.abs(block @ (impulses[k] - old)).max()))
