@@ -17,6 +17,14 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
     ("At the top of the file", "", "", ""),
     ("`[isolator]`", "Isolator", "isolator", "The spherical gravity-friction isolator under the platform."),
     (
+        "`isolator.friction` as a table",
+        "VelocityFriction",
+        "isolator.friction",
+        "Friction that depends on the slip speed, mu(v) = fast - (fast - slow) exp(-rate v), as in friction-pendulum"
+        " practice: `friction = {slow = 0.03, fast = 0.06, rate = 100.0}`. It holds the platform at rest with `slow`."
+        " Regularized it is mu(v) min(1, v / v_reg). Each of the three may run over a range.",
+    ),
+    (
         "`[[bodies]]`",
         "Body",
         "bodies",
@@ -88,7 +96,8 @@ def _limits(key: str, field: dict[str, Any]) -> str:
     """The range of a key: the one that `ranges.SCENE` states, or what its type says."""
     if key in SCENE:
         allowed = SCENE[key]
-        return f"{allowed.lowest:g} to {allowed.highest:g}"
+        table = ", or table" if any(part.startswith(f"{key}.") for part in SCENE) else ""
+        return f"{allowed.lowest:g} to {allowed.highest:g}{table}"
     kinds = [kind for kind in field.get("anyOf", [field]) if kind.get("type") != "null"]
     if any("$ref" in kind for kind in kinds):
         return "table"

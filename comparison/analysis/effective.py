@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 PHASES = (0.3, 1.1)  # rad, of the motion that is measured
 DURATION = 6.0  # s: two frequencies are strongest in their first seconds; a record is followed to its end
 SECONDS = {"reference": 0.02, "engine": 0.2}  # predicted cost of one motion, s on `study.models.RECORDED_ON`
+LEAST_SHARE = 0.1  # of the change from slow to fast friction: motions that see less of it do not tell the fast one
 FASTEST = 0.9  # friction is measured where the platform slides faster than this part of its largest speed
 
 
@@ -37,7 +38,8 @@ class Effective:
     Values read back from one motion, NaN where the motion does not tell.
 
     radius: m, of the sphere the platform moves on, (x^2 + y^2 + z^2) / 2z at its largest excursion. friction:
-    tangential over normal part of the contact force while sliding, over |v| in a lubricated scene (s/m). contact: N,
+    tangential over normal part of the contact force while sliding, over |v| in a lubricated scene (s/m), and where it
+    depends on the velocity the coefficient at high speed that follows from it. contact: N,
     contact force at t = 0. mass: kg, total, the contact force at t = 0 over the apparent gravity. acceleration: m/s^2,
     absolute, of the platform at t = 0: that of the ground where friction holds it, 0 where friction begins with
     the speed. error_message: why there are none, or "".
@@ -60,7 +62,7 @@ def stated(scene: Scene) -> Effective:
         scene=scene.name,
         model="scene",
         radius=scene.radius,
-        friction=scene.friction_coefficient,
+        friction=scene.dry_friction.fast if scene.dry_friction.varies else scene.friction_coefficient,
         contact=float(scene.total_mass * (GRAVITY + ground[2])),
         mass=scene.total_mass,
         acceleration=float(np.linalg.norm(ground)),
@@ -144,4 +146,10 @@ def _friction(scene: Scene, motion: Trajectory, radius: float) -> float:
     speed = np.linalg.norm(motion.velocity[:, 0], axis=1)
     fast = speed > FASTEST * speed.max()
     ratio = across[fast] / along[fast]
+    law = scene.dry_friction
+    if law.varies:
+        share = -np.expm1(-law.rate * speed[fast])  # of the change from slow to fast
+        if not share.min() > LEAST_SHARE:
+            return float("nan")
+        ratio = law.slow + (ratio - law.slow) / share
     return float(np.median(ratio / speed[fast] if scene.lubricated else ratio))

@@ -44,6 +44,7 @@ class _Fixed(NamedTuple):
     rho: float
     friction: float
     lubricated: bool
+    varies: bool  # whether the friction depends on the speed
     total: float
     masses: Array  # (2 N,), each twice
     inertia: Array  # (2 N, 2 N), M but for its first two rows
@@ -63,7 +64,7 @@ def _fixed(scene: Scene, errata: Collection[str]) -> _Fixed:
             links[high, high] += k
             links[high, low] -= k
     first = tuple(map(float, scene.stiffness[0])) if len(scene.stiffness) else (0.0, 0.0)
-    law = scene.friction_coefficient, scene.lubricated, float(scene.total_mass)
+    law = scene.friction_coefficient, scene.lubricated, scene.dry_friction.varies, float(scene.total_mass)
     return _Fixed(scene, scene.radius, *law, masses, np.diag(masses), links, (first[0], first[-1]), errata)
 
 
@@ -112,7 +113,8 @@ def _accelerations(fixed: _Fixed, q: Array, v: Array, ground: Array) -> Array:
     p, r = x / delta, y / delta  # P and Q of (3.4)
     speed = math.sqrt(vx**2 + vy**2 + (vx * p + vy * r) ** 2)  # (3.8)
     w = _w(x, y, vx, vy, delta)
-    over_speed = fixed.friction if fixed.lubricated else fixed.friction / max(speed, V_REG)
+    friction = float(fixed.scene.dry_friction.at(speed)) if fixed.varies else fixed.friction
+    over_speed = friction if fixed.lubricated else friction / max(speed, V_REG)
     s = over_speed * rho  # mu rho / v, (3.14) included
 
     inertia = fixed.inertia.copy()

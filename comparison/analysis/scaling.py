@@ -1,7 +1,8 @@
 """
 The scaling test: what is left of the step from small to exact equations when loading and friction grow small together.
 
-Loading and dry friction scaled by s scale the motion by s, and the geometry that the small equations drop is of the
+Loading and dry friction scaled by s (the rate at which it changes with the speed by 1/s) scale the motion by s, and the
+geometry that the small equations drop is of the
 order of its square: the step must fall like s^2. A step that does not is no geometry. Viscous friction mu = f_c |v|
 scales by itself. The printed small equations are not quite invariant either: their friction terms with xi'' x_1 / rho
 shrink like s^2 too, which the second trend shows.
@@ -37,9 +38,12 @@ Arguments = tuple[Scene, bool]  # and whether the supremum is taken
 
 
 def scaled(scene: Scene, s: float) -> Scene:
-    """The scene with loading, dry friction and travel times s."""
+    """The scene with loading, dry friction and travel times s, the rate at which friction changes with the speed over s."""
     values: dict[str, Any] = {"excitation.scale": s * (scene.excitation.scale or 1.0)}
-    if not scene.lubricated:
+    law = scene.dry_friction
+    if law.varies:
+        values["isolator.friction"] = {"slow": s * law.slow, "fast": s * law.fast, "rate": law.rate / s}
+    elif not scene.lubricated:
         values["isolator.friction"] = s * scene.friction_coefficient
     if scene.isolator.travel is not None:
         values["isolator.travel"] = s * scene.isolator.travel

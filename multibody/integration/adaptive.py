@@ -36,6 +36,9 @@ CHUNK_GROWTH = 2  # of the steps in a chunk over those of the chunk before
 FREE_ITERATIONS = 2  # of Newton's method in a step; further ones count as steps
 GAP_RATE_STEPS = 4  # over which the rate of a gap is taken
 KINK_STEP_RATIO = 4.0  # first step behind a kink of the loading over slip_change times the relaxation of friction
+# step times the rate at which friction that depends on the slip speed acts back on it (SpeedFriction), over the allowed
+# change of the slip velocity; at most, as well below the 2/3 at which steps of alternating friction begin to grow
+FEEDBACK_PER_SLIP_CHANGE, MAX_FEEDBACK = 2.0, 0.3
 RIM = 1.0  # largest rise of the platform, in units of length, which is rho
 RECENT_ROWS = 8  # at the end of a chunk: they decide whether the step may grow
 SETTLED_FRACTION = 0.9  # of a largest value: later values below it do not reach it in a run of another level either
@@ -156,7 +159,7 @@ def go_on(
         if openings is not None:
             motion = openings.with_gaps(motion)
         size = absolute_accelerations(model, motion, ground)
-        step_ratio = _step_ratio(motion, engine, size[:, 0], float(result.peaks.value[0]), step / level.slip_change)
+        step_ratio = _step_ratio(motion, engine, size[:, 0], float(result.peaks.value[0]), step, level.slip_change)
         last = len(motion.time) - 1
         failing = np.flatnonzero(step_ratio > 1.0)
         rejected = divisions < level.max_divisions and len(failing) > 0
@@ -273,13 +276,17 @@ def _record_settling(result: EngineRun, time: Array, size: Array, displacement: 
         result.settled = float(time[len(time) - 1 - near[::-1].argmax()])
 
 
-def _step_ratio(motion: Motion, engine: Engine, platform: Array, peak: float, per_change: float) -> Array:
+def _step_ratio(motion: Motion, engine: Engine, platform: Array, peak: float, step: float, slip_change: float) -> Array:
     """
     Each step over what is allowed there, (T,).
 
-    platform: size of its absolute acceleration, (T,). per_change: step over the allowed change of the slip velocity.
+    platform: size of its absolute acceleration, (T,). slip_change: allowed change of the slip velocity in one step.
     """
+    per_change = step / slip_change
     step_ratio = _slip_change(motion, engine, per_change)
+    if engine.model.friction is not None:
+        allowed = min(FEEDBACK_PER_SLIP_CHANGE * slip_change, MAX_FEEDBACK)
+        step_ratio = np.maximum(step_ratio, step / allowed * engine.model.friction.feedback(motion.slip))
     if len(engine.model.ground.knots):
         step_ratio = np.maximum(step_ratio, _behind_kinks(motion, platform, engine, peak, per_change))
     return step_ratio

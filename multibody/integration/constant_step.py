@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -69,7 +69,12 @@ class Motion:
         return Motion(np.empty(0), *(np.empty((0, *width)) for width in widths))
 
     def state(self, row: int) -> EngineState:
-        return EngineState(self.coordinates[row], self.velocities[row], self.contact[row], self.plate[row])
+        state = EngineState(self.coordinates[row], self.velocities[row], self.contact[row], self.plate[row])
+        row = range(len(self.time))[row]
+        if row == 0:
+            return state
+        rate = (self.slip[row] - self.slip[row - 1]) / (self.time[row] - self.time[row - 1])
+        return replace(state, slip_rate=rate)
 
 
 @contextmanager
@@ -133,6 +138,8 @@ class Engine:
         """`count` steps from `state` at time `begin`; None if the engine could not solve one of them."""
         set_initial_state(self.model, state)
         self.model.ground.begin(begin)
+        if self.model.friction is not None:
+            self.model.friction.begin(self.model.mbs, state.contact, state.slip_rate, begin)
         integration = self.settings.timeIntegration
         integration.startTime = begin
         integration.endTime = begin + count * step

@@ -20,7 +20,11 @@ MAX_LINEAR_SPEED = 1e6  # v_reg of the lubricated contact in units of velocity, 
 
 
 def contact_law(scene: Scene, regularization: float | None, units: Units) -> tuple[float, float]:
-    """Friction coefficient of the contact, and the speed in units of velocity under which it is reduced linearly."""
+    """
+    Friction coefficient of the contact, and the speed in units of velocity under which it is reduced linearly.
+
+    The largest coefficient, where it depends on the slip speed: `SpeedFriction` sets it before every step.
+    """
     if scene.lubricated:
         return scene.friction_coefficient * units.velocity * MAX_LINEAR_SPEED, MAX_LINEAR_SPEED
     if regularization is None:
@@ -87,4 +91,4 @@ def settled_contact(state: EngineState, gap_rate: float, penetration: float) -> 
     velocities[:3] -= normal * excess_speed
     coordinates[:3] -= normal * rise
     contact[0] -= rise
-    return EngineState(coordinates, velocities, contact, state.plate)
+    return EngineState(coordinates, velocities, contact, state.plate, state.slip_rate)

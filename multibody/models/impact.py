@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.models.depressions import Depressions, angular_velocity_matrix, rotation
+from reference.problem import DryFriction
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -34,7 +35,7 @@ class ImpactLaw:
     axes: Array  # (N, 3, 3), these axes at rest, columns
     centers: Array  # (N, 3), of mass, at rest, from the axis on which the links stand
     restitution: float
-    friction: float  # coefficient
+    friction: DryFriction  # of the slip speed before the impact, in units of the model
     corner: float  # slip speed under which the coefficient is reduced linearly
 
     def after(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
@@ -175,6 +176,7 @@ class ImpactLaw:
         """
         impulses = np.zeros_like(before)
         scale = float(np.abs(before).max(initial=0.0))
+        friction = self.friction.at(np.hypot(before[:, 1], before[:, 2])).tolist()
         for _ in range(MAX_SWEEPS):
             change = 0.0
             for k in range(len(before)):
@@ -186,7 +188,7 @@ class ImpactLaw:
                     np.hypot(0.5 * (block[1, 1] - block[2, 2]), block[1, 2])
                 )
                 free = now[1:] - across * old[1:] + block[1:, 0] * (normal - old[0])
-                size, limit = float(np.hypot(*free)), self.friction * normal
+                size, limit = float(np.hypot(*free)), friction[k] * normal
                 impulses[k, 0] = normal
                 impulses[k, 1:] = -limit * free / max(size, self.corner + across * limit)
                 change = max(change, float(np.abs(block @ (impulses[k] - old)).max()))

@@ -40,6 +40,10 @@ class SymbolicGround:
     def begin(self, time: float) -> None:
         """Nothing: the expression holds at any time."""
 
+    def before_step(self, mbs: Any, end: float) -> bool:
+        """Nothing likewise."""
+        return True
+
     def along(self, axis: int, time: Any) -> Any:
         """Expression of the acceleration along `axis` at the symbolic instant `time`."""
         total, time = exudyn.symbolic.Real(0.0), time + self.shift

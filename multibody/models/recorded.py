@@ -34,7 +34,7 @@ class RecordedGround:
         self._shift, self._interval = 0.0, -1
         self._origin = exudyn.symbolic.Real("origin", 0.0)
         self._value, self._rate = ([exudyn.symbolic.Real(f"{name}{k}", 0.0) for k in range(3)] for name in "ar")
-        mbs.SetPreStepUserFunction(self._before_step)
+        mbs.SetPreStepUserFunction(self.before_step)
 
     def set_phase(self, phase: Any) -> None:
         """Nothing: a record has no phases."""
@@ -52,7 +52,8 @@ class RecordedGround:
         """Expression of the acceleration along `axis` at the symbolic instant `time`, inside the step being made."""
         return self._value[axis] + self._rate[axis] * (time - self._origin)
 
-    def _before_step(self, mbs: Any, end: float) -> bool:
+    def before_step(self, mbs: Any, end: float) -> bool:
+        """Enter the interval of the step that ends at this instant."""
         self._enter(int(np.searchsorted(self._time, end + self._shift - self.near)))
         return True
 

@@ -38,6 +38,7 @@ from multibody.models.impact import ImpactLaw
 from multibody.models.loading import Ground, ground_of, symbolic_load
 from multibody.models.plate import plate_for
 from multibody.models.recorders import add_recorders
+from multibody.models.speed_friction import SpeedFriction
 from multibody.models.supports import (
     DETERMINATE,
     MIN_WARPING_COMPLIANCE,
@@ -48,7 +49,7 @@ from multibody.models.supports import (
 )
 from multibody.models.system import EngineModel, EngineState
 from multibody.models.units import Units, link_stiffness, units_of
-from reference.problem import Scene, State
+from reference.problem import DryFriction, Scene, State
 from reference.problem.supports import edge_distance, ring_places
 
 Array = NDArray[np.float64]
@@ -91,11 +92,15 @@ def spatial(
     mbs.Assemble()
 
     index = PER_BODY * np.arange(len(masses))[:, None] + np.arange(3)
-    parts = _Parts(mbs, units, index, contacts, links, supports, radius, friction, bearing_penetration)
+    varies = scene.dry_friction.varies
+    varying = SpeedFriction(mbs, scene, units, threshold, contacts, ground) if varies else None
+    parts = _Parts(mbs, units, index, contacts, links, supports, radius, friction, varying, bearing_penetration)
     vertical = parts.body_coordinates + supports.vertical
     under_platform = Depressions(ring, centers[0], radius, vertical)
     restitution = scene.isolator.restitution or 0.0
-    law = ImpactLaw(under_platform, masses, inertias, axes, centers, restitution, friction, threshold)
+    constant = DryFriction(friction, friction, 0.0)
+    law = constant if varying is None else varying.law
+    impact_law = ImpactLaw(under_platform, masses, inertias, axes, centers, restitution, law, threshold)
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     return EngineModel(
         mbs=mbs,
@@ -119,9 +124,10 @@ def spatial(
         bearing_penetration=bearing_penetration,
         depressions=under_platform,
         critical_tilt=_critical_tilt(ring, radius, masses, centers),
-        impact=None if bearing_penetration else law,
+        impact=None if bearing_penetration else impact_law,
         bar_lags=parts.bar_lags,
         set_open=parts.set_open,
+        friction=varying,
     )
 
 
@@ -141,6 +147,7 @@ class _Parts:
     supports: Supports
     radius: float  # of the spheres
     friction: float
+    varying: SpeedFriction | None  # where friction depends on the slip speed
     bearing_penetration: float  # by the weight, as the scene's bearings state it, or 0
 
     @property
@@ -195,6 +202,8 @@ class _Parts:
 
     def set_frictionless(self, frictionless: bool) -> None:
         """See `EngineModel`."""
+        if self.varying is not None:
+            self.varying.frictionless = frictionless
         for contact in self.contacts:
             self.mbs.SetObjectParameter(contact, "dynamicFriction", 0.0 if frictionless else self.friction)
 

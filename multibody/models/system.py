@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from multibody.models.depressions import Depressions
 from multibody.models.impact import ImpactLaw
 from multibody.models.loading import Ground
+from multibody.models.speed_friction import SpeedFriction
 from multibody.models.units import Units
 from reference.problem import State
 
@@ -29,6 +30,7 @@ class EngineState:
     velocities: Array  # (n,)
     contact: Array  # (c,), contact data
     plate: Array = field(default_factory=AT_REST.copy)  # (3, 3), its own displacement, velocity, acceleration
+    slip_rate: Array | None = None  # (K,), of the contacts' slip speeds over the last step, where there was one
 
 
 @dataclass(frozen=True)
@@ -77,6 +79,7 @@ class EngineModel:
     # distance of the supports from a plane, (T,), for coordinates (T, n); None if the supports do not share the load
     warping_displacement: Callable[[Array], Array] | None = None
     bearing_penetration: float = 0.0  # by the weight, as the scene's bearings state it, or 0
+    friction: SpeedFriction | None = None  # of contacts whose friction depends on the slip speed
 
     @property
     def container(self) -> Any:

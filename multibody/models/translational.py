@@ -26,6 +26,7 @@ from multibody.models.engine import exudyn, items
 from multibody.models.loading import Ground, ground_of, symbolic_load
 from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate, plate_for
 from multibody.models.recorders import add_recorders
+from multibody.models.speed_friction import SpeedFriction
 from multibody.models.system import EngineModel, EngineState
 from multibody.models.units import link_stiffness, units_of
 from reference.problem import Scene, State
@@ -92,6 +93,7 @@ def translational(
     def settle(state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
         return settled_contact(state, float(gap_rate[0]), penetration)
 
+    varies = scene.dry_friction.varies
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     return EngineModel(
         mbs=mbs,
@@ -108,6 +110,7 @@ def translational(
         moving_plate=plate.moves,
         carried=bodies,
         references=(container, expressions),
+        friction=SpeedFriction(mbs, scene, units, threshold, [contact], ground) if varies else None,
     )
 
 

@@ -45,8 +45,8 @@ def circular_shaking(scene: Scene, acceleration: float, frequency: float, equati
     """
     if not np.array_equal(scene.stiffness[:, 0], scene.stiffness[:, 1]):
         raise ValueError("links differ in x and y: the motion is not circular")
-    if scene.lubricated:
-        raise ValueError("dry friction only")
+    if scene.lubricated or scene.dry_friction.varies:
+        raise ValueError("constant dry friction only")
 
     def misfit(radius: float) -> float:
         free, held, _ = _response(scene, acceleration, frequency, radius if equations == "exact" else 0.0)

@@ -21,6 +21,7 @@ Classes
 Scene, Family                       the system with its loading; the scenes of one file
 State, Amplification, Trajectory    arguments and results of both sides
 Demands, PhaseDistribution           numbers of one motion; of mu over all phases
+DryFriction                         coefficient of friction over the slip speed
 Estimate, Accuracy                  a number with its error; what errors are made from
 Outcome, Reduction, SceneError      why a point has no answer; why work is left out; what is wrong with a scene
 
@@ -43,6 +44,7 @@ from reference.problem.excitation import (
 )
 from reference.problem.families import Family, load_family
 from reference.problem.figure_text import verbatim
+from reference.problem.friction import DryFriction
 from reference.problem.outcome import ADVICE, Outcome
 from reference.problem.peak_demands import Estimates, PeakDemands
 from reference.problem.phases import checked_phase, checked_phases, flat_phases, phase_axis, phase_grid
@@ -71,6 +73,7 @@ __all__ = [
     "Accuracy",
     "Amplification",
     "Demands",
+    "DryFriction",
     "Estimate",
     "Estimates",
     "Family",

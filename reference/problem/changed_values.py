@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from reference.problem.ranges import brief
 from reference.problem.scene_error import SceneError, unknown_key
 
 
@@ -27,6 +28,11 @@ def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapp
             index: Any = int(part)
         else:
             table = ".".join(name for name in parts[:depth] if not name.isdecimal())
+            if part in keys.get(table, ()) and not isinstance(place, dict):
+                rule = (
+                    f"{table} is {brief(place)} and no table: give {table} = {{{' = ..., '.join(keys[table])} = ...}}"
+                )
+                raise SceneError(scene, key, value, rule)
             if not (isinstance(place, dict) and part in keys.get(table, ()) and (last or part in place)):
                 raise unknown_key(scene, ".".join(parts[: depth + 1]), value, keys.get(table, ()))
             index = part

@@ -44,6 +44,10 @@ SCENE: dict[str, Range] = {
     "isolator.period": Range(1e-3, 1e6, "s"),
     "isolator.radius": Range(1e-7, 1e12, "m"),
     "isolator.friction": Range(0.0, 1e3),
+    # without friction at rest nothing ever stops, which is no dry friction
+    "isolator.friction.slow": Range(1e-9, 1e3),
+    "isolator.friction.fast": Range(0.0, 1e3),
+    "isolator.friction.rate": Range(1e-6, 1e10, "s/m"),
     "isolator.lubrication": Range(0.0, 1e9, "s/m"),
     "isolator.supports": Range(3, 1000),
     "isolator.ring": Range(1e-6, 1e6, "m"),

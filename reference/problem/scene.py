@@ -16,9 +16,10 @@ from reference.problem.acceptance import Acceptance, Limits
 from reference.problem.analyses import Analyses
 from reference.problem.changed_values import put_value
 from reference.problem.constants import GRAVITY
+from reference.problem.friction import DryFriction
 from reference.problem.ranges import MAX_CYCLES, SCENE
 from reference.problem.record_loading import with_samples
-from reference.problem.scene_error import EXCITATIONS, MisfitError, SceneError, first_error
+from reference.problem.scene_error import EXCITATIONS, FRICTIONS, MisfitError, SceneError, first_error
 from reference.problem.supports import edge_distance, ring_places
 from reference.problem.tables import (
     ALL,
@@ -30,6 +31,7 @@ from reference.problem.tables import (
     Record,
     Table,
     Text,
+    VelocityFriction,
     about,
     exactly_one,
     kind_of_excitation,
@@ -285,10 +287,18 @@ class Scene(Table):
 
     @property
     def friction_coefficient(self) -> float:
-        """Dry friction coefficient mu, or f_c in s/m when the contact is lubricated."""
-        value = self.isolator.lubrication if self.lubricated else self.isolator.friction
-        assert value is not None
-        return value
+        """Dry friction coefficient mu, the largest where it depends on the velocity, or f_c in s/m when lubricated."""
+        if self.isolator.lubrication is not None:
+            return self.isolator.lubrication
+        return self.dry_friction.largest
+
+    @property
+    def dry_friction(self) -> DryFriction:
+        """The law of dry friction mu(|v|); without friction in a lubricated scene, which has none."""
+        friction = self.isolator.friction
+        if isinstance(friction, VelocityFriction):
+            return DryFriction(friction.slow, friction.fast, friction.rate)
+        return DryFriction(friction or 0.0, friction or 0.0, 0.0)
 
     @property
     def recorded(self) -> bool:
@@ -370,6 +380,8 @@ class Scene(Table):
 KEYS: dict[str, tuple[str, ...]] = {
     "": tuple(Scene.model_fields),
     "isolator": tuple(Isolator.model_fields),
+    "isolator.friction": tuple(VelocityFriction.model_fields),
+    f"isolator.friction.{FRICTIONS[1]}": tuple(VelocityFriction.model_fields),
     "bodies": tuple(Body.model_fields),
     "acceptance": tuple(Acceptance.model_fields),
     "analyses": tuple(Analyses.model_fields),

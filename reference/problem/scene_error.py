@@ -14,6 +14,7 @@ MAX_LETTERS = 300  # letters of a path or a key in an error
 # what a table or key with several forms may be: pydantic puts which was meant into the place of an error
 EXCITATIONS = ("two frequencies", "recorded motion")
 SUPPORTS = ("number of supports", "positions of supports")
+FRICTIONS = ("constant friction", "velocity-dependent friction")
 
 
 class SceneError(ValueError):
@@ -70,7 +71,7 @@ def first_error(file: str, invalid: ValidationError, keys: Mapping[str, Sequence
     misfit = error.get("ctx", {}).get("error")
     if isinstance(misfit, MisfitError):
         return SceneError(file, misfit.key, misfit.value, misfit.rule)
-    place = [part for part in error["loc"] if part not in EXCITATIONS + SUPPORTS]
+    place = [part for part in error["loc"] if part not in EXCITATIONS + SUPPORTS + FRICTIONS]
     key = ".".join(map(str, place)) or "scene"
     if error["type"] == "extra_forbidden":
         table = ".".join(str(part) for part in error["loc"][:-1] if not isinstance(part, int))

@@ -25,7 +25,7 @@ from pydantic import (
 from reference.problem.plain_values import hashable, plain
 from reference.problem.ranges import SCENE, SUPPORT_POSITION, Range
 from reference.problem.record_files import checked_samples
-from reference.problem.scene_error import EXCITATIONS, SUPPORTS
+from reference.problem.scene_error import EXCITATIONS, FRICTIONS, SUPPORTS
 
 USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
 
@@ -112,6 +112,30 @@ def exactly_one(table: BaseModel, first: str, second: str) -> None:
         raise ValueError(f"give exactly one of {first} and {second}, not {len(present)} of them")
 
 
+class VelocityFriction(Table):
+    """Dry friction that depends on the slip speed: mu(|v|) = fast - (fast - slow) exp(-rate |v|)."""
+
+    slow: Annotated[Positive, within("isolator.friction.slow"), about("coefficient at rest", "", ALL)]
+    fast: Annotated[
+        NonNegative, within("isolator.friction.fast"), about("coefficient at high speed, above or below slow", "", ALL)
+    ]
+    rate: Annotated[
+        Positive, within("isolator.friction.rate"), about("rate of the change from slow to fast", "s/m", ALL)
+    ]
+
+
+def kind_of_friction(friction: Any) -> str:
+    """Which of the two a friction is meant to be."""
+    return FRICTIONS[int(isinstance(friction, dict | VelocityFriction))]
+
+
+Friction = Annotated[
+    Annotated[NonNegative, within("isolator.friction"), Tag(FRICTIONS[0])]
+    | Annotated[VelocityFriction, Tag(FRICTIONS[1])],
+    Discriminator(kind_of_friction),
+]
+
+
 class Isolator(Table):
     """Spherical gravity-friction isolator. Exactly one of period and radius, one of friction and lubrication."""
 
@@ -124,8 +148,13 @@ class Isolator(Table):
         about("rho = R - r, depression's radius less that of the sphere; give this or period", "m", ALL),
     ] = None
     friction: Annotated[
-        Annotated[NonNegative, within("isolator.friction")] | None,
-        about("dry friction coefficient mu of (2.5); give this or lubrication", "", ALL),
+        Friction | None,
+        about(
+            "dry friction coefficient mu of (2.5), or the table below where it depends on the velocity; "
+            "give this or lubrication",
+            "",
+            ALL,
+        ),
     ] = None
     lubrication: Annotated[
         Annotated[NonNegative, within("isolator.lubrication")] | None,

@@ -24,6 +24,7 @@ from reference.solver.work import (
     ACROSS,
     ACROSS_SLOPE,
     ALONG,
+    ALONG_BY_SIGMA,
     ALONG_SLOPE,
     CLOCK,
     COSINE,
@@ -43,6 +44,7 @@ from reference.solver.work import (
 MAX_ITERATIONS = 40  # of Newton's method
 ROUNDING_ANGLE = 1e-13  # rad: change of the angles by rounding alone
 DIRECTION_DIFFERENCE = 1e-6  # rad: step of the difference quotient by the direction, needed to a few digits only
+SPEED_DIFFERENCE = 1e-6  # of the speed: step of the difference quotient by its logarithm
 MAX_GUESSED_TURN = 0.5  # rad: a turn is at most towards the force, which the guess must not overshoot
 DIVERGED = 1e3  # change of angle or logarithm of the speed that ends the iteration
 
@@ -62,7 +64,7 @@ def near_stop_step(system: System, work: Work, h: float, tolerance: float) -> in
         if not inside_rim(system, work):
             return beyond_rim(system, work)
         turn_platform(system, work)
-        change = max(change, correct_turning(work, h))
+        change = max(change, correct_turning(system, work, h))
         if not change < DIVERGED or (iteration > 4 and change > 2.0 * before):
             return UNSOLVED
         before = change
@@ -167,7 +169,11 @@ def inside_rim(system: System, work: Work) -> bool:
 
 @compiled
 def turn_platform(system: System, work: Work) -> None:
-    """Acceleration of the platform at the stages, along and across its direction, and their slopes by the direction."""
+    """
+    Acceleration of the platform at the stages, along and across its direction, and their slopes by the direction.
+
+    Where friction depends on the speed, also the slope of that along the direction by the speed's logarithm.
+    """
     turning, stage = work.turning, work.stage
     for k in range(STAGES):
         speed, ex, ey = turning[SPEED, k], turning[COSINE, k], turning[SINE, k]
@@ -180,12 +186,15 @@ def turn_platform(system: System, work: Work) -> None:
         turning[ACROSS, k] = ay * ex - ax * ey
         turning[ALONG_SLOPE, k] = (bx * gx + by * gy - turning[ALONG, k]) / DIRECTION_DIFFERENCE
         turning[ACROSS_SLOPE, k] = (by * gx - bx * gy - turning[ACROSS, k]) / DIRECTION_DIFFERENCE
+        if system.rate > 0.0:
+            cx, cy, _, _ = directed(system, load, (1.0 + SPEED_DIFFERENCE) * speed, ex, ey)
+            turning[ALONG_BY_SIGMA, k] = (cx * ex + cy * ey - turning[ALONG, k]) / SPEED_DIFFERENCE
         turning[LOG_RATIO, k] = log(ratio)
         stage[REACTION, k], stage[SPEED2, k] = reaction, (speed * ratio) ** 2
 
 
 @compiled
-def correct_turning(work: Work, h: float) -> float:
+def correct_turning(system: System, work: Work, h: float) -> float:
     """One iteration of Newton's method for the directions, the speeds behind them; the largest change, or infinity."""
     turning, residual = work.turning, work.residual[:STAGES]
     matrix, pivots = work.matrix[:STAGES, :STAGES], work.pivots[:STAGES]
@@ -198,14 +207,36 @@ def correct_turning(work: Work, h: float) -> float:
     if not factorize(matrix, pivots):
         return inf
     solve(matrix, pivots, residual)
-    change = 0.0
+    change, levels = 0.0, work.levels
     for k in range(STAGES):
         level = work.log_speed
         for m in range(STAGES):
             level += h * A[k, m] * (turning[ALONG, m] + turning[ALONG_SLOPE, m] * residual[m])
-        change = max(change, abs(residual[k]), abs(level - turning[SIGMA, k]))
+        levels[k] = level
+    if system.rate > 0.0 and not correct_levels(work, h):
+        return inf
+    for k in range(STAGES):
+        change = max(change, abs(residual[k]), abs(levels[k] - turning[SIGMA, k]))
         turning[DIRECTION, k] += residual[k]
-        turning[SIGMA, k] = level
+        turning[SIGMA, k] = levels[k]
         if not change < DIVERGED:
             return inf
     return change
+
+
+@compiled
+def correct_levels(work: Work, h: float) -> bool:
+    """Newton's method in place of iteration for the logarithms of the speed in `levels`; False if it has no step."""
+    turning, levels = work.turning, work.levels
+    matrix, pivots = work.matrix[:STAGES, :STAGES], work.pivots[:STAGES]
+    for k in range(STAGES):
+        levels[k] -= turning[SIGMA, k]
+        for m in range(STAGES):
+            matrix[k, m] = -h * A[k, m] * turning[ALONG_BY_SIGMA, m]
+        matrix[k, k] += 1.0
+    if not factorize(matrix, pivots):
+        return False
+    solve(matrix, pivots, levels)
+    for k in range(STAGES):
+        levels[k] += turning[SIGMA, k]
+    return True

@@ -30,7 +30,9 @@ class System(NamedTuple):
     small: bool  # equations (4.3) instead of (3.9)
     law: int
     rest_condition: int
-    friction: float  # mu, or f_c in s/m
+    friction: float  # mu, at rest where it depends on the velocity, or f_c in s/m
+    rise: float  # of mu from rest to high speed
+    rate: float  # s/m, of that rise; 0 where mu is constant
     v_reg: float  # m/s, of the regularized law
     mass_ratio: float  # m_sum / m1
     radius: float  # m
@@ -101,12 +103,15 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
     below[1:] = links / masses[1:, None]
     above[:-1] = links / masses[:-1, None]
     # without friction the lubricated law with f_c = 0 says the same and has no corner
+    dry = scene.dry_friction
     smooth = scene.lubricated or scene.friction_coefficient == 0.0
     return System(
         small=small,
         law=LUBRICATED if smooth else (SET_VALUED if v_reg is None else REGULARIZED),
         rest_condition=PRINTED if printed_rest else CONSISTENT,
-        friction=scene.friction_coefficient,
+        friction=dry.slow if dry.varies else scene.friction_coefficient,
+        rise=dry.fast - dry.slow if dry.varies else 0.0,
+        rate=dry.rate if dry.varies else 0.0,
         v_reg=0.0 if v_reg is None else float(v_reg),
         mass_ratio=float(scene.total_mass / masses[0]),
         radius=float(scene.radius),

@@ -19,7 +19,9 @@ POSITION, VELOCITY, DRIVE, REACTION, SPEED2, DETERMINANT = 0, 2, 4, 6, 7, 8
 # first row of Work.slopes of the derivatives by px, vx, fx; two rows for each of x and y
 BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
 # rows of Work.turning (near_stop.py)
-DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, LOG_RATIO, SPEED, COSINE, SINE = range(11)
+(
+    DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, LOG_RATIO, SPEED, COSINE, SINE, ALONG_BY_SIGMA,
+) = range(12)  # fmt: skip
 POWERS = STAGES + 2  # coefficients of a polynomial: a position is the second integral of one through the stages
 
 
@@ -92,7 +94,7 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     pivots: Array  # (2 S,) rows of the factorized matrix
     chain: Array  # (N, 2, S) position of the bodies at the stages of a step near a stop
     velocity: Array  # (N, 2, S)
-    turning: Array  # (11, S) direction, speed and time there
+    turning: Array  # (12, S) direction, speed and time there
     levels: Array  # (S,) a quantity at the stages whose passage of a level ends the step
     powers: Array  # (5, POWERS) coefficients of the powers of theta where a step is looked at closely
     scale: Array  # (N,) m/s^2, what errors are measured against
@@ -152,7 +154,7 @@ def workspace(bodies: int) -> Work:
         pivots=np.zeros(2 * s),
         chain=np.zeros((n, 2, s)),
         velocity=np.zeros((n, 2, s)),
-        turning=np.zeros((11, s)),
+        turning=np.zeros((12, s)),
         levels=np.zeros(s),
         powers=np.zeros((5, POWERS)),
         scale=np.zeros(n),

@@ -17,7 +17,7 @@ from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import Peaks
 from multibody.models.depressions import Depressions, rotation
 from multibody.models.impact import ImpactLaw
-from reference.problem import GRAVITY, Scene, SceneError
+from reference.problem import GRAVITY, DryFriction, Scene, SceneError
 
 HALF_WIDTH, HEIGHT, RADIUS = 0.5, 3.0, 0.2  # of the square of supports, of the center of mass, of the spheres
 CENTER, AXES = np.array([0.0, 0.0, HEIGHT]), np.eye(3)[None]  # of mass, of inertia
@@ -28,11 +28,12 @@ LEFT, RIGHT = np.array([True, True, False, False]), np.array([False, False, True
 NONE, ALL = np.zeros(4, bool), np.ones(4, bool)
 
 
-def block(restitution: float = 0.0, friction: float = 0.0, corner: float = 1e-9) -> ImpactLaw:
+def block(restitution: float = 0.0, friction: float | DryFriction = 0.0, corner: float = 1e-9) -> ImpactLaw:
     """A block of mass one on the four corners of a square, with the inertia above."""
     depressions = Depressions(CORNERS, CENTER, RADIUS, np.empty(0, np.int_))
     inertias = np.array([[INERTIA, INERTIA, 0.7]])
-    return ImpactLaw(depressions, np.ones(1), inertias, AXES, CENTER[None], restitution, friction, corner)
+    law = DryFriction(friction, friction, 0.0) if isinstance(friction, float) else friction
+    return ImpactLaw(depressions, np.ones(1), inertias, AXES, CENTER[None], restitution, law, corner)
 
 
 def rocking_about_the_left_edge(pace: float) -> np.ndarray[Any, Any]:
@@ -63,7 +64,8 @@ def test_a_rocking_block_on_smooth_supports_slows_down_by_its_inertia() -> None:
 
 def test_a_wide_block_comes_to_rest_on_all_its_supports() -> None:
     depressions = Depressions(4.0 * CORNERS, CENTER, RADIUS, np.empty(0, np.int_))
-    law = ImpactLaw(depressions, np.ones(1), np.full((1, 3), INERTIA), AXES, CENTER[None], 0.0, 0.0, 1.0)
+    friction = DryFriction(0.0, 0.0, 0.0)
+    law = ImpactLaw(depressions, np.ones(1), np.full((1, 3), INERTIA), AXES, CENTER[None], 0.0, friction, 1.0)
     before = np.array([0.0, 0.0, -0.3 * 4.0 * HALF_WIDTH, 0.0, 0.3, 0.0])
     after, is_open = law.after(np.zeros(6), before, LEFT, RIGHT)
     np.testing.assert_allclose(after, 0.0, atol=1e-11)
@@ -78,11 +80,12 @@ def test_a_level_block_that_falls_on_all_supports_rebounds_by_the_restitution(re
     assert is_open.all() == (restitution > 0.0)
 
 
+@pytest.mark.parametrize("varying", [False, True], ids=["constant", "of the velocity"])
 @pytest.mark.parametrize("seed", range(20))
-def test_no_impact_adds_energy_or_breaks_the_laws_of_contact(seed: int) -> None:
+def test_no_impact_adds_energy_or_breaks_the_laws_of_contact(seed: int, varying: bool) -> None:
     random = np.random.default_rng(seed)
     friction, corner = random.uniform(0.0, 0.3), 1e-3
-    law = block(0.0, friction, corner)
+    law = block(0.0, DryFriction(friction, 0.3 - friction, 1.0) if varying else friction, corner)
     coordinates = np.concatenate([random.uniform(-0.2, 0.2, 3), random.uniform(-0.05, 0.05, 3)])
     before = random.normal(size=6)
     hit = random.random(4) < 0.5

@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from reference.problem import GRAVITY, Scene
+from reference.problem.tables import VelocityFriction
 
 
 class RefusalError(Exception):
@@ -30,7 +31,11 @@ class Law:
         self.total = sum(self.mass)
         self.links = [(float(kx), float(ky)) for kx, ky in scene.stiffness]
         self.count = len(self.mass)
-        self.mu = scene.friction_coefficient
+        friction = scene.isolator.friction
+        self.slow, self.fast, self.rate = (
+            (friction.slow, friction.fast, friction.rate) if isinstance(friction, VelocityFriction) else (0.0, 0.0, 0.0)
+        )
+        self.mu = self.slow or scene.friction_coefficient  # at rest
         self.lubricated = scene.lubricated
         self.duration = scene.duration
         self.swing = 0.0  # largest sqrt(x1^2 + y1^2)/rho and smallest normal force of the states accepted so far
@@ -118,13 +123,19 @@ class Law:
             return vx * vx + vy * vy
         return vx * vx + vy * vy + ((x * vx + y * vy) / self.delta(x, y)) ** 2
 
+    def coefficient(self, speed: float) -> float:
+        """Of dry friction at a sliding speed."""
+        if self.rate == 0.0:
+            return self.mu
+        return self.fast - (self.fast - self.slow) * math.exp(-self.rate * speed)
+
     def sliding(
         self, t: float, q: list[float], force: list[float], ex: float, ey: float, horizontal: float
     ) -> tuple[float, float, float, float]:
         """Set-valued dry law, sliding along the horizontal unit direction e at horizontal speed `horizontal`."""
         x, y = q[0], q[1]
         stretch = self.stretch(x, y, ex, ey)
-        scale = self.mu / stretch
+        scale = self.coefficient(horizontal * stretch) / stretch
         return self.platform(t, x, y, force[0], force[1], (scale * ex, scale * ey), (horizontal * stretch) ** 2)
 
     def smooth(
@@ -139,7 +150,7 @@ class Law:
             factor = 0.0
         else:
             assert v_reg is not None
-            factor = self.mu / (v_reg if inside else math.sqrt(square))
+            factor = self.coefficient(math.sqrt(square)) / (v_reg if inside else math.sqrt(square))
         return self.platform(t, x, y, force[0], force[1], (factor * vx, factor * vy), square)
 
     def excess(self, t: float, q: list[float], force: list[float]) -> float:

@@ -200,6 +200,10 @@ def rows() -> Iterator[Row]:
 def _friction_laws() -> Iterator[Row]:
     for friction in (0.0, 1e-9, 1.0, 10.0):
         yield Row("friction", f"{friction:g}", scene(friction=friction), ALL)
+    for rate in (1e-3, 1.0, 1e2, 1e3, 1e4, 1e6, 1e9):
+        for slow, fast in ((0.05, 0.1), (0.1, 0.05)):
+            law = {"slow": slow, "fast": fast, "rate": rate}
+            yield Row("rate of friction, s/m", f"{rate:g}, {slow:g} to {fast:g}", scene(friction=law), ALL)
     for lubrication in (0.0, 1e-9, 1.0, 1e3):
         wet = scene(friction=None, lubrication=lubrication)
         yield Row("lubrication, s/m", f"{lubrication:g}", wet, ("small", "exact", "translational"))

@@ -28,12 +28,13 @@ ALWAYS_LINEAR = 1e6  # m/s, corner of the lubricated law mu = f_c |v|: above any
 @njit  # type: ignore[untyped-decorator]
 def slope(
     t: float, y: Array, amplitudes: Array, s: Any, phase: Array, below: Array, above: Array,
-    mass_ratio: float, radius: float, friction: float, corner: float,
+    mass_ratio: float, radius: float, friction: float, rise: float, rate: float, corner: float,
 ) -> Array:  # fmt: skip
     """
     Time derivative of y = (x, v), each (N, 2), under (3.9)-(3.13) and (4.4), friction linear below `corner`, m/s.
 
-    below, above: (N, 2), stiffness of the links over the mass of the body, 1/s^2.
+    below, above: (N, 2), stiffness of the links over the mass of the body, 1/s^2. friction: at rest; rise: from there
+    to high speed, at this rate, s/m.
     """
     count = len(below)
     z = np.exp(s * t + 1j * phase)
@@ -42,7 +43,10 @@ def slope(
     x, v = state[: 2 * count].reshape((count, 2)), state[2 * count :].reshape((count, 2))
     px, py, vx, vy = x[0, 0], x[0, 1], v[0, 0], v[0, 1]
     speed2 = vx * vx + vy * vy + (px * vx + py * vy) ** 2 / (radius * radius - px * px - py * py)
-    factor = friction / max(np.sqrt(speed2), corner)
+    speed = np.sqrt(speed2)
+    if rate > 0.0:
+        friction -= rise * np.expm1(-rate * speed)
+    factor = friction / max(speed, corner)
     out = np.empty(4 * count)
     out[: 2 * count] = y[2 * count :]
     acceleration = out[2 * count :].reshape((count, 2))
@@ -79,7 +83,7 @@ def constants_of(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, ...
         corner, friction = ALWAYS_LINEAR, system.friction * ALWAYS_LINEAR
     return (
         system.amplitudes, exponents(scene), np.asarray(phase, dtype=float), system.below, system.above,
-        system.mass_ratio, system.radius, friction, corner,
+        system.mass_ratio, system.radius, friction, system.rise, system.rate, corner,
     )  # fmt: skip
 
 

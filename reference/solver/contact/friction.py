@@ -6,14 +6,36 @@ a slip vector s = factor * v_h with v_h the horizontal velocity:
   sliding     factor = mu / v       (v the full sliding speed (3.8))
   creeping    factor = mu / v_reg   (v < v_reg)
   lubricated  factor = f_c
+The dry coefficient may depend on the sliding speed, mu(v) = mu(0) + rise (1 - exp(-rate v)). The condition for rest and
+the directions at a stop take mu(0).
 """
 
 from __future__ import annotations
 
-from math import cos, sin, sqrt
+from math import cos, exp, expm1, sin, sqrt
 
 from reference.solver.compiled import compiled
 from reference.solver.system import Load, System
+
+
+@compiled
+def coefficient(system: System, speed: float) -> float:
+    """Dry friction coefficient mu at the sliding speed (3.8), m/s."""
+    if system.rate == 0.0:
+        return system.friction
+    return system.friction - system.rise * expm1(-system.rate * speed)
+
+
+@compiled
+def coefficient_slope(system: System, speed: float) -> float:
+    """Derivative of mu by the sliding speed, s/m."""
+    return system.rise * system.rate * exp(-system.rate * speed)
+
+
+@compiled
+def rising_rate(system: System, speed: float) -> float:
+    """Rate at which friction that rises with the speed damps it, 1/s; 0 where it does not rise."""
+    return max(0.0, coefficient_slope(system, speed)) * system.mass_ratio * system.gravity
 
 
 @compiled
@@ -92,7 +114,12 @@ def heading(angle: float, axes: int) -> tuple[float, float]:
 
 
 @compiled
-def slip_vector(system: System, px: float, py: float, ex: float, ey: float) -> tuple[float, float, float]:
-    """Slip vector of dry sliding in the horizontal direction (ex, ey), and the ratio of full to horizontal speed."""
+def slip_vector(system: System, px: float, py: float, speed: float, ex: float, ey: float) -> tuple[float, float, float]:
+    """
+    Slip vector of dry sliding in the horizontal direction (ex, ey), and the ratio of full to horizontal speed.
+
+    speed: the horizontal one, m/s.
+    """
     ratio = sqrt(sliding_speed2(system, px, py, ex, ey))
-    return system.friction * ex / ratio, system.friction * ey / ratio, ratio
+    friction = coefficient(system, speed * ratio)
+    return friction * ex / ratio, friction * ey / ratio, ratio

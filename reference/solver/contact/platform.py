@@ -6,6 +6,7 @@ from math import sqrt
 
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import (
+    coefficient,
     rest_excess_exact,
     rest_excess_printed,
     rest_excess_small,
@@ -43,9 +44,10 @@ def load_at_stage(work: Work, k: int) -> Load:
 def slip_factor(system: System, contact: int, speed2: float) -> float:
     """Slip vector over horizontal velocity (friction.py), s/m."""
     if contact == SLIDING:
-        return system.friction / sqrt(speed2)
+        speed = sqrt(speed2)
+        return coefficient(system, speed) / speed
     if contact == CREEPING:
-        return system.friction / system.v_reg
+        return coefficient(system, sqrt(speed2)) / system.v_reg
     return system.friction
 
 
@@ -72,7 +74,7 @@ def moving(system: System, contact: int, load: Load, vx: float, vy: float) -> tu
 @compiled
 def directed(system: System, load: Load, speed: float, ex: float, ey: float) -> tuple[float, float, float, float]:
     """(ax, ay, reaction / m1, full over horizontal speed) when sliding in the direction (ex, ey) at any speed >= 0."""
-    sx, sy, ratio = slip_vector(system, load.px, load.py, ex, ey)
+    sx, sy, ratio = slip_vector(system, load.px, load.py, speed, ex, ey)
     ax, ay, reaction, _ = acceleration(system, load, (speed * ratio) ** 2, sx, sy)
     return ax, ay, reaction, ratio
 

@@ -6,8 +6,9 @@ from math import sqrt
 
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
+from reference.solver.contact.friction import coefficient_slope
 from reference.solver.contact.platform import slip_factor
-from reference.solver.system import SLIDING, System
+from reference.solver.system import LUBRICATED_SLIDING, SLIDING, System
 from reference.solver.work import (
     BY_DRIVE,
     BY_POSITION,
@@ -32,11 +33,21 @@ def slopes(system: System, contact: int, work: Work) -> None:
     for k in range(STAGES):
         speed2 = work.stage[SPEED2, k]
         factor = slip_factor(system, contact, speed2)
-        bend = -0.5 * factor / speed2 if contact == SLIDING else 0.0  # d factor / d speed2
+        bend = factor_slope(system, contact, factor, speed2)
         if system.small:
             small_slopes(system, work, k, factor, bend)
         else:
             exact_slopes(system, work, k, factor, bend)
+
+
+@compiled
+def factor_slope(system: System, contact: int, factor: float, speed2: float) -> float:
+    """Derivative of the slip factor (platform.py) by the squared sliding speed, s^3/m^3."""
+    bend = -0.5 * factor / speed2 if contact == SLIDING else 0.0
+    if system.rate > 0.0 and speed2 > 0.0 and contact != LUBRICATED_SLIDING:
+        speed = sqrt(speed2)
+        bend += 0.5 * coefficient_slope(system, speed) / (speed2 if contact == SLIDING else speed * system.v_reg)
+    return bend
 
 
 @compiled

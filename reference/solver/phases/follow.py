@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from math import inf, log
+from math import inf, log, sqrt
 
 from reference.solver.compiled import compiled, inlined
+from reference.solver.contact.friction import rising_rate
 from reference.solver.events import counted_part, lowest
 from reference.solver.near_stop import near_stop_step
 from reference.solver.phases.rest import begin_rest, onset_within, set_reaction
@@ -57,6 +58,8 @@ from reference.solver.system import (
 )
 from reference.solver.travel import travel_reached
 from reference.solver.work import REACTION, SPEED2, Work
+
+VARYING_NEWTON_FRACTION = 1e-3  # of that change otherwise, where friction depends on the speed
 
 
 @inlined
@@ -146,6 +149,9 @@ def made(system: System, work: Work, contact: int, demand: Demand, h: float) -> 
     enough = NEWTON_FRACTION * demand.tolerance * work.scale[0]
     if contact == SLIDING:
         guess_slide(system, work, h)
+        if system.rate > 0.0:
+            # slow growth and decay of the speed pass small errors on to the next step, whose direction they turn
+            enough *= VARYING_NEWTON_FRACTION / (1.0 + h * rising_rate(system, sqrt(work.start2)))
     else:
         first_guess(work, h)
         # where friction is stiff a small error of the acceleration is a large one of the velocity, and so of the force

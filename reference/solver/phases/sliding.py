@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import atan2, log, sqrt
 
 from reference.solver.chain import eliminate_chain, load_chain
-from reference.solver.collocation import STAGES
+from reference.solver.collocation import NODES, STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.friction import heading, sliding_speed2
+from reference.solver.contact.friction import coefficient_slope, heading, rising_rate, sliding_speed2
 from reference.solver.contact.platform import directed, load_in_state, rest_excess
 from reference.solver.contact.stop_arc import settled_direction, squared_total
 from reference.solver.events import first_crossing, lowest
@@ -47,6 +47,8 @@ STIFF_SPEED_FRACTION = 0.03
 MIN_ACCELERATION_FRACTION = 1e-12  # of the drive: a slide that begins has a direction
 BARELY_SLIPPING_EXCESS = 1e-4  # of the squared friction limit: a slide with less excess need not begin yet
 NEGLIGIBLE_STEP = 1e-6  # of the period, or of a step: sliding that cannot begin with a step this long moves nothing
+# likewise, of the time in which friction that depends on the speed answers to it
+NEGLIGIBLE_RESPONSE = 1e-3
 NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP  # of the period: rest in place of such sliding
 MAX_LENGTH_RATIO = 3.0  # of the step before over one that failed: beyond it the former's polynomial is no guess
 
@@ -99,7 +101,12 @@ def sliding_length(system: System, work: Work, demand: Demand) -> float:
 
 @compiled
 def guess_slide(system: System, work: Work, h: float) -> None:
-    """Stage accelerations to start with; of a slide that begins, what the drive leaves along its direction."""
+    """
+    Stage accelerations to start with; of a slide that begins, what the drive leaves along its direction.
+
+    Where friction rises steeply with the speed, that is what a step of the linearized law makes of it: an iteration
+    that begins at a lower speed than the step's does not leave the steep part.
+    """
     speed = sqrt(work.v[0, 0] ** 2 + work.v[0, 1] ** 2)
     if speed >= STIFF_SPEED_FRACTION * h * system.friction * system.mass_ratio * system.gravity:
         first_guess(work, h)
@@ -109,10 +116,13 @@ def guess_slide(system: System, work: Work, h: float) -> None:
     load_chain(system, work, h)
     ex, ey = heading(work.angle, system.axes)
     ground, free = work.ground, work.free
+    start = speed if system.rate > 0.0 else 0.0
+    damping = rising_rate(system, start)
     for k in range(STAGES):
         load = Load(work.x[0, 0], work.x[0, 1], free[0, k], free[1, k], ground[0, k], ground[1, k], ground[2, k])
-        ax, ay, _, _ = directed(system, load, 0.0, ex, ey)
+        ax, ay, _, _ = directed(system, load, start, ex, ey)
         along = max(ax * ex + ay * ey, MIN_ACCELERATION_FRACTION * (abs(load.fx) + abs(load.fy)))
+        along /= 1.0 + NODES[k] * h * damping
         work.a[0, 0, k] = along * ex
         work.a[0, 1, k] = along * ey
 
@@ -139,7 +149,12 @@ def barely_slips(system: System, work: Work) -> bool:
 @compiled
 def after_failed_slide(system: System, work: Work, demand: Demand, h: float) -> tuple[int, int]:
     """(SOLVED to go on, or UNSOLVED; what the contact does then) after a step that failed."""
-    if work.v[0, 0] == 0.0 and work.v[0, 1] == 0.0 and h < NEGLIGIBLE_STEP * demand.period:
+    shortest = NEGLIGIBLE_STEP * demand.period
+    if system.rate > 0.0:
+        shortest = min(
+            shortest, NEGLIGIBLE_RESPONSE / (abs(coefficient_slope(system, 0.0)) * system.mass_ratio * system.gravity)
+        )
+    if work.v[0, 0] == 0.0 and work.v[0, 1] == 0.0 and h < shortest:
         if not barely_slips(system, work):
             return UNSOLVED, SLIDING
         work.held = NEGLIGIBLE_HOLD * demand.period

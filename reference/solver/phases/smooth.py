@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.platform import slip_factor
 from reference.solver.events import first_crossing, highest
 from reference.solver.phases.sliding import speed2
 from reference.solver.step_control import begin
@@ -20,7 +19,9 @@ MAX_FIRST_DECAY = 2.0  # of the velocity's times of decay: longest first step of
 @compiled
 def decay_rate(system: System, contact: int) -> float:
     """Of the velocity by friction alone, 1/s."""
-    rate: float = slip_factor(system, contact, 0.0) * system.mass_ratio * system.gravity
+    largest = system.friction + max(0.0, system.rise)
+    factor = largest / system.v_reg if contact == CREEPING else largest
+    rate: float = factor * system.mass_ratio * system.gravity
     return rate
 
 

@@ -13,6 +13,7 @@ from reference.solver.contact.stop_arc import arc_peak
 from reference.solver.events import first_crossing, lowest
 from reference.solver.ground import ground_at
 from reference.solver.peaks import take_limit
+from reference.solver.phases.sliding import STOP_WITHIN_STEPS, STOP_WITHIN_TIME
 from reference.solver.step_control import MIN_STEP, begin_with, next_break
 from reference.solver.system import CREEPING, REGULARIZED, REST, SLIDING, STOPPING, Demand, System
 from reference.solver.work import ACROSS, ALONG, CLOCK, DIRECTION, LOG_RATIO, SIGMA, Work
@@ -29,6 +30,8 @@ DECISIVE_ARC_FRACTION = 0.97  # of the peak so far: an arc that stays below it d
 LEVEL_TOLERANCE = 1e-9  # of ln v: a slide this close to v_reg has come down to it
 EARLY_CROSSING = 1e-9  # of a step: a crossing this early means that the phase begins on the level
 MAX_FROZEN_TIME = 1e-4  # of the period: time left at a stop within which forces count as constant
+MAX_FRICTION_CHANGE = 1e-12  # of the rise of friction: while it changes by less down to rest, it counts as constant
+MIN_STEADY_TIMES = 2.0  # a slide at almost constant speed lasts: times those within which a slide counts as stopping
 MAX_STRAIGHT_TURN = 1e-6  # of the friction: a slide with a smaller sideways acceleration turns back on its own line
 # of the loading's velocity: below it a straight slide that friction cannot hold is at its turning point
 MAX_TURNING_POINT_SPEED = 1e-12
@@ -108,7 +111,9 @@ def after_stopping_step(system: System, work: Work, demand: Demand, h: float, fa
     if along > 0.0 and speed > max(LEAVING_TIME_FRACTION * work.length, MIN_LEAVING_TIME * demand.period) * along:
         work.length = min(work.length, speed / along)
         return SLIDING
-    return STOPPING
+    # friction that rises with the speed may balance the force: such a slide goes on and does not stop
+    soon = MIN_STEADY_TIMES * max(STOP_WITHIN_STEPS * work.length, STOP_WITHIN_TIME * demand.period)
+    return SLIDING if system.rate > 0.0 and along <= 0.0 and speed > soon * -along else STOPPING
 
 
 @compiled
@@ -128,10 +133,15 @@ def after_stop(system: System, work: Work, demand: Demand) -> int:
     excess, reaction = rest_excess(system, load)
     if excess > 0.0:
         straight = abs(across) <= MAX_STRAIGHT_TURN * system.friction * reaction
+        if system.rate > 0.0:  # a slide along the drive slows down with it and does not turn
+            ex, ey = heading(work.angle, system.axes)
+            ax, ay, _, _ = directed(system, load, 0.0, ex, ey)
+            along = ax * ex + ay * ey
         return SLIDING if straight and along < 0.0 and speed < MAX_TURNING_POINT_SPEED * unit else STOPPING
     if along < 0.0:
         work.left = -speed / along
-    if along >= 0.0 or speed > MAX_FROZEN_TIME * demand.period * -along:
+    changing = system.rate * speed > MAX_FRICTION_CHANGE
+    if along >= 0.0 or speed > MAX_FROZEN_TIME * demand.period * -along or changing:
         return STOPPING if speed > SMALLEST_SPEED else REST
     if demand.cutoff == 0.0:
         arc = arc_peak(system, load, work.angle)

@@ -33,6 +33,12 @@ KEYS = {
     "whole numbers": ("supports = 4", "supports = {range = [3, 5], steps = 3}", "isolator.supports", (3, 4, 5)),
     "of a body": ("mass = 1.0\nperiod", "mass = {range = [1, 2], steps = 3}\nperiod", "bodies.1.mass", (1.0, 1.5, 2.0)),
     "in a list": ("[[1.0, 0.0]", "[[{range = [1.0, 2.0], steps = 2}, 0.0]", "excitation.amplitudes.0.0", (1.0, 2.0)),
+    "fast friction": (
+        "friction = 0.1",
+        "friction = {slow = 0.05, fast = {values = [0.1, 0.08]}, rate = 50.0}",
+        "isolator.friction.fast",
+        (0.1, 0.08),
+    ),
     "values": ("friction = 0.1", "friction = {values = [0.3, 0.05]}", "isolator.friction", (0.3, 0.05)),
     "texts": (
         'title = "Fig. 3a, b: each harmonic along its own axis"',

@@ -30,8 +30,13 @@ PLACES = {
 }
 
 
+LAW = {"slow": 0.03, "fast": 0.06, "rate": 100.0}
+
+
 def put(scene: Scene, key: str, value: float) -> Scene:
     """The scene with one quantity changed; another that excludes it is left out."""
+    if key.startswith("isolator.friction."):
+        scene = scene.with_values({"isolator.friction": LAW})
     values: dict[str, object] = {PLACES.get(key, key): value}
     if key in ("isolator.radius", "isolator.lubrication"):
         values |= {"isolator.period": None} if key == "isolator.radius" else {"isolator.friction": None}
@@ -45,6 +50,7 @@ def put(scene: Scene, key: str, value: float) -> Scene:
 def test_every_number_of_a_scene_has_a_range():
     plain = {key for key in KEYS[""] if key == "duration"}
     tables = {"isolator": "isolator", "bodies": "bodies", "excitation": "excitation.two frequencies"}
+    tables["isolator.friction"] = "isolator.friction"
     numbers = plain | {f"{name}.{key}" for name, table in tables.items() for key in KEYS[table]}
     assert numbers - {"excitation.scale"} == set(SCENE), "a scale is bounded by the accelerations that it makes"
 

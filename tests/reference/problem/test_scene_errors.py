@@ -33,6 +33,28 @@ BROKEN = {
     "duration infinite": ("duration = 2.0", "duration = inf", "duration", float("inf"), "finite"),
     "friction negative": ("friction = 0.1", "friction = -0.1", "isolator.friction", -0.1, "greater than or equal to 0"),
     "friction infinite": ("friction = 0.1", "friction = inf", "isolator.friction", float("inf"), "finite"),
+    "friction of the velocity without its rate": (
+        "friction = 0.1",
+        "friction = {slow = 0.1, fast = 0.2}",
+        "isolator.friction.rate",
+        None,
+        "this key is required",
+    ),
+    "friction of the velocity without hold": (
+        "friction = 0.1",
+        "friction = {slow = 0.0, fast = 0.2, rate = 50.0}",
+        "isolator.friction.slow",
+        0.0,
+        "greater than 0",
+    ),
+    "friction of the velocity with an unknown key": (
+        "friction = 0.1",
+        "friction = {slow = 0.1, fast = 0.2, rat = 50.0}",
+        "isolator.friction.rat",
+        50.0,
+        "did you mean rate",
+    ),
+    "friction a list": ("friction = 0.1", "friction = [0.1]", "isolator.friction", [0.1], "number"),
     "neither friction": ("friction = 0.1", "", "isolator", {"period": 1.0}, "exactly one of friction and lubrication"),
     "both frictions": (
         "friction = 0.1",

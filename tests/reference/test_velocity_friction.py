@@ -1,0 +1,226 @@
+"""Friction that depends on the velocity against closed forms, limits and scaling; `oracle_values.json` has more."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from chains import chain
+from oracle_law import Law
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import reference
+from reference.analytical import circular_shaking
+from reference.problem import GRAVITY, DryFriction, Scene, State, load_scene
+
+TOLERANCE = 1e-8
+STILL = ((0.0, 0.0), (0.0, 0.0))
+STEADY = {"periods": (1e9, 1e9), "decay": (0.0, 0.0)}  # harmonics that stay at their first value
+FLAT = 1e11  # m, radius of a cap that is flat
+BOTH = pytest.mark.parametrize("equations", ["exact", "small"])
+LAWS = pytest.mark.parametrize(
+    "law",
+    [DryFriction(0.03, 0.06, 100.0), DryFriction(0.06, 0.03, 100.0), DryFriction(0.2, 0.05, 3.0)],
+    ids=["rising", "falling", "slowly falling"],
+)
+RISING, FALLING = ({"slow": a, "fast": b, "rate": 100.0} for a, b in ((0.05, 0.1), (0.1, 0.05)))
+PHASES = [(0.3, 1.1), (2.0, 0.7)]
+
+
+def with_law(scene: Scene, law: DryFriction | dict[str, float] | float) -> Scene:
+    table = {"slow": law.slow, "fast": law.fast, "rate": law.rate} if isinstance(law, DryFriction) else law
+    return scene.with_values({"isolator.friction": table})
+
+
+# closed forms --------------------------------------------------------------------------------------------------------
+
+
+@BOTH
+@LAWS
+@pytest.mark.parametrize("speed", [0.005, 0.5])
+def test_a_straight_slide_stops_where_and_when_friction_of_its_speed_makes_it(law, speed, equations):
+    """Time and way are the integrals of dv / (mu g) and v dv / (mu g); the time in closed form."""
+    rise = law.fast - law.slow
+    time = np.log((law.fast * np.exp(law.rate * speed) - rise) / law.slow) / (law.rate * law.fast * GRAVITY)
+    way, _ = quad(lambda v: v / ((law.fast - rise * np.exp(-law.rate * v)) * GRAVITY), 0.0, speed, epsabs=0.0)
+    scene = with_law(chain(FLAT, 0.1, amplitudes=STILL, duration=2.0 * time), law)
+    along = np.array([0.6, -0.8])
+    run = reference.trajectory(
+        scene, (0.0, 0.0), equations, tolerance=TOLERANCE, initial=State(np.zeros((1, 2)), speed * along[None])
+    )
+    assert run.status == "ok"
+    (begin, end), = run.stick  # fmt: skip
+    assert begin == pytest.approx(time, rel=10 * TOLERANCE)
+    assert end == scene.duration
+    np.testing.assert_allclose(run.position[-1, 0, :2], way * along, rtol=10 * TOLERANCE)
+
+
+@BOTH
+def test_between_slow_and_fast_friction_a_constant_force_makes_the_platform_creep_to_its_terminal_speed(equations):
+    """
+    v' = F - mu(v) g from rest has the solution exp(rate v) = w + (1 - w) exp(-r t), w that of the terminal speed.
+
+    With friction of the smaller coefficient the platform would slide away, with the larger one it would rest.
+    """
+    law, force = DryFriction(0.03, 0.06, 50.0), 0.05 * GRAVITY
+    scene = with_law(chain(FLAT, 0.1, amplitudes=((-force, 0.0), (0.0, 0.0)), **STEADY, duration=2.0), law)
+    rate = law.rate * (law.fast * GRAVITY - force)
+    terminal = (law.fast - law.slow) * GRAVITY / (law.fast * GRAVITY - force)
+    run = reference.trajectory(scene, (0.0, 0.0), equations, tolerance=TOLERANCE)
+    speed = np.log(terminal + (1.0 - terminal) * np.exp(-rate * run.time)) / law.rate
+    assert run.stick == []
+    np.testing.assert_allclose(run.velocity[:, 0, 0], speed, atol=10 * TOLERANCE * speed[-1])
+    assert speed[-1] == pytest.approx(np.log(terminal) / law.rate, rel=1e-3)
+    held = reference.trajectory(scene.with_values({"isolator.friction": 0.06}), (0.0, 0.0), equations)
+    assert held.stick == [(0.0, 2.0)]
+
+
+@BOTH
+@pytest.mark.parametrize("slow", [0.03, 0.12])
+def test_circular_shaking_feels_the_friction_of_its_constant_speed(equations, slow):
+    """The closed form for constant friction holds with mu(omega r), whose radius r it gives."""
+    law, period, acceleration = DryFriction(slow, 0.08, 4.0), 0.7, 3.0
+    frequency = 2.0 * np.pi / period
+    links = ([300.0, 300.0], [120.0, 120.0])
+    scene = chain(
+        0.3, 0.08, masses=(2.0, 1.0, 0.7), stiffness=links, periods=(period, period), decay=(0.0, 0.0),
+        amplitudes=((acceleration, 0.0), (0.0, acceleration)), duration=2.0,
+    )  # fmt: skip
+
+    def circle(friction: float):
+        return circular_shaking(with_law(scene, friction), acceleration, frequency, equations)
+
+    def radius(friction: float) -> float:
+        return float(abs(circle(friction).amplitude[0]))
+
+    friction = brentq(lambda mu: law.at(frequency * radius(mu)) - mu, *sorted((law.slow, law.fast)), xtol=1e-15)
+    assert min(law.slow, law.fast) < 0.98 * friction < 0.98**2 * law.largest, "neither coefficient would do"
+    motion = circle(friction)
+    place, turn = motion.amplitude, 1j * frequency
+    initial = State(
+        np.column_stack([place.real, place.imag]), np.column_stack([(turn * place).real, (turn * place).imag])
+    )
+    run = reference.trajectory(
+        with_law(scene, law), (0.0, -np.pi / 2.0), equations, tolerance=TOLERANCE, initial=initial,
+        times=np.linspace(0.0, scene.duration, 101),
+    )  # fmt: skip
+    assert run.status == "ok"
+    circling = place * np.exp(turn * run.time)[:, None]
+    expected = np.stack([circling.real, circling.imag], axis=-1)
+    np.testing.assert_allclose(run.position[..., :2], expected, atol=1e3 * TOLERANCE * abs(place[0]))
+
+
+# limits --------------------------------------------------------------------------------------------------------------
+
+
+@BOTH
+@pytest.mark.parametrize("asked", [{}, {"cutoff": 1e-3}, {"regularization": 1e-3}], ids=str)
+def test_equal_coefficients_give_the_bits_of_plain_friction(asked, equations):
+    scene = load_scene("fig3-I").with_values({"duration": 5.0})
+    plain, equal = (
+        reference.amplification(with_law(scene, law), PHASES, equations=equations, **asked)
+        for law in (0.1, {"slow": 0.1, "fast": 0.1, "rate": 37.0})
+    )
+    np.testing.assert_array_equal(equal.mu, plain.mu)
+    np.testing.assert_array_equal(equal.error, plain.error)
+
+
+def answers(rates: list[float], law: dict[str, float], tolerance: float = 1e-9, **asked) -> np.ndarray:
+    """mu (R, N) at the first phase pair."""
+    scene = load_scene("fig3-I").with_values({"duration": 5.0})
+    found = [
+        reference.amplification(with_law(scene, {**law, "rate": rate}), PHASES[:1], tolerance=tolerance, **asked)
+        for rate in rates
+    ]
+    assert {str(answer.status[0]) for answer in found} == {"ok"}
+    return np.array([answer.mu[0] for answer in found])
+
+
+def plain(friction: float, tolerance: float = 1e-9, **asked) -> np.ndarray:
+    scene = load_scene("fig3-I").with_values({"duration": 5.0, "isolator.friction": friction})
+    return reference.amplification(scene, PHASES[:1], tolerance=tolerance, **asked).mu[0]
+
+
+def slopes(rates: list[float], gap: np.ndarray) -> np.ndarray:
+    return np.diff(np.log(np.abs(gap)), axis=0) / np.diff(np.log(rates))[:, None]
+
+
+READINGS = pytest.mark.parametrize("asked", [{}, {"cutoff": 1e-3}, {"regularization": 1e-3}], ids=str)
+
+
+@READINGS
+@pytest.mark.parametrize("law", [RISING, FALLING], ids=["rising", "falling"])
+def test_as_the_rate_vanishes_friction_tends_to_the_slow_one_with_slope_one(law, asked):
+    rates = [1e-2, 1e-3, 1e-4]
+    gap = answers(rates, law, **asked) - plain(law["slow"], **asked)
+    np.testing.assert_allclose(slopes(rates, gap)[-1], 1.0, atol=0.01)
+
+
+@pytest.mark.parametrize("cutoff", [1e-3, 1e-2])
+def test_as_the_rate_grows_resolved_peaks_tend_to_those_of_the_fast_friction_like_its_logarithm_over_it(cutoff):
+    """
+    A slide that begins between the two limits creeps at a speed like log(rate)/rate, until the drive exceeds the fast.
+
+    So (c + log(rate)) / rate is what is left: a slope that tends to one from below.
+    """
+    rates = [1e5, 1e6, 1e7]
+    gap = answers(rates, RISING, cutoff=cutoff) - plain(RISING["fast"], cutoff=cutoff)
+    slope = -slopes(rates, gap)
+    assert (slope > 0.9).all()
+    assert (slope < 1.0).all()
+    assert (slope[1] > slope[0]).all()
+    scaled = gap * np.array(rates)[:, None]
+    np.testing.assert_allclose(scaled[2] - scaled[1], scaled[1] - scaled[0], rtol=0.1)
+
+
+@pytest.mark.parametrize("law", [RISING, FALLING], ids=["rising", "falling"])
+def test_as_the_rate_grows_regularized_peaks_tend_to_those_of_the_fast_friction_with_its_square(law):
+    """Where the coefficient is not yet the fast one, at speeds of 1 / rate, the law has v / v_reg of it."""
+    v_reg, rates = 1e-2, [1e3, 1e4, 1e5]
+    gap = answers(rates, law, regularization=v_reg) - plain(law["fast"], regularization=v_reg)
+    assert (np.abs(gap[:, None][0]) < 1e-3).all()
+    assert (slopes(rates, gap) < -1.5).all()
+
+
+def test_the_supremum_tends_to_that_of_the_fast_friction_like_a_power_of_the_rate_that_its_stop_decides():
+    """
+    On the way into the stop the slip direction turns like v^(F / (fast N - F)); below 1 / rate it does so otherwise.
+
+    F is the force that holds the platform at that stop: the fourth, of which the supremum is the one-sided limit.
+    """
+    scene = load_scene("fig3-I").with_values({"duration": 5.0})
+    motion = reference.trajectory(scene, PHASES[0], tolerance=1e-9)
+    stop = motion.stick[4][0]
+    at = reference.trajectory(scene, PHASES[0], tolerance=1e-9, times=[stop])
+    law = Law(scene, PHASES[0], "exact")
+    place = at.position[0, :, :2].ravel().tolist()
+    share = float(np.hypot(*law.holding(stop, place[0], place[1], law.spring_forces(place))))
+    rates = [1e6, 1e7, 1e8, 1e9, 1e10]
+    gap = plain(0.1, 1e-6) - answers(rates, RISING, 1e-6)
+    slope = -slopes(rates, gap)[:, 0]
+    expected = share / (0.1 - share)
+    assert expected == pytest.approx(0.1136, abs=1e-4)
+    assert (np.diff(slope) > 0.0).all()
+    assert slope[-1] == pytest.approx(expected, rel=0.06)
+
+
+@READINGS
+def test_friction_that_falls_at_once_is_that_of_a_static_and_a_kinetic_coefficient(asked):
+    """The set-valued law keeps its hold at rest as the rate grows. The regularized one loses it: v_reg is faster."""
+    first, second, third = answers([1e5, 1e6, 1e7], FALLING, 1e-8, **asked)
+    kinetic = plain(FALLING["fast"], **asked)
+    assert (np.abs(third - second) < 0.2 * np.abs(second - first) + 1e-7).all()
+    far = np.abs(third / kinetic - 1.0)
+    assert (far < 1e-5).all() if "regularization" in asked else (far > 0.1).all()
+
+
+def test_small_equations_keep_mu_when_loading_and_friction_shrink_and_the_rate_grows():
+    """What is left of a difference are the friction terms with xi'' x1 / rho that (4.3) keeps: they shrink like s^2."""
+    scene = load_scene("fig3-I").with_values({"duration": 5.0})
+    mu = []
+    for s in (1.0, 0.5, 0.25, 0.125):
+        law = {"slow": 0.05 * s, "fast": 0.1 * s, "rate": 100.0 / s}
+        scaled = with_law(scene, law).with_values({"excitation.scale": s})
+        mu.append(reference.amplification(scaled, PHASES, equations="small", tolerance=1e-9).mu)
+    changes = np.abs(np.diff(mu, axis=0))
+    np.testing.assert_allclose(np.log2(changes[1] / changes[2]), 2.0, atol=0.2)
