@@ -29,7 +29,7 @@ from multibody.integration.estimate import (
     widened_by_impacts,
     widened_without_convergence,
 )
-from multibody.integration.level import COMPLIANCE_RATIO, MAX_WARPING_COMPLIANCE, Level, levels_of
+from multibody.integration.level import COMPLIANCE_RATIO, MAX_WARPING_COMPLIANCE, Level, for_small_peaks, levels_of
 from multibody.integration.look_ahead import longest_steps
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import Peaks
@@ -47,6 +47,7 @@ MAX_WORK_GROWTH = 2.0  # steps of a level over those of the level before
 STEPS_AFTER_SETTLING = 20.0  # largest steps from the last large value of a run to the end of the next
 # change between two levels over what separates later values from the largest: beyond it a run goes to the end after all
 MAX_EARLY_CHANGE = 0.2
+WARPING_RATIO = 2.0  # of the supports' compliance against warping, to measure what the load of warping does
 MAX_SHARING_ERROR = 2.0  # over the error from levels: beyond it further levels hardly help
 MAX_DIFFERENT_MOTIONS = 3  # successive levels with impacts that are another motion than the level before
 # of the first run from the rim, in rho, and the end of its travel, and contact force, in weights: closer, all go to the
@@ -93,13 +94,15 @@ def refine(
         return _no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
     runs: list[EngineRun] = []
     different = 0  # how many of the last levels with impacts were another motion
-    per_load = np.full(len(model.bodies), ERROR_PER_WARPING_LOAD)
+    per_load: Array | None = None  # see `measured_per_load`, once it is measured
     stop = math.inf  # of the next run, where nothing later can matter
     candidate: _Candidate | None = None
     complete: _Candidate | None = None  # the last candidate whose error lacks nothing
     for number, level in enumerate(remaining):
-        shared = number > 0 and level.penetration == remaining[number - 1].penetration
-        if runs and budget.left < _work_of_next(runs[-1], stop, pair.end) * (1.0 + shared):
+        shared = number > 0 and level.penetration >= remaining[number - 1].penetration
+        lifted = any(other.last_open > -math.inf for other in runs)
+        beside = shared + (lifted and per_load is None)  # runs that complete the error
+        if runs and budget.left < _work_of_next(runs[-1], stop, pair.end) * (1.0 + beside):
             break
         run = pair.at_level(level, budget, stop, keep=keep)
         if stop < pair.end and not _stays_settled(run, runs[-1]):
@@ -117,6 +120,9 @@ def refine(
         if too_stiff:
             rest = slice(number + 1, len(remaining))
             remaining[rest] = [_softer(later, run.warping_load, tolerance) for later in remaining[rest]]
+        if levels is None and run.outcome == Outcome.OK:
+            smallest = float(run.peaks.value.min())
+            remaining[number + 1 :] = [for_small_peaks(later, smallest, tolerance) for later in remaining[number + 1 :]]
         if number == 0 or runs[-2].outcome != run.outcome:
             continue
         for earlier in runs[:-2]:
@@ -125,29 +131,30 @@ def refine(
             break
         finished = [other.peaks for other in runs[-3:] if other.outcome == Outcome.OK]
         lifted = any(other.last_open > -math.inf for other in runs)
-        if lifted:  # open supports warp the ring: the load of warping is large, and its effect is measured
-            compliances = [other.warping_compliance for other in remaining[max(number - 2, 0) : number + 1]]
-            if compliances[-2] != compliances[-1]:
-                per_load = np.minimum(per_load, measured_per_load(run, runs[-2]))
-            if compliances[0] != compliances[-2]:
-                finished = finished[-2:]
-        sharing = from_sharing(run, per_load)
+        compliances = [other.warping_compliance for other in remaining[max(number - 2, 0) : number + 1]]
+        if lifted and compliances[0] != compliances[-2]:
+            finished = finished[-2:]
         errors = widened_by_impacts(from_levels(finished, remaining[: number + 1], model), run, number)
-        uneven = lifted and (sharing > np.maximum(tolerance * run.peaks.value, MAX_SHARING_ERROR * errors)).all()
-        errors = widened_without_convergence(errors + sharing, run)
+        # supports that open warp the ring: that load may be large
+        unmeasured = lifted and run.warping_load > 0.0 and per_load is None
+        sharing = from_sharing(run, np.full(len(errors), ERROR_PER_WARPING_LOAD) if per_load is None else per_load)
+        uneven = (sharing > np.maximum(tolerance * run.peaks.value, MAX_SHARING_ERROR * errors)).all()
+        errors = widened_without_convergence(errors if unmeasured else errors + sharing, run)
         before = (runs[-2], share_of_change(remaining[number - 1], model))
-        candidate = _Candidate(run, errors, level.error_floor, (before,), level if shared else None)
+        missing = level if shared else None, level if unmeasured else None
+        candidate = _Candidate(run, errors, level.error_floor, (before,), *missing, per_load)
         different = different + 1 if run.impacts and (errors >= run.peaks.value).all() else 0
         if different == MAX_DIFFERENT_MOTIONS:
             break  # impacts take every level elsewhere: a further one would, too
         if candidate.meets(tolerance):
             candidate = candidate.completed(pair, budget, keep)
-        complete = complete if candidate.without_compliance else candidate
+            per_load = candidate.per_load
+        complete = candidate if candidate.is_complete else complete
         if candidate.meets(tolerance):
             return _answer(model, candidate, Outcome.OK)
         if (level.rounding > np.maximum(tolerance * run.peaks.value, candidate.errors / COMPLIANCE_RATIO)).any():
             break  # hardly more than rounding is left, and no further level rounds less
-        if uneven and level.warping_compliance == MAX_WARPING_COMPLIANCE:
+        if lifted and uneven and not unmeasured and level.warping_compliance == MAX_WARPING_COMPLIANCE:
             break  # hardly more than the uneven share of the load is left, and no further level shares it better
     if candidate is not None:
         return _beyond_tolerance(pair, candidate.completed(pair, budget, keep), complete)
@@ -186,21 +193,41 @@ class _Candidate:
     floor: float  # relative error that the level typically has
     coarser: tuple[tuple[EngineRun, float], ...]  # other runs, and the share of their difference to this one
     without_compliance: Level | None  # the level, if the error that its contact's compliance leaves is still missing
+    without_sharing: Level | None  # likewise, the error that the load of warped supports leaves
+    per_load: Array | None  # see `measured_per_load`; None if it is not measured
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether the error lacks nothing."""
+        return not (self.without_compliance or self.without_sharing) and bool(np.isfinite(self.errors).all())
 
     def meets(self, tolerance: float) -> bool:
         return bool((self.errors <= tolerance * self.run.peaks.value).all())
 
     def completed(self, pair: PhasePair, budget: Budget, keep: bool) -> _Candidate:
+        """With the errors that are missing, each from a run in which nothing but its cause changes."""
+        return self._with_sharing(pair, budget)._with_compliance(pair, budget, keep)
+
+    def _with_compliance(self, pair: PhasePair, budget: Budget, keep: bool) -> _Candidate:
         """With the error that the compliance leaves, from a run with a softer contact."""
         level = self.without_compliance
         if level is None:
             return self
         softer = replace(level, penetration=COMPLIANCE_RATIO * level.penetration)
-        # nothing but the contact changes
         run = pair.at_level(softer, budget, self.run.stop, keep=keep, residual=level.residual)
         errors = self.errors + from_compliance(self.run.peaks, run, softer, pair.model)
         coarser = (*self.coarser, (run, share_of_change(softer, pair.model)))
         return replace(self, errors=errors, coarser=coarser, without_compliance=None)
+
+    def _with_sharing(self, pair: PhasePair, budget: Budget) -> _Candidate:
+        """With the error that the load of warped supports leaves, from a run whose supports warp more easily."""
+        level = self.without_sharing
+        if level is None:
+            return self
+        softer = replace(level, warping_compliance=WARPING_RATIO * level.warping_compliance)
+        per_load = measured_per_load(self.run, pair.at_level(softer, budget, self.run.stop))
+        errors = self.errors + from_sharing(self.run, per_load)
+        return replace(self, errors=errors, without_sharing=None, per_load=per_load)
 
 
 def _beyond_tolerance(pair: PhasePair, finest: _Candidate, complete: _Candidate | None) -> Refinement:

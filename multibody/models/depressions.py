@@ -40,8 +40,8 @@ class Depressions:
         """Distance (T, K) from platform to spheres for coordinates (T, n), without penetration; negative: pressed."""
         _, inside = self.centers(coordinates)
         across, upward = np.hypot(inside[..., 0], inside[..., 1]), inside[..., 2]
-        # a sphere below the rim of its depression may come no nearer than the rim
-        clear: Array = 1.0 - np.where(upward > 0.0, np.hypot(across, upward), across)
+        # a sphere below the rim touches nothing until it is back inside, or has left (`beyond_rim`)
+        clear: Array = 1.0 - np.where(upward > 0.0, np.hypot(across, upward), 0.0)
         return clear
 
     def beyond_rim(self, coordinates: Array) -> NDArray[np.bool_]:

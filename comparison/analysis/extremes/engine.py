@@ -1,8 +1,8 @@
 """
-The engine at a contact stiffness or a first step that the caller states.
+The engine from a contact stiffness or a step that the caller states.
 
-The engine of the study chooses both by itself. Here its levels of accuracy start at the given step or keep the given
-stiffness, which shows whether the error estimate covers a bad choice.
+The engine of the study chooses both by itself. Here its levels of accuracy start at the given step or stiffness, which
+shows whether the error estimate covers a bad choice, and whether the levels find the way from it to an answer.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike
 import multibody
 from reference.problem import GRAVITY, Amplification, Scene
 
-MAX_LEVELS = 4  # few: the answer at this choice matters, not the way from it to a good one
+MAX_LEVELS = 6  # few: a bad start may cost some levels, not the answer
+LEVELS_TO_USUAL_CONTACT = 3  # from the given stiffness to that of the study, by equal factors
 STEP_RATIO = 4  # by which the engine divides its largest step
 
 
@@ -44,7 +45,7 @@ def amplification(
     tolerance : float
         Relative error asked of every mu.
     contact_stiffness : float, optional
-        N/m, the same at all levels.
+        N/m, at the first level. The next ones come to that of the study by equal factors.
     step : float, optional
         s, the largest at the first level, halved from level to level.
     max_work : float
@@ -57,13 +58,19 @@ def amplification(
     levels = multibody.levels(scene, model, tolerance, regularization)[:MAX_LEVELS]
     if contact_stiffness is not None:
         penetration = scene.total_mass * GRAVITY / (contact_stiffness * scene.radius)
-        levels = [replace(level, penetration=penetration) for level in levels]
+        levels = [_with_contact(level, number, penetration) for number, level in enumerate(levels)]
     if step is not None:
         factor = step / math.sqrt(scene.radius / GRAVITY) / levels[0].step
         levels = [_with_longer_step(level, factor) for level in levels]
     return multibody.amplification(
         scene, phases, model, regularization, tolerance, full=True, levels=levels, max_work=max_work
     )
+
+
+def _with_contact(level: multibody.Level, number: int, first: float) -> multibody.Level:
+    """Level `number` with a penetration between `first`, that of the first level, and its own."""
+    share = min(number / LEVELS_TO_USUAL_CONTACT, 1.0)
+    return replace(level, penetration=first ** (1.0 - share) * level.penetration**share)
 
 
 def _with_longer_step(level: multibody.Level, factor: float) -> multibody.Level:
