@@ -19,7 +19,7 @@ from comparison.analysis.protocol import Analysis
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
-from comparison.study.models import EXACT, TRANSLATIONAL, Model
+from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL, Model
 from comparison.study.study import Study
 from reference.problem import Demands, Estimate, Family, Scene, SceneError, demands
 
@@ -77,18 +77,20 @@ class Bound:
     """How far the engine is from the equations in one demand, at the points that both have computed."""
 
     quantity: Quantity
-    largest: float  # |engine - equations| / |equations|; NaN without a common point
-    errors: float  # the two error estimates together, relative, at that point
+    largest: float  # |engine - equations| / |equations| of the ensemble; NaN without a common point
+    like_for_like: float  # the same against the equations with the engine's friction law
+    errors: float  # the two error estimates together, relative, at the point of `like_for_like`
     points: int
 
 
 @dataclass(frozen=True)
 class EnsembleResult:
-    """points: by the equations, in the order of the family. engine: the same at the subset."""
+    """points: by the equations, in the order of the family. engine: at the subset; alike: with its friction law."""
 
     family: Family
     points: Sequence[Point]
     engine: Sequence[Point]
+    alike: Sequence[Point]
     stripes: Sequence[Stripe]
     bounds: Sequence[Bound]
 
@@ -99,6 +101,11 @@ class EnsembleResult:
 
 
 Arguments = tuple[Scene, Model, float]
+
+
+def _alike(scene: Scene) -> Model:
+    """The equations with the friction law of the engine."""
+    return REGULARIZED if REGULARIZED.applies(scene) else EXACT
 
 
 @dataclass(frozen=True)
@@ -124,8 +131,10 @@ class Ensemble(Analysis[EnsembleResult]):
     def tasks(self, study: Study | None = None, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One for each scene, then those of the engine."""
         scenes = self.family.scenes
-        asked = [*((scene, EXACT) for scene in scenes), *((scenes[n], TRANSLATIONAL) for n in self.chosen())]
-        return [self._task(scene, model) for scene, model in asked]
+        subset = [(scenes[n], model) for n in self.chosen() for model in (TRANSLATIONAL, _alike(scenes[n]))]
+        asked = [*((scene, EXACT) for scene in scenes), *subset]
+        tasks = {task.key: task for task in (self._task(scene, model) for scene, model in asked)}
+        return list(tasks.values())
 
     def collect(self, study: Study | None, surfaces: xr.Dataset | None, results: TaskResults) -> EnsembleResult:
         """Points, stripes and the engine's bound."""
@@ -140,7 +149,9 @@ class Ensemble(Analysis[EnsembleResult]):
 
         points = [point(number, EXACT) for number in range(len(curves))]
         engine = [point(number, TRANSLATIONAL) for number in self.chosen()]
-        return EnsembleResult(self.family, points, engine, list(stripes(points)), list(bounds(points, engine)))
+        alike = [point(number, _alike(self.family.scenes[number])) for number in self.chosen()]
+        listed = list(stripes(points)), list(bounds(points, engine, alike))
+        return EnsembleResult(self.family, points, engine, alike, *listed)
 
     def chosen(self) -> list[int]:
         """Places of the engine's scenes in the family: the motions and the scales each spread evenly."""
@@ -150,10 +161,11 @@ class Ensemble(Analysis[EnsembleResult]):
             (curve, float(s)): n for n, (curve, s) in enumerate(zip(curves_of(self.family), self.family.columns[SCALE]))
         }
         count = min(self.subset, len(at))
-        chosen = []
+        last, chosen = len(scales) + 1, []
+        stride = next(n for n in range(max(1, round(GOLDEN * len(scales))), last + 1) if math.gcd(n, len(scales)) == 1)
         for k in range(count):
-            motion, scale = ((k + 0.5) / count) % 1.0, (0.5 + k * GOLDEN) % 1.0
-            wanted = curves[int(motion * len(curves))], scales[int(scale * len(scales))]
+            scale = scales[(len(scales) // 2 + k * stride) % len(scales)]
+            wanted = curves[int((k + 0.5) / count * len(curves))], scale
             chosen.append(at.get(wanted, k * len(at) // count))  # a zip does not have every combination
         return sorted(set(chosen))
 
@@ -262,18 +274,23 @@ def _ordered(values: np.ndarray, share: float) -> float:
     return float(first if part == 0.0 else math.nan if math.isinf(second) else first + part * (second - first))
 
 
-def bounds(points: Sequence[Point], engine: Sequence[Point]) -> Iterator[Bound]:
-    """The largest difference of every demand that both sides have."""
+def bounds(points: Sequence[Point], engine: Sequence[Point], alike: Sequence[Point]) -> Iterator[Bound]:
+    """The largest difference of every demand that both sides have, and the largest with the same friction law."""
     equations = {point.scene: point for point in points}
+    matching = [equations[point.scene] for point in engine]
     for quantity in quantities(engine):
-        pairs = [(equations[point.scene].estimate(quantity), point.estimate(quantity)) for point in engine]
-        known = [
-            (abs(second.value - first.value) / abs(first.value), (first.error + second.error) / abs(first.value))
-            for first, second in pairs
-            if math.isfinite(first.value) and math.isfinite(second.value) and first.value != 0.0
-        ]
-        largest, errors = max(known, default=(math.nan, math.nan))
-        yield Bound(quantity, largest, errors, len(known))
+        apart, same = ([*_differences(quantity, first, engine)] for first in (matching, alike))
+        closest = max(same, default=(math.nan, math.nan))
+        yield Bound(quantity, max(apart, default=closest)[0], *closest, len(apart))
+
+
+def _differences(quantity: Quantity, first: Sequence[Point], second: Sequence[Point]) -> Iterator[tuple[float, float]]:
+    """Relative size of each known difference, and the two errors together, relative."""
+    for one, other in zip(first, second):
+        before, after = one.estimate(quantity), other.estimate(quantity)
+        size = abs(before.value)
+        if math.isfinite(before.value) and math.isfinite(after.value) and size > 0.0:
+            yield abs(after.value - before.value) / size, (before.error + after.error) / size
 
 
 def of_quantity(items: Sequence[Stripe], quantity: Quantity) -> list[Stripe]:
@@ -285,7 +302,8 @@ def as_rows(result: EnsembleResult) -> list[dict[str, object]]:
     """A row for every motion, scale and model, with all demands and their errors; None where there is no answer."""
     names = quantities(result.points)
     rows = []
-    for point in (*result.points, *result.engine):
+    alike = [point for point in result.alike if point.model != EXACT.key]  # else it is among the points
+    for point in (*result.points, *alike, *result.engine):
         row: dict[str, object] = {
             "scene": point.scene,
             "motion": point.curve,

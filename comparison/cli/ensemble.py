@@ -39,6 +39,7 @@ from comparison.execution.progress import wide_console
 from comparison.execution.provenance import provenance
 from comparison.execution.resume import command_line
 from comparison.study.models import EXACT, TRANSLATIONAL
+from comparison.wording import percent
 from reference.problem import Estimate, Family
 from reference.problem.families import family_of
 from reference.problem.scene_file import scene_tables, scene_text
@@ -151,6 +152,7 @@ def summary(result: EnsembleResult, words: Sequence[str], seconds: float) -> dic
                     "quantity": bound.quantity[0],
                     "body": bound.quantity[1] or None,
                     "largest": _finite(bound.largest),
+                    "like_for_like": _finite(bound.like_for_like),
                     "errors": _finite(bound.errors),
                     "points": bound.points,
                 }
@@ -175,15 +177,17 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
     top = max(point.scale for point in result.points)
     motions = len({point.curve for point in result.points})
     console.print(f"{result.family.scenes[0].title}: {motions} motions, at scale {top:g}:", soft_wrap=True)
-    table = new_table("quantity", "unit", *(f"{100.0 * share:.0f} %" for share in FRACTILES), "answered", "engine")
+    table = new_table(
+        "quantity", "unit", *(f"{100.0 * share:.0f} %" for share in FRACTILES), "answered", "engine", "like for like"
+    )
     bounds = {bound.quantity: bound for bound in result.bounds}
     for stripe in result.stripes:
         if stripe.scale == top:
             bound = bounds.get(stripe.quantity)
-            apart = f"{100.0 * bound.largest:.2g} %" if bound and math.isfinite(bound.largest) else "none"
+            apart = [percent(size) for size in (bound.largest, bound.like_for_like)] if bound else ["none", "none"]
             numbers = [f"{value.value:.4g}" if math.isfinite(value.value) else "none" for value in stripe.fractiles]
             unit = UNITS.get(stripe.quantity[0], "")
-            table.add_row(quantity_name(stripe.quantity), unit, *numbers, str(stripe.answered), apart)
+            table.add_row(quantity_name(stripe.quantity), unit, *numbers, str(stripe.answered), *apart)
     console.print(table)
     ended = ", ".join(f"{count} {name}" for name, count in result.outcomes().items())
     console.print(
@@ -191,7 +195,10 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
     )
     if result.engine:
         where = ", ".join(f"{point.scene} ({point.status})" for point in result.engine)
-        line = f"The last column is the largest difference of the engine from the equations at {where}."
+        line = (
+            f"The engine was asked at {where}: its largest difference from the equations of the ensemble, and like for "
+            "like from the equations with its own friction law."
+        )
         console.print(line, soft_wrap=True)
 
 
