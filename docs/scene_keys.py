@@ -57,7 +57,9 @@ Every optional key is off by default. "All" models are the paper's equations and
 and spatial; the spatial model needs every key of its own but `support_stiffness` and `restitution`.
 
 One number of a scene may run over a range, which makes one scene of every value:
-`friction = {{range = [0.02, 0.2], steps = 10}}` or `friction = {{values = [0.05, 0.1]}}`.
+`friction = {{range = [0.02, 0.2], steps = 10}}` or `friction = {{values = [0.05, 0.1]}}`. Several keys may run where
+the file begins with `combine = "product"`, a scene of every combination of the values, or `combine = "zip"`, a scene of
+the first values, one of the second, and so on. `motion = "all"` runs over the motions of a suite.
 
 The duration is at most {MAX_CYCLES:g} periods, of the shortest period of the loading and the pendulum.
 

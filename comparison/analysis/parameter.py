@@ -92,9 +92,10 @@ def family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[Fami
     numbers: dict[tuple[str, str, int], dict[str, list[float]]] = {}
     for motion in motions:
         if motion.demands is not None and motion.place.scene in {scene.name for scene in family.scenes}:
-            for quantity, body, number in _demands(motion.demands):
-                column = numbers.setdefault((motion.model, quantity, body), {})
-                column.setdefault(motion.place.scene, []).append(number)
+            for quantity, body, estimate in listed_demands(motion.demands):
+                if math.isfinite(estimate.value):
+                    column = numbers.setdefault((motion.model, quantity, body), {})
+                    column.setdefault(motion.place.scene, []).append(estimate.value)
     demands = []
     for (model, quantity, body), column in numbers.items():
         rows = [np.array(column.get(scene.name, [])) for scene in family.scenes]
@@ -105,8 +106,19 @@ def family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[Fami
     return demands
 
 
-def _demands(demands: Demands) -> Iterator[tuple[str, int, float]]:
-    """Quantity, body and finite value of every demand."""
+def listed_demands(demands: Demands) -> Iterator[tuple[str, int, Estimate]]:
+    """
+    Every demand of a motion.
+
+    Parameters
+    ----------
+    demands : Demands
+
+    Yields
+    ------
+    tuple of str, int and Estimate
+        Field of `Demands`; body from 1, 0 where the demand is of the isolator, of a drift the upper body; the number.
+    """
     for field in fields(demands):
         estimates = getattr(demands, field.name)
         if isinstance(estimates, Estimate):
@@ -116,8 +128,7 @@ def _demands(demands: Demands) -> Iterator[tuple[str, int, float]]:
         else:
             continue  # the status, or a demand that the model does not have
         for body, estimate in listed:
-            if math.isfinite(estimate.value):
-                yield field.name, body, estimate.value
+            yield field.name, body, estimate
 
 
 def _bars(waterfall: Waterfall) -> dict[str, WaterfallBar]:

@@ -21,6 +21,7 @@ COMMANDS = {  # module whose `main` is the command, and what it does
     "assumptions": ("comparison.cli.assumptions", "how far the paper's assumptions carry"),
     "extremes": ("comparison.cli.extremes", "every model at the extremes of every quantity"),
     "tradeoff": ("comparison.cli.tradeoff", "error against compute time"),
+    "ensemble": ("comparison.cli.ensemble", "demands under a suite of motions at many intensities"),
     "animate": ("multibody.animate", "a film of the motion"),
 }
 

@@ -2,25 +2,33 @@
 A family of scenes that differ in one value: `friction = {range = [0.02, 0.2], steps = 10}` in place of a number.
 
 Any key of a scene file that holds one value may run: evenly over a range, or through `{values = [...]}`, of a record
-also through its files: `record = {values = ["a.csv", "b.csv"]}` or `{values = [{x = "a.AT2"}, {x = "b.AT2"}]}`.
+also through its files: `record = {values = ["a.csv", "b.csv"]}` or `{values = [{x = "a.AT2"}, {x = "b.AT2"}]}`. All
+motions of a suite: `record = {suite = "fema-p695:farfield", motion = "all"}`.
+
+Several keys may run. `combine = "product"` at the top of the file makes a scene of every combination of their values,
+`combine = "zip"` one of the first values, one of the second, and so on.
 """
 
 from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from reference.problem.record_suites import SuiteError, suite_motions
 from reference.problem.scene import Scene
 from reference.problem.scene_error import SceneError
 from reference.problem.scene_file import scene_tables, scene_text, validated_scene
 
 RANGE, VALUES = {"range", "steps"}, {"values"}
+ALL_MOTIONS = "all"
+COMBINE = ("product", "zip")
 MAX_SCENES = 1000  # scenes of one family
 
 Value = float | int | str
@@ -39,15 +47,19 @@ class Family:
     scenes : tuple of Scene
         Named "file[friction=0.02]" where a key runs.
     key : str
-        The key that runs, as "isolator.friction"; "" where none does and there is one scene.
+        The key that runs, as "isolator.friction", or the keys, "excitation.record.motion, excitation.scale"; "" where
+        none does and there is one scene.
     values : tuple
-        Values of the key, in the order of the scenes.
+        Values of the key, in the order of the scenes; of several keys as one text.
+    columns : dict of str to tuple
+        By each key that runs its values, in the order of the scenes.
     """
 
     name: str
     scenes: tuple[Scene, ...]
     key: str = ""
     values: tuple[Value, ...] = ()
+    columns: Mapping[str, tuple[Value, ...]] = field(default_factory=dict)
 
     @property
     def bodies(self) -> int:
@@ -80,25 +92,102 @@ def load_family(source: str | Path, amplitude: float | None = None) -> Family:
     >>> load_family("fig3-I").bodies
     2
     """
-    label, name = str(source), Path(source).stem
-    data = scene_tables(scene_text(source), label)
-    running = list(_running((), data))
+    label = str(source)
+    return family_of(scene_tables(scene_text(source), label), label, amplitude)
+
+
+def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) -> Family:
+    """
+    The family of tables that are read already.
+
+    Parameters
+    ----------
+    data : dict
+        Tables of a scene file in which values may run.
+    label : str
+        Name or path of the file, for errors and for its records.
+    amplitude : float, optional, m/s^2
+        As in `load_scene`.
+
+    Returns
+    -------
+    Family
+
+    Raises
+    ------
+    SceneError
+        As `load_family`.
+    """
+    name = Path(label).stem
+    combine = data.get("combine")
+    data = _all_motions({key: value for key, value in data.items() if key != "combine"}, label)
+    running = [_Key(label, path, table) for path, table in _running((), data)]
+    _check_combine(label, combine, running)
     if not running:
         scene = validated_scene(data, label, name)
         return Family(name, (scene if amplitude is None else scene.with_amplitude(amplitude),))
-    (path, table), *others = running
-    key = ".".join(map(str, path))
-    for other, second in others:
-        rule = f"only one key of a scene may run, and {key} does: give it a value, or write a file for each"
-        raise SceneError(label, ".".join(map(str, other)), second, rule)
-    listed = _values(label, key, table)
-    values: Sequence[Value] = [_named(value) if isinstance(value, dict) else value for value in listed]
-    short = key if any(isinstance(part, int) for part in path) else str(path[-1])
+    steps = [range(len(key.values)) for key in running]
+    rows = list(product(*steps) if combine == "product" else zip(*steps))
     scenes = []
-    for value, text in zip(listed, _texts(label, key, values)):
-        member = validated_scene(_with(data, path, value), label, f"{name}[{short}={text}]")
+    for row in rows:
+        tables = data
+        for key, step in zip(running, row):
+            tables = _with(tables, key.path, key.listed[step])
+        texts = ", ".join(f"{key.short}={key.texts[step]}" for key, step in zip(running, row))
+        member = validated_scene(tables, label, f"{name}[{texts}]")
         scenes.append(member if amplitude is None else member.with_amplitude(amplitude))
-    return Family(name, tuple(scenes), key, tuple(values))
+    columns = {key.name: tuple(key.values[row[n]] for row in rows) for n, key in enumerate(running)}
+    values = [", ".join(key.texts[step] for key, step in zip(running, row)) for row in rows]
+    return Family(
+        name,
+        tuple(scenes),
+        ", ".join(columns),
+        columns[running[0].name] if len(running) == 1 else tuple(values),
+        columns,
+    )
+
+
+class _Key:
+    """A key that runs: where it is, its values, and how they stand in names."""
+
+    def __init__(self, label: str, path: tuple[str | int, ...], table: dict[str, Any]) -> None:
+        self.path, self.table = path, table
+        self.name = ".".join(map(str, path))
+        self.short = self.name if any(isinstance(part, int) for part in path) else str(path[-1])
+        self.listed = _values(label, self.name, table)
+        self.values: list[Value] = [_named(value) if isinstance(value, dict) else value for value in self.listed]
+        self.texts = _texts(label, self.name, self.values)
+
+
+def _check_combine(label: str, combine: Any, running: Sequence[_Key]) -> None:
+    """Whether `combine` says how the keys that run are taken together. Raises SceneError."""
+    if combine is not None and combine not in COMBINE:
+        raise SceneError(label, "combine", combine, f"must be one of {', '.join(COMBINE)}")
+    if combine is not None and len(running) < 2:
+        raise SceneError(label, "combine", combine, "two or more keys must run: remove this key")
+    if combine is None and len(running) > 1:
+        first, second = running[:2]
+        rule = f'{first.name} runs, too: add combine = "product" or combine = "zip" at the top of the file'
+        raise SceneError(label, second.name, second.table, rule)
+    counts = [len(key.values) for key in running]
+    if combine == "zip" and len(set(counts)) > 1:
+        listed = ", ".join(f"{key.name} {count}" for key, count in zip(running, counts))
+        raise SceneError(label, "combine", combine, f"must have as many values of every key, not {listed}")
+    if combine == "product" and math.prod(counts) > MAX_SCENES:
+        raise SceneError(label, "combine", combine, f"{math.prod(counts)} scenes: must be at most {MAX_SCENES}")
+
+
+def _all_motions(data: dict[str, Any], label: str) -> dict[str, Any]:
+    """The tables with the numbers of all motions of a suite in place of `motion = "all"`. Raises SceneError."""
+    excitation = data.get("excitation")
+    record = excitation.get("record") if isinstance(excitation, dict) else None
+    if not (isinstance(record, dict) and "suite" in record and record.get("motion") == ALL_MOTIONS):
+        return data
+    try:
+        motions = suite_motions(record["suite"], Path(label).parent)
+    except SuiteError as error:
+        raise SceneError(label, f"excitation.record.{error.key}", record["suite"], error.rule) from None
+    return _with(data, ("excitation", "record", "motion"), {"values": motions})
 
 
 def _running(path: tuple[str | int, ...], value: Any) -> Iterator[tuple[tuple[str | int, ...], dict[str, Any]]]:
@@ -168,7 +257,7 @@ def _texts(label: str, key: str, values: Sequence[Value]) -> list[str]:
     raise SceneError(label, key, twice, "is there twice, and the scenes are named by it: leave one away")
 
 
-def _with(data: dict[str, Any], path: tuple[str | int, ...], value: Value | Files) -> dict[str, Any]:
+def _with(data: dict[str, Any], path: tuple[str | int, ...], value: Any) -> dict[str, Any]:
     changed: Any = copy.deepcopy(data)
     place = changed
     for part in path[:-1]:

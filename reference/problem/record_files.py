@@ -11,6 +11,7 @@ import csv
 import io
 import re
 from collections.abc import Mapping
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
@@ -46,6 +47,7 @@ class RecordError(ValueError):
     """A file that is no record: one line with the place in it, what stands there, and the rule."""
 
 
+@lru_cache(maxsize=32)  # of a family whose other keys run
 def csv_samples(text: str) -> Array:
     """
     Samples (K, 4) of a CSV file: lines that begin with # are comments, the first other one names columns and units.
@@ -95,6 +97,7 @@ def at2_samples(texts: Mapping[str, str]) -> Array:
     return _checked(samples)
 
 
+@lru_cache(maxsize=32)
 def _at2(axis: str, text: str) -> tuple[float, Array]:
     """DT, s, and the accelerations of one file, in g."""
     lines = text.splitlines()

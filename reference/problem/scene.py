@@ -370,6 +370,10 @@ class Scene(Table):
 
     def digest(self) -> str:
         """Hash of everything that enters a result, for stores of results and for provenance."""
+        return self._digest
+
+    @cached_property
+    def _digest(self) -> str:
         content = self.model_dump_json(
             exclude={"title": True, "name": True, "acceptance": True, "analyses": True, "excitation": {"record": True}},
             exclude_none=True,  # a key that is not given changes no result

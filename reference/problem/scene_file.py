@@ -125,7 +125,11 @@ def parse_scene(text: bytes, label: str) -> Scene:
     >>> parse_scene(text, "one-body.toml").name
     'one-body'
     '''
-    return validated_scene(scene_tables(text, label), label, Path(label).stem)
+    data = scene_tables(text, label)
+    if "combine" in data:
+        rule = "makes a family of scenes, and one scene is asked for: remove this key and give every key one value"
+        raise SceneError(label, "combine", data["combine"], rule)
+    return validated_scene(data, label, Path(label).stem)
 
 
 def scene_tables(text: bytes, label: str) -> dict[str, Any]:

@@ -277,7 +277,7 @@ class Excitation(Table):
 Samples = Annotated[
     NDArray[np.float64],
     PlainValidator(checked_samples),
-    PlainSerializer(np.ndarray.tolist),
+    PlainSerializer(np.ndarray.tolist, return_type=list[list[float]]),
     WithJsonSchema({"type": "array"}),
 ]
 

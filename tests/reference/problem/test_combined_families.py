@@ -1,0 +1,101 @@
+"""Several keys of a scene run at once, as product or as zip, also over all motions of a suite."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from reference.problem import SceneError, load_family, load_scene
+
+SCENE = """{top}
+title = "combined"
+duration = 1.0
+isolator = {{radius = 0.25, friction = {friction}}}
+bodies = [{{mass = 1.0}}]
+excitation = {{record = {record}, scale = {scale}}}
+"""
+SUITE = '{suite = "suite", motion = "all"}'
+TWO = "{values = [0.05, 0.1]}"
+
+
+@pytest.fixture
+def written(tmp_path):
+    (tmp_path / "suite").mkdir()
+    for number in (1, 2, 3):
+        text = f"time [s],ax [m/s^2]\n0,0\n0.5,{number}\n1,0\n"
+        (tmp_path / "suite" / f"{number}.csv").write_text(text)
+
+    def write(top="", friction=0.1, record='"suite/1.csv"', scale=1.0):
+        path = tmp_path / "mine.toml"
+        path.write_text(SCENE.format(top=top, friction=friction, record=record, scale=scale))
+        return path
+
+    return write
+
+
+def test_a_product_has_every_combination_and_the_last_key_changes_fastest(written):
+    family = load_family(written('combine = "product"', record=SUITE, scale="{range = [0.5, 1.0], steps = 2}"))
+    assert family.key == "excitation.record.motion, excitation.scale"
+    assert family.columns == {
+        "excitation.record.motion": (1, 1, 2, 2, 3, 3),
+        "excitation.scale": (0.5, 1.0, 0.5, 1.0, 0.5, 1.0),
+    }
+    assert [float(scene.record[1, 1]) for scene in family.scenes] == [0.5, 1.0, 1.0, 2.0, 1.5, 3.0]
+    assert family.scenes[3].name == "mine[motion=2, scale=1]"
+    assert family.values[3] == "2, 1"
+    assert len({scene.name for scene in family.scenes}) == 6
+
+
+def test_a_zip_takes_the_values_in_step(written):
+    family = load_family(written('combine = "zip"', friction=TWO, scale="{values = [1.0, 3.0]}"))
+    assert [scene.friction_coefficient for scene in family.scenes] == [0.05, 0.1]
+    assert [float(scene.record[1, 1]) for scene in family.scenes] == [1.0, 3.0]
+
+
+def test_three_keys_may_run(written):
+    top = 'combine = "product"'
+    family = load_family(written(top, friction=TWO, record=SUITE, scale="{values = [1.0, 3.0]}"))
+    assert len(family.scenes) == 12
+    assert len(set(family.scenes)) == 12
+
+
+def test_all_motions_of_a_suite_are_a_family_without_any_other_key(written):
+    family = load_family(written(record=SUITE))
+    assert (family.key, family.values) == ("excitation.record.motion", (1, 2, 3))
+    np.testing.assert_array_equal([scene.record[1, 1] for scene in family.scenes], [1.0, 2.0, 3.0])
+
+
+@pytest.mark.parametrize(
+    ("options", "key", "rule"),
+    [
+        ({"friction": TWO, "scale": TWO}, "excitation.scale", 'add combine = "product" or combine = "zip"'),
+        ({"top": 'combine = "sum"', "friction": TWO, "scale": TWO}, "combine", "must be one of product, zip"),
+        ({"top": "combine = 3", "friction": TWO, "scale": TWO}, "combine", "must be one of product, zip"),
+        ({"top": 'combine = "zip"', "friction": TWO}, "combine", "two or more keys must run"),
+        (
+            {"top": 'combine = "zip"', "friction": TWO, "record": SUITE},
+            "combine",
+            "isolator.friction 2, excitation.record.motion 3",
+        ),
+        (
+            {
+                "top": 'combine = "product"',
+                "friction": "{range = [0.1, 0.2], steps = 100}",
+                "scale": "{range = [0.1, 0.2], steps = 11}",
+            },
+            "combine",
+            "1100 scenes: must be at most 1000",
+        ),
+        ({"record": '{suite = "none", motion = "all"}'}, "excitation.record.suite", "No such file"),
+    ],
+)
+def test_keys_that_cannot_run_together_are_refused_in_one_line(written, options, key, rule):
+    with pytest.raises(SceneError) as refusal:
+        load_family(written(**options))
+    assert (refusal.value.key, "\n" in str(refusal.value)) == (key, False)
+    assert rule in refusal.value.rule
+
+
+def test_one_scene_of_a_file_with_combined_keys_is_refused_in_one_line(written):
+    with pytest.raises(SceneError, match="makes a family of scenes, and one scene is asked for"):
+        load_scene(written('combine = "zip"', friction=TWO, scale=TWO))
