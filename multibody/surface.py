@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike, NDArray
 from multibody.integration.constant_step import silence
 from multibody.integration.level import Level
 from multibody.integration.refine import MAX_WORK, WORK, Refinement, refine
-from multibody.integration.regularization import REGULARIZATION_RATIO, resolved_regularization, with_regularization
 from multibody.models.assembly import assemble, required_model
 from multibody.models.system import EngineModel
 from reference.problem import (
@@ -53,8 +52,7 @@ def amplification(
         The paper's degrees of freedom, or bodies that turn on supports that may open.
     regularization : float or None
         v_reg, m/s, below which dry friction is linear in the slip velocity. None only where the contact is lubricated
-        or frictionless. A speed that the contact cannot follow in double precision (1e-7 m/s) is answered by a larger
-        one, whose effect is part of the error.
+        or frictionless.
     tolerance : float
         Relative error that is asked of every mu.
     loading : {"inertial", "plate"}
@@ -105,7 +103,7 @@ def amplification(
     cap_share = np.full(len(pairs), np.nan)
     ground = ground_peak(scene, pairs)
     with silence():
-        reduced = _reduced(scene, model, regularization, loading, full, tolerance if levels is None else None)
+        reduced = _reduced(scene, model, regularization, loading, full)
         for m, phase in enumerate(pairs):
             if ground[m] < LEAST_ACCELERATION:
                 status[m], instant[m] = Outcome.NO_GROUND_MOTION, 0.0
@@ -129,15 +127,10 @@ class _Reduced:
     built: EngineModel
     asked: tuple[Scene, str, float | None, str] | None  # what to assemble where the reduced model has no answer
     whole: bool  # whether every run goes to the end of the motion
-    smoother: EngineModel | None = None  # `built` has a larger v_reg than asked for, and this one a larger one still
 
     def refined(self, phase: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float) -> Refinement:
         asked: dict[str, Any] = {"whole": self.whole, "levels": levels, "max_work": max_work}
-        if self.smoother:
-            asked["max_work"] = 0.5 * max_work
         point = refine(self.scene, self.built, phase, tolerance, **asked)
-        if self.smoother:
-            point = with_regularization(point, refine(self.scene, self.smoother, phase, tolerance, **asked), tolerance)
         if self.asked and np.isnan(point.peaks).any():  # off its supports the model that is asked for goes on
             scene, model, regularization, loading = self.asked
             complete = assemble(scene, model, regularization, loading=loading)
@@ -145,26 +138,11 @@ class _Reduced:
         return point
 
 
-def _reduced(
-    scene: Scene, model: str, regularization: float | None, loading: str, full: bool, tolerance: float | None
-) -> _Reduced:
-    """
-    The model that is required, and in a plane no coordinates across it.
-
-    tolerance: of mu, for which v_reg may be larger than asked for; None: it is what is asked for.
-    """
+def _reduced(scene: Scene, model: str, regularization: float | None, loading: str, full: bool) -> _Reduced:
+    """The model that is required, and in a plane no coordinates across it."""
     chosen = required_model(scene, model, full)
     planar = chosen == "translational" and not full and planar_chain(scene).allowed
     moving = in_plane(scene) if planar else scene
     axes: dict[str, Any] = {"axes": 1} if planar else {}
     built = assemble(moving, chosen, regularization, loading=loading, **axes)
-    smoother = None
-    if regularization is not None and tolerance is not None:
-        resolved = resolved_regularization(moving, built, regularization, tolerance)
-        if resolved > regularization:
-            built, smoother = (
-                assemble(moving, chosen, speed, loading=loading, **axes)
-                for speed in (resolved, REGULARIZATION_RATIO * resolved)
-            )
-    asked = (scene, model, regularization, loading) if chosen != model else None
-    return _Reduced(moving, built, asked, full, smoother)
+    return _Reduced(moving, built, (scene, model, regularization, loading) if chosen != model else None, full)
