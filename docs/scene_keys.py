@@ -99,7 +99,7 @@ def _limits(key: str, field: dict[str, Any]) -> str:
     if key in SCENE:
         allowed = SCENE[key]
         table = ", or table" if any(part.startswith(f"{key}.") for part in SCENE) else ""
-        return f"{allowed.lowest:g} to {allowed.highest:g}{table}"
+        return f"{allowed.lowest:g} to {allowed.highest:g}{', or inf' if allowed.or_infinite else ''}{table}"
     kinds = [kind for kind in field.get("anyOf", [field]) if kind.get("type") != "null"]
     if any("$ref" in kind for kind in kinds):
         return "table"

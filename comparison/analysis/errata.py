@@ -58,13 +58,13 @@ def _printed_rest(scene: Scene) -> Array | None:
 
 
 def _wrong_spring(scene: Scene) -> Array | None:
-    if len(scene.bodies) < 2 or scene.stiffness[0, 0] == scene.stiffness[0, 1]:
+    if scene.flat or len(scene.bodies) < 2 or scene.stiffness[0, 0] == scene.stiffness[0, 1]:
         return None
     return _change(printed_amplification(scene, PHASES, [WRONG_SPRING]), printed_amplification(scene, PHASES))
 
 
 def _wrong_damping(scene: Scene) -> Array | None:
-    if not scene.lubricated:
+    if scene.flat or not scene.lubricated:  # (3.9) is multiplied by Delta, which is infinite on a plane
         return None
     return _change(printed_amplification(scene, PHASES, [WRONG_DAMPING]), printed_amplification(scene, PHASES))
 

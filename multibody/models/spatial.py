@@ -64,7 +64,7 @@ def spatial(
     """
     Assemble the spatial model; arguments as in `translational`.
 
-    Raises ValueError if the scene lacks supports, ring, sphere_radius, or the height or size of a body.
+    Raises ValueError if the scene lacks supports, ring, sphere_radius, or the height or size of a body, or is flat.
     """
     units = units_of(scene)
     ring, radius, centers, sizes = _geometry(scene, units)
@@ -292,6 +292,8 @@ def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:
     Supports (K, 2), sphere radius, centers of mass (N, 3) and sizes (N, 3), all in units of length. Raises ValueError.
     """
     isolator = scene.isolator
+    if scene.flat:
+        raise ValueError(f"model: 'spatial': {scene.name}: isolator.radius = inf: it has no flat slider; give a radius")
     required = {f"isolator.{key}": getattr(isolator, key) for key in ("supports", "sphere_radius")}
     if not isinstance(isolator.supports, list):
         required["isolator.ring"] = isolator.ring

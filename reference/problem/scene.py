@@ -136,7 +136,8 @@ class Scene(Table):
             derived[f"bodies.{i + 1}: k^{'xy'[axis]} in N/m"] = float(k), SCENE["bodies.stiffness"]
             derived[f"bodies.{i + 1}: period along {'xy'[axis]} in s"] = float(periods[i, axis]), SCENE["bodies.period"]
         for key, (value, allowed) in derived.items():
-            if not allowed.lowest * (1.0 - DERIVED_ROUNDING) <= value <= allowed.highest * (1.0 + DERIVED_ROUNDING):
+            lowest, highest = allowed.lowest * (1.0 - DERIVED_ROUNDING), allowed.highest * (1.0 + DERIVED_ROUNDING)
+            if not (lowest <= value <= highest or value in allowed):
                 raise MisfitError(key, value, allowed.rule)
         shortest = 2.0 * math.pi * math.sqrt(self.radius / GRAVITY)
         if isinstance(self.excitation, Excitation):
@@ -213,12 +214,17 @@ class Scene(Table):
 
     @property
     def radius(self) -> float:
-        """rho = R - r in m; from the period of one mass alone, rho = g T_c^2 / (4 pi^2) (section 5)."""
+        """rho = R - r in m, inf for a flat slider; of the period of one mass alone, g T_c^2 / (4 pi^2) (section 5)."""
         if self.isolator.radius is not None:
             return self.isolator.radius
         assert self.isolator.period is not None
         pace = self.isolator.period / (2.0 * math.pi)
         return GRAVITY * pace * pace  # a product overflows to inf, which validation refuses; a power raises
+
+    @property
+    def flat(self) -> bool:
+        """Whether the platform slides on a plane: a bearing without restoring force, rho = inf."""
+        return math.isinf(self.radius)
 
     @property
     def displacement_limit(self) -> float:

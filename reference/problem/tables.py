@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import unicodedata
 from collections.abc import Mapping
 from pathlib import Path
@@ -67,6 +68,12 @@ def _without_control_characters(text: str) -> str:
 Text = Annotated[str, AfterValidator(_without_control_characters)]
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
+# JSON has no infinity: there it is the text "inf"
+Radius = Annotated[
+    float,
+    Field(gt=0.0, allow_inf_nan=True),
+    PlainSerializer(lambda value: "inf" if value == math.inf else value, when_used="json"),
+]
 LinkPeriods = Annotated[list[Annotated[Positive, within("bodies.period")]], Field(min_length=2, max_length=2)]
 LinkStiffness = Annotated[list[Annotated[Positive, within("bodies.stiffness")]], Field(min_length=2, max_length=2)]
 Size = Annotated[list[Annotated[Positive, within("bodies.size")]], Field(min_length=3, max_length=3)]
@@ -144,8 +151,12 @@ class Isolator(Table):
         about("natural period T_c of one mass alone on the isolator; give this or radius", "s", ALL),
     ] = None
     radius: Annotated[
-        Annotated[Positive, within("isolator.radius")] | None,
-        about("rho = R - r, depression's radius less that of the sphere; give this or period", "m", ALL),
+        Annotated[Radius, within("isolator.radius")] | None,
+        about(
+            "rho = R - r, depression's radius less that of the sphere; inf for a flat slider; give this or period",
+            "m",
+            ALL,
+        ),
     ] = None
     friction: Annotated[
         Friction | None,
