@@ -30,6 +30,14 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         "bodies",
         "One table per body, from the platform up. Every body is linked to the body before it.",
     ),
+    (
+        "`bars` of a body",
+        "Bars",
+        "bodies.bars",
+        "`bars = {count = 4, bending_stiffness = 120.0, length = 1.0}` in place of `period` or `stiffness`: the link of"
+        " (2.3), k = 12 n E J / l^3. `period` and `stiffness` state a link as it is under the weight that it carries;"
+        " `bars` state it without load, and the models leave out that the weight makes bars softer.",
+    ),
     ("`[excitation]`, two frequencies", "Excitation", "excitation", "Ground acceleration (5.2)-(5.4)."),
     ("`[excitation]`, recorded motion", "Record", "excitation", "A record in place of the two frequencies."),
     (

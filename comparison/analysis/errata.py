@@ -36,7 +36,8 @@ def _softened(scene: Scene) -> Array | None:
     """Every link 144 times softer: 12 n E J / l^3 read as n E J / (12 l^3)."""
     softer: dict[str, Any] = {}
     for number, link in enumerate(scene.stiffness, start=1):
-        softer |= {f"bodies.{number}.period": None, f"bodies.{number}.stiffness": link / 144.0}
+        softer |= {f"bodies.{number}.{key}": None for key in ("period", "bars")}
+        softer |= {f"bodies.{number}.stiffness": link / 144.0}
     return _change(amplification(scene.with_values(softer), PHASES).mu, amplification(scene, PHASES).mu)
 
 

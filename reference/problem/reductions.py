@@ -224,8 +224,9 @@ def in_plane(scene: Scene) -> Scene:
     horizontal = scene.amplitudes[:2]
     if not horizontal[0].any():  # along y: the links' y becomes their x
         for body in table["bodies"][1:]:
-            key = "period" if "period" in body else "stiffness"
-            body[key] = body[key][::-1]
+            for key in ("period", "stiffness"):  # bars are the same in x and y
+                if key in body:
+                    body[key] = body[key][::-1]
     direction = horizontal[:, np.abs(horizontal).sum(axis=0).argmax()]
     length = float(np.hypot(*direction))
     along = direction @ horizontal / length if length > 0.0 else np.zeros(2)

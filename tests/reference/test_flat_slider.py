@@ -95,7 +95,8 @@ def plane_factors(scene: Scene, phase) -> np.ndarray:
         run = solve_ivp(
             slope, (begin, ends[0]), state, "LSODA", events=events, dense_output=True, rtol=1e-10, atol=1e-13
         )
-        instants = np.union1d(run.t, np.linspace(begin, run.t[-1], 2 + math.ceil((run.t[-1] - begin) / 2e-4)))
+        steps = np.union1d(run.t, 0.5 * (run.t[1:] + run.t[:-1]))
+        instants = np.union1d(steps, np.linspace(begin, run.t[-1], 2 + math.ceil((run.t[-1] - begin) / 2e-4)))
         for t, each in zip(instants, run.sol(instants).T):
             relative, ground = accelerations(t, each)
             total = np.column_stack([relative + ground[:2], np.full(count, ground[2])])
