@@ -85,8 +85,6 @@ def _spatial(name: str) -> Scene:
             "rings and heights are varied at phases, which a recorded motion has not: give a scene of two frequencies"
         )
         raise SceneError(name, "excitation.record", scene.name, rule)
-    if scene.flat:
-        raise SceneError(name, "isolator.radius", scene.radius, "the spatial model has no flat slider: give a radius")
     if not has_spatial_data(scene):
         rule = "the spatial model needs supports, ring and sphere_radius of the isolator, height and size of every body"
         raise SceneError(name, "isolator, bodies", scene.name, rule)

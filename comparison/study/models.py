@@ -38,8 +38,8 @@ def with_mirrored_supports(scene: Scene) -> bool:
 
 
 def has_spatial_data(scene: Scene) -> bool:
-    """Whether the scene says where its supports are and how high and large its bodies, and is no flat slider."""
-    if scene.flat or scene.support_places is None or scene.isolator.sphere_radius is None:
+    """Whether the scene says where its supports are and how high and large its bodies."""
+    if scene.support_places is None or scene.isolator.sphere_radius is None:
         return False
     return all(body.height is not None and body.size is not None for body in scene.bodies)
 

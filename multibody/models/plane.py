@@ -14,6 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.models.engine import exudyn, items
+from multibody.models.units import Units
+from reference.problem import Scene
 
 Array = NDArray[np.float64]
 
@@ -39,6 +41,13 @@ def plane_contact(
 def set_extent(mbs: Any, contact: Any, way: float, height: float) -> None:
     """Make the triangle at `height` large enough for a platform that goes `way`, in units of length."""
     mbs.SetObjectParameter(contact, "trianglePoints", _triangle(max(MIN_EXTENT, EXTENT_MARGIN * way), height))
+
+
+def farthest(scene: Scene, units: Units, coordinates: Array, velocities: Array) -> float:
+    """How far the start and the loading alone may take a body, in units of length."""
+    end = scene.duration / units.time
+    loading = 2.0 * scene.largest_acceleration / units.acceleration
+    return float(np.abs(coordinates).max() + np.abs(velocities).max() * end + loading * end**2)
 
 
 def platform_on_plane(

@@ -25,12 +25,12 @@ from multibody.models.contact import (
 )
 from multibody.models.engine import exudyn, items
 from multibody.models.loading import Ground, ground_of, symbolic_load
-from multibody.models.plane import plane_contact, platform_on_plane, set_extent
+from multibody.models.plane import farthest, plane_contact, platform_on_plane, set_extent
 from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate, plate_for
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
 from multibody.models.system import EngineModel, EngineState
-from multibody.models.units import Units, link_stiffness, units_of
+from multibody.models.units import link_stiffness, units_of
 from reference.problem import Scene, State
 
 Array = NDArray[np.float64]
@@ -94,7 +94,7 @@ def translational(
             coordinates[bodies[:, :2]] = np.asarray(initial.position, float) / units.length
             velocities[bodies[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
         if scene.flat:
-            set_extent(mbs, contact, _farthest(scene, units, coordinates, velocities), -SPHERE_ON_PLANE)
+            set_extent(mbs, contact, farthest(scene, units, coordinates, velocities), -SPHERE_ON_PLANE)
         on_surface = platform_on_plane if scene.flat else platform_on_sphere
         coordinates[:3], velocities[:3], gap, slip = on_surface(
             coordinates[:2], velocities[:2], ground_acceleration / units.acceleration, penetration
@@ -148,13 +148,6 @@ def _contact_on_plane(mbs: Any, plate: Plate, platform: Any, friction: float, th
     plane = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body))
     contact = plane_contact(platform, plane, node, SPHERE_ON_PLANE, -SPHERE_ON_PLANE, friction, threshold)
     return mbs.AddObject(contact), node
-
-
-def _farthest(scene: Scene, units: Units, coordinates: Array, velocities: Array) -> float:
-    """How far the start and the loading alone may take a body, in units of length."""
-    end = scene.duration / units.time
-    loading = 2.0 * scene.largest_acceleration / units.acceleration
-    return float(np.abs(coordinates).max() + np.abs(velocities).max() * end + loading * end**2)
 
 
 def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array) -> Any:

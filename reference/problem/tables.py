@@ -276,7 +276,11 @@ class Body(Table):
     ] = None
     height: Annotated[
         Annotated[NonNegative, within("bodies.height")] | None,
-        about("height of the center of mass above the centers of the depressions", "m", SPATIAL),
+        about(
+            "height of the center of mass above the centers of the depressions, or above the plane of a flat slider",
+            "m",
+            SPATIAL,
+        ),
     ] = None
     size: Annotated[
         Size | None,

@@ -113,7 +113,60 @@ def test_the_unit_of_length_follows_the_loading():
     np.testing.assert_allclose(again.mu, once.mu, rtol=1e-9)
 
 
-def test_the_spatial_model_refuses_a_plane_in_one_line():
-    with pytest.raises(ValueError, match=r"model: 'spatial'.*isolator\.radius = inf") as caught:
-        multibody.amplification(SCENES["own axes"], PHASES[:1], model="spatial")
-    assert "\n" not in str(caught.value)
+# bodies that turn ----------------------------------------------------------------------------------------------------
+
+SPATIAL = SCENES["own axes"].with_values({"duration": 3.0})
+RING, SPHERE = 1.0, 0.05  # m, of SPATIAL
+
+
+def test_overturning_shifts_the_load_of_the_supports_as_statics_says():
+    """A block that slides along x with its center h above the plane: the load's center is mu h before that of mass."""
+    height, still = 0.3, [[0.0, 0.0], [0.0, 0.0]]
+    block = {"mass": 2.0, "height": height, "size": [2.0, 2.0, 0.2]}
+    scene = SPATIAL.with_values({"bodies": [block], "excitation.amplitudes": still, "duration": 0.5})
+    start = State(np.zeros((1, 2)), np.array([[0.8, 0.0]]))
+    run = multibody.trajectory(scene, (0.0, 0.0), model="spatial", initial=start)
+    middle = len(run.time) // 2
+    weight, places = 2.0 * GRAVITY, scene.support_places[:, 0]
+    center = 0.1 * height + run.position[middle, 0, 0]
+    expected = weight / 4.0 + weight * center * places / (places**2).sum()
+    assert run.status == Outcome.OK
+    np.testing.assert_allclose(run.extra["support_force"][middle], expected, rtol=1e-5)
+    assert np.abs(run.extra["yaw"]).max() < 1e-9
+
+
+def test_a_body_level_with_the_plane_does_not_turn():
+    level = [{"mass": 1.0, "height": 0.0, "size": [2.0, 2.0, 0.2]}]
+    scene = SPATIAL.with_values({"bodies": level, "excitation.scale": 2.0})
+    spatial, translational = (
+        multibody.amplification(scene, PHASES[:1], model=model, full=True) for model in ("spatial", "translational")
+    )
+    assert (np.abs(spatial.mu - translational.mu) <= spatial.error + translational.error).all()
+    assert (spatial.error < 1e-3).all()
+
+
+def test_bodies_that_turn_on_large_spheres_tend_to_those_on_a_plane():
+    """Heights count from the plane, so on spheres they are larger by the depth of the plane's place, rho + r."""
+    phase = PHASES[1:2]
+    limit = multibody.amplification(SPATIAL, phase, model="spatial")
+    gaps = []
+    for radius in (10.0, 100.0):
+        bodies = [
+            {**body.model_dump(exclude_none=True), "height": body.height + radius + SPHERE} for body in SPATIAL.bodies
+        ]
+        curved = SPATIAL.with_values({"isolator.radius": radius, "bodies": bodies})
+        answer = multibody.amplification(curved, phase, model="spatial")
+        assert answer.status.tolist() == [Outcome.OK]
+        gaps.append((answer.mu - limit.mu)[0])
+        uncertain = (answer.error + limit.error)[0]
+        slope = np.array([0.22, -0.038])  # m, of mu over 1 / rho
+        assert (np.abs(gaps[-1] - slope / radius) <= uncertain + 0.1 * np.abs(slope) / radius).all()
+    assert abs(gaps[0][0]) > 10.0 * uncertain[0], "the gap at 10 m is seen"
+
+
+def test_a_plate_that_moves_carries_the_plane_under_bodies_that_turn():
+    scene = SPATIAL.with_values({"duration": 1.5})
+    moving, still = (
+        multibody.amplification(scene, PHASES[:1], model="spatial", loading=each) for each in ("plate", "inertial")
+    )
+    assert (np.abs(moving.mu - still.mu) <= moving.error + still.error).all()
