@@ -61,7 +61,7 @@ SCENE: dict[str, Range] = {
     "bodies.mass": Range(1e-12, 1e15, "kg"),
     "bodies.period": Range(1e-7, 1e9, "s"),
     "bodies.stiffness": Range(1e-30, 1e30, "N/m"),
-    "bodies.bars.count": Range(1, 1e6),
+    "bodies.bars.count": Range(1, 1_000_000),
     "bodies.bars.bending_stiffness": Range(1e-30, 1e30, "N m^2"),
     "bodies.bars.length": Range(1e-9, 1e6, "m"),
     "bodies.height": Range(0.0, 1e6, "m"),

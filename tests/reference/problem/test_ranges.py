@@ -64,7 +64,7 @@ def test_every_number_of_a_scene_has_a_range():
 @pytest.mark.parametrize("side", ["lowest", "highest"])
 def test_a_quantity_beyond_its_range_is_refused_with_the_range(key, side):
     edge = getattr(SCENE[key], side)
-    outside = edge + (1 if side == "highest" else -1) if key.endswith("supports") else math.nextafter(
+    outside = edge + (1 if side == "highest" else -1) if key.endswith(("supports", "count")) else math.nextafter(
         edge, math.inf if side == "highest" else -math.inf
     )  # fmt: skip
     with pytest.raises(SceneError) as caught:
