@@ -37,8 +37,8 @@ def scientific(value: float) -> str:
 
 
 def significant(value: float) -> str:
-    """Seven digits, enough to tell what differs by 1e-6."""
-    return "" if not math.isfinite(value) else f"{value:.7g}"
+    """Seven digits, enough to tell what differs by 1e-6; an infinite number by its sign."""
+    return "" if math.isnan(value) else "\N{INFINITY}" if value == math.inf else f"{value:.7g}"
 
 
 def degrees(phase: float) -> str:

@@ -30,6 +30,14 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         "bodies",
         "One table per body, from the platform up. Every body is linked to the body before it.",
     ),
+    (
+        "`bars` of a body",
+        "Bars",
+        "bodies.bars",
+        "`bars = {count = 4, bending_stiffness = 120.0, length = 1.0}` in place of `period` or `stiffness`: the link of"
+        " (2.3), k = 12 n E J / l^3. `period` and `stiffness` state a link as it is under the weight that it carries;"
+        " `bars` state it without load, and the models leave out that the weight makes bars softer.",
+    ),
     ("`[excitation]`, two frequencies", "Excitation", "excitation", "Ground acceleration (5.2)-(5.4)."),
     ("`[excitation]`, recorded motion", "Record", "excitation", "A record in place of the two frequencies."),
     (
@@ -99,7 +107,7 @@ def _limits(key: str, field: dict[str, Any]) -> str:
     if key in SCENE:
         allowed = SCENE[key]
         table = ", or table" if any(part.startswith(f"{key}.") for part in SCENE) else ""
-        return f"{allowed.lowest:g} to {allowed.highest:g}{table}"
+        return f"{allowed.lowest:g} to {allowed.highest:g}{', or inf' if allowed.or_infinite else ''}{table}"
     kinds = [kind for kind in field.get("anyOf", [field]) if kind.get("type") != "null"]
     if any("$ref" in kind for kind in kinds):
         return "table"

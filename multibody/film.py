@@ -139,8 +139,9 @@ def drawing(scene: Scene, motion: Trajectory, stretch: float, count: int) -> Dra
     scales = f"displacements x {stretch:g}, contact paths x {closer:g}"
     scales += f", tilt x {tilt:g}, yaw x {yaw:g}" if "turns" in motion.extra else ""
     scales += f", heights x {factor:.2g}" if factor != 1.0 else ""
-    across = np.linspace(-0.25, 0.25, 101) * scene.radius
-    rise = scene.radius - np.sqrt(scene.radius**2 - across**2)
+    reach = float(np.abs(shifts[..., :2]).max()) if scene.flat else 0.25 * scene.radius
+    across = np.linspace(-1.0, 1.0, 101) * reach
+    rise = np.zeros(101) if scene.flat else scene.radius - np.sqrt(scene.radius**2 - across**2)
     centers = np.column_stack([scene.offsets, heights]) + shifts * stretch
     return Drawing(
         corners=box_corners(centers, sizes, turns * [tilt, tilt, yaw] + scene.yaws[:, None] * [0.0, 0.0, 1.0]),

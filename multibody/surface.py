@@ -69,9 +69,10 @@ def amplification(
     -------
     Amplification
         `mu` and its estimated absolute error `error`, both (..., N); `status` (...,); `instant` (...,), s, at which a
-        status other than "ok" arose; `cost`, s; `cap_share` (...,). A point without an answer is NaN, with status
-        "rim reached", "travel reached", "contact lost", "overturned", "solver failed", "step limit", "no ground motion"
-        or "non-finite load". "tolerance not met" keeps its mu with the error that was reached.
+        status other than "ok" arose; `cost`, s; `cap_share` (...,) and `displacement` (...,), m. A point without an
+        answer is NaN, with status "rim reached", "travel reached", "contact lost", "overturned", "solver failed",
+        "step limit", "no ground motion" or "non-finite load". "tolerance not met" keeps its mu with the error that was
+        reached.
 
     Raises
     ------
@@ -100,7 +101,7 @@ def amplification(
     shape = (len(pairs), len(scene.bodies))
     mu, error = np.full(shape, np.nan), np.full(shape, np.nan)
     status, instant = np.full(len(pairs), Outcome.OK.value, dtype="U32"), np.full(len(pairs), np.nan)
-    cap_share = np.full(len(pairs), np.nan)
+    displacement = np.full(len(pairs), np.nan)
     ground = ground_peak(scene, pairs)
     with silence():
         reduced = _reduced(scene, model, regularization, loading, full)
@@ -114,9 +115,9 @@ def amplification(
                 status[m], instant[m] = point.outcome, point.instant
                 mu[m], error[m] = point.peaks / ground[m], point.errors / ground[m]
                 if np.isfinite(point.peaks).all():
-                    cap_share[m] = point.finest.max_displacement
-    cost = time.process_time() - clock
-    return Amplification(mu, error, status, instant, cost, cap_share, pairs).reshaped(leading)
+                    displacement[m] = point.finest.max_displacement * reduced.built.units.length
+    cost, cap_share = time.process_time() - clock, displacement / scene.radius
+    return Amplification(mu, error, status, instant, cost, cap_share, pairs, displacement).reshaped(leading)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,8 @@ the chain is kept as its factor: C0 = D^T diag(k) D with D the elongation of eac
 M0^-1/2 C0 M0^-1/2 = L^T L with L = diag(k)^1/2 D M0^-1/2 bidiagonal, its entries free of subtraction. The frequencies
 are the singular values of L, and the entries of a bidiagonal matrix determine every one of them to full relative
 precision (Demmel and Kahan 1990). They are found by bisection on the Golub-Kahan matrix, which couples link, mass,
-link, mass, ... along the chain: zero diagonal, the entries of L beside it.
+link, mass, ... along the chain: zero diagonal, the entries of L beside it. Without the first link, of a flat slider,
+the chain is free: its first mode is the motion of all bodies as one, of frequency zero.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ class Modes:
     Attributes
     ----------
     frequency : ndarray, (2, N), rad/s
-        omega_ix and omega_iy of (4.8), each to about 1e-13 of itself.
+        omega_ix and omega_iy of (4.8), each to about 1e-13 of itself. The first is 0 on a flat slider.
     shape : ndarray, (2, N, N), kg^-1/2
         shape[axis, body, mode], the vectors X_i, Y_j of (4.10)-(4.11), scaled to unit modal mass (shape^T M0 shape =
         identity) and signed so that the participation factor is not negative.
@@ -46,8 +47,9 @@ class Modes:
 
     @property
     def period(self) -> Array:
-        """Natural periods T_ci = 2 pi / omega_i, (2, N), s, longest first."""
-        result: Array = 2.0 * np.pi / self.frequency
+        """Natural periods T_ci = 2 pi / omega_i, (2, N), s, longest first; inf for the rigid motion on a plane."""
+        with np.errstate(divide="ignore"):
+            result: Array = 2.0 * np.pi / self.frequency
         return result
 
     @property
@@ -104,17 +106,22 @@ def _axis(masses: Array, stiffness: Array) -> tuple[Array, Array, Array]:
     beside = np.empty(2 * count - 1)
     beside[0::2] = np.sqrt(stiffness / masses)  # link and the mass above it
     beside[1::2] = -np.sqrt(stiffness[1:] / masses[:-1])  # link and the mass below it
-    scale = np.abs(beside).max()
+    free = stiffness[0] == 0.0
+    beside = beside[1:] if free else beside
+    size = len(beside) + 1
+    scale = np.abs(beside).max(initial=np.finfo(float).tiny)
     values, vectors = eigh_tridiagonal(
-        np.zeros(2 * count),
+        np.zeros(size),
         beside / scale,
         select="i",
-        select_range=(count, 2 * count - 1),  # the spectrum is +-omega
+        select_range=(size - count, size - 1),  # the spectrum is +-omega
         lapack_driver="stebz",
         tol=2.0 * np.finfo(float).tiny,  # bisect to the last bit of each value, not of the largest
     )
     frequency = values * scale
-    symmetric = vectors[1::2]  # the rows of masses: M0^1/2 times the shape
+    if free:
+        frequency[0] = 0.0
+    symmetric = vectors[0 if free else 1 :: 2]  # the rows of masses: M0^1/2 times the shape
     symmetric = symmetric / np.linalg.norm(symmetric, axis=0)
     participation = np.sqrt(masses) @ symmetric
     sign = np.where(participation < 0.0, -1.0, 1.0)

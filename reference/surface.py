@@ -131,7 +131,7 @@ def amplification(
     system, demand = checked_demand(moving, equations, regularization, tolerance, cutoff, rest_condition, axes)
     count, bodies = len(pairs), len(scene.bodies)
     mu, error = np.full((count, bodies), np.nan), np.full((count, bodies), np.nan)
-    instant, cap_share = np.full(count, np.nan), np.full(count, np.nan)
+    instant, displacement = np.full(count, np.nan), np.full(count, np.nan)
     status = np.full(count, Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")
     if not loads_are_finite(system):
         return Amplification(mu, error, status, np.zeros(count), 0.0, phases=pairs).reshaped(shape)
@@ -155,7 +155,7 @@ def amplification(
         known = (outcomes == Outcome.OK) | (outcomes == Outcome.TOLERANCE_NOT_MET)
         status[places] = [outcome.value for outcome in outcomes]
         mu[places[known]] = peaks.value[known] / ground[shaken][known, None]
-        cap_share[places[known]] = peaks.reach[known] / scene.radius
+        displacement[places[known]] = peaks.reach[known]
         error[places[known]] = peaks.error[known] / ground[shaken][known, None]
         instant[part] = 0.0
         instant[places] = np.where(outcomes == Outcome.OK, np.nan, peaks.instant)
@@ -168,7 +168,8 @@ def amplification(
         solve(slice(0, 1))  # compiled once, before the threads need it
         with ThreadPoolExecutor(threads) as pool:
             cost = sum(pool.map(solve, parts(count, PARTS_PER_THREAD * threads)))
-    return Amplification(mu, error, status, instant, cost, cap_share, pairs).reshaped(shape)
+    share = displacement / scene.radius
+    return Amplification(mu, error, status, instant, cost, share, pairs, displacement).reshaped(shape)
 
 
 def superposed(scene: Scene, system: System, phases: Array, demand: Demand) -> Peaks:

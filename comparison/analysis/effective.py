@@ -29,6 +29,7 @@ PHASES = (0.3, 1.1)  # rad, of the motion that is measured
 DURATION = 6.0  # s: two frequencies are strongest in their first seconds; a record is followed to its end
 SECONDS = {"reference": 0.02, "engine": 0.2}  # predicted cost of one motion, s on `study.models.RECORDED_ON`
 LEAST_SHARE = 0.1  # of the change from slow to fast friction: motions that see less of it do not tell the fast one
+LEVEL = 1e-5  # rise of a flat slider over its displacement that counts as none: what contacts give way by
 FASTEST = 0.9  # friction is measured where the platform slides faster than this part of its largest speed
 
 
@@ -37,9 +38,10 @@ class Effective:
     """
     Values read back from one motion, NaN where the motion does not tell.
 
-    radius: m, of the sphere the platform moves on, (x^2 + y^2 + z^2) / 2z at its largest excursion. friction:
-    tangential over normal part of the contact force while sliding, over |v| in a lubricated scene (s/m), and where it
-    depends on the velocity the coefficient at high speed that follows from it. contact: N,
+    radius: m, of the sphere the platform moves on, (x^2 + y^2 + z^2) / 2z at its largest excursion; inf where a flat
+    slider does not rise. friction: tangential over normal part of the contact force while sliding, over |v| in a
+    lubricated scene (s/m), and where it depends on the velocity the coefficient at high speed that follows from it.
+    contact: N,
     contact force at t = 0. mass: kg, total, the contact force at t = 0 over the apparent gravity. acceleration: m/s^2,
     absolute, of the platform at t = 0: that of the ground where friction holds it, 0 where friction begins with
     the speed. error_message: why there are none, or "".
@@ -120,6 +122,8 @@ def _measured(scene: Scene, motion: Trajectory) -> dict[str, Any]:
     swing = (place**2).sum(axis=1)
     far = int(np.argmax(swing))
     radius = float(swing[far] / (2.0 * place[far, 2])) if place[far, 2] > 0.0 else float("nan")
+    if scene.flat and abs(place[far, 2]) <= LEVEL * float(np.hypot(*place[far, :2])):
+        radius = float("inf")
     return {
         "radius": radius,
         "friction": _friction(scene, motion, radius),
@@ -135,12 +139,15 @@ def _friction(scene: Scene, motion: Trajectory, radius: float) -> float:
 
     Median over the instants of fast sliding.
     """
-    if not np.isfinite(radius):
+    if np.isnan(radius):
         return float("nan")
     force = np.einsum("i,tik->tk", scene.masses, motion.absolute_acceleration)
     force[:, 2] += scene.total_mass * GRAVITY
-    normal = np.array([0.0, 0.0, radius]) - motion.position[:, 0]
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    if radius == np.inf:
+        normal = np.broadcast_to([0.0, 0.0, 1.0], motion.position[:, 0].shape)
+    else:
+        normal = np.array([0.0, 0.0, radius]) - motion.position[:, 0]
+        normal = normal / np.linalg.norm(normal, axis=1)[:, None]
     along = np.einsum("tk,tk->t", force, normal)
     across = np.linalg.norm(force - along[:, None] * normal, axis=1)
     speed = np.linalg.norm(motion.velocity[:, 0], axis=1)

@@ -36,7 +36,8 @@ def _softened(scene: Scene) -> Array | None:
     """Every link 144 times softer: 12 n E J / l^3 read as n E J / (12 l^3)."""
     softer: dict[str, Any] = {}
     for number, link in enumerate(scene.stiffness, start=1):
-        softer |= {f"bodies.{number}.period": None, f"bodies.{number}.stiffness": link / 144.0}
+        softer |= {f"bodies.{number}.{key}": None for key in ("period", "bars")}
+        softer |= {f"bodies.{number}.stiffness": link / 144.0}
     return _change(amplification(scene.with_values(softer), PHASES).mu, amplification(scene, PHASES).mu)
 
 
@@ -58,13 +59,13 @@ def _printed_rest(scene: Scene) -> Array | None:
 
 
 def _wrong_spring(scene: Scene) -> Array | None:
-    if len(scene.bodies) < 2 or scene.stiffness[0, 0] == scene.stiffness[0, 1]:
+    if scene.flat or len(scene.bodies) < 2 or scene.stiffness[0, 0] == scene.stiffness[0, 1]:
         return None
     return _change(printed_amplification(scene, PHASES, [WRONG_SPRING]), printed_amplification(scene, PHASES))
 
 
 def _wrong_damping(scene: Scene) -> Array | None:
-    if not scene.lubricated:
+    if scene.flat or not scene.lubricated:  # (3.9) is multiplied by Delta, which is infinite on a plane
         return None
     return _change(printed_amplification(scene, PHASES, [WRONG_DAMPING]), printed_amplification(scene, PHASES))
 

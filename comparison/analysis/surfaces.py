@@ -25,7 +25,7 @@ def labeled_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[B
     `mu` and `error` (absolute, estimated) are NaN where a point has no answer, where a model does not apply to the
     scene, between the phases of a model with a `stride` above 1 (a `recorded` scene has one point, the first), and in
     bodies a scene does not have (`bodies` counts them). `status` names each point's outcome, `instant` (s) when it
-    arose; `cap_share` is the largest displacement of the platform over rho. `cost` (scene, model) is s of compute.
+    arose; `displacement` is the largest of the platform, m, `cap_share` the same over rho. `cost` (scene, model) is s.
     """
     names = [scene.name for scene in study.scenes]
     models = [model.key for model in study.hierarchy]
@@ -34,7 +34,7 @@ def labeled_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[B
     mu = np.full((*plane, bodies), np.nan)
     error = np.full((*plane, bodies), np.nan)
     instant = np.full(plane, np.nan)
-    cap_share = np.full(plane, np.nan)
+    displacement = np.full(plane, np.nan)
     status = np.full(plane, NOT_APPLICABLE, dtype=object)
     for index, scene in enumerate(study.scenes):
         status[index, [models.index(model.key) for model in models_of(scene, study.hierarchy)]] = NOT_ASKED
@@ -51,13 +51,13 @@ def labeled_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[B
         mu[where][span, :count] = answer.mu
         error[where][span, :count] = answer.error
         instant[where][span] = answer.instant
-        cap_share[where][span] = answer.cap_share
+        displacement[where][span] = answer.displacement
         status[where][span] = answer.status
         cost[where] += answer.cost
     for row, scene in enumerate(study.scenes):
         for model in models_of(scene, study.hierarchy):
             column, place, source = models.index(model.key), study.places(model, scene), study.sources(scene, model)
-            for array in (mu, error, instant, cap_share, status):
+            for array in (mu, error, instant, displacement, status):
                 array[row, column, place] = array[row, column, source]
     square = (len(names), len(models), study.grid, study.grid)
     axis = phase_axis(study.grid)
@@ -72,9 +72,14 @@ def labeled_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[B
             "error": (surface, per_body(error), {"units": "1", "long_name": "estimated absolute error of mu"}),
             "status": (point, status.reshape(square), {"long_name": "named outcome of the point"}),
             "instant": (point, instant.reshape(square), {"units": "s", "long_name": "time when the outcome arose"}),
+            "displacement": (
+                point,
+                displacement.reshape(square),
+                {"units": "m", "long_name": "largest horizontal displacement of the platform"},
+            ),
             "cap_share": (
                 point,
-                cap_share.reshape(square),
+                (displacement / np.array([scene.radius for scene in study.scenes])[:, None, None]).reshape(square),
                 {"units": "1", "long_name": "largest horizontal displacement of the platform over rho"},
             ),
             "cost": (("scene", "model"), cost, {"units": "s", "long_name": "compute time of the surface"}),
@@ -104,14 +109,14 @@ def labeled_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[B
 
 def largest_cap_share(surfaces: xr.Dataset, scene: str, model: str) -> float:
     """Largest displacement of the platform over rho among the phases of a model; NaN where none has an answer."""
-    share = surfaces["cap_share"].sel(scene=scene, model=model)
-    return float(share.max())  # skips NaN
+    return float(surfaces["cap_share"].sel(scene=scene, model=model).max())  # skips NaN
 
 
 def largest_travel_share(surfaces: xr.Dataset, scene: Scene, model: str) -> float:
     """Largest displacement of the platform over the isolator's travel; NaN without an answer or a travel."""
     travel = scene.isolator.travel
-    return math.nan if travel is None else largest_cap_share(surfaces, scene.name, model) * scene.radius / travel
+    displacement = surfaces["displacement"].sel(scene=scene.name, model=model)
+    return math.nan if travel is None else float(displacement.max()) / travel
 
 
 def common_phases(surfaces: xr.Dataset, scene: str, models: Sequence[str]) -> xr.Dataset:

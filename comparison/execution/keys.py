@@ -75,5 +75,5 @@ def cached_batch(cache: Cache, batch: Batch) -> BatchResult | None:
     if answer is None:
         return None
     points, bodies = len(batch.phases), len(batch.scene.bodies)
-    shapes = answer.mu.shape, answer.error.shape, (len(answer.status),), answer.instant.shape, answer.cap_share.shape
+    shapes = answer.mu.shape, answer.error.shape, (len(answer.status),), answer.instant.shape, answer.displacement.shape
     return answer if shapes == ((points, bodies), (points, bodies), (points,), (points,), (points,)) else None

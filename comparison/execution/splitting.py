@@ -45,10 +45,10 @@ def merge(batch: Batch, answers: Sequence[BatchResult]) -> BatchResult:
     BatchResult
         Costs added up; each error message once.
     """
-    mu, error, instant, cap_share = (
+    mu, error, instant, displacement = (
         np.concatenate([getattr(answer, name) for answer in answers])
-        for name in ("mu", "error", "instant", "cap_share")
+        for name in ("mu", "error", "instant", "displacement")
     )
     status = [outcome for answer in answers for outcome in answer.status]
     error_message = "; ".join(dict.fromkeys(answer.error_message for answer in answers if answer.error_message))
-    return BatchResult(mu, error, status, instant, sum(answer.cost for answer in answers), error_message, cap_share)
+    return BatchResult(mu, error, status, instant, sum(answer.cost for answer in answers), error_message, displacement)

@@ -107,12 +107,12 @@ def contact_geometry(scene: Scene) -> dict[str, Any]:
     """
     Where the contact points are.
 
-    lever: radius of the spheres over rho, null where the scene does not state it. supports: [x, y] of each from the
-    center of mass of the platform at rest, m, null likewise.
+    lever: radius of the spheres over rho, null where the scene does not state it or is flat. supports: [x, y] of each
+    from the center of mass of the platform at rest, m, null where the scene does not state them.
     """
     sphere, supports = scene.isolator.sphere_radius, scene.support_places
     return {
-        "lever": None if sphere is None else sphere / scene.radius,
+        "lever": None if sphere is None or scene.flat else sphere / scene.radius,
         "supports": None if supports is None else (supports - scene.offsets[0]).tolist(),
     }
 

@@ -4,7 +4,8 @@ Results of a study as typed data: everything that summary.json holds.
 The page, summary.md, JUnit and summary.json are made from one `Results` object. The models state the format of
 summary.json: its JSON schema is generated from them and written beside it. Relative sizes are fractions, not percent.
 
-Two types hold what JSON cannot: `Number` writes NaN as null, and `Text` replaces what UTF-8 does not know.
+Three types hold what JSON cannot: `Number` writes NaN as null, `Radius` writes infinity as "inf" besides, and `Text`
+replaces what UTF-8 does not know.
 """
 
 from __future__ import annotations
@@ -29,6 +30,10 @@ def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
+def _finite_or_inf(value: float) -> float | Literal["inf"] | None:
+    return "inf" if value == math.inf else _finite(value)
+
+
 def _nan(value: Any) -> Any:
     return math.nan if value is None else value
 
@@ -39,6 +44,11 @@ def _encodable(value: Any) -> Any:
 
 
 Number = Annotated[float, BeforeValidator(_nan), PlainSerializer(_finite, return_type=float | None)]
+Radius = Annotated[
+    float,
+    BeforeValidator(_nan),
+    PlainSerializer(_finite_or_inf, return_type=float | Literal["inf"] | None),
+]
 Text = Annotated[str, BeforeValidator(_encodable)]
 Phases = tuple[Number, Number]
 
@@ -512,8 +522,8 @@ class Effective(Part):
     """name of the scene"""
     model: str
     """key of the model, or scene"""
-    radius: Number
-    """radius of the sphere that the platform moves on, m"""
+    radius: Radius
+    """radius of the sphere that the platform moves on, m; "inf" on a plane"""
     friction: Number
     """coefficient of friction, or s/m in a lubricated scene"""
     contact: Number

@@ -45,11 +45,11 @@ class BatchResult:
     instant: Array
     cost: float
     error_message: str = ""
-    cap_share: Array = field(default_factory=lambda: np.empty(0))
+    displacement: Array = field(default_factory=lambda: np.empty(0))
 
     def __post_init__(self) -> None:
-        if not len(self.cap_share):
-            object.__setattr__(self, "cap_share", np.full(len(self.mu), np.nan))
+        if not len(self.displacement):
+            object.__setattr__(self, "displacement", np.full(len(self.mu), np.nan))
 
 
 def imported(path: str) -> Any:
@@ -109,10 +109,10 @@ def execute_batch(batch: Batch) -> BatchResult:
     points, bodies = len(batch.phases), len(batch.scene.bodies)
     try:
         result = imported(batch.amplification)(batch.scene, batch.phases, **batch.settings)
-        parts = (result.mu, result.error, result.instant, result.cap_share)
-        mu, error, instant, cap_share = (np.array(part, dtype=float) for part in parts)
+        parts = (result.mu, result.error, result.instant, result.displacement)
+        mu, error, instant, displacement = (np.array(part, dtype=float) for part in parts)
         status = [str(outcome) for outcome in result.status]
-        shapes = mu.shape, error.shape, (len(status),), instant.shape, cap_share.shape
+        shapes = mu.shape, error.shape, (len(status),), instant.shape, displacement.shape
         if shapes != ((points, bodies), (points, bodies), (points,), (points,), (points,)):
             raise ValueError(f"{batch.amplification} answered {mu.shape} for {points} phases and {bodies} bodies")
     except Exception as exception:
@@ -122,7 +122,7 @@ def execute_batch(batch: Batch) -> BatchResult:
         if status[index] == Outcome.OK:  # never let a number that is none pass as an answer
             status[index] = Outcome.SOLVER_FAILED.value
             named = f"{batch.amplification} called a non-finite answer ok"
-    return BatchResult(mu, error, status, instant, float(result.cost), named, cap_share)
+    return BatchResult(mu, error, status, instant, float(result.cost), named, displacement)
 
 
 def unanswered(batch: Batch, outcome: Outcome, error_message: str) -> BatchResult:

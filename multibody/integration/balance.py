@@ -46,7 +46,7 @@ def _returned(model: EngineModel, start: EngineState, settled: EngineState) -> E
     coordinates, contact = settled.coordinates.copy(), settled.contact.copy()
     bodies = model.bodies
     # the horizontal distance covered meanwhile also lifts the platform along the sphere
-    rise = 0.5 * float((coordinates[bodies[0, :2]] ** 2).sum())
+    rise = 0.0 if model.rim == math.inf else 0.5 * float((coordinates[bodies[0, :2]] ** 2).sum())
     coordinates[bodies[:, :2]] = start.coordinates[bodies[:, :2]]
     coordinates[bodies[:, 2]] -= rise
     contact[1::4] = start.contact[1::4]

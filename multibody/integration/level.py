@@ -223,11 +223,12 @@ def largest_step(scene: Scene, model: EngineModel) -> float:
     fastest = math.inf
     for axis in range(2):
         stiffness = np.zeros((len(masses), len(masses)))
-        stiffness[0, 0] = 1.0  # the pendulum carries all bodies
+        stiffness[0, 0] = 0.0 if scene.flat else 1.0  # the pendulum carries all bodies
         for link, k in enumerate(link_stiffness(scene, model.units)[:, axis]):
             stiffness[link : link + 2, link : link + 2] += k * np.array([[1.0, -1.0], [-1.0, 1.0]])
         scaled = stiffness / np.sqrt(np.outer(masses, masses))
-        fastest = min(fastest, 2.0 * math.pi / math.sqrt(float(np.linalg.eigvalsh(scaled)[-1])))
+        highest = float(np.linalg.eigvalsh(scaled)[-1])
+        fastest = min(fastest, 2.0 * math.pi / math.sqrt(highest) if highest > 0.0 else math.inf)
     return min(fastest, *periods) / STEPS_PER_PERIOD
 
 

@@ -170,7 +170,8 @@ def _work_of_next(run: EngineRun, stop: float, end: float) -> float:
 
 def _settled(run: EngineRun, model: EngineModel, step: float) -> float:
     """When runs at further levels may stop, after one to the end of the motion; step: the largest of any level."""
-    if run.max_displacement > (1.0 - MIN_END_MARGIN) * min(1.0, model.travel) or run.min_load < MIN_END_MARGIN:
+    limit = (1.0 - MIN_END_MARGIN) * min(model.rim, model.travel)
+    if run.max_displacement > limit or run.min_load < MIN_END_MARGIN:
         return math.inf
     return run.settled + STEPS_AFTER_SETTLING * step
 

@@ -32,9 +32,15 @@ def contact_law(scene: Scene, regularization: float | None, units: Units) -> tup
     return scene.friction_coefficient, regularization / units.velocity
 
 
-def set_contact_parameters(mbs: Any, contact: Any, radii: list[float], penetration: float, count: int = 1) -> None:
-    """Set radii of sphere and depression, stiffness and damping of one of `count` contacts that share the weight."""
-    mbs.SetObjectParameter(contact, "spheresRadii", radii)
+def set_contact_parameters(
+    mbs: Any, contact: Any, radii: list[float] | float, penetration: float, count: int = 1
+) -> None:
+    """
+    Set radii, stiffness and damping of one of `count` contacts that share the weight.
+
+    radii: of sphere and depression, or of the sphere on a plane.
+    """
+    mbs.SetObjectParameter(contact, "spheresRadii" if isinstance(radii, list) else "sphereRadius", radii)
     mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / (count * penetration))
     mbs.SetObjectParameter(contact, "contactDamping", 2.0 * DAMPING_RATIO / (count * np.sqrt(penetration)))
 
@@ -75,7 +81,7 @@ def platform_on_sphere(
     return place, np.array([*speed, vertical]), -pressed, slip
 
 
-def settled_contact(state: EngineState, gap_rate: float, penetration: float) -> EngineState:
+def settled_contact(state: EngineState, gap_rate: float, penetration: float, normal: Array) -> EngineState:
     """
     The same state with the same contact force, carried by the gap alone and not by a leftover of normal velocity.
 
@@ -83,8 +89,6 @@ def settled_contact(state: EngineState, gap_rate: float, penetration: float) -> 
     turns that into a force which the gap makes up for. A smaller step would start with that balance upset and ring.
     """
     coordinates, velocities, contact = state.coordinates.copy(), state.velocities.copy(), state.contact.copy()
-    normal = np.array([0.0, 0.0, 1.0]) - coordinates[:3]
-    normal /= np.linalg.norm(normal)
     damping = 2.0 * DAMPING_RATIO / np.sqrt(penetration)
     excess_speed = float(normal @ velocities[:3]) - gap_rate
     rise = -penetration * damping * excess_speed

@@ -56,11 +56,16 @@ class Depressions:
 
         Jacobian: (K, 3, 6), velocities of the points over velocity and angular velocity of the platform.
         """
-        apart, _ = self.centers(coordinates[None])
-        normals = apart[0] / np.linalg.norm(apart[0], axis=1)[:, None]
+        normals = self._normals(coordinates)
         levers = self._spheres(coordinates) + self.radius * normals - coordinates[:3] - self.center
         jacobian = np.concatenate([np.tile(np.eye(3), (len(levers), 1, 1)), -cross_matrix(levers)], axis=2)
         return normals, jacobian
+
+    def _normals(self, coordinates: Array) -> Array:
+        """Normals (K, 3) of the platform at its points of contact for coordinates (n,), out of the plate."""
+        apart, _ = self.centers(coordinates[None])
+        normals: Array = apart[0] / np.linalg.norm(apart[0], axis=1)[:, None]
+        return normals
 
     def _spheres(self, coordinates: Array) -> Array:
         """Centers of the spheres (..., K, 3) in the axes of the plate for coordinates (..., n)."""
@@ -69,6 +74,24 @@ class Depressions:
         if len(self.vertical):
             spheres[..., 2] += coordinates[..., self.vertical]
         return spheres
+
+
+class FlatUnderside(Depressions):
+    """The plane under the platform of a flat slider, as high above the middle as the tops of the spheres at rest."""
+
+    def clearance(self, coordinates: Array) -> Array:
+        """See `Depressions`."""
+        _, inside = self.centers(coordinates)
+        clear: Array = 1.0 - inside[..., 2]
+        return clear
+
+    def beyond_rim(self, coordinates: Array) -> NDArray[np.bool_]:
+        """A plane has no rim."""
+        return np.zeros(len(coordinates), dtype=bool)
+
+    def _normals(self, coordinates: Array) -> Array:
+        upright = rotation(coordinates[3:6])[:, 2]
+        return np.tile(upright, (len(self.ring), 1))
 
 
 def rotation(angles: Array) -> Array:

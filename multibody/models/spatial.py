@@ -12,6 +12,8 @@ All links stand on one vertical axis, which is also that of the ring, and of the
 may be off it (`offset`). The box of a body and the directions of its link's shear stiffness may be turned (`yaw`). The
 engine's rotations are those against this state of rest.
 
+A flat slider has the height of its bodies above the plane under the platform, which lies on the tops of the spheres.
+
 More than three supports share the load as elastic bearings do (`supports`), or give way by the scene's
 `support_stiffness`. Then the stiffness of the contacts is that of the bearings, and part of the model.
 """
@@ -32,10 +34,11 @@ from multibody.models.contact import (
     platform_on_sphere,
     set_contact_parameters,
 )
-from multibody.models.depressions import Depressions, rotation
+from multibody.models.depressions import Depressions, FlatUnderside, rotation
 from multibody.models.engine import exudyn, items
 from multibody.models.impact import ImpactLaw
 from multibody.models.loading import Ground, ground_of, symbolic_load
+from multibody.models.plane import farthest, plane_contact, platform_on_plane, set_extent
 from multibody.models.plate import plate_for
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
@@ -85,7 +88,9 @@ def spatial(
     supports = sharing_supports(mbs, plate, ring, spheres) if shared else fixed_supports(mbs, plate, ring)
     friction, threshold = contact_law(scene, regularization, units)
     depressions = np.column_stack([ring, np.zeros(len(ring))]) - centers[0]
-    contacts, contact_nodes = _contacts(mbs, supports.markers, bodies[0], depressions, radius, friction, threshold)
+    contacts, contact_nodes = _contacts(
+        mbs, supports.markers, bodies[0], depressions, radius, friction, threshold, scene.flat
+    )
     expressions = [*plate.expressions, *_loads(mbs, bodies, masses, None if plate.moves else ground)]
     forces = contacts if contact_force else []
     recorders = add_recorders(mbs, [*nodes, *supports.nodes], contact_nodes, forces, plate.node)
@@ -94,9 +99,9 @@ def spatial(
     index = PER_BODY * np.arange(len(masses))[:, None] + np.arange(3)
     varies = scene.dry_friction.varies
     varying = SpeedFriction(mbs, scene, units, threshold, contacts, ground) if varies else None
-    parts = _Parts(mbs, units, index, contacts, links, supports, radius, friction, varying, bearing_penetration)
+    parts = _Parts(scene, mbs, units, index, contacts, links, supports, radius, friction, varying, bearing_penetration)
     vertical = parts.body_coordinates + supports.vertical
-    under_platform = Depressions(ring, centers[0], radius, vertical)
+    under_platform = (FlatUnderside if scene.flat else Depressions)(ring, centers[0], radius, vertical)
     restitution = scene.isolator.restitution or 0.0
     constant = DryFriction(friction, friction, 0.0)
     law = constant if varying is None else varying.law
@@ -128,6 +133,7 @@ def spatial(
         bar_lags=parts.bar_lags,
         set_open=parts.set_open,
         friction=varying,
+        rim=np.inf if scene.flat else 1.0,
     )
 
 
@@ -139,6 +145,7 @@ Link = tuple[Any, Array, Array, float]
 class _Parts:
     """What can be set in the assembled system, and how it starts; in units of the model."""
 
+    scene: Scene
     mbs: Any
     units: Units
     index: NDArray[np.int_]  # (N, 3), of the coordinates that move the bodies
@@ -178,7 +185,7 @@ class _Parts:
     def _press(self, penetration: float) -> None:
         """Stiffness, damping and radii of all contacts, for their penetration under the weight."""
         pressed = self.bearing_penetration or penetration
-        radii = [self.radius + pressed, self.radius + 1.0]
+        radii = self.radius + pressed if self.scene.flat else [self.radius + pressed, self.radius + 1.0]
         for contact in self.contacts:
             set_contact_parameters(self.mbs, contact, radii, pressed, len(self.contacts))
 
@@ -191,7 +198,12 @@ class _Parts:
             velocities[index[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
         plate_acceleration = ground_acceleration / units.acceleration
         pressed = self.bearing_penetration or penetration
-        place, velocity, gap, slip = platform_on_sphere(coordinates[:2], velocities[:2], plate_acceleration, pressed)
+        if self.scene.flat:
+            way = farthest(self.scene, units, coordinates, velocities)
+            for contact in self.contacts:
+                set_extent(self.mbs, contact, way, 1.0 + self.radius)
+        on_surface = platform_on_plane if self.scene.flat else platform_on_sphere
+        place, velocity, gap, slip = on_surface(coordinates[:2], velocities[:2], plate_acceleration, pressed)
         coordinates[:3], velocities[:3] = place, velocity
         coordinates[index[1:, 2]], velocities[index[1:, 2]] = place[2], velocity[2]
         return EngineState(coordinates, velocities, np.tile([gap, slip, 0.0, 0.0], len(self.contacts)))
@@ -257,12 +269,17 @@ def _contacts(
     radius: float,
     friction: float,
     threshold: float,
+    flat: bool,
 ) -> tuple[list[Any], list[Any]]:
-    """Contacts of the spheres in the platform's depressions (K, 3), and their data nodes."""
+    """Contacts of the spheres in the platform's depressions (K, 3), or under its plane, and their data nodes."""
     contacts, nodes = [], []
     for place, support in zip(depressions, supports):
         nodes.append(mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4)))
         depression = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=platform, localPosition=[*place]))
+        if flat:
+            contact = plane_contact(support, depression, nodes[-1], radius, 1.0 + radius, friction, threshold)
+            contacts.append(mbs.AddObject(contact))
+            continue
         contact = items.ObjectContactSphereSphere(
             markerNumbers=[support, depression],
             nodeNumber=nodes[-1],
@@ -309,8 +326,10 @@ def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:
         ring = ring_places(isolator.supports, isolator.ring / units.length)
     heights = np.array([body.height for body in scene.bodies])
     sizes = np.array([body.size for body in scene.bodies]) / units.length
-    centers = np.column_stack([scene.offsets, heights]) / units.length
-    return ring, isolator.sphere_radius / units.length, centers, sizes
+    centers, radius = np.column_stack([scene.offsets, heights]) / units.length, isolator.sphere_radius / units.length
+    if scene.flat:
+        centers[:, 2] += 1.0 + radius  # the plane is as high above the middle as the tops of the spheres
+    return ring, radius, centers, sizes
 
 
 def add_link(mbs: Any, bodies: list[Any], centers: Array) -> Any:

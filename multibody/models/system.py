@@ -80,6 +80,7 @@ class EngineModel:
     warping_displacement: Callable[[Array], Array] | None = None
     bearing_penetration: float = 0.0  # by the weight, as the scene's bearings state it, or 0
     friction: SpeedFriction | None = None  # of contacts whose friction depends on the slip speed
+    rim: float = 1.0  # displacement of the platform at which it reaches the rim; inf on a plane
 
     @property
     def container(self) -> Any:

@@ -4,7 +4,8 @@ The translational model: the paper's degrees of freedom, the engine's bodies and
 The platform is a rigid body whose moments of inertia are so large that it does not turn: the contact item needs a
 body with an orientation, and locking the rotations by constraints would cost more coordinates. The bodies above
 share its vertical motion, so they are a linear chain in the plane whose mass is added to the platform's vertical
-coordinate only. The contact is a sphere inside a hollow sphere, in the plate's frame, with inertial loads.
+coordinate only. The contact is a sphere inside a hollow sphere, in the plate's frame, with inertial loads. Under a
+flat slider it is a sphere on a plane.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from multibody.models.contact import (
 )
 from multibody.models.engine import exudyn, items
 from multibody.models.loading import Ground, ground_of, symbolic_load
+from multibody.models.plane import farthest, plane_contact, platform_on_plane, set_extent
 from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate, plate_for
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
@@ -34,6 +36,8 @@ from reference.problem import Scene, State
 Array = NDArray[np.float64]
 
 HOLLOW_RADIUS = 2.0  # R in units of rho; in translation only R - r matters
+SPHERE_ON_PLANE = 1.0  # radius of the sphere under the platform of a flat slider, in units of length
+UPWARD = np.array([0.0, 0.0, 1.0])
 
 
 def translational(
@@ -67,7 +71,8 @@ def translational(
     ground = ground_of(mbs, scene, units)
     plate = plate_for(mbs, loading, ground)
     friction, threshold = contact_law(scene, regularization, units)
-    contact, contact_node = _contact(mbs, plate, depression, friction, threshold)
+    add_contact = _contact_on_plane if scene.flat else _contact
+    contact, contact_node = add_contact(mbs, plate, depression, friction, threshold)
     expressions = _inertial_loads(mbs, ground, plate, masses, depression, nodes, axes)
     recorders = add_recorders(mbs, nodes, [contact_node], [contact] if contact_force else [], plate.node)
     mbs.Assemble()
@@ -78,20 +83,27 @@ def translational(
 
     def set_contact(penetration: float, warping_compliance: float = 0.0) -> None:
         # closer by the static penetration, so that the pendulum at rest has length rho whatever the stiffness
-        set_contact_parameters(mbs, contact, [HOLLOW_RADIUS - (1.0 - penetration), HOLLOW_RADIUS], penetration)
+        if scene.flat:
+            set_contact_parameters(mbs, contact, SPHERE_ON_PLANE + penetration, penetration)
+        else:
+            set_contact_parameters(mbs, contact, [HOLLOW_RADIUS - (1.0 - penetration), HOLLOW_RADIUS], penetration)
 
     def start(initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
         coordinates, velocities = np.zeros(count), np.zeros(count)
         if initial is not None:
             coordinates[bodies[:, :2]] = np.asarray(initial.position, float) / units.length
             velocities[bodies[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
-        coordinates[:3], velocities[:3], gap, slip = platform_on_sphere(
+        if scene.flat:
+            set_extent(mbs, contact, farthest(scene, units, coordinates, velocities), -SPHERE_ON_PLANE)
+        on_surface = platform_on_plane if scene.flat else platform_on_sphere
+        coordinates[:3], velocities[:3], gap, slip = on_surface(
             coordinates[:2], velocities[:2], ground_acceleration / units.acceleration, penetration
         )
         return EngineState(coordinates, velocities, np.array([gap, slip, 0.0, 0.0]))
 
     def settle(state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
-        return settled_contact(state, float(gap_rate[0]), penetration)
+        normal = UPWARD if scene.flat else UPWARD - state.coordinates[:3]
+        return settled_contact(state, float(gap_rate[0]), penetration, normal / np.linalg.norm(normal))
 
     varies = scene.dry_friction.varies
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
@@ -111,6 +123,7 @@ def translational(
         carried=bodies,
         references=(container, expressions),
         friction=SpeedFriction(mbs, scene, units, threshold, [contact], ground) if varies else None,
+        rim=np.inf if scene.flat else 1.0,
     )
 
 
@@ -126,6 +139,14 @@ def _contact(mbs: Any, plate: Plate, depression: Any, friction: float, threshold
         dynamicFriction=friction,
         frictionProportionalZone=threshold,
     )
+    return mbs.AddObject(contact), node
+
+
+def _contact_on_plane(mbs: Any, plate: Plate, platform: Any, friction: float, threshold: float) -> tuple[Any, Any]:
+    """As `_contact`, of a sphere under the platform on the plane of the plate: no moment turns either of them."""
+    node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
+    plane = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body))
+    contact = plane_contact(platform, plane, node, SPHERE_ON_PLANE, -SPHERE_ON_PLANE, friction, threshold)
     return mbs.AddObject(contact), node
 
 

@@ -2,7 +2,8 @@
 Units of the engine's model: total mass, rho and sqrt(rho / g).
 
 In them the contact carries 1, the pendulum has length 1 and gravity is 1, so that every tolerance and stiffness
-below is a pure number and a scene of 1 kg runs through the same arithmetic as the same scene of 1e6 kg.
+below is a pure number and a scene of 1 kg runs through the same arithmetic as the same scene of 1e6 kg. A flat slider
+has no length of its own. There the unit is the pendulum that swings with the loading.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.problem import GRAVITY, Scene
+from reference.problem import GRAVITY, Scene, loading_period
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,10 @@ class Units:
 
 
 def units_of(scene: Scene) -> Units:
-    """The units in which `scene` has total mass, rho and g equal to one."""
+    """The units in which `scene` has total mass, rho and g equal to one; on a plane those of the loading."""
+    if scene.flat:
+        time = min(loading_period(scene), scene.duration) / (2.0 * math.pi)
+        return Units(scene.total_mass, GRAVITY * time**2, time)
     return Units(scene.total_mass, scene.radius, math.sqrt(scene.radius / GRAVITY))
 
 

@@ -3,8 +3,10 @@ Frictionless small vibration (4.3)-(4.4), mu = 0, from rest, under the damped co
 
 Per axis and natural mode, eta'' + omega^2 eta = -Gamma Re(sum_k a_k exp(i alpha_k) exp(s_k t)), solved from rest by
     eta = -Gamma (D(s, i omega) - D(s, -i omega)) / (2 i omega),   D(s, z) = (exp(s t) - exp(z t)) / (s - z).
-D has a limit at resonance, t exp(z t), and D' = z D + exp(s t). The modes' participation adds up to a unit motion of
-every body, so the absolute acceleration is -sum_j X_j omega_j^2 eta_j: nothing of the ground is left to subtract.
+D has a limit at resonance, t exp(z t), and D' = z D + exp(s t). On a plane the first mode is a motion of all bodies as
+one, omega = 0: nothing holds it, eta = -Gamma (exp(s t) - 1 - s t) / s^2. The modes' participation adds up to a unit
+motion of every body, so the absolute acceleration is -sum_j X_j omega_j^2 eta_j: nothing of the ground is left to
+subtract.
 The response is linear in exp(i alpha_k): a whole surface follows from one complex response per harmonic.
 """
 
@@ -23,6 +25,7 @@ Complex = NDArray[np.complex128]
 # per shortest period: the terms left out of a series of SERIES_TERMS are below 1e-14 of the motion
 INTERVALS_PER_PERIOD = 12
 SERIES_TERMS = 12
+MAX_SERIES_ANGLE, DRIFT_TERMS = 1.0, 20  # rad: below, the drift on a plane is summed, which subtracts nothing
 ROUNDING_ERROR = 1e-13  # relative error of a frequency and of an operation
 
 
@@ -57,9 +60,8 @@ def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array
     """
     _check(scene)
     natural = modes(scene)
-    shortest = min(
-        loading_period(scene), 2.0 * np.pi / max(float(natural.frequency.max()), float(-exponents(scene).real.min()))
-    )
+    fastest = max(float(natural.frequency.max()), float(-exponents(scene).real.min()))
+    shortest = min(loading_period(scene), 2.0 * np.pi / fastest if fastest > 0.0 else np.inf)
     count = int(np.ceil(scene.duration / shortest * INTERVALS_PER_PERIOD))
     half = 0.5 * scene.duration / count
     centers: Array = half * (2.0 * np.arange(count, dtype=float) + 1.0)
@@ -87,18 +89,38 @@ def _responses(
     shape = natural.shape[:, :bodies]
     parts = [np.zeros((len(time), shape.shape[1], 2, 2), dtype=complex) for _ in range(orders)]
     for axis in range(2):
-        omega = natural.frequency[axis]
-        weight = natural.participation[axis] / (2j * omega) * (omega**2 if absolute else -1.0)
+        swings = natural.frequency[axis] > 0.0
+        omega, swinging = natural.frequency[axis, swings], shape[axis][:, swings]
+        weight = natural.participation[axis, swings] / (2j * omega) * (omega**2 if absolute else -1.0)
+        drifting = shape[axis][:, ~swings] @ natural.participation[axis, ~swings]
         for k, s in enumerate(exponents(scene)):
             if scene.amplitudes[axis, k] == 0.0:
                 continue
             forced = np.exp(s * time)[:, None]
             rising, falling = (_divided(s, root, time) for root in (1j * omega, -1j * omega))
-            for part in parts:
-                part[:, :, axis, k] = (weight * (rising - falling)) @ shape[axis].T * scene.amplitudes[axis, k]
+            for order, part in enumerate(parts):
+                part[:, :, axis, k] = (weight * (rising - falling)) @ swinging.T * scene.amplitudes[axis, k]
+                if not absolute and not swings.all():
+                    part[:, :, axis, k] -= np.outer(_drift(s, time, order), drifting) * scene.amplitudes[axis, k]
                 rising, falling = 1j * omega * rising + forced, -1j * omega * falling + forced
                 forced = s * forced
     return parts
+
+
+def _drift(s: complex, time: Array, order: int) -> Complex:
+    """Derivative of this order of (exp(s t) - 1 - s t) / s^2 at the instants, (T,)."""
+    angle = s * time
+    if order > 1:
+        return np.asarray(s ** (order - 2) * np.exp(angle))
+    if order == 1:
+        return np.asarray(np.expm1(angle) / s)
+    small = np.abs(angle) < MAX_SERIES_ANGLE
+    series = np.zeros(len(time), dtype=complex)
+    for power in range(DRIFT_TERMS, 1, -1):
+        series = (series * angle + 1.0) / power
+    # 1 / 2 + z / 6 + ..., by Horner's rule; with z^2 it is exp(z) - 1 - z
+    direct = (np.expm1(angle) - angle) / s**2
+    return np.where(small, series * time**2, direct)
 
 
 def _divided(s: complex, roots: Complex, time: Array) -> Complex:

@@ -27,7 +27,7 @@ from reference.problem.scene import Scene
 
 Array = NDArray[np.float64]
 
-DISPLACEMENT_ERROR = 1e-3  # relative, of `Amplification.cap_share`
+DISPLACEMENT_ERROR = 1e-3  # relative, of `Amplification.displacement`
 # Places along each axis of the square at which the quotient is read: at first, and beside the largest of them
 COARSE, FINE = np.linspace(-1.0, 1.0, 13), np.linspace(-1.0, 1.0, 9)
 READINGS = 5  # of the quotient, each four times finer than the one before
@@ -88,8 +88,8 @@ class Surface:
         denominator = self.denominator(phases)
         if self.quantity == "amplification":
             return Points(phases, result.mu[:, self.body] * denominator, denominator, result.error[:, self.body])
-        displacement = result.cap_share * self.scene.radius
-        return Points(phases, displacement, denominator, DISPLACEMENT_ERROR * displacement)
+        error = DISPLACEMENT_ERROR * result.displacement
+        return Points(phases, result.displacement, denominator, error)
 
 
 @dataclass(eq=False)

@@ -21,28 +21,31 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Range:
-    """Finite numbers from `lowest` to `highest`, both included, in `unit`."""
+    """Finite numbers from `lowest` to `highest`, both included, in `unit`; inf as well where it is `or_infinite`."""
 
     lowest: float
     highest: float
     unit: str = ""
+    or_infinite: bool = False
 
     @property
     def rule(self) -> str:
         """The range as the end of an error message."""
         unit = f" {self.unit}" if self.unit else ""
+        if self.or_infinite:
+            return f"must be positive, from {self.lowest:g} to {self.highest:g}{unit}, or inf"
         if self.lowest > 0.0:
             return f"must be finite and positive, from {self.lowest:g} to {self.highest:g}{unit}"
         return f"must be finite, from {self.lowest:g} to {self.highest:g}{unit}"
 
     def __contains__(self, value: float) -> bool:
-        return bool(self.lowest <= value <= self.highest)
+        return bool(self.lowest <= value <= self.highest) or (self.or_infinite and value == math.inf)
 
 
 SCENE: dict[str, Range] = {
     "duration": Range(1e-6, 1e9, "s"),
     "isolator.period": Range(1e-3, 1e6, "s"),
-    "isolator.radius": Range(1e-7, 1e12, "m"),
+    "isolator.radius": Range(1e-7, 1e12, "m", or_infinite=True),
     "isolator.friction": Range(0.0, 1e3),
     # without friction at rest nothing ever stops, which is no dry friction
     "isolator.friction.slow": Range(1e-9, 1e3),
@@ -58,6 +61,9 @@ SCENE: dict[str, Range] = {
     "bodies.mass": Range(1e-12, 1e15, "kg"),
     "bodies.period": Range(1e-7, 1e9, "s"),
     "bodies.stiffness": Range(1e-30, 1e30, "N/m"),
+    "bodies.bars.count": Range(1, 1_000_000),
+    "bodies.bars.bending_stiffness": Range(1e-30, 1e30, "N m^2"),
+    "bodies.bars.length": Range(1e-9, 1e6, "m"),
     "bodies.height": Range(0.0, 1e6, "m"),
     "bodies.size": Range(1e-9, 1e6, "m"),
     "bodies.offset": Range(-1e6, 1e6, "m"),

@@ -129,6 +129,8 @@ def untilted(scene: Scene) -> Reduction:
     assert isolator.ring is not None
     if len(scene.bodies) > 1:
         return Reduction(False, "bodies above the platform: their weight shifts, tilts and twists it")
+    if scene.flat:
+        return Reduction(False, "a flat slider: its weight shifts over the supports as far as it moves")
     if scene.bodies[0].height != 0.0 or scene.bodies[0].size is None:
         return Reduction(False, "a body above the depressions: inertia shifts the supports' load")
     if isolator.support_stiffness is not None:
@@ -222,8 +224,9 @@ def in_plane(scene: Scene) -> Scene:
     horizontal = scene.amplitudes[:2]
     if not horizontal[0].any():  # along y: the links' y becomes their x
         for body in table["bodies"][1:]:
-            key = "period" if "period" in body else "stiffness"
-            body[key] = body[key][::-1]
+            for key in ("period", "stiffness"):  # bars are the same in x and y
+                if key in body:
+                    body[key] = body[key][::-1]
     direction = horizontal[:, np.abs(horizontal).sum(axis=0).argmax()]
     length = float(np.hypot(*direction))
     along = direction @ horizontal / length if length > 0.0 else np.zeros(2)
@@ -343,7 +346,7 @@ def linear(scene: Scene) -> Reduction:
     if scene.recorded:
         return Reduction(False, RECORDED)
     if scene.amplitudes[2].any():
-        return Reduction(False, "vertical loading makes the pendulum's stiffness depend on time and phases")
+        return Reduction(False, "vertical loading: it is no part of the sum and varies the pendulum's stiffness")
     if not fastest(scene) * scene.duration <= MAX_VIBRATION_ANGLE:
         return Reduction(False, f"more than {MAX_VIBRATION_ANGLE:g} rad of the fastest vibration: cheaper to step over")
     return Reduction(True, "no friction, no vertical loading: the small equations are linear, the surface is a sum")

@@ -36,8 +36,11 @@ class Amplification:
         Time of computing, summed over processes and threads.
     cap_share : ndarray, (...,)
         Largest horizontal displacement of the platform over rho, to 1e-3 of itself or better; NaN without an answer.
+        Zero on a flat slider, which has no rim.
     phases : ndarray, (..., 2), rad
         The phase pairs, as they were computed: beyond a full turn reduced to (-pi, pi].
+    displacement : ndarray, (...,), m
+        The same displacement in m.
     """
 
     mu: Array
@@ -47,11 +50,13 @@ class Amplification:
     cost: float
     cap_share: Array = field(default_factory=lambda: np.empty(0))
     phases: Array = field(default_factory=lambda: np.empty(0))
+    displacement: Array = field(default_factory=lambda: np.empty(0))
 
     def __post_init__(self) -> None:
         shape = self.mu.shape[:-1]
-        if self.cap_share.shape != shape:
-            object.__setattr__(self, "cap_share", np.full(shape, np.nan))
+        for name in ("cap_share", "displacement"):
+            if getattr(self, name).shape != shape:
+                object.__setattr__(self, name, np.full(shape, np.nan))
         if self.phases.shape != (*shape, 2):
             object.__setattr__(self, "phases", np.full((*shape, 2), np.nan))
 
@@ -68,7 +73,7 @@ class Amplification:
         -------
         Amplification
         """
-        per_point = {name: getattr(self, name) for name in ("status", "instant", "cap_share")}
+        per_point = {name: getattr(self, name) for name in ("status", "instant", "cap_share", "displacement")}
         per_body = {name: getattr(self, name) for name in ("mu", "error", "phases")}
         points = {name: array.reshape(shape) for name, array in per_point.items()}
         rows = {name: array.reshape(*shape, array.shape[-1]) for name, array in per_body.items()}

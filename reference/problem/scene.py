@@ -23,7 +23,9 @@ from reference.problem.scene_error import EXCITATIONS, FRICTIONS, MisfitError, S
 from reference.problem.supports import edge_distance, ring_places
 from reference.problem.tables import (
     ALL,
+    LINKS,
     NONE,
+    Bars,
     Body,
     Excitation,
     Isolator,
@@ -110,12 +112,12 @@ class Scene(Table):
     @model_validator(mode="after")
     def _links(self) -> Scene:
         platform, *others = self.bodies
-        for key in ("period", "stiffness"):
+        for key in LINKS:
             if (value := getattr(platform, key)) is not None:
                 raise MisfitError(f"bodies.0.{key}", value, "the platform has no link below: remove this key")
         for number, body in enumerate(others, start=1):
             try:
-                exactly_one(body, "period", "stiffness")
+                exactly_one(body, *LINKS)
             except ValueError as error:
                 raise MisfitError(f"bodies.{number}", body.model_dump(exclude_none=True), str(error)) from None
         self._check_derived()
@@ -136,7 +138,8 @@ class Scene(Table):
             derived[f"bodies.{i + 1}: k^{'xy'[axis]} in N/m"] = float(k), SCENE["bodies.stiffness"]
             derived[f"bodies.{i + 1}: period along {'xy'[axis]} in s"] = float(periods[i, axis]), SCENE["bodies.period"]
         for key, (value, allowed) in derived.items():
-            if not allowed.lowest * (1.0 - DERIVED_ROUNDING) <= value <= allowed.highest * (1.0 + DERIVED_ROUNDING):
+            lowest, highest = allowed.lowest * (1.0 - DERIVED_ROUNDING), allowed.highest * (1.0 + DERIVED_ROUNDING)
+            if not (lowest <= value <= highest or value in allowed):
                 raise MisfitError(key, value, allowed.rule)
         shortest = 2.0 * math.pi * math.sqrt(self.radius / GRAVITY)
         if isinstance(self.excitation, Excitation):
@@ -213,12 +216,17 @@ class Scene(Table):
 
     @property
     def radius(self) -> float:
-        """rho = R - r in m; from the period of one mass alone, rho = g T_c^2 / (4 pi^2) (section 5)."""
+        """rho = R - r in m, inf for a flat slider; of the period of one mass alone, g T_c^2 / (4 pi^2) (section 5)."""
         if self.isolator.radius is not None:
             return self.isolator.radius
         assert self.isolator.period is not None
         pace = self.isolator.period / (2.0 * math.pi)
         return GRAVITY * pace * pace  # a product overflows to inf, which validation refuses; a power raises
+
+    @property
+    def flat(self) -> bool:
+        """Whether the platform slides on a plane: a bearing without restoring force, rho = inf."""
+        return math.isinf(self.radius)
 
     @property
     def displacement_limit(self) -> float:
@@ -238,13 +246,7 @@ class Scene(Table):
     @cached_property
     def stiffness(self) -> NDArray[np.float64]:
         """Link stiffness k_{i+1,i} in x and y, (N-1, 2), N/m; row i links body i and body i + 1."""
-        rows = [
-            body.stiffness
-            if body.stiffness is not None
-            else [body.mass * (2.0 * math.pi / period) * (2.0 * math.pi / period) for period in body.period or ()]
-            for body in self.bodies[1:]
-        ]
-        return np.array(rows, dtype=float).reshape(-1, 2)
+        return np.array([_link_stiffness(body) for body in self.bodies[1:]], dtype=float).reshape(-1, 2)
 
     @property
     def support_places(self) -> NDArray[np.float64] | None:
@@ -381,12 +383,22 @@ class Scene(Table):
         return hashlib.sha256(content.encode()).hexdigest()[:16]
 
 
+def _link_stiffness(body: Body) -> list[float]:
+    """Stiffness in x and y, N/m, of the link below a body, by whichever key states it."""
+    if body.stiffness is not None:
+        return body.stiffness
+    if body.bars is not None:
+        return [body.bars.stiffness] * 2
+    return [body.mass * (2.0 * math.pi / period) * (2.0 * math.pi / period) for period in body.period or ()]
+
+
 KEYS: dict[str, tuple[str, ...]] = {
     "": tuple(Scene.model_fields),
     "isolator": tuple(Isolator.model_fields),
     "isolator.friction": tuple(VelocityFriction.model_fields),
     f"isolator.friction.{FRICTIONS[1]}": tuple(VelocityFriction.model_fields),
     "bodies": tuple(Body.model_fields),
+    "bodies.bars": tuple(Bars.model_fields),
     "acceptance": tuple(Acceptance.model_fields),
     "analyses": tuple(Analyses.model_fields),
     **{f"acceptance.{pair}": tuple(Limits.model_fields) for pair in ("like_for_like", "total", "translational")},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import unicodedata
 from collections.abc import Mapping
 from pathlib import Path
@@ -67,6 +68,12 @@ def _without_control_characters(text: str) -> str:
 Text = Annotated[str, AfterValidator(_without_control_characters)]
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
+# JSON has no infinity: there it is the text "inf"
+Radius = Annotated[
+    float,
+    Field(gt=0.0, allow_inf_nan=True),
+    PlainSerializer(lambda value: "inf" if value == math.inf else value, when_used="json"),
+]
 LinkPeriods = Annotated[list[Annotated[Positive, within("bodies.period")]], Field(min_length=2, max_length=2)]
 LinkStiffness = Annotated[list[Annotated[Positive, within("bodies.stiffness")]], Field(min_length=2, max_length=2)]
 Size = Annotated[list[Annotated[Positive, within("bodies.size")]], Field(min_length=3, max_length=3)]
@@ -106,10 +113,11 @@ class Table(BaseModel):
         return super().model_copy(deep=deep)
 
 
-def exactly_one(table: BaseModel, first: str, second: str) -> None:
-    present = [key for key in (first, second) if getattr(table, key) is not None]
+def exactly_one(table: BaseModel, *keys: str) -> None:
+    present = [key for key in keys if getattr(table, key) is not None]
     if len(present) != 1:
-        raise ValueError(f"give exactly one of {first} and {second}, not {len(present)} of them")
+        listed = f"{', '.join(keys[:-1])} and {keys[-1]}"
+        raise ValueError(f"give exactly one of {listed}, not {len(present)} of them")
 
 
 class VelocityFriction(Table):
@@ -144,8 +152,12 @@ class Isolator(Table):
         about("natural period T_c of one mass alone on the isolator; give this or radius", "s", ALL),
     ] = None
     radius: Annotated[
-        Annotated[Positive, within("isolator.radius")] | None,
-        about("rho = R - r, depression's radius less that of the sphere; give this or period", "m", ALL),
+        Annotated[Radius, within("isolator.radius")] | None,
+        about(
+            "rho = R - r, depression's radius less that of the sphere; inf for a flat slider; give this or period",
+            "m",
+            ALL,
+        ),
     ] = None
     friction: Annotated[
         Friction | None,
@@ -216,6 +228,31 @@ class Isolator(Table):
         return len(self.supports) if isinstance(self.supports, list) else self.supports
 
 
+class Bars(Table):
+    """Upright bars clamped at both ends, of the same stiffness in every horizontal direction: the link of (2.3)."""
+
+    count: Annotated[
+        Annotated[int, within("bodies.bars.count")],
+        about("number n of bars", "", ALL),
+    ]
+    bending_stiffness: Annotated[
+        Annotated[Positive, within("bodies.bars.bending_stiffness")],
+        about("bending stiffness E J of one bar", "N m^2", ALL),
+    ]
+    length: Annotated[
+        Annotated[Positive, within("bodies.bars.length")],
+        about("length l of the bars between their clamped ends", "m", ALL),
+    ]
+
+    @property
+    def stiffness(self) -> float:
+        """k = 12 n E J / l^3, N/m: (2.3) with the factor 12 where it belongs; without load."""
+        return 12.0 * self.count * self.bending_stiffness / self.length / self.length / self.length
+
+
+LINKS = ("period", "stiffness", "bars")
+
+
 class Body(Table):
     """One rigid body; the first is the platform, every other body is linked to the body before it."""
 
@@ -223,19 +260,27 @@ class Body(Table):
     period: Annotated[
         LinkPeriods | None,
         about(
-            "2 pi sqrt(m_i / k) along x and y of the link to the body below; give this or stiffness, "
-            "for the platform neither",
+            "2 pi sqrt(m_i / k) along x and y of the link to the body below, under load; give this, stiffness or "
+            "bars, for the platform none",
             "s",
             ALL,
         ),
     ] = None
     stiffness: Annotated[
         LinkStiffness | None,
-        about("stiffness k of that link along x and y; give this or period, for the platform neither", "N/m", ALL),
+        about("stiffness k of that link along x and y, under load; in place of period", "N/m", ALL),
+    ] = None
+    bars: Annotated[
+        Bars | None,
+        about("bars of that link, k = 12 n E J / l^3 along x and y, without load; in place of period", "", ALL),
     ] = None
     height: Annotated[
         Annotated[NonNegative, within("bodies.height")] | None,
-        about("height of the center of mass above the centers of the depressions", "m", SPATIAL),
+        about(
+            "height of the center of mass above the centers of the depressions, or above the plane of a flat slider",
+            "m",
+            SPATIAL,
+        ),
     ] = None
     size: Annotated[
         Size | None,

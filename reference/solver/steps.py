@@ -8,7 +8,7 @@ way.
 
 from __future__ import annotations
 
-from math import sqrt
+from math import inf, sqrt
 
 import numpy as np
 
@@ -201,13 +201,14 @@ def absolute_accelerations(system: System, work: Work, contact: int) -> None:
 
 
 @compiled
-def step_error(work: Work, tolerance: float) -> float:
+def step_error(system: System, work: Work, tolerance: float) -> float:
     """
     Error of the absolute accelerations inside the step over `scale` (N,), the largest over the bodies.
 
     The interpolating polynomial, evaluated at the start of the step, misses the acceleration known there by the
     interpolation error of the step, which falls like h^7. What rounding in the chain's channels may do is at most
-    `tolerance`: it falls with no step.
+    `tolerance`: it falls with no step. On a plane the platform's acceleration relative to the plate counts as well:
+    without a restoring force no absolute acceleration shows a wrong way.
     """
     total, total0 = work.total, work.total0
     load = abs(total0[0, 2])
@@ -228,4 +229,19 @@ def step_error(work: Work, tolerance: float) -> float:
         work.defect[i] = sqrt(squared)
         error = (work.defect[i] - noise) / work.scale[i]
         worst = max(worst, min(error, tolerance) if work.defect[i] <= channels else error)
+    if system.radius == inf:
+        error = (relative_defect(work) - channels) / work.scale[0]
+        worst = max(worst, error)
     return worst
+
+
+@compiled
+def relative_defect(work: Work) -> float:
+    """Interpolation error of the platform's acceleration relative to the plate, m/s^2."""
+    squared = 0.0
+    for axis in range(2):
+        defect = -work.a0[0, axis]
+        for k in range(STAGES):
+            defect += AT_START[k] * work.a[0, axis, k]
+        squared += defect * defect
+    return sqrt(squared)

@@ -77,14 +77,14 @@ def test_the_share_is_stored_joined_labeled_and_said(tmp_path: Path) -> None:
         store.put(batch_key(batch), answer)
         kept = cached_batch(store, batch)
         assert kept is not None
-        np.testing.assert_array_equal(kept.cap_share, answer.cap_share)
+        np.testing.assert_array_equal(kept.displacement, answer.displacement)
         parts = split_batch(batch)
         if parts:
             np.testing.assert_allclose(
-                merge(batch, [*map(execute_batch, parts)]).cap_share, answer.cap_share, rtol=1e-9
+                merge(batch, [*map(execute_batch, parts)]).displacement, answer.displacement, rtol=1e-9
             )
     surfaces = labeled_surfaces(study, batches, answers)
-    largest = max(answer.cap_share.max() for answer in answers)
+    largest = max(answer.displacement.max() for answer in answers) / scene.radius
     assert largest_cap_share(surfaces, scene.name, MODEL_HIERARCHY[0].key) == largest > 0.5
     swings = [alert for alert in alerts(collect_findings(study, surfaces, {}, [], {})) if alert.kind == "swing"]
     assert [alert.level for alert in swings] == ["amber"]

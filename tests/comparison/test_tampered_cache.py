@@ -189,7 +189,7 @@ def test_a_tile_of_another_shape_is_computed_again(tmp_path: Path) -> None:
     cache = Cache(tmp_path)
     answer = execute_batch(batch)
     whole = {part.name: getattr(answer, part.name) for part in fields(answer)}
-    for name in ("mu", "error", "status", "instant", "cap_share"):
+    for name in ("mu", "error", "status", "instant", "displacement"):
         cache.put(batch_key(batch), BatchResult(**{**whole, name: whole[name][:1]}))
         assert cached_batch(cache, batch) is None, name
     cache.put(batch_key(batch), answer)

@@ -86,7 +86,7 @@ def follow(system: System, work: Work, contact: int, demand: Demand, record: Rec
             if following == contact:
                 set_length(work, contact, FAILURE_SHORTENING * h)
             continue
-        error = step_error(work, demand.tolerance)
+        error = step_error(system, work, demand.tolerance)
         factor = length_factor(error, demand.tolerance)
         if not error <= demand.tolerance:
             set_length(work, contact, min(MAX_SHORTENING, factor) * h)

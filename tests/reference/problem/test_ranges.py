@@ -42,6 +42,9 @@ def put(scene: Scene, key: str, value: float) -> Scene:
         values |= {"isolator.period": None} if key == "isolator.radius" else {"isolator.friction": None}
     if key == "bodies.offset":
         values = {"bodies.1.offset": [0.0, value]}
+    if key.startswith("bodies.bars."):
+        bars = {"count": 4, "bending_stiffness": 1.0, "length": 1.0, key.removeprefix("bodies.bars."): value}
+        values = {"bodies.1.period": None, "bodies.1.bars": bars}
     if key == "bodies.stiffness":
         values = {"bodies.1.period": None, "bodies.1.stiffness": [value, 1.0]}
     return scene.with_values(values)
@@ -51,15 +54,17 @@ def test_every_number_of_a_scene_has_a_range():
     plain = {key for key in KEYS[""] if key == "duration"}
     tables = {"isolator": "isolator", "bodies": "bodies", "excitation": "excitation.two frequencies"}
     tables["isolator.friction"] = "isolator.friction"
+    tables["bodies.bars"] = "bodies.bars"
     numbers = plain | {f"{name}.{key}" for name, table in tables.items() for key in KEYS[table]}
-    assert numbers - {"excitation.scale"} == set(SCENE), "a scale is bounded by the accelerations that it makes"
+    bounded = numbers - {"excitation.scale", "bodies.bars"}
+    assert bounded == set(SCENE), "a scale is bounded by the accelerations that it makes"
 
 
 @pytest.mark.parametrize("key", SCENE)
 @pytest.mark.parametrize("side", ["lowest", "highest"])
 def test_a_quantity_beyond_its_range_is_refused_with_the_range(key, side):
     edge = getattr(SCENE[key], side)
-    outside = edge + (1 if side == "highest" else -1) if key.endswith("supports") else math.nextafter(
+    outside = edge + (1 if side == "highest" else -1) if key.endswith(("supports", "count")) else math.nextafter(
         edge, math.inf if side == "highest" else -math.inf
     )  # fmt: skip
     with pytest.raises(SceneError) as caught:

@@ -200,8 +200,11 @@ def test_a_broken_rule_is_one_line_with_file_key_value_and_rule(case):
     [
         ("mass = 3.0", "mass = 3.0\nperiod = [1.0, 1.0]", "bodies.0", "platform"),
         ("mass = 3.0", "mass = 3.0\nstiffness = [1.0, 1.0]", "bodies.0", "platform"),
-        ("period = [1.5, 1.2]", "", "bodies.1", "exactly one of period and stiffness"),
+        ("period = [1.5, 1.2]", "", "bodies.1", "exactly one of period, stiffness and bars"),
         ("period = [1.5, 1.2]", "period = [1.5, 1.2]\nstiffness = [1.0, 1.0]", "bodies.1", "exactly one of period"),
+        ("mass = 3.0", "mass = 3.0\nbars = {count = 4, bending_stiffness = 1.0, length = 1.0}", "bodies.0", "platform"),
+        ("period = [1.5, 1.2]", "bars = {count = 4, bending_stiffness = 1.0}", "bodies.1.bars.length", "required"),
+        ("period = [1.5, 1.2]", "bars = {count = 4.5, bending_stiffness = 1.0, length = 1.0}", "bodies.1.bars", "int"),
     ],
 )
 def test_a_wrong_link_names_its_body(old, new, key, rule):

@@ -1,0 +1,65 @@
+"""
+A flat slider: the platform on a plane, the limit of a sphere of infinite radius.
+
+The engine's contact is that of a sphere with a triangle, which is made so large that no motion leaves it. Friction,
+stiffness and damping follow the same laws as those of two spheres. The gap does not depend on the place, so a plane
+rounds no more than a sphere of radius one, wherever the platform is.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.models.engine import exudyn, items
+from multibody.models.units import Units
+from reference.problem import Scene
+
+Array = NDArray[np.float64]
+
+MIN_EXTENT = 1e4  # of the triangle, in units of length: its normal is known to 1e-16 of that over the sphere's radius
+EXTENT_MARGIN = 2.0  # times the way that the loading and the start alone may take the platform
+
+
+def plane_contact(
+    sphere: Any, plane: Any, node: Any, radius: float, height: float, friction: float, threshold: float
+) -> Any:
+    """The contact of a sphere with the plane at `height` above the marker `plane`."""
+    return items.ObjectContactSphereTriangle(
+        markerNumbers=[sphere, plane],
+        nodeNumber=node,
+        sphereRadius=radius,
+        trianglePoints=_triangle(MIN_EXTENT, height),
+        includeEdges=0,
+        dynamicFriction=friction,
+        frictionProportionalZone=threshold,
+    )
+
+
+def set_extent(mbs: Any, contact: Any, way: float, height: float) -> None:
+    """Make the triangle at `height` large enough for a platform that goes `way`, in units of length."""
+    mbs.SetObjectParameter(contact, "trianglePoints", _triangle(max(MIN_EXTENT, EXTENT_MARGIN * way), height))
+
+
+def farthest(scene: Scene, units: Units, coordinates: Array, velocities: Array) -> float:
+    """How far the start and the loading alone may take a body, in units of length."""
+    end = scene.duration / units.time
+    loading = 2.0 * scene.largest_acceleration / units.acceleration
+    return float(np.abs(coordinates).max() + np.abs(velocities).max() * end + loading * end**2)
+
+
+def platform_on_plane(
+    offset: Array, speed: Array, ground: Array, penetration: float
+) -> tuple[Array, Array, float, float]:
+    """As `contact.platform_on_sphere`."""
+    pressed = penetration * float(1.0 + ground[2])
+    place = np.array([*offset, penetration - pressed])
+    return place, np.array([*speed, 0.0]), -pressed, float(np.hypot(*speed))
+
+
+def _triangle(extent: float, height: float) -> Any:
+    """A triangle whose center is above the origin."""
+    points = [[-extent, -extent, height], [2.0 * extent, -extent, height], [-extent, 2.0 * extent, height]]
+    return exudyn.Vector3DList(points)

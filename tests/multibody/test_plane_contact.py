@@ -1,0 +1,172 @@
+"""A flat slider in the engine: a sphere on a plane, in units of length that the loading gives."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scenes_at_hand import frame
+
+import multibody
+import reference
+from reference.analytical import stopping_distance
+from reference.problem import GRAVITY, Outcome, Scene, State, load_scene
+
+FLAT = {"isolator.period": None, "isolator.radius": math.inf}
+PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (0.867, 4.951), (4.0, 5.5)])
+V_REG = 1e-3
+VERTICAL = {"excitation.amplitudes": [[1.0, 0.0], [0.0, 1.0], [2.0, 1.0]]}
+SCENES = {
+    "own axes": load_scene("fig3-I").with_values(FLAT),
+    "oblique": load_scene("fig3-II").with_values(FLAT),
+    "lubricated": load_scene("fig4-viscous").with_values(FLAT),
+    "vertical": load_scene("fig3-I").with_values({**FLAT, **VERTICAL}),
+    "one body": load_scene("fig3-I").with_values({**FLAT, "bodies": [{"mass": 1.0}], "excitation.scale": 3.0}),
+    "six bodies": frame(10.0, 6).with_values(
+        {"isolator": {"radius": math.inf, "friction": frame(10.0, 6).friction_coefficient}}
+    ),
+}
+
+
+def within_errors(scene: Scene, phases: np.ndarray, **asked: object) -> float:
+    """Largest difference to the exact equations over the sum of both errors; every point of both has an answer."""
+    regularization = None if scene.lubricated else V_REG
+    engine = multibody.amplification(scene, phases, regularization=regularization, **asked)
+    equations = reference.amplification(scene, phases, regularization=regularization)
+    assert set(engine.status) == set(equations.status) == {Outcome.OK}
+    np.testing.assert_allclose(engine.displacement, equations.displacement, rtol=5e-3)
+    return float((np.abs(engine.mu - equations.mu) / (engine.error + equations.error)).max())
+
+
+@pytest.mark.parametrize("name", ["own axes", "lubricated", "vertical"])
+def test_every_factor_lies_within_its_error_of_the_exact_equations(name):
+    scene = SCENES[name].with_values({"duration": 6.0})
+    assert within_errors(scene, PHASES if name == "own axes" else PHASES[:1]) <= 1.0
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", SCENES)
+def test_every_point_of_a_surface_lies_within_its_errors(name):
+    phases = np.random.default_rng(5).uniform(0.0, 2.0 * np.pi, (64, 2))
+    share = within_errors(SCENES[name], phases)
+    print(f"\n{name}: largest difference over the errors {share:.2f}")
+    assert share <= 1.0
+
+
+def test_a_recorded_motion_lies_within_its_error_too():
+    scene = load_scene("synthetic-pair").with_values({**FLAT, "duration": 4.0})
+    assert within_errors(scene, PHASES[:1]) <= 1.0
+
+
+def test_a_plate_that_moves_carries_the_plane_along():
+    scene = SCENES["own axes"].with_values({"duration": 4.0})
+    assert within_errors(scene, PHASES[:1], loading="plate") <= 1.0
+
+
+def test_a_straight_slide_stops_after_v2_over_2_mu_g_however_far_from_the_middle():
+    still = {"excitation.amplitudes": [[0.0, 0.0], [0.0, 0.0]], "bodies": [{"mass": 1.0}], "duration": 2.0}
+    scene, speed = SCENES["own axes"].with_values(still), 1.0
+    way = stopping_distance(speed, 0.1)
+    for place in (0.0, 1e4):
+        start = State(np.array([[place, 0.0]]), np.array([[0.6 * speed, 0.8 * speed]]))
+        run = multibody.trajectory(scene, (0.0, 0.0), initial=start)
+        moved = run.position[-1, 0, :2] - [place, 0.0]
+        creep = V_REG**2 / (0.1 * GRAVITY)  # below v_reg the speed decays: the way left is v_reg^2 / (mu g)
+        np.testing.assert_allclose(moved, [0.6 * way, 0.8 * way], atol=creep + 2e-4 * way)
+        np.testing.assert_allclose(run.peak, 0.1 * GRAVITY, rtol=1e-4)
+        assert np.abs(run.position[:, 0, 2]).max() < 1e-6
+
+
+def test_without_friction_nothing_moves_the_platform():
+    scene = SCENES["one body"].with_values({"isolator.friction": 0.0, "duration": 2.0})
+    answer = multibody.amplification(scene, PHASES[:1], regularization=None)
+    assert answer.mu[0, 0] <= answer.error[0, 0] < 1e-4
+
+
+@pytest.mark.long
+def test_a_large_radius_tends_to_the_plane_with_slope_one():
+    scene, asked = SCENES["own axes"].with_values({"duration": 6.0}), {"tolerance": 1e-5, "max_work": 2e7}
+    limit = multibody.amplification(scene, PHASES[:1], **asked)
+    exact = reference.amplification(scene, PHASES[:1], regularization=V_REG, tolerance=1e-8)
+    curved = reference.amplification(
+        scene.with_values({"isolator.radius": 1e4}), PHASES[:1], regularization=V_REG, tolerance=1e-8
+    )
+    slope = 1e4 * (curved.mu - exact.mu)
+    for radius in (10.0, 30.0, 100.0):
+        engine = multibody.amplification(scene.with_values({"isolator.radius": radius}), PHASES[:1], **asked)
+        gap, uncertain = engine.mu - limit.mu, engine.error + limit.error
+        assert (np.abs(gap - slope / radius) <= uncertain + 0.05 * np.abs(slope) / radius).all()
+    assert (np.abs(gap) > 3.0 * uncertain).any(), "the slope is seen above the errors"
+
+
+def test_the_unit_of_length_follows_the_loading():
+    slow = SCENES["own axes"].with_values({"duration": 2.0})
+    factor = 16.0  # times all periods: a motion in slow motion, loading and friction unchanged
+    bodies = [{"mass": 1.0}, {"mass": 1.0, "period": [1.5 * factor, 1.2 * factor]}]
+    changes = {"duration": 2.0 * factor, "bodies": bodies, "excitation.periods": [0.9 * factor, 1.1 * factor]}
+    decay = [rate / factor for rate in slow.excitation.decay]
+    slower = slow.with_values({**changes, "excitation.decay": decay})
+    plain = slow.with_values({"bodies": [{"mass": 1.0}, {"mass": 1.0, "period": [1.5, 1.2]}]})
+    once = multibody.amplification(plain, PHASES[:1], regularization=V_REG)
+    again = multibody.amplification(slower, PHASES[:1], regularization=factor * V_REG)
+    np.testing.assert_allclose(again.mu, once.mu, rtol=1e-9)
+
+
+# bodies that turn ----------------------------------------------------------------------------------------------------
+
+SPATIAL = SCENES["own axes"].with_values({"duration": 3.0})
+RING, SPHERE = 1.0, 0.05  # m, of SPATIAL
+
+
+def test_overturning_shifts_the_load_of_the_supports_as_statics_says():
+    """A block that slides along x with its center h above the plane: the load's center is mu h before that of mass."""
+    height, still = 0.3, [[0.0, 0.0], [0.0, 0.0]]
+    block = {"mass": 2.0, "height": height, "size": [2.0, 2.0, 0.2]}
+    scene = SPATIAL.with_values({"bodies": [block], "excitation.amplitudes": still, "duration": 0.5})
+    start = State(np.zeros((1, 2)), np.array([[0.8, 0.0]]))
+    run = multibody.trajectory(scene, (0.0, 0.0), model="spatial", initial=start)
+    middle = len(run.time) // 2
+    weight, places = 2.0 * GRAVITY, scene.support_places[:, 0]
+    center = 0.1 * height + run.position[middle, 0, 0]
+    expected = weight / 4.0 + weight * center * places / (places**2).sum()
+    assert run.status == Outcome.OK
+    np.testing.assert_allclose(run.extra["support_force"][middle], expected, rtol=1e-5)
+    assert np.abs(run.extra["yaw"]).max() < 1e-9
+
+
+def test_a_body_level_with_the_plane_does_not_turn():
+    level = [{"mass": 1.0, "height": 0.0, "size": [2.0, 2.0, 0.2]}]
+    scene = SPATIAL.with_values({"bodies": level, "excitation.scale": 2.0})
+    spatial, translational = (
+        multibody.amplification(scene, PHASES[:1], model=model, full=True) for model in ("spatial", "translational")
+    )
+    assert (np.abs(spatial.mu - translational.mu) <= spatial.error + translational.error).all()
+    assert (spatial.error < 1e-3).all()
+
+
+def test_bodies_that_turn_on_large_spheres_tend_to_those_on_a_plane():
+    """Heights count from the plane, so on spheres they are larger by the depth of the plane's place, rho + r."""
+    phase = PHASES[1:2]
+    limit = multibody.amplification(SPATIAL, phase, model="spatial")
+    gaps = []
+    for radius in (10.0, 100.0):
+        bodies = [
+            {**body.model_dump(exclude_none=True), "height": body.height + radius + SPHERE} for body in SPATIAL.bodies
+        ]
+        curved = SPATIAL.with_values({"isolator.radius": radius, "bodies": bodies})
+        answer = multibody.amplification(curved, phase, model="spatial")
+        assert answer.status.tolist() == [Outcome.OK]
+        gaps.append((answer.mu - limit.mu)[0])
+        uncertain = (answer.error + limit.error)[0]
+        slope = np.array([0.22, -0.038])  # m, of mu over 1 / rho
+        assert (np.abs(gaps[-1] - slope / radius) <= uncertain + 0.1 * np.abs(slope) / radius).all()
+    assert abs(gaps[0][0]) > 10.0 * uncertain[0], "the gap at 10 m is seen"
+
+
+def test_a_plate_that_moves_carries_the_plane_under_bodies_that_turn():
+    scene = SPATIAL.with_values({"duration": 1.5})
+    moving, still = (
+        multibody.amplification(scene, PHASES[:1], model="spatial", loading=each) for each in ("plate", "inertial")
+    )
+    assert (np.abs(moving.mu - still.mu) <= moving.error + still.error).all()

@@ -1,0 +1,71 @@
+"""A link given by its bars: k = 12 n E J / l^3, and nothing else than a stiffness to every model."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import multibody
+import reference
+from reference.problem import Scene, in_plane, load_scene, planar
+
+PHASES = [(0.3, 1.1), (2.0, 0.7)]
+BARS = {"count": 4, "bending_stiffness": 0.75, "length": 1.25}
+STIFFNESS = 12.0 * 4 * 0.75 / 1.25**3
+
+
+def linked(**link: object) -> Scene:
+    return load_scene("fig3-I").with_values(
+        {"duration": 3.0, "bodies.1.period": None, **{f"bodies.1.{key}": value for key, value in link.items()}}
+    )
+
+
+def test_bars_have_the_stiffness_of_clamped_beams_in_both_directions():
+    np.testing.assert_allclose(linked(bars=BARS).stiffness, [[STIFFNESS, STIFFNESS]], rtol=1e-15)
+
+
+def test_the_printed_factor_would_make_a_link_144_times_softer():
+    """A beam clamped at both ends, by its flexibility: the integral of M^2 / (E J) with M = F (l / 2 - s)."""
+    s = np.linspace(0.0, BARS["length"], 200_001)
+    sway = np.trapezoid((BARS["length"] / 2.0 - s) ** 2, s) / BARS["bending_stiffness"]
+    assert linked(bars=BARS).stiffness[0, 0] == pytest.approx(BARS["count"] / sway, rel=1e-8)
+
+
+@pytest.mark.parametrize("equations", ["exact", "small"])
+def test_the_equations_give_the_same_numbers_as_with_the_stiffness(equations):
+    bars, stiffness = linked(bars=BARS), linked(stiffness=linked(bars=BARS).stiffness[0].tolist())
+    mu = [reference.amplification(scene, PHASES, equations=equations).mu for scene in (bars, stiffness)]
+    np.testing.assert_array_equal(*mu)
+
+
+@pytest.mark.parametrize("model", ["translational", "spatial"])
+def test_the_engine_gives_the_same_numbers_as_with_the_stiffness(model):
+    bars, stiffness = linked(bars=BARS), linked(stiffness=linked(bars=BARS).stiffness[0].tolist())
+    mu = [
+        multibody.amplification(scene.with_values({"duration": 0.5}), PHASES[:1], model=model).mu
+        for scene in (bars, stiffness)
+    ]
+    np.testing.assert_array_equal(*mu)
+
+
+def test_a_scene_with_bars_is_turned_into_its_plane_and_keeps_its_values():
+    scene = linked(bars=BARS).with_values({"excitation.amplitudes": [[0.0, 0.0], [2.0, 1.0]]})
+    assert planar(scene)
+    assert in_plane(scene).stiffness.tolist() == scene.stiffness.tolist()
+    assert scene.with_values({"bodies.1.bars.length": 2.5}).stiffness[0, 0] == pytest.approx(STIFFNESS / 8.0)
+    assert Scene.model_validate(scene.model_dump(exclude_none=True)) == scene
+    assert scene.digest() != linked(stiffness=[STIFFNESS] * 2).digest()
+    assert hash(scene) == hash(Scene.model_validate(scene.model_dump(exclude_none=True)))
+
+
+def test_a_family_runs_over_the_length_of_the_bars(tmp_path):
+    file = tmp_path / "bars.toml"
+    file.write_text(
+        'title = "bars"\nduration = 2.0\nisolator = {period = 1.0, friction = 0.1}\n'
+        "excitation = {amplitudes = [[1.0, 0.0], [0.0, 1.0]], periods = [0.9, 1.1], decay = [0.3, 0.3]}\n"
+        "[[bodies]]\nmass = 1.0\n[[bodies]]\nmass = 1.0\n"
+        "[bodies.bars]\ncount = 4\nbending_stiffness = 0.75\nlength = {values = [1.0, 2.0]}\n"
+    )
+    family = reference.problem.load_family(file)
+    first, second = (scene.stiffness[0, 0] for scene in family.scenes)
+    assert first == pytest.approx(8.0 * second)

@@ -1,0 +1,311 @@
+"""
+A flat slider, rho = inf: a plane under the platform, no restoring force.
+
+Plain equations on a plane, a mass that sticks or slides and linear springs, are solved again by SciPy. A rigid block
+has closed forms: Newmark's sliding block.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+import reference
+from reference.analytical import frictionless_motion, stopping_distance, stopping_time
+from reference.problem import GRAVITY, Scene, State, ground_acceleration, ground_peak, load_scene, phase_grid
+
+FLAT = {"isolator.period": None, "isolator.radius": math.inf}
+PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (4.0, 5.5)])
+V_REG = 1e-3
+
+
+def flat(name: str = "fig3-I", **values) -> Scene:
+    """A scene of the paper on a plane; keys with double underscores for dots."""
+    changes = {key.replace("__", "."): value for key, value in values.items()}
+    return load_scene(name).with_values({**FLAT, **changes})
+
+
+def block(amplitude: float, friction: float, duration: float, period: float = 1.0) -> Scene:
+    """A rigid block under one undamped harmonic along x."""
+    return Scene.model_validate(
+        {
+            "title": "sliding block",
+            "duration": duration,
+            "isolator": {"radius": math.inf, "friction": friction},
+            "bodies": [{"mass": 3.0}],
+            "excitation": {
+                "amplitudes": [[amplitude, 0.0], [0.0, 0.0]],
+                "periods": [period, period],
+                "decay": [0.0, 0.0],
+            },
+        }
+    )
+
+
+# an independent solution ---------------------------------------------------------------------------------------------
+
+LINKED = [{"mass": 2.0}, {"mass": 1.0, "period": [0.5, 0.6]}, {"mass": 0.5, "stiffness": [80.0, 40.0]}]
+SIX = {
+    "own axes": flat(duration=6.0),
+    "oblique, strong": flat("fig3-II", duration=6.0, excitation__scale=3.0),
+    "lubricated": flat("fig4-viscous", duration=6.0),
+    "three bodies, vertical": flat(
+        duration=6.0, bodies=LINKED, excitation__amplitudes=[[1.0, 0.4], [-0.3, 1.2], [1.3, 0.9]]
+    ),
+    "light platform": flat(duration=6.0, bodies=[{"mass": 0.05}, {"mass": 1.0, "period": [0.6, 0.5]}]),
+    "recorded": load_scene("synthetic-pair").with_values({**FLAT, "duration": 6.0}),
+}
+
+
+def plane_factors(scene: Scene, phase) -> np.ndarray:
+    """mu_i of bodies on a plane under Coulomb friction, linear below V_REG, or lubricated; by SciPy."""
+    masses, links, count = scene.masses, scene.stiffness, len(scene.bodies)
+    creeping = True  # slower than V_REG
+
+    def accelerations(t, state):
+        """Relative accelerations (N, 2) and the ground's (3,)."""
+        x, v = state[: 2 * count].reshape(-1, 2), state[2 * count :].reshape(-1, 2)
+        ground = ground_acceleration(scene, phase, [t])[0]
+        force = np.zeros((count, 2))
+        pull = links * (x[1:] - x[:-1])
+        force[:-1] += pull
+        force[1:] -= pull
+        normal = masses.sum() * (GRAVITY + ground[2])
+        over_speed = 1.0 if scene.lubricated else 1.0 / (V_REG if creeping else math.hypot(*v[0]))
+        force[0] -= scene.friction_coefficient * normal * over_speed * v[0]
+        return force / masses[:, None] - ground[:2], ground
+
+    def slope(t, state):
+        return np.concatenate([state[2 * count :], accelerations(t, state)[0].ravel()])
+
+    def corner(t, state):
+        return math.hypot(*state[2 * count : 2 * count + 2]) / V_REG - 1.0
+
+    corner.terminal = True
+    knots = scene.record[:, 0] if scene.recorded else np.empty(0)
+    ends = [*knots[(knots > 0.0) & (knots < scene.duration)], scene.duration]
+    begin, state, highest = 0.0, np.zeros(4 * count), np.zeros(count)
+    while ends:
+        corner.direction = 1.0 if creeping else -1.0
+        events = None if scene.lubricated else corner
+        run = solve_ivp(
+            slope, (begin, ends[0]), state, "LSODA", events=events, dense_output=True, rtol=1e-10, atol=1e-13
+        )
+        steps = np.union1d(run.t, 0.5 * (run.t[1:] + run.t[:-1]))
+        instants = np.union1d(steps, np.linspace(begin, run.t[-1], 2 + math.ceil((run.t[-1] - begin) / 2e-4)))
+        for t, each in zip(instants, run.sol(instants).T):
+            relative, ground = accelerations(t, each)
+            total = np.column_stack([relative + ground[:2], np.full(count, ground[2])])
+            highest = np.maximum(highest, (total**2).sum(axis=1))
+        begin, state = run.t[-1], run.y[:, -1]
+        if run.status == 1:
+            creeping = not creeping
+        else:
+            ends.pop(0)
+    return np.sqrt(highest) / ground_peak(scene, [phase])[0]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", SIX)
+def test_factors_are_those_of_an_independent_solution_on_a_plane(name):
+    scene, phase = SIX[name], PHASES[1]
+    expected = plane_factors(scene, phase)
+    regularization = None if scene.lubricated else V_REG
+    for equations in ("exact", "small"):
+        answer = reference.amplification(scene, [phase], equations=equations, regularization=regularization)
+        assert answer.status.tolist() == ["ok"]
+        np.testing.assert_allclose(answer.mu[0], expected, rtol=5e-6)
+
+
+# Newmark's sliding block ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("equations", ["exact", "small"])
+@pytest.mark.parametrize("angle", [0.0, 0.7, 2.5, 4.0])
+def test_a_straight_slide_on_still_ground_stops_after_v2_over_2_mu_g(angle, equations):
+    friction, speed = 0.1, 0.8
+    scene = block(0.0, friction, 2.0)
+    along = np.array([math.cos(angle), math.sin(angle)])
+    run = reference.trajectory(
+        scene, (0.0, 0.0), equations, tolerance=1e-9, initial=State(np.zeros((1, 2)), speed * along[None])
+    )
+    way = stopping_distance(speed, friction)
+    assert run.status == "ok"
+    np.testing.assert_allclose(run.position[-1, 0, :2], way * along, atol=1e-8 * way)
+    assert run.stick[0][0] == pytest.approx(stopping_time(speed, friction), rel=1e-8)
+    assert (run.position[:, :, 2] == 0.0).all()
+
+
+def test_a_sliding_rigid_block_is_accelerated_by_mu_g_and_no_more():
+    scene = flat(bodies=[{"mass": 2.0}], excitation__scale=3.0)
+    pairs = phase_grid(8)
+    answer = reference.amplification(scene, pairs)
+    limit = scene.friction_coefficient * GRAVITY
+    expected = np.minimum(1.0, limit / ground_peak(scene, pairs))
+    assert (np.abs(answer.mu[:, 0] - expected) <= answer.error[:, 0]).all()
+    np.testing.assert_allclose(answer.mu[:, 0], expected, rtol=1e-6)
+    assert (expected < 1.0).all()
+
+
+@pytest.mark.parametrize("share", [0.75, 0.9, 0.99])
+def test_a_block_under_a_harmonic_slides_as_newmark_says(share):
+    """From its largest value on a cosine drives the block until sin z / z = share; it stays within the half cycle."""
+    amplitude, period = 2.0, 1.3
+    pace = 2.0 * math.pi / period
+    z = brentq(lambda z: math.sin(z) / z - share, 1e-3, math.pi)
+    way = amplitude / pace**2 * (1.0 - math.cos(z)) - share * amplitude * (z / pace) ** 2 / 2.0
+    assert abs(math.cos(z)) < share, "friction holds the block when it stops"
+    scene = block(amplitude, share * amplitude / GRAVITY, 0.25 * period, period)
+    run = reference.trajectory(scene, (0.0, 0.0), tolerance=1e-9, times=[0.0, z / pace, 0.25 * period])
+    assert run.stick[0][0] == pytest.approx(z / pace, rel=1e-7)
+    assert run.position[-1, 0, 0] == pytest.approx(-way, rel=1e-7)
+    assert reference.amplification(scene, [(0.0, 0.0)]).displacement[0] == pytest.approx(way, rel=1e-3)
+
+
+@pytest.mark.parametrize(("amplitude", "power", "within"), [(15.0, 15.2671, 5e-4), (1.5, 0.409062, 5e-4)])
+def test_friction_takes_the_published_power_from_a_shaken_block(amplitude, power, within):
+    """code_aster's SDND104, 10 N on a base that moves with A sin(2 pi t), mu = 0.1: mean of N |v| over 4 to 12 s."""
+    scene = block(amplitude, 0.1 * 10.0 / GRAVITY, 12.0)
+    times = np.linspace(4.0, 12.0, 80_001)
+    run = reference.trajectory(scene, (-0.5 * math.pi, 0.0), times=times)
+    mean = float(np.trapezoid(10.0 * np.abs(run.velocity[:, 0, 0]), run.time)) / 8.0
+    assert mean == pytest.approx(power, rel=within)
+
+
+def test_a_block_that_friction_can_hold_never_slides():
+    scene = block(0.99, 0.1 * 10.0 / GRAVITY, 12.0)
+    answer = reference.amplification(scene, [(-0.5 * math.pi, 0.0)])
+    assert answer.displacement.tolist() == [0.0]
+    assert answer.mu[0, 0] == pytest.approx(1.0, abs=answer.error[0, 0])
+
+
+# no friction: a rigid free platform ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("equations", ["exact", "small"])
+def test_without_friction_the_platform_stays_where_it_is_while_the_plate_moves(equations):
+    scene = flat(isolator__friction=0.0, bodies=[{"mass": 2.0}], excitation__decay=[0.0, 0.0], duration=5.0)
+    phase, amplitudes, pace = PHASES[0], np.diag(scene.amplitudes), 2.0 * np.pi / np.array([0.9, 1.1])
+    answer = reference.amplification(scene, [phase], equations=equations)
+    times = np.linspace(0.0, 5.0, 2001)
+    turned = pace * times[:, None] + phase
+    # minus the second integral of a cos(w t + alpha) from rest
+    moved = amplitudes / pace**2 * (np.cos(turned) - np.cos(phase) + pace * times[:, None] * np.sin(phase))
+    assert answer.mu[0, 0] == pytest.approx(0.0, abs=1e-11)
+    assert answer.displacement[0] == pytest.approx(np.hypot(*moved.T).max(), rel=1e-5)
+    run = reference.trajectory(scene, phase, equations, times=times)
+    np.testing.assert_allclose(run.position[:, 0, :2], moved, atol=1e-6)
+
+
+def test_the_closed_form_without_friction_drifts_and_swings_as_the_run_does():
+    scene = flat(isolator__friction=0.0, duration=4.0)
+    times = np.linspace(0.0, 4.0, 401)
+    position, velocity, _ = frictionless_motion(scene, PHASES[1], times)
+    run = reference.trajectory(scene, PHASES[1], "small", times=times, tolerance=1e-9)
+    np.testing.assert_allclose(run.position[:, :, :2], position, atol=1e-8)
+    np.testing.assert_allclose(run.velocity[:, :, :2], velocity, atol=1e-8)
+
+
+def test_the_modes_of_a_chain_on_a_plane_begin_with_its_rigid_motion():
+    natural = reference.modes(flat(bodies=[{"mass": 2.0}, {"mass": 1.0, "stiffness": [30.0, 12.0]}]))
+    np.testing.assert_array_equal(natural.frequency[:, 0], 0.0)
+    np.testing.assert_array_equal(natural.period[:, 0], np.inf)
+    np.testing.assert_allclose(natural.frequency[:, 1], np.sqrt(np.array([30.0, 12.0]) * 1.5), rtol=1e-13)
+    np.testing.assert_allclose(natural.effective_mass, [[3.0, 0.0], [3.0, 0.0]], atol=1e-13)
+    np.testing.assert_allclose(natural.shape[:, :, 0], 1.0 / math.sqrt(3.0), rtol=1e-13)
+    assert reference.modes(flat(bodies=[{"mass": 2.0}])).frequency.tolist() == [[0.0], [0.0]]
+
+
+# limits, reductions, scaling -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("equations", ["exact", "small"])
+def test_a_large_radius_tends_to_the_plane_with_slope_one(equations):
+    scene, asked = flat(duration=6.0), {"equations": equations, "regularization": V_REG, "tolerance": 1e-8}
+    limit = reference.amplification(scene, PHASES[:1], **asked)
+    gaps = []
+    for radius in (1e2, 1e3, 1e4):
+        curved = reference.amplification(scene.with_values({"isolator.radius": radius}), PHASES[:1], **asked)
+        gaps.append((curved.mu[0] - limit.mu[0]) * radius)
+        assert (curved.error + limit.error < 0.05 * np.abs(curved.mu - limit.mu)).all()
+    np.testing.assert_allclose(gaps[:2], [gaps[2]] * 2, rtol=0.02)
+    assert (np.abs(gaps[2]) > 1e-2).all()
+
+
+def test_exact_and_small_equations_are_one_on_a_plane():
+    scene = flat(excitation__amplitudes=[[1.0, 0.4], [-0.3, 1.2], [1.3, 0.9]], duration=6.0)
+    exact, small = (reference.amplification(scene, PHASES, equations=each) for each in ("exact", "small"))
+    np.testing.assert_allclose(exact.mu, small.mu, rtol=1e-9)
+
+
+@pytest.mark.parametrize("scale", [1e-3, 30.0])
+def test_loading_and_friction_scaled_together_scale_the_motion_exactly(scale):
+    scene = flat(duration=6.0)
+    scaled = scene.with_values({"excitation.scale": scale, "isolator.friction": scale * scene.friction_coefficient})
+    once, again = reference.amplification(scene, PHASES), reference.amplification(scaled, PHASES)
+    np.testing.assert_allclose(again.mu, once.mu, rtol=1e-7)
+    np.testing.assert_allclose(again.displacement, scale * once.displacement, rtol=1e-3)
+
+
+@pytest.mark.parametrize("name", ["fig3-I", "fig3-II"])
+def test_the_symmetries_of_the_phases_hold_on_a_plane(name):
+    scene = flat(name, duration=6.0)
+    shifts = [(np.pi, np.pi)] + ([(np.pi, 0.0)] if reference.problem.own_axes(scene) else [])
+    mu = reference.amplification(scene, PHASES).mu
+    for shift in shifts:
+        np.testing.assert_allclose(reference.amplification(scene, PHASES + shift).mu, mu, rtol=1e-6)
+
+
+@pytest.mark.parametrize("regularization", [None, V_REG])
+def test_reduced_to_a_line_the_motion_on_a_plane_is_the_same(regularization):
+    scene = flat(duration=6.0, excitation__amplitudes=[[2.0, 1.0], [0.0, 0.0]])
+    assert reference.problem.planar(scene)
+    asked = {"regularization": regularization}
+    reduced, whole = (reference.amplification(scene, PHASES, full=full, **asked) for full in (False, True))
+    assert (np.abs(reduced.mu - whole.mu) <= reduced.error + whole.error).all()
+    np.testing.assert_allclose(reduced.displacement, whole.displacement, rtol=1e-3)
+
+
+# the scene and its numbers -------------------------------------------------------------------------------------------
+
+
+def test_a_flat_slider_has_no_rim_and_its_displacement_no_share_of_one():
+    scene = flat(duration=6.0)
+    numbers = reference.demands(reference.trajectory(scene, PHASES[0]))
+    answer = reference.amplification(scene, PHASES[:1])
+    assert numbers.cap_share.value == answer.cap_share[0] == 0.0
+    assert numbers.displacement.value == pytest.approx(answer.displacement[0], rel=1e-3)
+    assert numbers.displacement.value > 0.01
+
+
+def test_the_worst_displacement_on_a_plane_is_found_in_meters():
+    scene = flat(bodies=[{"mass": 1.0}], duration=2.0, excitation__scale=2.0)
+    worst = reference.worst_phases(scene, 1, "displacement", tolerance=1e-4)
+    surface = reference.amplification(scene, phase_grid(8)).displacement
+    assert worst.value >= 0.999 * surface.max()
+    assert worst.value == pytest.approx(surface.max(), rel=0.1)
+
+
+def test_infinity_survives_json_as_a_word():
+    scene = flat()
+    assert scene.flat
+    assert not load_scene("fig3-I").flat
+    assert '"radius":"inf"' in scene.model_dump_json()
+    assert Scene.model_validate(scene.model_dump(exclude_none=True)) == scene
+    digests = {flat().digest(), load_scene("fig3-I").digest(), flat().with_values({"isolator.radius": 1e12}).digest()}
+    assert len(digests) == 3
+
+
+def test_toml_reads_inf(tmp_path):
+    file = tmp_path / "flat.toml"
+    file.write_text(
+        'title = "flat"\nduration = 2.0\nisolator = {radius = inf, friction = 0.1}\nbodies = [{mass = 1.0}]\n'
+        "excitation = {amplitudes = [[1.0, 0.0], [0.0, 1.0]], periods = [0.9, 1.1], decay = [0.3, 0.3]}\n"
+    )
+    assert load_scene(file).radius == math.inf
+    with pytest.raises(reference.problem.SceneError, match="exactly one of period and radius"):
+        load_scene(file).with_values({"isolator.period": 1.0})
