@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from comparison.analysis.claims.table import ClaimTable
+from comparison.analysis.demand_surfaces import demand_statistics
 from comparison.analysis.distribution import distributions
 from comparison.analysis.errata import ERRATA
 from comparison.analysis.grid_maxima import grid_maxima
@@ -27,6 +28,7 @@ from comparison.report.results import (
     Claim,
     Claims,
     Completion,
+    DemandStatistics,
     Difference,
     Distribution,
     Effect,
@@ -134,6 +136,9 @@ def _scene(findings: Findings, scene: Scene, waterfalls: Sequence[BodyWaterfall]
         limits=[Limit.model_validate(limit) for limit in of_scene(findings.limits)],
         effective=[Effective.model_validate(values) for values in of_scene(findings.effective)],
         demands=_demands(findings, scene),
+        demand_statistics=[]
+        if findings.demands is None
+        else [DemandStatistics.model_validate(each) for each in demand_statistics(study, findings.demands, scene)],
     )
 
 

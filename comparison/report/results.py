@@ -451,6 +451,41 @@ class Distribution(Part):
     """mu at 50 probabilities from 0.01 to 0.99"""
 
 
+class PhaseExtreme(Part):
+    """The largest or smallest value on the phases that were computed."""
+
+    value: Number
+    error: Number
+    """estimated absolute error; null where it is not known"""
+    phases: Phases
+    """(alpha1, alpha2), rad; null under a record"""
+
+
+class DemandStatistics(Part):
+    """One demand of one model over phases that are independent and uniform; under a record its one value."""
+
+    model: str
+    """key of the model"""
+    quantity: str
+    """key in `demands`, with the unit stated there"""
+    body: int
+    """number of the body; 0 where the demand is of the isolator"""
+    points: int
+    """phase pairs that it was taken from"""
+    unknown: float
+    """share of them without an answer"""
+    mean: Mean
+    """mean over all phases"""
+    fractiles: list[Fractile]
+    """by rising probability"""
+    lowest: PhaseExtreme
+    """smallest value"""
+    highest: PhaseExtreme
+    """largest value"""
+    curve: list[Number]
+    """the demand at 50 probabilities from 0.01 to 0.99"""
+
+
 class GridMaximum(Part):
     """The largest value of one surface on the phases that were computed."""
 
@@ -638,6 +673,8 @@ class SceneResult(Part):
     """the scene, then every model"""
     demands: list[MotionDemands]
     """one per stored phase pair and model; empty without stored motions"""
+    demand_statistics: list[DemandStatistics]
+    """one per demand, body and model; empty unless demands of every phase pair were asked for"""
 
 
 class Effect(Part):
