@@ -32,11 +32,16 @@ from reference.problem.peak_demands import demands_of_motions
 Array = NDArray[np.float64]
 
 BATCH_SECONDS = 2.0  # of the motions of one task, as predicted
-PER_BODY = {"acceleration": 0, "drift": 1}  # demands of bodies, and the index of the body that comes first
+PER_BODY = {
+    "acceleration": 0,
+    "drift": 1,
+    "torsion": 0,
+}  # demands of bodies, and the index of the body that comes first
 QUANTITIES = {  # fields of `Demands` in words, and their units
     "displacement": ("largest displacement of the isolator", "m"),
     "residual": ("displacement at the end", "m"),
     "cap_share": ("largest displacement over rho", "1"),
+    "travel_share": ("largest displacement over the travel", "1"),
     "acceleration": ("largest absolute acceleration", "m/s^2"),
     "base_shear": ("base shear", "N"),
     "drift": ("drift against the body below", "m"),
@@ -44,9 +49,11 @@ QUANTITIES = {  # fields of `Demands` in words, and their units
     "contact_force_max": ("largest contact force", "N"),
     "support_force_min": ("smallest support force", "N"),
     "support_force_max": ("largest support force", "N"),
+    "torsion": ("largest rotation about the vertical", "rad"),
     "stops": ("number of stops", "1"),
     "uplift": ("largest uplift of a support", "m"),
     "friction_energy": ("energy dissipated by friction", "J"),
+    "damping_energy": ("energy dissipated by dampers of the links", "J"),
     "energy_balance": ("work of the ground less energy dissipated and stored", "J"),
 }
 PREFIX = "demand_"  # of a demand in surfaces.nc
@@ -123,8 +130,8 @@ class DemandSurfaces(Analysis[xr.Dataset]):
             for name, estimates in batch.estimates.items():
                 for key, values in ((name, estimates.value), (f"{name}_error", estimates.error)):
                     table = numbers.setdefault(key, np.full((*plane, bodies if name in PER_BODY else 1), np.nan))
-                    columns = slice(PER_BODY.get(name, 0), PER_BODY.get(name, 0) + values[0].size)
-                    table[where][places, columns] = values.reshape(len(places), -1)
+                    first, count = PER_BODY.get(name, 0), values[0].size
+                    table[where][places, first : first + count] = values.reshape(len(places), count)
         for row, scene in enumerate(study.scenes):
             for model in _moving(study, scene):
                 place, source = study.places(model, scene), study.sources(scene, model)
