@@ -41,7 +41,7 @@ def peak_demands(
 
     Notes
     -----
-    Every motion goes to its end: a demand may settle later than the accelerations. So a pair takes some twenty times
+    Every motion goes to its end: a demand may settle later than the accelerations. So a pair takes some thirty times
     what `amplification` takes.
 
     Examples

@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from comparison.analysis.distribution import CURVE, Fractile
 from comparison.analysis.protocol import Analysis
 from comparison.analysis.surfaces import NOT_ASKED
-from comparison.analysis.trajectories import SECONDS
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
@@ -31,6 +30,7 @@ from reference.problem.peak_demands import demands_of_motions
 
 Array = NDArray[np.float64]
 
+SECONDS = {"reference": 0.06, "engine": 0.5}  # predicted cost of one motion, s on `study.models.RECORDED_ON`
 BATCH_SECONDS = 2.0  # of the motions of one task, as predicted
 PER_BODY = {
     "acceleration": 0,
@@ -93,6 +93,10 @@ class DemandStatistics:
     lowest: Extreme
     highest: Extreme
     curve: tuple[float, ...]  # the demand at the probabilities CURVE
+
+    def fractile(self, probability: float) -> float:
+        """The value at one of FRACTILES."""
+        return self.fractiles[FRACTILES.index(probability)].value
 
 
 class DemandSurfaces(Analysis[xr.Dataset]):

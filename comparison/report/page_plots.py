@@ -328,7 +328,7 @@ def _has(family: FamilyResult, quantity: str, body: int) -> bool:
 def _family_demand(
     results: Results, family: FamilyResult, quantity: str, body: int, title: str, unit: str, scale: float
 ) -> Panel:
-    """One demand of every model over the value that runs: median of the stored motions, from smallest to largest."""
+    """One demand of every model over the value that runs: median of the motions, from smallest to largest."""
     places, axis = _axis(family)
     titles = {model.key: model.title for model in results.models}
     series = []
@@ -343,7 +343,8 @@ def _family_demand(
             line["band"] = True
         series.append(line)
     plot = {"label": f"{title} over {family.key}", "x": axis, "y": {"title": f"{title}, {unit}"}, "series": series}
-    return {"title": f"{title} of the stored motions", "plot": plot}
+    of_which = "over all phases" if family.demands_over_phases else "of the stored motions"
+    return {"title": f"{title} {of_which}", "plot": plot}
 
 
 def _plain(values: Sequence[float]) -> list[float | None]:

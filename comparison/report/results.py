@@ -883,7 +883,7 @@ class FamilyStep(Part):
 
 
 class FamilyDemand(Part):
-    """One demand of the stored motions of a model over the value that runs, with its band."""
+    """One demand of the motions of a model over the value that runs, with its band."""
 
     model: str
     """key of the model"""
@@ -892,7 +892,7 @@ class FamilyDemand(Part):
     body: int
     """number of the body; 0 where the demand is of the isolator"""
     median: list[Number]
-    """median over the stored motions that have the demand, one for each scene; null without any"""
+    """median over the motions that have the demand, one for each scene; null without any"""
     lowest: list[Number]
     """smallest of them"""
     highest: list[Number]
@@ -917,7 +917,9 @@ class FamilyResult(Part):
     steps: list[FamilyStep]
     """one per step of the waterfalls and body, then the total"""
     demands: list[FamilyDemand]
-    """one per model, quantity and body of which a motion is stored"""
+    """one per model, quantity and body of which a motion is stored, or of which all phases were computed"""
+    demands_over_phases: bool
+    """whether they are of all phases, not of the stored motions"""
 
 
 class OutcomeNote(Part):
