@@ -8,6 +8,7 @@ from typing import Any
 from comparison.analysis.assumptions.validity import Assumptions
 from comparison.analysis.claims.table import Claims
 from comparison.analysis.convergence import Convergence
+from comparison.analysis.demand_surfaces import DemandSurfaces
 from comparison.analysis.effective import EffectiveValues
 from comparison.analysis.errata import Errata
 from comparison.analysis.protocol import Analysis
@@ -27,6 +28,7 @@ ANALYSES: tuple[Analysis[Any], ...] = (
     Assumptions(),
     Motions(),
     WorstPhases(),
+    DemandSurfaces(),
     Pictures(),
 )
 

@@ -51,8 +51,8 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         "`[analyses]`",
         "Analyses",
         "analyses",
-        f"What the report tells of the scene beside its amplification factors: {', '.join(ANALYSES)}. `--only` and"
-        " `--skip` of the command line come before it.",
+        f"What the report tells of the scene beside its amplification factors: {', '.join(ANALYSES)}. `--only`,"
+        " `--skip` and `--also` of the command line come before it.",
     ),
 )
 INTRODUCTION = f"""# The scene file

@@ -25,8 +25,8 @@ def peak_demands(
     Parameters
     ----------
     scene : Scene
-    phases : array_like, (M, 2), rad
-        Initial phases of the loading; any under a record.
+    phases : array_like, (..., 2), rad
+        Initial phases of the loading, in any shape; under a record they have no effect.
     model, regularization, tolerance, loading, max_work
         As in `trajectory`.
 

@@ -24,8 +24,8 @@ def peak_demands(
     Parameters
     ----------
     scene : Scene
-    phases : array_like, (M, 2), rad
-        Initial phases of the loading; any under a record.
+    phases : array_like, (..., 2), rad
+        Initial phases of the loading, in any shape; under a record they have no effect.
     equations, regularization, tolerance, rest_condition
         As in `trajectory`.
 
@@ -41,7 +41,7 @@ def peak_demands(
 
     Notes
     -----
-    Every motion goes to its end: a demand may settle later than the accelerations. So a pair takes some twenty times
+    Every motion goes to its end: a demand may settle later than the accelerations. So a pair takes some thirty times
     what `amplification` takes.
 
     Examples

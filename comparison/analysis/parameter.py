@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from comparison.analysis.budget import TOTAL
+from comparison.analysis.demand_surfaces import DemandStatistics
 from comparison.analysis.steps import known_mu
 from comparison.analysis.surfaces import common_phases
 from comparison.analysis.trajectories import StoredMotion
@@ -76,12 +77,12 @@ def family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfall]]) 
 
 @dataclass(frozen=True)
 class FamilyDemand:
-    """One demand of the stored motions of a model over the value that runs, one number for each scene; NaN without."""
+    """One demand of the motions of a model over the value that runs, one number for each scene; NaN without."""
 
     model: str  # key
     quantity: str  # field of `Demands`
     body: int  # from 1; 0 where the demand is of the isolator
-    median: tuple[float, ...]  # over the stored motions, in the unit of the field
+    median: tuple[float, ...]  # over the motions, in the unit of the field
     lowest: tuple[float, ...]
     highest: tuple[float, ...]
     motions: tuple[int, ...]  # how many have the demand
@@ -103,6 +104,33 @@ def family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[Fami
             tuple(float(function(row)) if row.size else NAN for row in rows) for function in (np.median, np.min, np.max)
         )
         demands.append(FamilyDemand(model, quantity, body, median, lowest, highest, tuple(row.size for row in rows)))
+    return demands
+
+
+def family_demands_over_phases(
+    family: Family, statistics: Mapping[str, Sequence[DemandStatistics]]
+) -> list[FamilyDemand]:
+    """
+    One per model, quantity and body, from all phases instead of stored motions.
+
+    Parameters
+    ----------
+    statistics : mapping of str to sequence of DemandStatistics
+        By name of the scene.
+    """
+    found = {
+        (scene.name, row.model, row.quantity, row.body): row
+        for scene in family.scenes
+        for row in statistics.get(scene.name, ())
+    }
+    demands = []
+    for model, quantity, body in dict.fromkeys(key[1:] for key in found):
+        rows = [found.get((scene.name, model, quantity, body)) for scene in family.scenes]
+        median = tuple(row.fractile(0.5) if row else NAN for row in rows)
+        lowest = tuple(row.lowest.value if row else NAN for row in rows)
+        highest = tuple(row.highest.value if row else NAN for row in rows)
+        points = tuple(round(row.points * (1.0 - row.unknown)) if row else 0 for row in rows)
+        demands.append(FamilyDemand(model, quantity, body, median, lowest, highest, points))
     return demands
 
 

@@ -26,7 +26,7 @@ from reference.problem.demands import ANSWERED
 Array = NDArray[np.float64]
 
 SPREAD = 5  # phase pairs (k, 2k) 2 pi/5: evenly over the square, and no two of them mirror images of each other
-SECONDS = {"reference": 0.08, "engine": 0.55}  # predicted cost of one motion, s on `study.models.RECORDED_ON`
+SECONDS = {"reference": 0.15, "engine": 0.65}  # predicted cost of one motion, s on `study.models.RECORDED_ON`
 SHARE = 0.003  # of the swing of a component: what a thinned motion may be off by
 MIN_SWING = 0.01  # of its largest value: a component that changes less is as good as constant
 

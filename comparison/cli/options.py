@@ -16,7 +16,7 @@ from comparison.study.planning import DEFAULT_GRID, DEFAULT_TOLERANCE, tightest
 from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.study import refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
-from reference.problem.analyses import ANALYSES, known_analyses
+from reference.problem.analyses import ANALYSES, ON_REQUEST, known_analyses
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def parsed(argv: Sequence[str]) -> Options:
     names: list[str] = words.scenes or builtin_scenes()
     amplitude = None if words.amplitude is None else number("--amplitude", words.amplitude, 1e-12, 1e6, "m/s^2")
     families = tuple(load_family(name, amplitude) for name in names)
-    only, skip = _analyses("--only", words.only), _analyses("--skip", words.skip)
+    only, skip, also = (_analyses(f"--{name}", getattr(words, name)) for name in ("only", "skip", "also"))
     if only is not None and skip is not None:
         raise SceneError("command line", "--skip", words.skip, "names what --only leaves out anyway: give one of them")
     options = Options(
@@ -86,7 +86,7 @@ def parsed(argv: Sequence[str]) -> Options:
         full=words.full,
         max_work=_optional("--max-work", words.max_work, 1.0, 1e12, "steps of the engine for a phase pair"),
         scheduler=words.scheduler,
-        selection=Selection.of((scene for family in families for scene in family.scenes), only, skip),
+        selection=Selection.of((scene for family in families for scene in family.scenes), only, skip, also),
     )
     sources = list(zip(names, options.families))
     refuse_same_names((source, family.name) for source, family in sources)
@@ -144,6 +144,7 @@ def _parser() -> CommandParser:
     names = ", ".join(ANALYSES)
     parser.add_argument("--only", metavar="LIST", help=f"make these analyses only, separated by commas: {names}")
     parser.add_argument("--skip", metavar="LIST", help="make all analyses but these")
+    parser.add_argument("--also", metavar="LIST", help=f"make these analyses besides: {', '.join(ON_REQUEST)}")
     parser.add_argument("--check", action="store_true", help="exit 1 if a scene's acceptance limits are broken")
     parser.add_argument("--plan", action="store_true", help="print what would be computed and its cost; run nothing")
     return parser

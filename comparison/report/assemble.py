@@ -7,11 +7,17 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from comparison.analysis.claims.table import ClaimTable
+from comparison.analysis.demand_surfaces import demand_statistics
 from comparison.analysis.distribution import distributions
 from comparison.analysis.errata import ERRATA
 from comparison.analysis.grid_maxima import grid_maxima
 from comparison.analysis.headline import headline
-from comparison.analysis.parameter import family_curves, family_demands, family_steps
+from comparison.analysis.parameter import (
+    family_curves,
+    family_demands,
+    family_demands_over_phases,
+    family_steps,
+)
 from comparison.analysis.surfaces import largest_cap_share, largest_travel_share, outcome_counts
 from comparison.analysis.trends import Trend as FittedTrend
 from comparison.analysis.unanswered import advice
@@ -27,6 +33,7 @@ from comparison.report.results import (
     Claim,
     Claims,
     Completion,
+    DemandStatistics,
     Difference,
     Distribution,
     Effect,
@@ -134,6 +141,9 @@ def _scene(findings: Findings, scene: Scene, waterfalls: Sequence[BodyWaterfall]
         limits=[Limit.model_validate(limit) for limit in of_scene(findings.limits)],
         effective=[Effective.model_validate(values) for values in of_scene(findings.effective)],
         demands=_demands(findings, scene),
+        demand_statistics=[]
+        if findings.demands is None
+        else [DemandStatistics.model_validate(each) for each in demand_statistics(study, findings.demands, scene)],
     )
 
 
@@ -194,6 +204,14 @@ def _values(findings: Findings, scene: Scene) -> list[RecordValue]:
 
 
 def _family(findings: Findings, family: Family, waterfalls: Mapping[str, Sequence[BodyWaterfall]]) -> FamilyResult:
+    table = (
+        {}
+        if findings.demands is None
+        else {scene.name: demand_statistics(findings.study, findings.demands, scene) for scene in family.scenes}
+    )
+    of_phases = any(table.values())
+    stored = [] if of_phases else family_demands(family, findings.motions or [])
+    demands = family_demands_over_phases(family, table) if of_phases else stored
     return FamilyResult(
         name=family.name,
         key=family.key,
@@ -203,7 +221,8 @@ def _family(findings: Findings, family: Family, waterfalls: Mapping[str, Sequenc
             FamilyCurve.model_validate(curve) for curve in family_curves(findings.study, findings.surfaces, family)
         ],
         steps=[FamilyStep.model_validate(step) for step in family_steps(family, waterfalls)],
-        demands=[FamilyDemand.model_validate(each) for each in family_demands(family, findings.motions or [])],
+        demands=[FamilyDemand.model_validate(each) for each in demands],
+        demands_over_phases=of_phases,
     )
 
 

@@ -61,6 +61,7 @@ class Findings:
     pictures: Mapping[str, bytes] = field(default_factory=dict)  # files of the pictures of the surfaces, by name
     motions: Sequence[StoredMotion] | None = None  # motions at chosen phases
     worst_phases: Sequence[Worst] | None = None  # the largest values over all phases
+    demands: xr.Dataset | None = None  # demands of every phase pair
     claims: ClaimTable | None = None
     scaling: Sequence[Trend] | None = None
     convergence: Sequence[Trend] | None = None
@@ -102,7 +103,7 @@ def collect_findings(
         All of it, with differences, budget, gaps and limits.
     """
     rows, lacking = differences(study, surfaces), unanswered(study, surfaces)
-    names = ("motions", "worst_phases", "claims", "scaling", "convergence", "assumptions")
+    names = ("motions", "worst_phases", "demands", "claims", "scaling", "convergence", "assumptions")
     optional: dict[str, Any] = {name: collected.get(name) for name in names}
     completed = [surface for scene in study.scenes for surface in completions(study, surfaces, scene)]
     return Findings(

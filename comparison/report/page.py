@@ -34,6 +34,8 @@ from comparison.report.motion_data import packed, packed_motions
 from comparison.report.page_data import page_data
 from comparison.report.page_plots import (
     claim_heat,
+    demand_lines,
+    demand_panels,
     distribution_panels,
     family_panels,
     growth_panels,
@@ -107,6 +109,7 @@ SECTIONS = (
     Section(
         "worst_phases", "Over all phases", ("worst_phases",), "python -m comparison.run makes it, of scenes with phases"
     ),
+    Section("demands", "Demands over all phases"),
     Section("differences", "Differences"),
     Section("budget", "What makes the difference"),
     Section("scaling", "Scaling test", ("scaling",), "python -m comparison.run makes it, of scenes with phases"),
@@ -205,6 +208,8 @@ def page(figures: Path, findings: Findings, results: Results) -> str:
         trend_panels=trend_panels,
         distribution_panels=distribution_panels(results),
         worst_lines=worst_lines(results),
+        demand_panels=[panel for scene in results.scenes for panel in demand_panels(scene, results)],
+        demand_lines=demand_lines(results),
         fractiles=[f"{100.0 * probability:g}" for probability in FRACTILES],
         tradeoff_panels=tradeoff_panels,
         tradeoff_answers=tradeoff_answers,

@@ -7,19 +7,28 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import Any
 
+from comparison.analysis.demand_surfaces import QUANTITIES
 from comparison.analysis.distribution import CURVE
 from comparison.analysis.tradeoff.trade import Answered, Entry, Trade
-from comparison.report.results import FamilyResult, Results, Trend, Worst
+from comparison.report.results import FamilyResult, Results, SceneResult, Trend, Worst
 from comparison.wording import scientific, significant
 
 Panel = dict[str, Any]  # title, and plot: see plot.js
 
 MAX_CURVES = 6  # in one panel: more cannot be told apart
+DECADES = 30.0  # of its largest over its smallest value: beyond it the axis of a family is logarithmic
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)  # relative errors for which the trade is put into words
-DEMANDS = (  # demands that are shown of a family: key, name, unit, and the unit in those of the results
-    ("displacement", "isolator displacement", "mm", 1e3),
-    ("base_shear", "base shear", "kN", 1e-3),
-    ("acceleration", "platform acceleration", "m/s²", 1.0),
+# demands that are drawn: key, body (0: of the isolator), name, unit, and the unit in those of the results
+DEMANDS = (
+    ("displacement", 0, "isolator displacement", "mm", 1e3),
+    ("residual", 0, "residual displacement", "mm", 1e3),
+    ("base_shear", 0, "base shear", "N", 1.0),
+    ("acceleration", 1, "platform acceleration", "m/s²", 1.0),
+    ("drift", 2, "drift of the lowest story", "mm", 1e3),
+    ("contact_force_min", 0, "smallest contact force", "N", 1.0),
+    ("contact_force_max", 0, "largest contact force", "N", 1.0),
+    ("support_force_max", 0, "largest support force", "N", 1.0),
+    ("friction_energy", 0, "energy dissipated by friction", "J", 1.0),
 )
 
 
@@ -67,6 +76,47 @@ def distribution_panels(results: Results) -> list[Panel]:
             }
             panels += [{"title": name, "plot": plot}] if series else []
     return panels
+
+
+def demand_panels(scene: SceneResult, results: Results) -> list[Panel]:
+    """One panel for each demand: the share of all phases at which it stays below a value, by model."""
+    if scene.recorded:
+        return []
+    titles = {model.key: model.title for model in results.models}
+    colors = {model.key: number for number, model in enumerate(results.models)}
+    panels = []
+    for quantity, body, title, unit, scale in DEMANDS:
+        rows = [row for row in scene.demand_statistics if (row.quantity, row.body) == (quantity, body)]
+        series = [
+            {
+                "name": titles[row.model],
+                "x": _plain([scale * value for value in row.curve]),
+                "y": CURVE.tolist(),
+                "color": colors[row.model],
+            }
+            for row in rows
+        ]
+        plot = {
+            "label": f"{scene.name}, {title}: share of the phases at which it stays below a value, by model",
+            "x": {"title": f"{title}, {unit}"},
+            "y": {"title": "share of the phases"},
+            "series": series,
+        }
+        panels += [{"title": f"{scene.name}, {title}", "plot": plot}] if series else []
+    return panels
+
+
+def demand_lines(results: Results) -> list[dict[str, Any]]:
+    """Rows of the table of demands, each with the names of its scene, demand and model."""
+    titles = {model.key: model.title for model in results.models}
+    lines = []
+    for scene in results.scenes:
+        for row in scene.demand_statistics:
+            meaning, unit = QUANTITIES[row.quantity]
+            name = f"{meaning} of body {row.body}" if row.body else meaning
+            unit = "" if unit == "1" else f", {unit}"
+            lines.append({"scene": scene.name, "name": f"{name}{unit}", "title": titles[row.model], "row": row})
+    return lines
 
 
 def worst_lines(results: Results) -> list[dict[str, Any]]:
@@ -149,7 +199,7 @@ def family_panels(results: Results) -> list[dict[str, Any]]:
         first = scenes[family.scenes[0]]
         bodies = range(1, first.bodies + 1)
         panels = [draw(results, family, body) for body in bodies for draw in (_family_mu, _family_steps)]
-        panels += [_family_demand(results, family, *shown) for shown in DEMANDS if _has(family, shown[0])]
+        panels += [_family_demand(results, family, *shown) for shown in DEMANDS if _has(family, *shown[:2])]
         listed.append(
             {
                 "title": first.title,
@@ -232,7 +282,10 @@ def _axis(family: FamilyResult) -> tuple[list[float], dict[str, Any]]:
         places = [float(number) for number in range(len(family.values))]
         names = [[place, str(value)] for place, value in zip(places, family.values)]
         return places, {"title": family.key, "ticks": names, "range": [-0.3, len(places) - 0.7]}
-    return [float(value) for value in family.values], {"title": family.key}
+    values = [float(value) for value in family.values]
+    if min(values) > 0.0 and max(values) >= DECADES * min(values):
+        return values, {"title": family.key, "log": True}
+    return values, {"title": family.key}
 
 
 def _family_mu(results: Results, family: FamilyResult, body: int) -> Panel:
@@ -268,19 +321,21 @@ def _family_steps(results: Results, family: FamilyResult, body: int) -> Panel:
     return {"title": f"what each effect adds to mu_{body}", "plot": plot}
 
 
-def _has(family: FamilyResult, quantity: str) -> bool:
-    return any(demand.quantity == quantity for demand in family.demands)
+def _has(family: FamilyResult, quantity: str, body: int) -> bool:
+    return any((demand.quantity, demand.body) == (quantity, body) for demand in family.demands)
 
 
-def _family_demand(results: Results, family: FamilyResult, quantity: str, title: str, unit: str, scale: float) -> Panel:
-    """One demand of every model over the value that runs: median of the stored motions, from smallest to largest."""
+def _family_demand(
+    results: Results, family: FamilyResult, quantity: str, body: int, title: str, unit: str, scale: float
+) -> Panel:
+    """One demand of every model over the value that runs: median of the motions, from smallest to largest."""
     places, axis = _axis(family)
     titles = {model.key: model.title for model in results.models}
     series = []
-    for number, demand in enumerate(demand for demand in family.demands if demand.quantity == quantity):
-        if demand.body > 1:
-            continue
-        line: dict[str, Any] = {"name": titles[demand.model], "x": places, "color": number, "marks": True}
+    colors = {model.key: number for number, model in enumerate(results.models)}
+    shown = [demand for demand in family.demands if (demand.quantity, demand.body) == (quantity, body)]
+    for demand in shown:
+        line: dict[str, Any] = {"name": titles[demand.model], "x": places, "color": colors[demand.model], "marks": True}
         line["y"] = _plain([scale * value for value in demand.median])
         if any(low < high for low, high in zip(demand.lowest, demand.highest)):
             line["low"] = _plain([scale * value for value in demand.lowest])
@@ -288,7 +343,8 @@ def _family_demand(results: Results, family: FamilyResult, quantity: str, title:
             line["band"] = True
         series.append(line)
     plot = {"label": f"{title} over {family.key}", "x": axis, "y": {"title": f"{title}, {unit}"}, "series": series}
-    return {"title": f"{title} of the stored motions", "plot": plot}
+    of_which = "over all phases" if family.demands_over_phases else "of the stored motions"
+    return {"title": f"{title} {of_which}", "plot": plot}
 
 
 def _plain(values: Sequence[float]) -> list[float | None]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from comparison.analysis.demand_surfaces import with_demands
 from comparison.execution.output import on_stderr
 from comparison.execution.task import Task
 from comparison.report.drawings import assumption_tasks
@@ -38,7 +39,9 @@ def write_report(folder: Path, results: Results, findings: Findings) -> None:
         Surfaces, motions and pictures, which the page shows beside the results.
     """
     run = findings.run
-    stamped = findings.surfaces.assign_attrs(command=run["command"], **run["provenance"])
+    stamped = with_demands(findings.surfaces, findings.demands).assign_attrs(
+        command=run["command"], **run["provenance"]
+    )
     stamped.to_netcdf(folder / "surfaces.nc", engine="h5netcdf")
     texts = {
         "summary.json": results.as_json(),

@@ -461,6 +461,41 @@ class Distribution(Part):
     """mu at 50 probabilities from 0.01 to 0.99"""
 
 
+class PhaseExtreme(Part):
+    """The largest or smallest value on the phases that were computed."""
+
+    value: Number
+    error: Number
+    """estimated absolute error; null where it is not known"""
+    phases: Phases
+    """(alpha1, alpha2), rad; null under a record"""
+
+
+class DemandStatistics(Part):
+    """One demand of one model over phases that are independent and uniform; under a record its one value."""
+
+    model: str
+    """key of the model"""
+    quantity: str
+    """key in `demands`, with the unit stated there"""
+    body: int
+    """number of the body; 0 where the demand is of the isolator"""
+    points: int
+    """phase pairs that it was taken from"""
+    unknown: float
+    """share of them without an answer"""
+    mean: Mean
+    """mean over all phases"""
+    fractiles: list[Fractile]
+    """by rising probability"""
+    lowest: PhaseExtreme
+    """smallest value"""
+    highest: PhaseExtreme
+    """largest value"""
+    curve: list[Number]
+    """the demand at 50 probabilities from 0.01 to 0.99"""
+
+
 class GridMaximum(Part):
     """The largest value of one surface on the phases that were computed."""
 
@@ -648,6 +683,8 @@ class SceneResult(Part):
     """the scene, then every model"""
     demands: list[MotionDemands]
     """one per stored phase pair and model; empty without stored motions"""
+    demand_statistics: list[DemandStatistics]
+    """one per demand, body and model; empty unless demands of every phase pair were asked for"""
 
 
 class Effect(Part):
@@ -856,7 +893,7 @@ class FamilyStep(Part):
 
 
 class FamilyDemand(Part):
-    """One demand of the stored motions of a model over the value that runs, with its band."""
+    """One demand of the motions of a model over the value that runs, with its band."""
 
     model: str
     """key of the model"""
@@ -865,7 +902,7 @@ class FamilyDemand(Part):
     body: int
     """number of the body; 0 where the demand is of the isolator"""
     median: list[Number]
-    """median over the stored motions that have the demand, one for each scene; null without any"""
+    """median over the motions that have the demand, one for each scene; null without any"""
     lowest: list[Number]
     """smallest of them"""
     highest: list[Number]
@@ -890,7 +927,9 @@ class FamilyResult(Part):
     steps: list[FamilyStep]
     """one per step of the waterfalls and body, then the total"""
     demands: list[FamilyDemand]
-    """one per model, quantity and body of which a motion is stored"""
+    """one per model, quantity and body of which a motion is stored, or of which all phases were computed"""
+    demands_over_phases: bool
+    """whether they are of all phases, not of the stored motions"""
 
 
 class OutcomeNote(Part):

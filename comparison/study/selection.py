@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from reference.problem import Scene, builtin_scenes
-from reference.problem.analyses import ANALYSES, selected
+from reference.problem.analyses import ANALYSES, ON_REQUEST, selected
 
 OF_THE_PAPER = ("claims", "errata")  # analyses that concern the paper's own scenes
 
@@ -16,33 +16,44 @@ class Selection:
     """
     The analyses of every scene.
 
-    by_scene: those asked for, by name of the scene; a scene that is not in it has all. dropped: those that are left out
-    of every scene because they do not fit the budget. of_the_paper: those that are made of the paper's scenes unless
-    they are asked for by name, and that no scene here has for this reason.
+    by_scene: those asked for, by name of the scene; a scene that is not in it has all but those on request. dropped:
+    those that are left out of every scene because they do not fit the budget. of_the_paper: those that are made of the
+    paper's scenes unless they are asked for by name, and that no scene here has for this reason. on_request: those that
+    no scene here has because nobody named them.
     """
 
     by_scene: Mapping[str, Sequence[str]] = field(default_factory=dict)
     dropped: tuple[str, ...] = ()
     of_the_paper: tuple[str, ...] = ()
+    on_request: tuple[str, ...] = ON_REQUEST
 
     @staticmethod
-    def of(scenes: Iterable[Scene], only: Sequence[str] | None, skip: Sequence[str] | None) -> Selection:
+    def of(
+        scenes: Iterable[Scene],
+        only: Sequence[str] | None,
+        skip: Sequence[str] | None,
+        also: Sequence[str] | None = None,
+    ) -> Selection:
         """
         What the command line asks for, and where it asks for nothing, what each scene file does.
 
         A scene that is not the paper's has the paper's claims and errata only where `only` names them.
         """
-        by_scene, unnamed = {}, set(OF_THE_PAPER)
+        by_scene, unnamed, on_request = {}, set(OF_THE_PAPER), set(ON_REQUEST)
         for scene in scenes:
             asked = (only, skip) if (only, skip) != (None, None) else (scene.analyses.only, scene.analyses.skip)
-            names = selected(*asked)
+            besides = (scene.analyses.also if also is None else also) or ()
+            names = selected(*asked, besides)
+            on_request = set() if asked[0] is not None else on_request - {*names, *(asked[1] or ())}
             if asked[0] is None and scene.name not in builtin_scenes():
-                by_scene[scene.name] = tuple(name for name in names if name not in OF_THE_PAPER)
+                by_scene[scene.name] = tuple(
+                    name for name in names if name not in OF_THE_PAPER or name in (besides or ())
+                )
             else:
                 by_scene[scene.name] = names
                 unnamed.clear()
-            unnamed -= set(asked[1] or ())
-        return Selection(by_scene, of_the_paper=tuple(sorted(unnamed)))
+            unnamed -= {*(asked[1] or ()), *besides}
+        return Selection(by_scene, of_the_paper=tuple(sorted(unnamed)), on_request=tuple(sorted(on_request)))
 
     def why_absent(self, analysis: str) -> str:
         """Why an analysis that no scene has is not made."""
@@ -50,7 +61,7 @@ class Selection:
             return "does not fit the budget"
         if analysis in self.of_the_paper:
             return f"of the paper's scenes; --only {analysis} makes it of others"
-        return "not asked for"
+        return f"on request; --also {analysis} makes it" if analysis in self.on_request else "not asked for"
 
     def without(self, analyses: Collection[str]) -> Selection:
         """The same, with these analyses dropped."""
@@ -58,8 +69,9 @@ class Selection:
 
     def has(self, analysis: str, scene: str) -> bool:
         """Whether the analysis is made of the scene; what cannot be selected, such as a step towards others, is."""
+        usual = [name for name in ANALYSES if name not in ON_REQUEST]
         return analysis not in self.dropped and (
-            analysis not in ANALYSES or analysis in self.by_scene.get(scene, ANALYSES)
+            analysis not in ANALYSES or analysis in self.by_scene.get(scene, usual)
         )
 
 

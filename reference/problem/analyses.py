@@ -25,7 +25,9 @@ ANALYSES = (
     "extremes",
     "tradeoff",
     "effective",
+    "demands",
 )
+ON_REQUEST = ("demands",)  # made only where they are named: they cost more than the surfaces
 NEEDS = {"motions": "surfaces"}  # the motions are shown below the surfaces
 
 
@@ -39,23 +41,28 @@ def known_analyses(names: Sequence[str]) -> list[str]:
     return list(names)
 
 
-def selected(only: Sequence[str] | None, skip: Sequence[str] | None) -> tuple[str, ...]:
+def selected(
+    only: Sequence[str] | None, skip: Sequence[str] | None, also: Sequence[str] | None = None
+) -> tuple[str, ...]:
     """
     The analyses that are made.
 
     Parameters
     ----------
     only : sequence of str or None
-        These and what they need; all if None.
+        These and what they need; all but those of ON_REQUEST if None.
     skip : sequence of str or None
         Not these, nor what needs them.
+    also : sequence of str, optional
+        These besides.
 
     Returns
     -------
     tuple of str
         In the order of ANALYSES.
     """
-    kept = set(ANALYSES if only is None else only)
+    kept = set(ANALYSES).difference(ON_REQUEST) if only is None else set(only)
+    kept |= set(also or ())
     kept |= {NEEDS[name] for name in kept & NEEDS.keys()}
     kept -= set(skip or ())
     return tuple(name for name in ANALYSES if name in kept and NEEDS.get(name, name) in kept)
@@ -65,12 +72,14 @@ Names = Annotated[list[str], Field(min_length=1), AfterValidator(known_analyses)
 
 
 class Analyses(Table):
-    """The analyses of the scene in a report: `only` these, or all but those to `skip`."""
+    """The analyses of the scene in a report: `only` these, or all but those to `skip`; and `also` those on request."""
 
     only: Annotated[Names | None, about("analyses that the report makes of the scene; all without it", "", REPORT)] = (
         None
     )
     skip: Annotated[Names | None, about("analyses that the report does not make of the scene", "", REPORT)] = None
+
+    also: Annotated[Names | None, about(f"analyses besides: {', '.join(ON_REQUEST)}", "", REPORT)] = None
 
     @model_validator(mode="after")
     def _one_of_them(self) -> Analyses:

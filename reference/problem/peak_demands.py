@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from reference.problem.definition import ground_peak
 from reference.problem.demands import Demands, Estimate, demands
 from reference.problem.outcome import Outcome
-from reference.problem.phases import checked_phases
+from reference.problem.phases import flat_phases
 from reference.problem.result import Trajectory
 from reference.problem.scene import Scene
 
@@ -26,8 +26,8 @@ class Estimates:
 
     Attributes
     ----------
-    value : ndarray, (M,) or (M, K)
-        For M phase pairs, of K bodies or links. NaN without an answer.
+    value : ndarray, (...) or (..., K)
+        In the shape of the phase pairs, of K bodies or links. NaN without an answer.
     error : ndarray, likewise
         Estimated absolute error; NaN where it is not known.
     """
@@ -39,17 +39,17 @@ class Estimates:
 @dataclass(frozen=True)
 class PeakDemands(Mapping[str, Estimates]):
     """
-    Demands of M phase pairs; what `peak_demands` returns.
+    Demands of many phase pairs; what `peak_demands` returns.
 
     A mapping from the names of the fields of `Demands` to `Estimates`, without those that the model lacks.
 
     Attributes
     ----------
     estimates : dict of str to Estimates
-        `acceleration` is (M, N) and `drift` (M, N - 1), everything else (M,).
-    status : ndarray of str, (M,)
+        `acceleration` and `torsion` are (..., N), `drift` is (..., N - 1), everything else (...).
+    status : ndarray of str, (...)
         "ok" or another value of `Outcome`.
-    instant : ndarray, (M,), s
+    instant : ndarray, (...), s
         When the status arose; NaN where it is "ok".
     cost : float, s
         Processor time.
@@ -77,7 +77,7 @@ def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], 
     Parameters
     ----------
     scene : Scene
-    phases : array_like, (M, 2), rad
+    phases : array_like, (..., 2), rad
     move : callable
         The motion of one phase pair (2,).
 
@@ -86,7 +86,7 @@ def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], 
     PeakDemands
         A pair without an answer is NaN; its status says why. The other pairs do not depend on it.
     """
-    pairs = checked_phases(phases)
+    pairs, shape = flat_phases(phases)
     clock = time.process_time()
     status = np.full(len(pairs), Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")
     instant = np.zeros(len(pairs))
@@ -94,31 +94,30 @@ def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], 
     for number in np.flatnonzero(np.isfinite(ground_peak(scene, pairs))):
         motion = move(pairs[number])
         status[number], instant[number], answers[number] = motion.status, motion.instant, demands(motion)
-    return PeakDemands(_stacked(answers), status, instant, time.process_time() - clock)
-
-
-def _stacked(answers: list[Demands | None]) -> dict[str, Estimates]:
-    """Every field of the answers; NaN in place of an answer that is lacking."""
-    first = next((answer for answer in answers if answer is not None), None)
-    stacked: dict[str, Estimates] = {}
-    for name in (field.name for field in fields(Demands)):
-        sample = None if first is None else getattr(first, name)
-        if isinstance(sample, Estimate):
-            nothing: float | Array = np.nan
-        elif isinstance(sample, tuple):
-            nothing = np.full(len(sample), np.nan)
-        else:
-            continue
-        values, errors = (
-            np.array([nothing if answer is None else _part(getattr(answer, name), part) for answer in answers])
-            for part in ("value", "error")
-        )
+    cost = time.process_time() - clock
+    stacked = {}
+    for name, table in _stacked(answers).items():
+        values, errors = np.moveaxis(table.reshape((*shape, *table.shape[1:])), -1, 0)
         stacked[name] = Estimates(values, errors)
+    return PeakDemands(stacked, status.reshape(shape), instant.reshape(shape), cost)
+
+
+def _stacked(answers: list[Demands | None]) -> dict[str, Array]:
+    """Value and error, the last axis, of every field that any answer has; NaN where an answer is lacking."""
+    stacked: dict[str, Array] = {}
+    for name in (field.name for field in fields(Demands) if field.name != "status"):
+        tables = [None if answer is None else _table(getattr(answer, name)) for answer in answers]
+        present = next((table for table in tables if table is not None), None)
+        if present is not None:
+            nothing = np.full_like(present, np.nan)
+            stacked[name] = np.array([nothing if table is None else table for table in tables])
     return stacked
 
 
-def _part(estimates: Estimate | tuple[Estimate, ...], part: str) -> float | list[float]:
-    """The values or the errors of one answer."""
+def _table(estimates: Estimate | tuple[Estimate, ...] | None) -> Array | None:
+    """Value and error, (2,) or (K, 2); None for a demand that the model does not have."""
+    if estimates is None:
+        return None
     if isinstance(estimates, Estimate):
-        return float(getattr(estimates, part))
-    return [float(getattr(estimate, part)) for estimate in estimates]
+        return np.array([estimates.value, estimates.error])
+    return np.array([[estimate.value, estimate.error] for estimate in estimates]).reshape(-1, 2)

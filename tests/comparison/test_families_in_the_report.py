@@ -16,15 +16,19 @@ from matplotlib.image import imread
 from test_texts_of_scenes import RUN
 
 from comparison.analysis.budget import budget
-from comparison.analysis.parameter import family_demands
+from comparison.analysis.demand_surfaces import DemandStatistics, Extreme
+from comparison.analysis.distribution import Fractile
+from comparison.analysis.parameter import family_demands, family_demands_over_phases
 from comparison.analysis.surfaces import labeled_surfaces
 from comparison.analysis.trajectories import Place, StoredMotion
 from comparison.report.assemble import assemble
 from comparison.report.figures.families import draw_family, family_figure_name
 from comparison.report.findings import collect_findings
+from comparison.report.page_plots import family_panels
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
 from reference.problem import Demands, Estimate, load_family
+from reference.problem.distribution import FRACTILES
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"
 
@@ -131,3 +135,35 @@ def test_demands_of_stored_motions_have_their_band_over_the_value_that_runs(file
     assert {("acceleration", 1), ("acceleration", 2), ("drift", 2)} <= set(found)
     assert ("support_force_min", 0) not in found
     assert family_demands(family, []) == []
+
+
+def test_demands_of_all_phases_take_the_place_of_those_of_stored_motions(file: Path) -> None:
+    family = load_family(file)
+
+    def statistics(value: float) -> list[DemandStatistics]:
+        fractiles = tuple(Fractile(probability, value + probability, 0.0) for probability in FRACTILES)
+        low, high = (Extreme(value + shift, 0.0, (0.0, 0.0)) for shift in (-1.0, 2.0))
+        return [DemandStatistics("small", "drift", 2, 16, 0.25, Estimate(value, 0.0), fractiles, low, high, ())]
+
+    first, _, third = (scene.name for scene in family.scenes)
+    [band] = family_demands_over_phases(family, {first: statistics(5.0), third: statistics(7.0)})
+    assert (band.quantity, band.body, band.motions) == ("drift", 2, (12, 0, 12))
+    assert [band.lowest[0], band.median[0], band.highest[0], band.median[2]] == pytest.approx([4.0, 5.5, 7.0, 7.5])
+    assert np.isnan(band.median[1])
+
+
+def test_a_value_that_runs_over_decades_has_a_logarithmic_axis(file: Path) -> None:
+    family = load_family(file)
+    study = Study(family.scenes, 2, 1e-3, fake_hierarchy())
+    surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
+    results = assemble(collect_findings(study, surfaces, {}, [], RUN, families=[family]))
+    assert results.families is not None
+
+    def axis(*values: float) -> dict[str, object]:
+        changed = results.families[0].model_copy(update={"values": list(values)})
+        [listed] = family_panels(results.model_copy(update={"families": [changed]}))
+        return dict(listed["panels"][0]["plot"]["x"])
+
+    assert axis(1e-3, 1e-2, 1e-1).get("log") is True
+    assert "log" not in axis(0.1, 0.15, 0.2)
+    assert "log" not in axis(0.0, 1.0, 100.0)

@@ -128,6 +128,7 @@ WRONG = {
         "--only = 'surfaces,bugdet': 'bugdet' is no analysis; did you mean budget?",
     ),
     "empty": (["--skip", ""], "--skip = '': '' is no analysis; the analyses are differences, "),
+    "also": (["--also", "demand"], "--also = 'demand': 'demand' is no analysis; did you mean demands?"),
     "both": (["--only", "budget", "--skip", "claims"], "--skip = 'claims': names what --only leaves out anyway"),
 }
 
@@ -175,4 +176,33 @@ def test_a_scene_of_the_users_has_the_papers_claims_and_errata_only_if_it_names_
     assert not Selection.of([mine], None, ["motions"]).has("errata", "mine")
     run = command(str(tmp_path / "mine.toml"), *GRID)
     absent = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))["absent"]
-    assert absent == {name: f"of the paper's scenes; --only {name} makes it of others" for name in ("claims", "errata")}
+    assert absent == {
+        **{name: f"of the paper's scenes; --only {name} makes it of others" for name in ("claims", "errata")},
+        "demands": "on request; --also demands makes it",
+    }
+
+
+def test_demands_of_every_phase_pair_are_computed_where_they_are_asked_for(
+    command: Callable[..., Run], tmp_path: Path
+) -> None:
+    scene = load_scene("fig3-I")
+    usual = Study((scene,), 4, 1e-3)
+    for selection, made in (
+        (Selection.of((scene,), None, None), False),
+        (Selection.of((scene,), None, None, ["demands"]), True),
+        (Selection.of((scene,), ["demands"], None), True),
+        (Selection.of((scene,), None, ["demands"]), False),
+        (Selection.of((load_scene(scene_file(tmp_path, 'also = ["demands"]')),), None, None), True),
+    ):
+        assert any(selection.has("demands", name) for name in ("fig3-I", "mine")) == made
+    asked = replace(usual, selection=Selection.of((scene,), None, None, ["demands"]))
+    plans = [predicted_costs(study, chosen_analyses(study)) for study in (usual, asked)]
+    assert {name: cost for name, cost in plans[1].items() if name != "demands"} == plans[0]
+    assert plans[1]["demands"][1] > 1.0
+    run = command("fig3-I", *GRID, "--also", "demands", "--plan")
+    assert "demands" in run.out
+    assert "Beside the surfaces" in run.out
+    assert ", demands " in run.out.replace("\n", " ")
+    usual_plan = command("fig3-I", *GRID, "--plan").out.replace("\n", " ")
+    assert ", demands " not in usual_plan
+    assert "on request; --also demands makes it" in usual_plan

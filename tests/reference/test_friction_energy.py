@@ -80,6 +80,16 @@ def test_the_engine_s_contacts_dissipate_what_its_motion_loses() -> None:
     assert abs(answer.energy_balance.value) <= answer.energy_balance.error < 2e-3 * answer.friction_energy.value
 
 
+@pytest.mark.parametrize("side", ["equations", "engine"])
+def test_energy_is_balanced_where_friction_depends_on_the_velocity(side) -> None:
+    law = {"isolator.friction": {"slow": 0.05, "fast": 0.12, "rate": 30.0}, "duration": 8.0}
+    scene = reference.load_scene("fig3-I").with_values(law)
+    trajectory = reference.trajectory if side == "equations" else multibody.trajectory
+    answer = demands(trajectory(scene, PHASE, regularization=V_REG))
+    assert answer.energy_balance is not None
+    assert abs(answer.energy_balance.value) <= answer.energy_balance.error < 3e-3 * answer.friction_energy.value
+
+
 def test_a_friction_that_takes_too_much_breaks_the_balance() -> None:
     motion = reference.trajectory(reference.load_scene("fig3-I"), PHASE)
     answer = demands(replace(motion, friction_power=1.01 * motion.friction_power))

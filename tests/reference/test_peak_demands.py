@@ -54,6 +54,16 @@ def test_a_surface_has_the_demands_of_its_motions() -> None:
             np.testing.assert_array_equal(np.atleast_1d(estimates.error[row]), [each.error for each in listed])
 
 
+def test_phases_may_have_any_shape() -> None:
+    scene = reference.load_scene("fig3-I").with_values({"duration": 2.0})
+    flat, square = phase_grid(2), phase_grid(2).reshape(2, 2, 2)
+    listed, shaped = reference.peak_demands(scene, flat), reference.peak_demands(scene, square)
+    assert shaped.status.shape == shaped.instant.shape == (2, 2)
+    for name, estimates in listed.items():
+        np.testing.assert_array_equal(shaped[name].value, estimates.value.reshape(2, 2, *estimates.value.shape[1:]))
+    assert reference.peak_demands(scene, (0.3, 1.1))["drift"].value.shape == (1,)
+
+
 def test_the_accelerations_are_those_of_the_amplification_factors() -> None:
     scene, phases = reference.load_scene("fig3-II"), phase_grid(3)
     surface = reference.peak_demands(scene, phases)
