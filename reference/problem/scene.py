@@ -110,7 +110,7 @@ class Scene(Table):
     @model_validator(mode="after")
     def _links(self) -> Scene:
         platform, *others = self.bodies
-        for key in ("period", "stiffness"):
+        for key in ("period", "stiffness", "damping"):
             if (value := getattr(platform, key)) is not None:
                 raise MisfitError(f"bodies.0.{key}", value, "the platform has no link below: remove this key")
         for number, body in enumerate(others, start=1):
@@ -135,6 +135,8 @@ class Scene(Table):
         for (i, axis), k in np.ndenumerate(self.stiffness):
             derived[f"bodies.{i + 1}: k^{'xy'[axis]} in N/m"] = float(k), SCENE["bodies.stiffness"]
             derived[f"bodies.{i + 1}: period along {'xy'[axis]} in s"] = float(periods[i, axis]), SCENE["bodies.period"]
+            ratio = float(self.damping[i, axis] / (2.0 * np.sqrt(k * self.masses[i + 1])))
+            derived[f"bodies.{i + 1}: damping ratio along {'xy'[axis]}"] = ratio, SCENE["bodies.damping"]
         for key, (value, allowed) in derived.items():
             if not allowed.lowest * (1.0 - DERIVED_ROUNDING) <= value <= allowed.highest * (1.0 + DERIVED_ROUNDING):
                 raise MisfitError(key, value, allowed.rule)
@@ -243,6 +245,15 @@ class Scene(Table):
             if body.stiffness is not None
             else [body.mass * (2.0 * math.pi / period) * (2.0 * math.pi / period) for period in body.period or ()]
             for body in self.bodies[1:]
+        ]
+        return np.array(rows, dtype=float).reshape(-1, 2)
+
+    @cached_property
+    def damping(self) -> NDArray[np.float64]:
+        """Link damping c_{i+1,i} in x and y, (N-1, 2), N s/m; row i links body i and body i + 1."""
+        rows = [
+            body.damping if isinstance(body.damping, list) else 2.0 * (body.damping or 0.0) * np.sqrt(link * body.mass)
+            for body, link in zip(self.bodies[1:], self.stiffness)
         ]
         return np.array(rows, dtype=float).reshape(-1, 2)
 
