@@ -213,8 +213,8 @@ def largest_step(scene: Scene, model: EngineModel) -> float:
     """
     Step of level 0 in units of the model, from the shortest period of the loading, the pendulum and the chain.
 
-    The chain's periods count however short they are: the loading begins at once and sets every mode swinging, and no
-    mode is damped.
+    The chain's periods count however short they are: the loading begins at once and sets every mode swinging, and
+    dampers leave a mode some swings.
     """
     periods = [2.0 * math.pi]
     if not scene.recorded:  # a record is linear within every step

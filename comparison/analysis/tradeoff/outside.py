@@ -28,8 +28,8 @@ ALWAYS_LINEAR = 1e6  # m/s, corner of the lubricated law mu = f_c |v|: above any
 @njit  # type: ignore[untyped-decorator]
 def slope(
     t: float, y: Array, amplitudes: Array, s: Any, phase: Array, below: Array, above: Array,
-    damping_below: Array, damping_above: Array, mass_ratio: float, radius: float, friction: float, rise: float, rate: float,
-    corner: float,
+    damping_below: Array, damping_above: Array, mass_ratio: float, radius: float, friction: float, rise: float,
+    rate: float, corner: float,
 ) -> Array:  # fmt: skip
     """
     Time derivative of y = (x, v), each (N, 2), under (3.9)-(3.13) and (4.4), friction linear below `corner`, m/s.
@@ -86,8 +86,8 @@ def constants_of(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, ...
         corner, friction = ALWAYS_LINEAR, system.friction * ALWAYS_LINEAR
     return (
         system.amplitudes, exponents(scene), np.asarray(phase, dtype=float), system.below, system.above,
-        system.damping_below, system.damping_above, system.mass_ratio, system.radius, friction, system.rise, system.rate,
-        corner,
+        system.damping_below, system.damping_above, system.mass_ratio, system.radius, friction, system.rise,
+        system.rate, corner,
     )  # fmt: skip
 
 
