@@ -10,6 +10,7 @@ peak_demands    what the motions at many phase pairs demand of isolator and stru
 demands         that of one motion
 floor_spectra   response spectra of its floors, with errors
 modes           natural frequencies and modes of the frictionless chain (4.8)-(4.11)
+damped_modes    complex modes and damping ratios of the chain with the dampers of its links
 load_scene      a scene from a built-in name or a TOML file
 builtin_scenes  names of the paper's own cases
 example_scenes  names of the examples with a recorded motion
@@ -74,13 +75,14 @@ from reference.problem import (
 if TYPE_CHECKING:
     from reference.demand_surface import peak_demands
     from reference.motion import trajectory
-    from reference.natural_modes import modes
+    from reference.natural_modes import damped_modes, modes
     from reference.phase_maximum import PhaseMaximum, worst_phases
     from reference.surface import amplification
 
 LOADED_ON_FIRST_USE = {
     "PhaseMaximum": "reference.phase_maximum",
     "amplification": "reference.surface",
+    "damped_modes": "reference.natural_modes",
     "modes": "reference.natural_modes",
     "peak_demands": "reference.demand_surface",
     "trajectory": "reference.motion",
@@ -102,6 +104,7 @@ __all__ = [
     "Trajectory",
     "amplification",
     "builtin_scenes",
+    "damped_modes",
     "demands",
     "example_scenes",
     "floor_spectra",

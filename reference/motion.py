@@ -176,6 +176,7 @@ def _acceleration(system: System, x: Array, v: Array) -> float:
     """An upper bound of the accelerations that a state brings with it, m/s^2."""
     gravity = system.mass_ratio * system.gravity
     links = 2.0 * ((system.below + system.above) * np.abs(x).max()).max()
+    links += 2.0 * ((system.damping_below + system.damping_above) * np.abs(v).max()).max()
     return float(gravity * float(np.hypot(*x[0])) / system.radius + (v[0] ** 2).sum() / system.radius + links)
 
 

@@ -1,5 +1,5 @@
 """
-Natural frequencies and modes of small undamped vibration (4.8)-(4.11), each axis on its own.
+Natural frequencies and modes of small vibration (4.8)-(4.11), undamped and damped, each axis on its own.
 
 Per axis the linearized (4.3)-(4.4) is M0 q'' + C0 q = 0: a chain of N masses whose first link is the pendulum stiffness
 of the isolator. A general eigensolver gets the low frequencies of a long or stiff chain wrong by eps * condition, so
@@ -9,6 +9,11 @@ are the singular values of L, and the entries of a bidiagonal matrix determine e
 precision (Demmel and Kahan 1990). They are found by bisection on the Golub-Kahan matrix, which couples link, mass,
 link, mass, ... along the chain: zero diagonal, the entries of L beside it. Without the first link, of a flat slider,
 the chain is free: its first mode is the motion of all bodies as one, of frequency zero.
+
+With dampers M0 q'' + D0 q' + C0 q = 0 has complex modes q = X exp(lambda t), also where D0 is not proportional to C0.
+With y = M0^1/2 q' and s = L M0^1/2 q, one entry per link, they are the eigenvectors of
+    [s' y']^T = [[0, L], [-L^T, -M0^-1/2 D0 M0^-1/2]] [s y]^T,
+in which damping is added to a skew matrix: no eigenvalue has a positive real part.
 """
 
 from __future__ import annotations
@@ -17,7 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh_tridiagonal
+from scipy.linalg import eig, eigh_tridiagonal
 
 from reference.problem import GRAVITY, Scene
 
@@ -56,6 +61,35 @@ class Modes:
     def effective_mass(self) -> Array:
         """Effective modal masses for base excitation, (2, N), kg."""
         result: Array = self.participation**2
+        return result
+
+
+@dataclass(frozen=True)
+class DampedModes:
+    """
+    Complex modes Re(X exp(lambda t)) of a damped chain of N bodies, in order of rising |lambda|; axis 0 is x, 1 is y.
+
+    Attributes
+    ----------
+    eigenvalue : ndarray of complex, (2, 2 N), 1/s
+        lambda. A vibration has a conjugate pair, first the one with a positive imaginary part.
+    shape : ndarray of complex, (2, N, 2 N)
+        shape[axis, body, mode], X scaled so that its largest entry is 1.
+    """
+
+    eigenvalue: NDArray[np.complex128]
+    shape: NDArray[np.complex128]
+
+    @property
+    def frequency(self) -> Array:
+        """|lambda|, (2, 2 N), rad/s: the natural frequency where dampers are weak."""
+        result: Array = np.abs(self.eigenvalue)
+        return result
+
+    @property
+    def damping_ratio(self) -> Array:
+        """-Re lambda / |lambda|, (2, 2 N): 0 without damping, 1 of a motion that does not swing."""
+        result: Array = -self.eigenvalue.real / self.frequency
         return result
 
 
@@ -98,6 +132,56 @@ def modes(scene: Scene) -> Modes:
     per_axis = [_axis(scene.masses, stiffness) for stiffness in linear_stiffness(scene).T]
     frequency, shape, participation = (np.stack(parts) for parts in zip(*per_axis))
     return Modes(frequency, shape, participation)
+
+
+def damped_modes(scene: Scene) -> DampedModes:
+    """
+    Complex modes of the frictionless linearized chain with the dampers of its links.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its friction and its loading do not enter.
+
+    Returns
+    -------
+    DampedModes
+
+    Notes
+    -----
+    The isolator has no damper. A link with the ratio zeta has c = 2 zeta sqrt(k m_i) with the mass above it, so modes
+    of the chain have other ratios.
+
+    Examples
+    --------
+    >>> import reference
+    >>> scene = reference.load_scene("fig3-I").with_values({"bodies.1.damping": 0.05})
+    >>> reference.damped_modes(scene).damping_ratio[0].round(4).tolist()
+    [0.0335, 0.0335, 0.0294, 0.0294]
+    """
+    dampers = np.vstack([np.zeros((1, 2)), scene.damping])
+    per_axis = [_damped_axis(scene.masses, k, c) for k, c in zip(linear_stiffness(scene).T, dampers.T)]
+    eigenvalue, shape = (np.stack(parts) for parts in zip(*per_axis))
+    return DampedModes(eigenvalue, shape)
+
+
+def _damped_axis(
+    masses: Array, stiffness: Array, damping: Array
+) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    """Eigenvalues (2 N,) and shapes (N, 2 N) along one axis."""
+    count = len(masses)
+    elongation = (np.eye(count) - np.eye(count, k=-1)) / np.sqrt(masses)  # of links by M0^1/2 q
+    factor = np.sqrt(stiffness)[:, None] * elongation
+    state = np.zeros((2 * count, 2 * count))
+    state[:count, count:] = factor
+    state[count:, :count] = -factor.T
+    state[count:, count:] = -(elongation.T * damping) @ elongation
+    values, vectors = eig(state)
+    order = np.lexsort((-values.imag, np.abs(values)))
+    values, vectors = values[order], vectors[count:, order]
+    shape = vectors / np.sqrt(masses)[:, None] / values
+    largest = np.abs(shape).argmax(axis=0)
+    return values, shape / shape[largest, np.arange(2 * count)]
 
 
 def _axis(masses: Array, stiffness: Array) -> tuple[Array, Array, Array]:

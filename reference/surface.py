@@ -264,7 +264,15 @@ def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
 def loads_are_finite(system: System) -> bool:
     """Whether squares of accelerations, of which (5.1) is made, stay within double precision."""
     largest = max(
-        np.abs(part).max(initial=0.0) for part in (system.amplitudes, system.record, system.below, system.above)
+        np.abs(part).max(initial=0.0)
+        for part in (
+            system.amplitudes,
+            system.record,
+            system.below,
+            system.above,
+            system.damping_below,
+            system.damping_above,
+        )
     )
     with np.errstate(over="ignore"):
         return bool(np.isfinite(np.square(largest) * 1e8) and np.isfinite(np.square(system.mass_ratio)))

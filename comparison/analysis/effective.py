@@ -44,7 +44,8 @@ class Effective:
     contact: N,
     contact force at t = 0. mass: kg, total, the contact force at t = 0 over the apparent gravity. acceleration: m/s^2,
     absolute, of the platform at t = 0: that of the ground where friction holds it, 0 where friction begins with
-    the speed. error_message: why there are none, or "".
+    the speed. damping: N s/m, of the top link along x, fitted with its stiffness to the force on the top body; NaN
+    without dampers and where bodies turn. error_message: why there are none, or "".
     """
 
     scene: str
@@ -54,6 +55,7 @@ class Effective:
     contact: float = float("nan")
     mass: float = float("nan")
     acceleration: float = float("nan")
+    damping: float = float("nan")
     error_message: str = ""
 
 
@@ -68,6 +70,7 @@ def stated(scene: Scene) -> Effective:
         contact=float(scene.total_mass * (GRAVITY + ground[2])),
         mass=scene.total_mass,
         acceleration=float(np.linalg.norm(ground)),
+        damping=float(scene.damping[-1, 0]) if scene.damping.any() else float("nan"),
     )
 
 
@@ -130,7 +133,18 @@ def _measured(scene: Scene, motion: Trajectory) -> dict[str, Any]:
         "contact": float(motion.contact_force[0]),
         "mass": float(motion.contact_force[0] / (GRAVITY + ground[0, 2])),
         "acceleration": float(np.linalg.norm(motion.absolute_acceleration[0, 0])),
+        "damping": _damping(scene, motion),
     }
+
+
+def _damping(scene: Scene, motion: Trajectory) -> float:
+    """The force on the top body as a spring and a damper of the link below it, by least squares."""
+    if not scene.damping.any() or "turns" in motion.extra:
+        return float("nan")
+    stretch, rate = (part[:, -1, 0] - part[:, -2, 0] for part in (motion.position, motion.velocity))
+    force = -scene.masses[-1] * motion.absolute_acceleration[:, -1, 0]
+    fitted = np.linalg.lstsq(np.column_stack([stretch, rate]), force)
+    return float(fitted[0][1]) if fitted[2] == 2 else float("nan")
 
 
 def _friction(scene: Scene, motion: Trajectory, radius: float) -> float:

@@ -49,23 +49,40 @@ class _Fixed(NamedTuple):
     masses: Array  # (2 N,), each twice
     inertia: Array  # (2 N, 2 N), M but for its first two rows
     links: Array  # (2 N, 2 N), C but for Delta, the factor of its first two rows, and their diagonal
+    dampers: Array  # (2 N, 2 N), of the links, as `links`; the paper has none
     first: tuple[float, float]  # stiffness of the lowest link, N/m
+    first_damper: tuple[float, float]  # N s/m
     errata: Collection[str]
 
 
 def _fixed(scene: Scene, errata: Collection[str]) -> _Fixed:
     masses = np.repeat(scene.masses, 2)
-    links = np.zeros((len(masses), len(masses)))
-    for link, pair in enumerate(scene.stiffness):
-        for axis, k in enumerate(pair):
-            low, high = 2 * link + axis, 2 * link + 2 + axis
-            links[low, low] += k
-            links[low, high] -= pair[0] if link == 0 and WRONG_SPRING in errata else k
-            links[high, high] += k
-            links[high, low] -= k
+    links, dampers = _between(scene.stiffness), _between(scene.damping)
+    if WRONG_SPRING in errata and len(scene.stiffness):
+        links[1, 3] = links[0, 2]
     first = tuple(map(float, scene.stiffness[0])) if len(scene.stiffness) else (0.0, 0.0)
+    first_damper = tuple(map(float, scene.damping[0])) if len(scene.damping) else (0.0, 0.0)
     law = scene.friction_coefficient, scene.lubricated, scene.dry_friction.varies, float(scene.total_mass)
-    return _Fixed(scene, scene.radius, *law, masses, np.diag(masses), links, (first[0], first[-1]), errata)
+    return _Fixed(
+        scene,
+        scene.radius,
+        *law,
+        masses,
+        np.diag(masses),
+        links,
+        dampers,
+        (first[0], first[-1]),
+        (first_damper[0], first_damper[-1]),
+        errata,
+    )
+
+
+def _between(links: Array) -> Array:
+    """Coefficients of links, (N - 1, 2), as a matrix of the bodies, (2 N, 2 N)."""
+    matrix = np.zeros((2 * len(links) + 2,) * 2)
+    for low, coefficient in enumerate(links.ravel()):
+        matrix[low : low + 3 : 2, low : low + 3 : 2] += coefficient * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    return matrix
 
 
 def _peaks(scene: Scene, phase: Array, errata: Collection[str]) -> Array:
@@ -130,14 +147,15 @@ def _accelerations(fixed: _Fixed, q: Array, v: Array, ground: Array) -> Array:
         -m * eta * p * cross * vx + (main - m * last * r * s) * vy,
     )  # H q': zero but for its first two rows
 
-    sprung = fixed.links @ q  # C q
+    sprung = fixed.links @ q + fixed.dampers @ v  # C q
     load: Array = -fixed.masses
     load[0::2] *= xi
     load[1::2] *= eta
-    for axis, (place, ground_axis) in enumerate(((x, xi), (y, eta))):
+    for axis, (place, rate, ground_axis) in enumerate(((x, vx, xi), (y, vy, eta))):
         sprung[axis] = delta * sprung[axis] - total * (zeta + GRAVITY - w) * place
         load[axis] = -m * ground_axis * delta - damped[axis]
         if len(q) > 2:
-            load[axis] -= s * (vx * p + vy * r) * fixed.first[axis] * (q[axis + 2] - place)
+            pull = fixed.first[axis] * (q[axis + 2] - place) + fixed.first_damper[axis] * (v[axis + 2] - rate)
+            load[axis] -= s * (vx * p + vy * r) * pull
     load -= sprung
     return np.asarray(np.linalg.solve(inertia, load), np.float64)

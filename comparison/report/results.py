@@ -567,6 +567,8 @@ class Effective(Part):
     """total mass, kg"""
     acceleration: Number
     """absolute acceleration of the platform at t = 0, m/s^2"""
+    damping: Number
+    """coefficient of the damper of the top link along x, N s/m; null without dampers, and where bodies turn"""
     error_message: Text
     """why there are no values, or empty"""
 
@@ -634,6 +636,8 @@ class MotionDemands(Part):
     """largest gap of a support that has lifted off, m; null in a model without single supports"""
     friction_energy: UncertainNumber
     """energy that friction dissipates, J"""
+    damping_energy: UncertainNumber | None
+    """energy that dampers of the links dissipate, J; null without dampers, and where bodies turn"""
     energy_balance: UncertainNumber | None
     """work of the ground less the energy dissipated and stored, J: zero but for errors; null where bodies turn"""
     spectra: FloorSpectra | None

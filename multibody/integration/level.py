@@ -21,7 +21,7 @@ from multibody.models.assembly import assemble
 from multibody.models.contact import viscous_relaxation
 from multibody.models.supports import MIN_WARPING_COMPLIANCE
 from multibody.models.system import EngineModel
-from multibody.models.units import link_stiffness
+from multibody.models.units import Units, link_stiffness
 from reference.problem import GRAVITY, Scene, exponents
 from reference.problem.ranges import TOLERANCE, checked_number
 
@@ -213,8 +213,8 @@ def largest_step(scene: Scene, model: EngineModel) -> float:
     """
     Step of level 0 in units of the model, from the shortest period of the loading, the pendulum and the chain.
 
-    The chain's periods count however short they are: the loading begins at once and sets every mode swinging, and no
-    mode is damped.
+    The chain's periods count however short they are: the loading begins at once and sets every mode swinging, and
+    dampers leave a mode some swings.
     """
     periods = [2.0 * math.pi]
     if not scene.recorded:  # a record is linear within every step
@@ -232,14 +232,24 @@ def largest_step(scene: Scene, model: EngineModel) -> float:
     return min(fastest, *periods) / STEPS_PER_PERIOD
 
 
+def damped_rate(scene: Scene, units: Units) -> float:
+    """A bound of the rates at which dampers of the links settle, per unit of time (Gershgorin)."""
+    per_mass = scene.damping.max(axis=1)
+    below, above = per_mass / scene.masses[1:], per_mass / scene.masses[:-1]
+    return float(2.0 * (np.append(above, 0.0) + np.append(0.0, below)).max() * units.time)
+
+
 def brief_motions(scene: Scene, model: EngineModel, step: float) -> list[tuple[float, float]]:
     """
     Until when the harmonics last that `step` does not resolve, and the step that they need, at level 0.
 
     The start of a lubricated platform is such a motion, too. From rest it takes on the speed that balances the loading
     within its relaxation time. Over much longer steps the integrator's acceleration would overshoot by as much again.
+    So is the start of strongly damped links.
     """
     rates: list[float] = [] if scene.recorded else list(-exponents(scene).real * model.units.time)
     rates.append(1.0 / viscous_relaxation(scene, model.units))
+    if scene.damping.any():
+        rates.append(damped_rate(scene, model.units))
     times = [1.0 / rate for rate in rates if rate > 0.0]
     return [(DECAY_TIMES * time, time / STEPS_PER_DECAY) for time in times if time / STEPS_PER_DECAY < step]

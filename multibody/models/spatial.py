@@ -51,7 +51,7 @@ from multibody.models.supports import (
     sphere_nodes,
 )
 from multibody.models.system import EngineModel, EngineState
-from multibody.models.units import Units, link_stiffness, units_of
+from multibody.models.units import Units, link_damping, link_stiffness, units_of
 from reference.problem import DryFriction, Scene, State
 from reference.problem.supports import edge_distance, ring_places
 
@@ -77,8 +77,12 @@ def spatial(
     container = exudyn.SystemContainer()
     mbs = container.AddSystem()
     nodes, bodies = _boxes(mbs, masses, centers, inertias, axes)
-    shear = axes[1:, :2, :2] @ (link_stiffness(scene, units)[:, :, None] * axes[1:, :2, :2].swapaxes(1, 2))
-    links = _links(mbs, bodies, masses, centers, shear, float((distances**2).mean()))
+    along = axes[1:, :2, :2]  # of every link
+    shear, damping = (
+        along @ (values[:, :, None] * along.swapaxes(1, 2))
+        for values in (link_stiffness(scene, units), link_damping(scene, units))
+    )
+    links = _links(mbs, bodies, masses, centers, shear, damping, float((distances**2).mean()))
     ground = ground_of(mbs, scene, units)
     bearings = scene.isolator.support_stiffness
     bearing_penetration = 0.0 if bearings is None else units.force / (len(ring) * bearings * units.length)
@@ -137,8 +141,9 @@ def spatial(
     )
 
 
-# connector; mass above it and that mass times its place (3,); stiffness in shear (2, 2) and against twist
-Link = tuple[Any, Array, Array, float]
+# connector; mass above it and that mass times its place (3,); stiffness and damping in shear, (2, 2) each; stiffness
+# against twist
+Link = tuple[Any, Array, Array, Array, float]
 
 
 @dataclass(frozen=True)
@@ -171,7 +176,7 @@ class _Parts:
 
     def bar_lags(self, penetration: float) -> Array:
         """See `EngineModel`."""
-        carried = np.array([carried[0] for _, carried, _, _ in self.links])
+        carried = np.array([carried[0] for _, carried, *_ in self.links])
         lags: Array = 2.0 * np.sqrt(carried * LINK_COMPLIANCE_RATIO * penetration)
         return lags
 
@@ -249,15 +254,21 @@ def _critical_tilt(ring: Array, radius: float, masses: Array, centers: Array) ->
 
 
 def _links(
-    mbs: Any, bodies: list[Any], masses: Array, centers: Array, stiffness: Array, square_distance: float
+    mbs: Any,
+    bodies: list[Any],
+    masses: Array,
+    centers: Array,
+    stiffness: Array,
+    damping: Array,
+    square_distance: float,
 ) -> list[Link]:
     """Links between neighbors, with what `set_link_stiffness` needs of them; bars so far from the axis, squared."""
     links = []
-    for link, shear in enumerate(stiffness):
+    for link, (shear, damper) in enumerate(zip(stiffness, damping)):
         above = masses[link + 1 :]
         carried = np.array([above.sum(), *(above @ centers[link + 1 :, :2])])
         bars = add_link(mbs, bodies[link : link + 2], centers[link : link + 2])
-        links.append((bars, carried, shear, square_distance * np.diag(shear).mean()))
+        links.append((bars, carried, shear, damper, square_distance * np.diag(shear).mean()))
     return links
 
 
@@ -348,9 +359,11 @@ def add_link(mbs: Any, bodies: list[Any], centers: Array) -> Any:
     )
 
 
-def set_link_stiffness(mbs: Any, bars: Any, carried: Array, shear: Array, twist: float, stiff: float) -> None:
+def set_link_stiffness(
+    mbs: Any, bars: Any, carried: Array, shear: Array, damping: Array, twist: float, stiff: float
+) -> None:
     """
-    Give bars the scene's stiffness in shear (2, 2) and twist, and `stiff` otherwise.
+    Give bars the scene's stiffness and damping in shear, (2, 2) each, stiffness in twist, and `stiff` otherwise.
 
     carried: (3,), mass above them, and that mass times the place x, y of its center.
     """
@@ -359,8 +372,10 @@ def set_link_stiffness(mbs: Any, bars: Any, carried: Array, shear: Array, twist:
     matrix = np.diag([0.0, 0.0, *stiffness[2:5], twist])
     matrix[:2, :2] = shear
     mbs.SetObjectParameter(bars, "stiffness", matrix)
-    # the stiff directions are damped critically, the others not at all
-    mbs.SetObjectParameter(bars, "damping", np.diag(2.0 * np.sqrt(stiffness * mass)))
+    # the stiff directions are damped critically, twist not at all
+    dampers = np.diag(2.0 * np.sqrt(stiffness * mass))
+    dampers[:2, :2] = damping
+    mbs.SetObjectParameter(bars, "damping", dampers)
     # at rest the bars carry what stands on them without giving way
     mbs.SetObjectParameter(bars, "offset", [0.0, 0.0, mass / stiff, along_y / stiff, -along_x / stiff, 0.0])
 

@@ -30,11 +30,12 @@ from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate, plate_for
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
 from multibody.models.system import EngineModel, EngineState
-from multibody.models.units import link_stiffness, units_of
+from multibody.models.units import link_damping, link_stiffness, units_of
 from reference.problem import Scene, State
 
 Array = NDArray[np.float64]
 
+BETWEEN_TWO = np.array([[1.0, -1.0], [-1.0, 1.0]])  # what acts between two coordinates
 HOLLOW_RADIUS = 2.0  # R in units of rho; in translation only R - r matters
 SPHERE_ON_PLANE = 1.0  # radius of the sphere under the platform of a flat slider, in units of length
 UPWARD = np.array([0.0, 0.0, 1.0])
@@ -66,7 +67,8 @@ def translational(
     depression = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=platform))
     nodes = [platform_node]
     if len(masses) > 1:
-        nodes.append(_chain(mbs, platform_node, masses, link_stiffness(scene, units)[:, :axes]))
+        links = (link_stiffness(scene, units)[:, :axes], link_damping(scene, units)[:, :axes])
+        nodes.append(_chain(mbs, platform_node, masses, *links))
 
     ground = ground_of(mbs, scene, units)
     plate = plate_for(mbs, loading, ground)
@@ -150,7 +152,7 @@ def _contact_on_plane(mbs: Any, plate: Plate, platform: Any, friction: float, th
     return mbs.AddObject(contact), node
 
 
-def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array) -> Any:
+def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, damping: Array) -> Any:
     """Bodies 2..N as one linear object on their x, y (or x) and the platform's x, y, z. Returns their node."""
     axes = stiffness.shape[1]
     count = axes * (len(masses) - 1)
@@ -163,7 +165,7 @@ def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array) -> Any
         )
     )
     mass_matrix = np.zeros((COORDINATES + count, COORDINATES + count))
-    stiffness_matrix = np.zeros_like(mass_matrix)
+    stiffness_matrix, damping_matrix = np.zeros((2, *mass_matrix.shape))
     mass_matrix[2, 2] = masses[1:].sum()
     for link in range(len(masses) - 1):
         for axis in range(axes):
@@ -171,12 +173,12 @@ def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array) -> Any
             lower = upper - axes if link > 0 else axis
             mass_matrix[upper, upper] = masses[link + 1]
             pair = np.ix_([lower, upper], [lower, upper])
-            stiffness_matrix[pair] += stiffness[link, axis] * np.array([[1.0, -1.0], [-1.0, 1.0]])
-    mbs.AddObject(
-        items.ObjectGenericODE2(
-            nodeNumbers=[platform_node, node], massMatrix=mass_matrix, stiffnessMatrix=stiffness_matrix
-        )
-    )
+            stiffness_matrix[pair] += stiffness[link, axis] * BETWEEN_TWO
+            damping_matrix[pair] += damping[link, axis] * BETWEEN_TWO
+    matrices = {"massMatrix": mass_matrix, "stiffnessMatrix": stiffness_matrix}
+    if damping.any():
+        matrices["dampingMatrix"] = damping_matrix
+    mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=[platform_node, node], **matrices))
     return node
 
 

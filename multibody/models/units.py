@@ -49,3 +49,8 @@ def units_of(scene: Scene) -> Units:
 def link_stiffness(scene: Scene, units: Units) -> NDArray[np.float64]:
     """Stiffness of the links in units of the model, (N-1, 2)."""
     return scene.stiffness * (units.time**2 / units.mass)
+
+
+def link_damping(scene: Scene, units: Units) -> NDArray[np.float64]:
+    """Damping of the links in units of the model, (N-1, 2)."""
+    return scene.damping * (units.time / units.mass)

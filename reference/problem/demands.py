@@ -72,9 +72,11 @@ class Demands:
         Largest gap of a support that has lifted off. None where the model has no single supports.
     friction_energy : Estimate, J
         Energy that friction dissipates.
+    damping_energy : Estimate or None, J
+        Energy that the dampers of the links dissipate. None without dampers, and where bodies turn.
     energy_balance : Estimate or None, J
-        Work of the ground less `friction_energy` and the energy stored at the end: zero but for errors. None where
-        bodies turn, which takes up energy that the motion does not show.
+        Work of the ground less `friction_energy`, `damping_energy` and the energy stored: zero but for errors.
+        None where bodies turn, which takes up energy that the motion does not show.
     """
 
     status: str
@@ -93,6 +95,7 @@ class Demands:
     stops: Estimate
     uplift: Estimate | None
     friction_energy: Estimate
+    damping_energy: Estimate | None
     energy_balance: Estimate | None
 
 
@@ -132,7 +135,7 @@ def demands(trajectory: Trajectory) -> Demands:
     read = _Reading(trajectory)
     scene, bodies = trajectory.scene, range(len(trajectory.scene.bodies))
     displacement = read.extreme(lambda samples: samples.largest(samples.place[:, 0], samples.velocity[:, 0]))
-    supported = read.samples.support.shape[1] > 0
+    supported, turning = read.samples.support.shape[1] > 0, "turns" in trajectory.extra
     return Demands(
         status=str(trajectory.status),
         displacement=displacement,
@@ -150,7 +153,8 @@ def demands(trajectory: Trajectory) -> Demands:
         stops=read.count(_stops),
         uplift=read.extreme(lambda samples: float(samples.uplift.max())) if supported else None,
         friction_energy=read.energy(Energy.dissipated),
-        energy_balance=None if "turns" in trajectory.extra else read.energy(Energy.missing),
+        damping_energy=read.energy(Energy.damped) if scene.damping.any() and not turning else None,
+        energy_balance=None if turning else read.energy(Energy.missing),
     )
 
 

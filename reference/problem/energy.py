@@ -1,4 +1,4 @@
-"""The energy of a motion: what the ground puts in, what friction takes out, what is stored."""
+"""The energy of a motion: what the ground puts in, what friction and dampers take out, what is stored."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ class Energy(NamedTuple):
 
     time: Array  # (T,) s
     friction: Array  # (T,) W, power that friction dissipates
+    dampers: Array  # (T,) W, power that the dampers of the links dissipate
     ground: Array  # (T,) W, power of the inertial forces in the plate's frame
     stored: Array  # (T,) J, kinetic and elastic energy of the bodies, and that of gravity
 
@@ -22,9 +23,14 @@ class Energy(NamedTuple):
         """Energy that friction has dissipated at the end, J."""
         return float(np.trapezoid(self.friction, self.time))
 
+    def damped(self) -> float:
+        """Energy that the dampers of the links have dissipated at the end, J."""
+        return float(np.trapezoid(self.dampers, self.time))
+
     def missing(self) -> float:
-        """Work of the ground less what friction dissipates and what is stored, J: zero but for errors."""
-        return float(np.trapezoid(self.ground - self.friction, self.time) - (self.stored[-1] - self.stored[0]))
+        """Work of the ground less what is dissipated and what is stored, J: zero but for errors."""
+        power = self.ground - self.friction - self.dampers
+        return float(np.trapezoid(power, self.time) - (self.stored[-1] - self.stored[0]))
 
     def thinned(self, step: int) -> list[Energy]:
         """One of `step` instants, from the first, the second, ... on, and both ends."""
@@ -44,7 +50,7 @@ def energy_of(motion: Trajectory) -> Energy:
     Returns
     -------
     Energy
-        `ground` and `stored` are NaN where bodies turn, which takes up energy that the motion does not show.
+        `ground`, `dampers` and `stored` are NaN where bodies turn, which takes up energy that the motion does not show.
 
     Notes
     -----
@@ -59,9 +65,10 @@ def energy_of(motion: Trajectory) -> Energy:
         climb = np.broadcast_to((place[:, :1, :2] * velocity[:, :1, :2]).sum(axis=2) / scene.radius, climb.shape)
     kinetic = 0.5 * (masses[:, None] * velocity**2).sum(axis=(1, 2))
     elastic = 0.5 * (scene.stiffness * np.diff(place[:, :, :2], axis=1) ** 2).sum(axis=(1, 2))
+    dampers = (scene.damping * np.diff(velocity[:, :, :2], axis=1) ** 2).sum(axis=(1, 2))
     stored = kinetic + elastic + GRAVITY * height @ masses
     shaking = np.concatenate([velocity[:, :, :2], climb[:, :, None]], axis=2)
     ground = -np.einsum("i,tia,ta->t", masses, shaking, motion.ground)
     if "turns" in motion.extra:
-        stored, ground = np.full_like(stored, np.nan), np.full_like(ground, np.nan)
-    return Energy(motion.time, motion.friction_power, ground, stored)
+        stored, ground, dampers = np.full((3, len(motion.time)), np.nan)
+    return Energy(motion.time, motion.friction_power, dampers, ground, stored)

@@ -64,6 +64,7 @@ SCENE: dict[str, Range] = {
     "bodies.bars.count": Range(1, 1_000_000),
     "bodies.bars.bending_stiffness": Range(1e-30, 1e30, "N m^2"),
     "bodies.bars.length": Range(1e-9, 1e6, "m"),
+    "bodies.damping": Range(0.0, 100.0),
     "bodies.height": Range(0.0, 1e6, "m"),
     "bodies.size": Range(1e-9, 1e6, "m"),
     "bodies.offset": Range(-1e6, 1e6, "m"),
@@ -73,6 +74,7 @@ SCENE: dict[str, Range] = {
     "excitation.decay": Range(0.0, 1e12, "1/s"),
 }
 SUPPORT_POSITION = Range(-1e6, 1e6, "m")  # of a support, along x and y
+DAMPING_COEFFICIENT = Range(0.0, 1e30, "N s/m")  # of a link along one axis
 MAX_CYCLES = 1e6  # of the loading's shortest period, and of the pendulum's, in the duration
 
 # rad; beyond, neighboring double-precision numbers are more than 1.2e-10 rad apart, the strictest tolerance

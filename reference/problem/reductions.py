@@ -173,8 +173,10 @@ def planar(scene: Scene) -> Reduction:
         return Reduction(False, "the harmonics act in different directions")
     if (scene.stiffness[:, 0] != scene.stiffness[:, 1]).any():
         return Reduction(False, "loading across links that are not equally stiff in x and y")
+    if (scene.damping[:, 0] != scene.damping[:, 1]).any():
+        return Reduction(False, "loading across links that are not equally damped in x and y")
     return Reduction(
-        True, "(4.7): one direction of loading, links equally stiff in x and y: the motion stays in a plane"
+        True, "(4.7): one direction of loading, links equally stiff and damped in x and y: the motion stays in a plane"
     )
 
 
@@ -224,8 +226,8 @@ def in_plane(scene: Scene) -> Scene:
     horizontal = scene.amplitudes[:2]
     if not horizontal[0].any():  # along y: the links' y becomes their x
         for body in table["bodies"][1:]:
-            for key in ("period", "stiffness"):  # bars are the same in x and y
-                if key in body:
+            for key in ("period", "stiffness", "damping"):  # bars and ratios of damping are the same in x and y
+                if isinstance(body.get(key), list):
                     body[key] = body[key][::-1]
     direction = horizontal[:, np.abs(horizontal).sum(axis=0).argmax()]
     length = float(np.hypot(*direction))
@@ -343,6 +345,8 @@ def linear(scene: Scene) -> Reduction:
         return Reduction(False, "lubricated: (4.3) keeps friction terms with xi'' x1 x1', which are not linear")
     if scene.friction_coefficient > 0.0:
         return Reduction(False, "dry friction is not linear")
+    if scene.damping.any():
+        return Reduction(False, "damped links: the sum is one of undamped modes")
     if scene.recorded:
         return Reduction(False, RECORDED)
     if scene.amplitudes[2].any():

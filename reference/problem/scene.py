@@ -112,7 +112,7 @@ class Scene(Table):
     @model_validator(mode="after")
     def _links(self) -> Scene:
         platform, *others = self.bodies
-        for key in LINKS:
+        for key in (*LINKS, "damping"):
             if (value := getattr(platform, key)) is not None:
                 raise MisfitError(f"bodies.0.{key}", value, "the platform has no link below: remove this key")
         for number, body in enumerate(others, start=1):
@@ -137,6 +137,8 @@ class Scene(Table):
         for (i, axis), k in np.ndenumerate(self.stiffness):
             derived[f"bodies.{i + 1}: k^{'xy'[axis]} in N/m"] = float(k), SCENE["bodies.stiffness"]
             derived[f"bodies.{i + 1}: period along {'xy'[axis]} in s"] = float(periods[i, axis]), SCENE["bodies.period"]
+            ratio = float(self.damping[i, axis] / (2.0 * np.sqrt(k * self.masses[i + 1])))
+            derived[f"bodies.{i + 1}: damping ratio along {'xy'[axis]}"] = ratio, SCENE["bodies.damping"]
         for key, (value, allowed) in derived.items():
             lowest, highest = allowed.lowest * (1.0 - DERIVED_ROUNDING), allowed.highest * (1.0 + DERIVED_ROUNDING)
             if not (lowest <= value <= highest or value in allowed):
@@ -247,6 +249,15 @@ class Scene(Table):
     def stiffness(self) -> NDArray[np.float64]:
         """Link stiffness k_{i+1,i} in x and y, (N-1, 2), N/m; row i links body i and body i + 1."""
         return np.array([_link_stiffness(body) for body in self.bodies[1:]], dtype=float).reshape(-1, 2)
+
+    @cached_property
+    def damping(self) -> NDArray[np.float64]:
+        """Link damping c_{i+1,i} in x and y, (N-1, 2), N s/m; row i links body i and body i + 1."""
+        rows = [
+            body.damping if isinstance(body.damping, list) else 2.0 * (body.damping or 0.0) * np.sqrt(link * body.mass)
+            for body, link in zip(self.bodies[1:], self.stiffness)
+        ]
+        return np.array(rows, dtype=float).reshape(-1, 2)
 
     @property
     def support_places(self) -> NDArray[np.float64] | None:

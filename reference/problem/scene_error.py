@@ -15,6 +15,7 @@ MAX_LETTERS = 300  # letters of a path or a key in an error
 EXCITATIONS = ("two frequencies", "recorded motion")
 SUPPORTS = ("number of supports", "positions of supports")
 FRICTIONS = ("constant friction", "velocity-dependent friction")
+DAMPINGS = ("damping ratio", "damping coefficients")
 
 
 class SceneError(ValueError):
@@ -71,7 +72,8 @@ def first_error(file: str, invalid: ValidationError, keys: Mapping[str, Sequence
     misfit = error.get("ctx", {}).get("error")
     if isinstance(misfit, MisfitError):
         return SceneError(file, misfit.key, misfit.value, misfit.rule)
-    place = [part for part in error["loc"] if part not in EXCITATIONS + SUPPORTS + FRICTIONS]
+    forms = EXCITATIONS + SUPPORTS + FRICTIONS + DAMPINGS
+    place = [part for part in error["loc"] if part not in forms]
     key = ".".join(map(str, place)) or "scene"
     if error["type"] == "extra_forbidden":
         table = ".".join(str(part) for part in error["loc"][:-1] if not isinstance(part, int))

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from pydantic import (
     AfterValidator,
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Discriminator,
     Field,
@@ -24,9 +25,9 @@ from pydantic import (
 )
 
 from reference.problem.plain_values import hashable, plain
-from reference.problem.ranges import SCENE, SUPPORT_POSITION, Range
+from reference.problem.ranges import DAMPING_COEFFICIENT, SCENE, SUPPORT_POSITION, Range
 from reference.problem.record_files import checked_samples
-from reference.problem.scene_error import EXCITATIONS, FRICTIONS, SUPPORTS
+from reference.problem.scene_error import DAMPINGS, EXCITATIONS, FRICTIONS, SUPPORTS
 
 USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
 
@@ -65,6 +66,18 @@ def _without_control_characters(text: str) -> str:
     return text
 
 
+def _ratio_or_coefficients(value: Any) -> Any:
+    if isinstance(value, list) and len(value) == 2:
+        return value
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return value
+    raise ValueError("must be a ratio of critical, or [cx, cy] in N s/m")
+
+
+def _kind_of_damping(value: Any) -> str:
+    return DAMPINGS[isinstance(value, list)]
+
+
 Text = Annotated[str, AfterValidator(_without_control_characters)]
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
@@ -76,6 +89,12 @@ Radius = Annotated[
 ]
 LinkPeriods = Annotated[list[Annotated[Positive, within("bodies.period")]], Field(min_length=2, max_length=2)]
 LinkStiffness = Annotated[list[Annotated[Positive, within("bodies.stiffness")]], Field(min_length=2, max_length=2)]
+LinkDamping = Annotated[
+    Annotated[float, within("bodies.damping"), Tag(DAMPINGS[0])]
+    | Annotated[list[Annotated[float, in_range(DAMPING_COEFFICIENT)]], Tag(DAMPINGS[1])],
+    Discriminator(_kind_of_damping),
+    BeforeValidator(_ratio_or_coefficients),
+]
 Size = Annotated[list[Annotated[Positive, within("bodies.size")]], Field(min_length=3, max_length=3)]
 Offset = Annotated[list[Annotated[float, within("bodies.offset")]], Field(min_length=2, max_length=2)]
 Position = Annotated[list[Annotated[float, in_range(SUPPORT_POSITION)]], Field(min_length=2, max_length=2)]
@@ -273,6 +292,15 @@ class Body(Table):
     bars: Annotated[
         Bars | None,
         about("bars of that link, k = 12 n E J / l^3 along x and y, without load; in place of period", "", ALL),
+    ] = None
+    damping: Annotated[
+        LinkDamping | None,
+        about(
+            "damping of that link between its bodies: ratio zeta of critical, c = 2 zeta sqrt(k m_i) along x and y, "
+            "or `[cx, cy]` in N s/m; not for the platform",
+            "-",
+            ALL,
+        ),
     ] = None
     height: Annotated[
         Annotated[NonNegative, within("bodies.height")] | None,

@@ -4,7 +4,7 @@ The linear bodies above the platform (4.4), eliminated from a collocation step a
 In the eigenbasis of the collocation matrix each channel j is a tridiagonal system with L = (h lambda_j)^2,
     (1 + L (b_i + c_i)) a_i - L b_i a_{i-1} - L c_i a_{i+1} = r_i,   b_i = k_{i,i-1}/m_i,  c_i = k_{i+1,i}/m_i,
 solved from the top down: d_i = e_i + L b_i with e_i = 1 + L c_i e_{i+1} / d_{i+1}, which subtracts nothing and so keeps
-its digits however stiff a link is.
+its digits however stiff a link is. With dampers L b_i becomes L b_i + h lambda_j c_{i,i-1}/m_i, and L c_i likewise.
 """
 
 from __future__ import annotations
@@ -25,20 +25,33 @@ CHANNEL_ROUNDING = float(np.finfo(float).eps * (np.abs(FROM_CHANNELS) @ np.abs(T
 
 
 @compiled
+def coupling_below(system: System, i: int, axis: int, root: complex) -> complex:
+    """Acceleration of body i by one of the body below, through the link, with root = h lambda_j."""
+    return root**2 * system.below[i, axis] + root * system.damping_below[i, axis]
+
+
+@compiled
+def coupling_above(system: System, i: int, axis: int, root: complex) -> complex:
+    """The same by an acceleration of the body above."""
+    return root**2 * system.above[i, axis] + root * system.damping_above[i, axis]
+
+
+@compiled
 def eliminate_chain(system: System, work: Work, h: float) -> None:
     """For step length h: the pivots."""
     bodies = work.x.shape[0]
     for axis in range(system.axes):
         for j in range(CHANNELS):
-            level = (h * EIGENVALUES[j]) ** 2
+            root = h * EIGENVALUES[j]
             upper = 1.0 + 0.0j
             pivot = upper
             for i in range(bodies - 1, 0, -1):
                 if i < bodies - 1:
-                    upper = 1.0 + level * system.above[i, axis] * upper / pivot
-                pivot = upper + level * system.below[i, axis]
+                    upper = 1.0 + coupling_above(system, i, axis, root) * upper / pivot
+                pivot = upper + coupling_below(system, i, axis, root)
                 work.pivot[i, axis, j] = pivot
-            work.gain[axis, j] = level * upper / pivot
+            work.gain[axis, j] = system.above[0, axis] * (root**2 * upper / pivot)
+            work.gain[axis, j] += system.damping_above[0, axis] * (root * upper / pivot)
 
 
 @compiled
@@ -52,7 +65,7 @@ def feed_back(system: System, work: Work, h: float) -> None:
         if work.x.shape[0] == 1:
             continue
         for j in range(CHANNELS):
-            gain = -system.above[0, axis] * work.gain[axis, j]
+            gain = -work.gain[axis, j]
             real, imaginary = gain.real, gain.imag
             for k in range(STAGES):
                 for m in range(STAGES):
@@ -72,26 +85,29 @@ def load_chain(system: System, work: Work, h: float) -> None:
         stretch = x[1, axis] - x[0, axis]
         rate = h * (v[1, axis] - v[0, axis])
         c0 = system.above[0, axis]
+        damped = system.damping_above[0, axis] * (v[1, axis] - v[0, axis])
         for k in range(STAGES):
-            free[axis, k] += c0 * (stretch + NODES[k] * rate)
+            free[axis, k] += c0 * (stretch + NODES[k] * rate) + damped
         for j in range(CHANNELS):
             drive = 0.0 + 0.0j
             for k in range(STAGES):
                 drive -= TO_CHANNELS[j, k] * ground[axis, k]
-            level = (h * EIGENVALUES[j]) ** 2
+            root = h * EIGENVALUES[j]
             carried = 0.0 + 0.0j
             for i in range(bodies - 1, 0, -1):
                 force = -system.below[i, axis] * (x[i, axis] - x[i - 1, axis])
                 slope = -system.below[i, axis] * (v[i, axis] - v[i - 1, axis])
+                force -= system.damping_below[i, axis] * (v[i, axis] - v[i - 1, axis])
                 if i < bodies - 1:
                     force += system.above[i, axis] * (x[i + 1, axis] - x[i, axis])
+                    force += system.damping_above[i, axis] * (v[i + 1, axis] - v[i, axis])
                     slope += system.above[i, axis] * (v[i + 1, axis] - v[i, axis])
                 load = drive + force * ONES_IN_CHANNELS[j] + h * slope * NODES_IN_CHANNELS[j]
                 if i < bodies - 1:
-                    load += level * system.above[i, axis] * carried
+                    load += coupling_above(system, i, axis, root) * carried
                 loads[i, axis, j] = load
                 carried = load / pivot[i, axis, j]
-            gain = c0 * level * carried
+            gain = coupling_above(system, 0, axis, root) * carried
             for k in range(STAGES):
                 free[axis, k] += (FROM_CHANNELS[k, j] * gain).real
 
@@ -107,12 +123,12 @@ def move_chain(system: System, work: Work, h: float) -> None:
                 a[i, axis, k] = 0.0
         if bodies > 1:
             for j in range(CHANNELS):
-                level = (h * EIGENVALUES[j]) ** 2
+                root = h * EIGENVALUES[j]
                 below = 0.0 + 0.0j
                 for k in range(STAGES):
                     below += TO_CHANNELS[j, k] * a[0, axis, k]
                 for i in range(1, bodies):
-                    below = (load[i, axis, j] + level * system.below[i, axis] * below) / pivot[i, axis, j]
+                    below = (load[i, axis, j] + coupling_below(system, i, axis, root) * below) / pivot[i, axis, j]
                     for k in range(STAGES):
                         a[i, axis, k] += (FROM_CHANNELS[k, j] * below).real
         for i in range(bodies):
@@ -132,6 +148,8 @@ def chain_acceleration(system: System, work: Work, ground: Ground) -> None:
     for i in range(1, bodies):
         for axis in range(system.axes):
             pull = system.below[i, axis] * (work.x[i - 1, axis] - work.x[i, axis])
+            pull += system.damping_below[i, axis] * (work.v[i - 1, axis] - work.v[i, axis])
             if i < bodies - 1:
                 pull += system.above[i, axis] * (work.x[i + 1, axis] - work.x[i, axis])
+                pull += system.damping_above[i, axis] * (work.v[i + 1, axis] - work.v[i, axis])
             work.a0[i, axis] = pull - (ground.x if axis == 0 else ground.y)

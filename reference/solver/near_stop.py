@@ -133,7 +133,7 @@ def pull_bodies(system: System, work: Work, h: float) -> float:
 
     Returns the largest change of the chain's accelerations, as a change of velocity over the speed.
     """
-    place, stage, ground = work.chain, work.stage, work.ground
+    place, velocity, stage, ground = work.chain, work.velocity, work.stage, work.ground
     bodies = work.x.shape[0]
     change = 0.0
     for k in range(STAGES):
@@ -143,8 +143,10 @@ def pull_bodies(system: System, work: Work, h: float) -> float:
         for axis in range(system.axes):
             for i in range(1, bodies):
                 pull = system.below[i, axis] * (place[i - 1, axis, k] - place[i, axis, k])
+                pull += system.damping_below[i, axis] * (velocity[i - 1, axis, k] - velocity[i, axis, k])
                 if i < bodies - 1:
                     pull += system.above[i, axis] * (place[i + 1, axis, k] - place[i, axis, k])
+                    pull += system.damping_above[i, axis] * (velocity[i + 1, axis, k] - velocity[i, axis, k])
                 pull -= ground[axis, k]
                 change = max(change, abs(pull - work.a[i, axis, k]) * duration)
                 work.a[i, axis, k] = pull
@@ -152,8 +154,9 @@ def pull_bodies(system: System, work: Work, h: float) -> float:
             drive = -ground[axis, k]
             if bodies > 1:
                 drive += system.above[0, axis] * (place[1, axis, k] - place[0, axis, k])
+                drive += system.damping_above[0, axis] * (velocity[1, axis, k] - velocity[0, axis, k])
             stage[POSITION + axis, k] = place[0, axis, k]
-            stage[VELOCITY + axis, k] = work.velocity[0, axis, k]
+            stage[VELOCITY + axis, k] = velocity[0, axis, k]
             stage[DRIVE + axis, k] = drive
     return change
 

@@ -25,7 +25,7 @@ SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT, TRAVEL = range(7)
 
 
 class System(NamedTuple):
-    """The paper's system in accelerations: link stiffness over the mass of the body it acts on, 1/s^2."""
+    """The paper's system in accelerations: link stiffness and damping over the mass of the body they act on."""
 
     small: bool  # equations (4.3) instead of (3.9)
     law: int
@@ -40,12 +40,15 @@ class System(NamedTuple):
     gravity: float  # m/s^2
     below: Array  # (N, 2), k_{i,i-1} / m_i, zero for the platform
     above: Array  # (N, 2), k_{i+1,i} / m_i, zero for the last body
+    damping_below: Array  # (N, 2), c_{i,i-1} / m_i, 1/s
+    damping_above: Array  # (N, 2), c_{i+1,i} / m_i, 1/s
     amplitudes: Array  # (3, 2), m/s^2
     exponents: Complex  # (2,), 1/s
     record: Array  # (K, 4), s and m/s^2, knots of a recorded motion, between which it is linear; (0, 4) without one
     duration: float  # s
     axes: int  # 1 for a motion in the plane of x and z: y stays exactly zero
-    fastest: float  # rad/s, bound of the chain's natural frequencies
+    fastest: float  # rad/s, bound of the chain's natural frequencies and rates of decay
+    damping_rate: float  # 1/s, bound of the rates of its dampers alone
 
 
 class Ground(NamedTuple):
@@ -98,10 +101,11 @@ class Demand(NamedTuple):
 
 def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = False, axes: int = 2) -> System:
     """The scene in compiled form. `v_reg`, m/s, selects the regularized law; None the set-valued one."""
-    masses, links = scene.masses, scene.stiffness
-    below, above = np.zeros((len(masses), 2)), np.zeros((len(masses), 2))
-    below[1:] = links / masses[1:, None]
-    above[:-1] = links / masses[:-1, None]
+    masses = scene.masses
+    (below, above), (damping_below, damping_above) = (
+        _per_mass(masses, links) for links in (scene.stiffness, scene.damping)
+    )
+    damping_rate = float(2.0 * (damping_below + damping_above).max())
     # without friction the lubricated law with f_c = 0 says the same and has no corner
     dry = scene.dry_friction
     smooth = scene.lubricated or scene.friction_coefficient == 0.0
@@ -119,13 +123,24 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
         gravity=GRAVITY,
         below=below,
         above=above,
+        damping_below=damping_below,
+        damping_above=damping_above,
         amplitudes=np.zeros((3, 2)) if scene.recorded else scene.amplitudes,
         exponents=np.zeros(2, np.complex128) if scene.recorded else exponents(scene),
         record=scene.record,
         duration=float(scene.duration),
         axes=axes,
-        fastest=float(np.sqrt(2.0 * (below + above).max())),  # Gershgorin's bound
+        fastest=float(np.sqrt(2.0 * (below + above).max())) + damping_rate,  # Gershgorin's bounds
+        damping_rate=damping_rate,
     )
+
+
+def _per_mass(masses: Array, links: Array) -> tuple[Array, Array]:
+    """Coefficients of the links, (N - 1, 2), over the mass of the body above and of the one below, (N, 2) each."""
+    below, above = np.zeros((len(masses), 2)), np.zeros((len(masses), 2))
+    below[1:] = links / masses[1:, None]
+    above[:-1] = links / masses[:-1, None]
+    return below, above
 
 
 def record_of(capacity: int, bodies: int) -> Record:

@@ -86,7 +86,7 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     feedback: Array  # (2, S, S) what its own stage accelerations add to that
     pivot: Complex  # (N, 2, CHANNELS) eliminated chain
     load: Complex  # (N, 2, CHANNELS)
-    gain: Complex  # (2, CHANNELS) what the chain gives back to the platform
+    gain: Complex  # (2, CHANNELS) what the platform's acceleration takes from its own drive through the chain
     stage: Array  # (9, S) the platform at the stages
     slopes: Array  # (12, S) derivative of its acceleration
     matrix: Array  # (2 S, 2 S)

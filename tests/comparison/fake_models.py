@@ -177,7 +177,8 @@ def known_demands(scene: Scene, supported: bool) -> Demands:
     return Demands(
         Outcome.OK.value, number, Estimate(np.nan, np.nan), number, None, (number,) * bodies, number,
         (number,) * (bodies - 1), number, number, support, support,
-        (number,) * bodies if supported else None, number, support, number, None if supported else Estimate(0.0, 0.25),
+        (number,) * bodies if supported else None, number, support, number, None,
+        None if supported else Estimate(0.0, 0.25),
     )  # fmt: skip
 
 

@@ -13,7 +13,7 @@ from fake_models import fake_hierarchy
 from known_analyses import collected
 
 from comparison.analysis.effective import PHASES, EffectiveValues, read_back, stated
-from comparison.study.models import Model
+from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.study import Study
 from reference.problem import ground_acceleration, load_scene
 
@@ -80,3 +80,12 @@ def test_the_summary_carries_them_with_null_for_what_is_not_known(command: Calla
     assert scene["effective"][0]["model"] == "scene"
     assert scene["effective"][0]["mass"] == 2.0
     assert scene["effective"][1]["mass"] is None
+
+
+def test_the_dampers_of_both_sides_are_those_of_the_scene() -> None:
+    scene = load_scene("fig3-I").with_values({"bodies.1.damping": [0.7, 0.3], "duration": 2.0})
+    assert stated(scene).damping == 0.7
+    models = {model.key: model for model in MODEL_HIERARCHY}
+    for key in ("small", "exact", "regularised", "translational"):
+        assert read_back((scene, models[key])).damping == pytest.approx(0.7, rel=1e-3), key
+    assert np.isnan(read_back((load_scene("fig3-I").with_values({"duration": 2.0}), models["exact"])).damping)

@@ -20,11 +20,13 @@ def chain(
     decay: Sequence[float] = (0.3, 0.3),
     duration: float = 20.0,
     lubrication: float | None = None,
+    damping: float | None = None,
 ) -> Scene:
     """Bodies of `masses` on links of `stiffness` (N-1, 2), SI; lubrication f_c replaces the dry friction if given."""
     law: dict[str, Any] = {"friction": friction} if lubrication is None else {"lubrication": lubrication}
     bodies: list[dict[str, Any]] = [{"mass": masses[0]}]
-    bodies += [{"mass": m, "stiffness": list(k)} for m, k in zip(masses[1:], stiffness)]
+    dampers = {} if damping is None else {"damping": damping}
+    bodies += [{"mass": m, "stiffness": list(k), **dampers} for m, k in zip(masses[1:], stiffness)]
     return Scene.model_validate(
         {
             "title": "chain",

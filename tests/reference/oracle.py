@@ -53,7 +53,7 @@ def smooth_run(
 
     def acceleration(t: float, y: np.ndarray) -> tuple[list[float], tuple[float, float, float, float]]:
         q = y[: 2 * n].tolist()
-        force = law.spring_forces(q)
+        force = law.link_forces(q, y[2 * n :].tolist())
         return force, law.smooth(t, q, force, float(y[2 * n]), float(y[2 * n + 1]), v_reg, inside)
 
     def rhs(t: float, y: np.ndarray) -> np.ndarray:
@@ -113,7 +113,7 @@ class _SetValued:
             speed = math.hypot(vx, vy)
             t, y = self.slide(t, y, vx / speed, vy / speed, math.log(speed))
         while t < law.duration:
-            force = law.spring_forces(y[: 2 * n].tolist())
+            force = law.link_forces(y[: 2 * n].tolist(), y[2 * n :].tolist())
             excess = law.excess(t, y[: 2 * n].tolist(), force)
             if excess < 0.0:
                 begin = t
@@ -136,14 +136,18 @@ class _SetValued:
         y[2 * n : 2 * n + 2] = 0.0
 
         def rhs(t: float, y: np.ndarray) -> np.ndarray:
-            return np.concatenate([y[2 * n :], [0.0, 0.0], _upper(law, t, law.spring_forces(y[: 2 * n].tolist()))])
+            return np.concatenate(
+                [y[2 * n :], [0.0, 0.0], _upper(law, t, law.link_forces(y[: 2 * n].tolist(), y[2 * n :].tolist()))]
+            )
 
         def observe(t: float, y: np.ndarray) -> Observation:
-            return law.absolute_squares(t, law.spring_forces(y[: 2 * n].tolist()), (0.0, 0.0, 0.0)), math.inf
+            return law.absolute_squares(
+                t, law.link_forces(y[: 2 * n].tolist(), y[2 * n :].tolist()), (0.0, 0.0, 0.0)
+            ), math.inf
 
         def onset(t: float, y: np.ndarray) -> float:
             q = y[: 2 * n].tolist()
-            return law.excess(t, q, law.spring_forces(q))
+            return law.excess(t, q, law.link_forces(q, y[2 * n :].tolist()))
 
         end = law.duration if until is None else until
         peaks = self.peaks if events else Peaks([0.0], n)
@@ -158,14 +162,14 @@ class _SetValued:
     def frozen(self, t: float, y: np.ndarray, angle: float) -> tuple[float, float, list[float]]:
         """Platform at speed 0+ with slip direction `angle`: (a along it, a across it, squares of the bodies)."""
         q = y[: 2 * self.n].tolist()
-        force = self.law.spring_forces(q)
+        force = self.law.link_forces(q, y[2 * self.n :].tolist())
         ex, ey = math.cos(angle), math.sin(angle)
         ax, ay, az, _ = self.law.sliding(t, q, force, ex, ey, 0.0)
         return ax * ex + ay * ey, ay * ex - ax * ey, self.law.absolute_squares(t, force, (ax, ay, az))
 
     def driving_angle(self, t: float, y: np.ndarray) -> float:
         q = y[: 2 * self.n].tolist()
-        sx, sy = self.law.holding(t, q[0], q[1], self.law.spring_forces(q))
+        sx, sy = self.law.holding(t, q[0], q[1], self.law.link_forces(q, y[2 * self.n :].tolist()))
         return math.atan2(sy, sx)
 
     def attractor(self, t: float, y: np.ndarray, angle: float, stride: float = 0.02) -> float:
@@ -207,9 +211,10 @@ class _SetValued:
         n, law = self.n, self.law
 
         def parts(z: np.ndarray) -> tuple[float, float, list[float], list[float], float, float]:
-            t, log_speed, ex, ey, *q = z[: 4 + 2 * n].tolist()
-            norm = math.hypot(ex, ey)
-            return t, math.exp(log_speed), q, law.spring_forces(q), ex / norm, ey / norm
+            t, log_speed, ex, ey, *q = z.tolist()
+            norm, speed = math.hypot(ex, ey), math.exp(log_speed)
+            ex, ey = ex / norm, ey / norm
+            return t, speed, q[: 2 * n], law.link_forces(q[: 2 * n], [speed * ex, speed * ey, *q[2 * n :]]), ex, ey
 
         def rhs(_: float, z: np.ndarray) -> np.ndarray:
             t, speed, q, force, ex, ey = parts(z)

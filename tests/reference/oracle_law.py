@@ -30,6 +30,7 @@ class Law:
         self.mass = [float(m) for m in scene.masses]
         self.total = sum(self.mass)
         self.links = [(float(kx), float(ky)) for kx, ky in scene.stiffness]
+        self.dampers = [(float(cx), float(cy)) for cx, cy in scene.damping]
         self.count = len(self.mass)
         friction = scene.isolator.friction
         self.slow, self.fast, self.rate = (
@@ -66,12 +67,12 @@ class Law:
         a, b = self.waves[0][2], self.waves[1][2]
         return a[0] * first + b[0] * second, a[1] * first + b[1] * second, a[2] * first + b[2] * second
 
-    def spring_forces(self, q: list[float]) -> list[float]:
-        """Spring force on each body, (2N) interleaved x, y, from positions interleaved likewise."""
+    def link_forces(self, q: list[float], v: list[float]) -> list[float]:
+        """Force of springs and dampers on each body, (2N) interleaved x, y, from positions and velocities likewise."""
         force = [0.0] * (2 * self.count)
-        for i, (kx, ky) in enumerate(self.links):
-            fx = kx * (q[2 * i + 2] - q[2 * i])
-            fy = ky * (q[2 * i + 3] - q[2 * i + 1])
+        for i, ((kx, ky), (cx, cy)) in enumerate(zip(self.links, self.dampers)):
+            fx = kx * (q[2 * i + 2] - q[2 * i]) + cx * (v[2 * i + 2] - v[2 * i])
+            fy = ky * (q[2 * i + 3] - q[2 * i + 1]) + cy * (v[2 * i + 3] - v[2 * i + 1])
             force[2 * i] += fx
             force[2 * i + 1] += fy
             force[2 * i + 2] -= fx

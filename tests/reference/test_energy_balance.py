@@ -30,6 +30,10 @@ class Run:
     regularization: float | None = None
 
 
+def damped(scene: Scene, damping: float | list[float]) -> Scene:
+    return scene.with_values({f"bodies.{i}.damping": damping for i in range(1, len(scene.bodies))})
+
+
 TWO = {"masses": [1.0, 1.0], "stiffness": [[17.0, 27.0]]}
 VERTICAL = [[1.0, 0.4], [-0.3, 1.2], [1.3, 0.9]]
 RUNS = [
@@ -44,6 +48,9 @@ RUNS = [
     Run("lubricated, vertical", chain(0.3, lubrication=0.8, amplitudes=VERTICAL, **TWO)),
     Run("lubricated, small", load_scene("fig4-viscous"), "small"),
     Run("frictionless", chain(0.25, 0.0, amplitudes=[[0.6, 0.2], [0.1, 0.6]], **TWO)),
+    Run("damped", damped(load_scene("fig3-I"), 0.03)),
+    Run("damped, regularized, small", damped(load_scene("fig3-II"), [0.7, 0.2]), "small", 1e-3),
+    Run("damped, lubricated, vertical", damped(chain(0.3, lubrication=0.8, amplitudes=VERTICAL, **TWO), 0.4)),
     Run("held", chain(0.25, 0.6, **TWO)),
     Run("one body", chain(0.25, 0.05, [2.0], amplitudes=[[2.0, 0.5], [0.3, 1.5]])),
 ]
@@ -90,19 +97,21 @@ def stored(run: Run, motion: Trajectory) -> np.ndarray:
 
 
 def powers(run: Run, motion: Trajectory) -> tuple[np.ndarray, np.ndarray]:
-    """Power of the ground and of friction, (T,) each, W."""
+    """Power of the ground, and of friction and dampers, (T,) each, W."""
     scene = run.scene
     ground = ground_acceleration(scene, PHASE, motion.time)
     velocity = motion.velocity
     shaking = -(scene.masses[:, None] * velocity[:, :, :2] * ground[:, None, :2]).sum(axis=(1, 2))
     friction = slip_force(run, motion)
+    dampers = -(scene.damping * np.diff(velocity[:, :, :2], axis=1) ** 2).sum(axis=(1, 2))
     if run.equations == "small":
         platform, place = velocity[:, 0, :2], motion.position[:, 0, :2]
         along = (place * friction[:, :2]).sum(axis=-1) * (ground[:, :2] * platform).sum(axis=-1)
         weight = (friction[:, :2] * platform).sum(axis=-1) * scene.total_mass * (GRAVITY + ground[:, 2])
-        return shaking, weight - scene.masses[0] * along / scene.radius  # the terms with xi'' x of (4.3)
+        friction = weight - scene.masses[0] * along / scene.radius  # the terms with xi'' x of (4.3)
+        return shaking, friction + dampers
     shaking -= scene.total_mass * velocity[:, 0, 2] * ground[:, 2]
-    return shaking, motion.contact_force * (friction * velocity[:, 0]).sum(axis=-1)
+    return shaking, motion.contact_force * (friction * velocity[:, 0]).sum(axis=-1) + dampers
 
 
 @pytest.mark.parametrize("run", RUNS, ids=lambda run: run.name)
@@ -134,6 +143,7 @@ def test_newton_s_law_holds_in_space_at_every_sample_of_a_slide(run):
     reaction = motion.contact_force[:, None] * (normal + slip_force(run, motion))
     force = np.zeros_like(place[:, :, :2])
     elastic = scene.stiffness * np.diff(place[:, :, :2], axis=1)
+    elastic += scene.damping * np.diff(motion.velocity[:, :, :2], axis=1)
     force[:, :-1] += elastic
     force[:, 1:] -= elastic
     force[:, 0] += reaction[:, :2]

@@ -51,6 +51,7 @@ def scenes(draw: st.DrawFn) -> Scene:
         periods=[number(0.3, 2.0), number(0.3, 2.0)],
         decay=[number(0.05, 1.0), number(0.05, 1.0)],
         duration=number(0.5, 8.0),
+        damping=draw(st.sampled_from([None, None, 0.02, 0.3, 5.0])),
     )
 
 

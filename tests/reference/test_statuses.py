@@ -189,4 +189,4 @@ def test_the_printed_rest_condition_is_looser_and_changes_the_answer():
     end = consistent.stick[0][1]
     run = reference.trajectory(scene, PHASE, "small", times=[end])
     q = run.position[0, :, :2].ravel().tolist()
-    assert law.excess(end, q, law.spring_forces(q)) == pytest.approx(0.0, abs=1e-6)
+    assert law.excess(end, q, law.link_forces(q, [0.0] * len(q))) == pytest.approx(0.0, abs=1e-6)

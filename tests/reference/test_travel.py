@@ -47,7 +47,7 @@ def test_the_instant_is_that_of_an_independent_solution(law: str, v_reg: float |
 
     def slope(t: float, state: np.ndarray) -> np.ndarray:
         q, v = state[:4].tolist(), state[4:].tolist()
-        force, ground = oracle.spring_forces(q), oracle.ground(t)
+        force, ground = oracle.link_forces(q, v), oracle.ground(t)
         inside = v_reg is not None and oracle.speed_square(q[0], q[1], v[0], v[1]) < v_reg**2
         ax, ay, _, _ = oracle.smooth(t, q, force, v[0], v[1], v_reg, inside)
         above = [force[2 + axis] / oracle.mass[1] - ground[axis] for axis in range(2)]

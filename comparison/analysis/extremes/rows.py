@@ -119,6 +119,7 @@ def scene(
     duration: float = 3.0,
     masses: Sequence[float] = (1.0, 1.0),
     link: Sequence[float] = (1.5, 1.2),
+    damping: float | Sequence[float] | None = None,
     storey: float = 1.0,
     **isolator: Any,
 ) -> dict[str, Any]:
@@ -139,6 +140,8 @@ def scene(
         kg, from below.
     link : (2,)
         Periods of the links in x and y, s.
+    damping : float or (2,), optional
+        Of the links: ratio of critical, or coefficients along x and y, N s/m.
     storey : float
         Height from body to body, m.
     **isolator
@@ -157,6 +160,8 @@ def scene(
         for number, mass in enumerate(masses)
     ]
     del bodies[0]["period"]
+    for body in bodies[1:]:
+        body["damping"] = damping
     return {
         "title": "one quantity at its extreme",
         "duration": duration,
@@ -267,6 +272,12 @@ def _chains() -> Iterator[Row]:
     yield Row("link periods, s", "0.001", stiffest, ("spatial",))
     for period in (1e-2, 30.0, 1e3):
         yield Row("link periods, s", f"{period:g}", scene(link=(period, 0.8 * period)), ALL)
+    for zeta in (0.0, 1e-6, 0.05, 1.0, 5.0):
+        yield Row("damping of the links, of critical", f"{zeta:g}", scene(damping=zeta), ALL)
+    yield Row("damping of the links, of critical", "0 along x, 2 along y", scene(damping=[0.0, 20.0]), ALL)
+    yield Row(
+        "damping of the links, of critical", "5, link periods 0.01 s", scene(damping=5.0, link=(0.01, 0.008)), ALL
+    )
 
 
 def _excitations() -> Iterator[Row]:

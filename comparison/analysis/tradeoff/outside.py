@@ -28,13 +28,14 @@ ALWAYS_LINEAR = 1e6  # m/s, corner of the lubricated law mu = f_c |v|: above any
 @njit  # type: ignore[untyped-decorator]
 def slope(
     t: float, y: Array, amplitudes: Array, s: Any, phase: Array, below: Array, above: Array,
-    mass_ratio: float, radius: float, friction: float, rise: float, rate: float, corner: float,
+    damping_below: Array, damping_above: Array, mass_ratio: float, radius: float, friction: float, rise: float,
+    rate: float, corner: float,
 ) -> Array:  # fmt: skip
     """
     Time derivative of y = (x, v), each (N, 2), under (3.9)-(3.13) and (4.4), friction linear below `corner`, m/s.
 
-    below, above: (N, 2), stiffness of the links over the mass of the body, 1/s^2. friction: at rest; rise: from there
-    to high speed, at this rate, s/m.
+    below, above: (N, 2), stiffness of the links over the mass of the body, 1/s^2; damping_below, damping_above: 1/s.
+    friction: at rest; rise: from there to high speed, at this rate, s/m.
     """
     count = len(below)
     z = np.exp(s * t + 1j * phase)
@@ -55,8 +56,10 @@ def slope(
             pull = -u[axis]
             if i > 0:
                 pull -= below[i, axis] * (x[i, axis] - x[i - 1, axis])
+                pull -= damping_below[i, axis] * (v[i, axis] - v[i - 1, axis])
             if i + 1 < count:
                 pull += above[i, axis] * (x[i + 1, axis] - x[i, axis])
+                pull += damping_above[i, axis] * (v[i + 1, axis] - v[i, axis])
             acceleration[i, axis] = pull
     ax, ay, _, _ = exact_acceleration(
         px, py, acceleration[0, 0], acceleration[0, 1], GRAVITY + u[2], speed2, factor * vx, factor * vy,
@@ -83,7 +86,8 @@ def constants_of(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, ...
         corner, friction = ALWAYS_LINEAR, system.friction * ALWAYS_LINEAR
     return (
         system.amplitudes, exponents(scene), np.asarray(phase, dtype=float), system.below, system.above,
-        system.mass_ratio, system.radius, friction, system.rise, system.rate, corner,
+        system.damping_below, system.damping_above, system.mass_ratio, system.radius, friction, system.rise,
+        system.rate, corner,
     )  # fmt: skip
 
 

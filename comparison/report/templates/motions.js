@@ -101,7 +101,7 @@ const DEMANDS = [
   ["contact_force_min", "smallest contact force, N", 1], ["contact_force_max", "largest contact force, N", 1],
   ["support_force_min", "smallest support force, N", 1], ["support_force_max", "largest support force, N", 1],
   ["torsion", "largest rotation about the vertical, mrad", 1e3, i => i ? `body ${i + 1}` : "platform"], ["stops", "number of stops", 1],
-  ["uplift", "largest uplift of a support, mm", MM], ["friction_energy", "energy dissipated by friction, J", 1],
+  ["uplift", "largest uplift of a support, mm", MM], ["friction_energy", "energy dissipated by friction, J", 1], ["damping_energy", "energy dissipated by dampers of the links, J", 1],
 ];
 function demandsTable(scene, place, models) {
   const demands = models.map(key => place.motions.find(motion => motion.model === key)?.demands ?? null);

@@ -22,11 +22,13 @@ ROUNDING_EXCESS = 1e-12  # of the squared friction limit: a drive that exceeds i
 
 @compiled
 def load_in_state(system: System, work: Work, ground: Ground) -> Load:
-    """What acts on the platform in the state x at the start of the step."""
+    """What acts on the platform in the state x, v at the start of the step."""
     fx, fy = -ground.x, -ground.y
     if work.x.shape[0] > 1:
         fx += system.above[0, 0] * (work.x[1, 0] - work.x[0, 0])
         fy += system.above[0, 1] * (work.x[1, 1] - work.x[0, 1])
+        fx += system.damping_above[0, 0] * (work.v[1, 0] - work.v[0, 0])
+        fy += system.damping_above[0, 1] * (work.v[1, 1] - work.v[0, 1])
     return Load(work.x[0, 0], work.x[0, 1], fx, fy, ground.x, ground.y, ground.z)
 
 

@@ -25,6 +25,7 @@ MAX_CHAIN_ANGLE = 0.7  # rad: most that the chain's fastest vibration may turn d
 LEAVING_TIME_FRACTION = 0.3
 MIN_LEAVING_TIME = 0.05  # of the period (Demand.period): and its lower bound
 MAX_STOPPED_SPEED = 1e-5  # of the loading's velocity: below it a platform that friction can hold has stopped
+MAX_DAMPED_JUMP = 0.01  # of the tolerance, in dampers: what rest may change in an acceleration by taking this speed
 MIN_FOLLOWED_SPEED = 1e-10  # of the loading's velocity: a stop whose arc decides the peak is followed down to it
 DECISIVE_ARC_FRACTION = 0.97  # of the peak so far: an arc that stays below it decides nothing
 LEVEL_TOLERANCE = 1e-9  # of ln v: a slide this close to v_reg has come down to it
@@ -127,6 +128,8 @@ def after_stop(system: System, work: Work, demand: Demand) -> int:
     unit = demand.unit * demand.period / (2.0 * pi)
     speed = exp(work.log_speed)
     if speed > MAX_STOPPED_SPEED * unit:
+        return STOPPING
+    if speed * system.damping_rate > MAX_DAMPED_JUMP * demand.tolerance * demand.unit:
         return STOPPING
     along, across = work.turning[ALONG, STAGES - 1], work.turning[ACROSS, STAGES - 1]
     load = load_in_state(system, work, ground_at(system, work, work.time))

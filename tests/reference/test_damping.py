@@ -1,0 +1,167 @@
+"""Dampers in the links: the paper's equations against independent solutions, closed forms, limits and symmetries."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from chains import chain
+from oracle import set_valued_run, smooth_run
+from scipy.linalg import expm
+
+import reference
+from reference.problem import Scene, SceneError, State, half_turn, linear, load_scene, own_axes, planar
+
+PHASES = [(0.3, 1.1), (2.0, 0.7)]
+TOLERANCE = 1e-8
+THREE: dict[str, Any] = {"masses": (2.0, 1.0, 0.5), "stiffness": [(150.0, 110.0), (180.0, 240.0)]}
+VERTICAL = [[1.0, 0.4], [-0.3, 1.2], [1.3, 0.9]]
+
+
+def damped(scene: Scene, *damping: float | list[float], **values: Any) -> Scene:
+    """One value for all links, or one for each."""
+    links = len(scene.bodies) - 1
+    each = damping if len(damping) > 1 else damping * links
+    return scene.with_values({f"bodies.{i + 1}.damping": zeta for i, zeta in enumerate(each)} | values)
+
+
+SCENES = {  # scene, equations, v_reg
+    "5 %": (damped(load_scene("fig3-I"), 0.05, duration=3.0), "exact", None),
+    "unequal axes": (damped(load_scene("fig3-II"), [2.0, 0.3], duration=3.0), "exact", None),
+    "small equations": (damped(load_scene("fig3-I"), 0.02, duration=3.0), "small", None),
+    "stiffly damped": (damped(load_scene("fig3-I"), 5.0, duration=3.0, **{"isolator.friction": 0.05}), "exact", None),
+    "lubricated": (damped(load_scene("fig4-viscous"), 0.1, duration=3.0), "exact", None),
+    "v_reg, nonproportional": (damped(chain(0.4, 0.07, **THREE, duration=3.0), 0.5, 0.01), "exact", 1e-2),
+    "vertical": (damped(chain(0.4, 0.05, amplitudes=VERTICAL, **THREE, duration=3.0), 0.02, 0.3), "exact", None),
+    "frictionless, small": (damped(chain(0.4, 0.0, **THREE, duration=3.0), 0.05, 0.2), "small", None),
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_every_factor_is_that_of_an_independent_solution(name: str) -> None:
+    """Plain equations in plain Python, stepped by SciPy, stops and onsets found on its dense output."""
+    scene, equations, v_reg = SCENES[name]
+    phase = PHASES[0]
+    if v_reg is None and scene.friction_coefficient > 0.0 and not scene.lubricated:
+        expected = set_valued_run(scene, phase, equations, [0.0], 1e-10).mu[0]
+    else:
+        expected = smooth_run(scene, phase, equations, v_reg, 1e-10).mu[0]
+    found = reference.amplification(scene, [phase], equations, v_reg, TOLERANCE)
+    assert found.status.tolist() == ["ok"]
+    np.testing.assert_allclose(found.mu[0], expected, rtol=2e-7)
+    undamped = damped(scene, 0.0)
+    assert (np.abs(reference.amplification(undamped, [phase], equations, v_reg).mu / found.mu - 1.0) > 1e-4).any()
+
+
+@pytest.mark.parametrize("equations", ["exact", "small"])
+def test_damping_of_zero_is_no_damping_to_the_last_bit(equations: str) -> None:
+    for scene in (load_scene("fig3-I"), load_scene("fig4-dry"), load_scene("fig4-viscous")):
+        without = reference.amplification(scene, PHASES, equations)
+        for zero in (0.0, [0.0, 0.0]):
+            found = reference.amplification(damped(scene, zero), PHASES, equations)
+            np.testing.assert_array_equal(found.mu, without.mu)
+            np.testing.assert_array_equal(found.error, without.error)
+
+
+@pytest.mark.parametrize(("equations", "v_reg"), [("exact", 1e-3), ("small", 1e-3), ("exact", None)])
+def test_factors_tend_to_those_without_damping_with_slope_one(equations: str, v_reg: float | None) -> None:
+    """mu_2 and the regularized peaks are smooth in the ratio of damping; the supremum at a stop is not."""
+    scene, bodies = damped(load_scene("fig3-I"), 0.0, duration=3.0), slice(0 if v_reg else 1, None)
+    without = reference.amplification(scene, PHASES, equations, v_reg, 1e-9).mu[:, bodies]
+    ratios = np.array([1e-5, 1e-6])
+    changes = [
+        np.abs(reference.amplification(damped(scene, zeta), PHASES, equations, v_reg, 1e-9).mu[:, bodies] - without)
+        for zeta in ratios
+    ]
+    np.testing.assert_allclose(np.log10(changes[0] / changes[1]), 1.0, atol=0.02)
+
+
+def test_a_damped_body_on_a_held_platform_decays_as_its_closed_form() -> None:
+    """x'' + 2 zeta w x' + w^2 x = 0 from rest at A, under, at and over critical damping."""
+    for zeta in (0.05, 1.0, 3.0):
+        w = 5.0
+        still = [[1e-9, 0.0], [0.0, 0.0]]
+        scene = chain(1.0, 5.0, masses=(1.0, 2.0), stiffness=[(2.0 * w * w,) * 2], amplitudes=still, duration=3.0)
+        released = State(np.array([[0.0, 0.0], [0.02, 0.01]]), np.zeros((2, 2)))
+        times = np.linspace(0.0, 3.0, 301)
+        motion = reference.trajectory(damped(scene, zeta), PHASES[0], times=times, initial=released, tolerance=1e-9)
+        free = np.array([expm(np.array([[0.0, 1.0], [-w * w, -2.0 * zeta * w]]) * t)[0, 0] for t in times])
+        np.testing.assert_allclose(motion.position[:, 1, 0], 0.02 * free, atol=1e-10)
+        np.testing.assert_allclose(motion.position[:, 1, 1], 0.01 * free, atol=1e-10)
+        assert motion.stick == [(0.0, 3.0)]
+
+
+def test_a_frictionless_chain_swings_in_its_complex_modes() -> None:
+    """Released in the real part of a mode, small equations: Re(phi exp(lambda t)) throughout, nonproportional."""
+    scene = damped(chain(0.5, 0.0, **THREE, amplitudes=[[1e-12, 0.0], [0.0, 0.0]], duration=2.0), 0.3, 0.02)
+    natural = reference.damped_modes(scene)
+    for mode in range(6):
+        shape, root = 1e-3 * natural.shape[0, :, mode], natural.eigenvalue[0, mode]
+        start = State(*(np.column_stack([part.real, np.zeros(3)]) for part in (shape, root * shape)))
+        times = np.linspace(0.0, 2.0, 101)
+        motion = reference.trajectory(scene, PHASES[0], "small", times=times, initial=start, tolerance=1e-10)
+        expected = (shape * np.exp(root * times)[:, None]).real
+        np.testing.assert_allclose(motion.position[:, :, 0], expected, atol=1e-9 * np.abs(shape).max())
+
+
+def test_symmetries_of_the_loading_hold_with_dampers_and_others_are_refused() -> None:
+    scene = damped(load_scene("fig3-I"), [1.0, 0.2], duration=3.0)
+    assert half_turn(scene).allowed
+    assert own_axes(scene).allowed
+    turned = [(PHASES[0][0] + np.pi, PHASES[0][1]), (PHASES[0][0] + np.pi, PHASES[0][1] + np.pi)]
+    found = reference.amplification(scene, [PHASES[0], *turned])
+    np.testing.assert_allclose(found.mu[1:], found.mu[[0, 0]], rtol=1e-6)
+    oblique = chain(0.25, 0.05, (1.0, 1.0), [(20.0, 20.0)], [[2.0, 1.0], [1.0, 0.5]], duration=5.0)
+    assert planar(damped(oblique, 0.1)).allowed
+    assert planar(damped(oblique, [1.0, 2.0])).reason == "loading across links that are not equally damped in x and y"
+    smooth = chain(0.25, 0.0, (1.0, 1.0), [(20.0, 20.0)], duration=5.0)
+    assert linear(smooth).allowed
+    assert linear(damped(smooth, 0.1)).reason.startswith("damped links")
+
+
+@pytest.mark.parametrize("amplitudes", [[[2.0, 1.0], [1.0, 0.5]], [[0.0, 0.0], [2.0, 1.0]]])
+def test_a_plane_motion_with_dampers_is_that_of_the_whole_model(amplitudes: list[list[float]]) -> None:
+    links = [(20.0, 20.0)] if amplitudes[0][0] else [(20.0, 30.0)]
+    damping = 0.2 if amplitudes[0][0] else [1.5, 0.4]
+    scene = damped(chain(0.25, 0.05, (1.0, 1.0), links, amplitudes, duration=5.0), damping)
+    assert planar(scene).allowed
+    reduced, whole = (reference.amplification(scene, PHASES, full=full) for full in (False, True))
+    assert (np.abs(reduced.mu - whole.mu) <= reduced.error + whole.error).all()
+
+
+def test_a_run_that_stops_early_loses_nothing_with_dampers() -> None:
+    for scene, equations, v_reg in SCENES.values():
+        early, whole = (reference.amplification(scene, PHASES, equations, v_reg, full=full) for full in (False, True))
+        assert (np.abs(early.mu - whole.mu) <= early.error + whole.error).all()
+        np.testing.assert_allclose(early.cap_share, whole.cap_share, rtol=1e-6)
+
+
+def test_the_ratio_and_the_coefficients_say_the_same() -> None:
+    scene = load_scene("fig3-I")
+    ratio = damped(scene, 0.05)
+    expected = 2.0 * 0.05 * np.sqrt(scene.stiffness * scene.masses[1:, None])
+    np.testing.assert_allclose(ratio.damping, expected, rtol=1e-15)
+    stated = damped(scene, expected[0].tolist())
+    np.testing.assert_array_equal(stated.damping, ratio.damping)
+    assert stated.digest() != ratio.digest() != scene.digest()
+    assert not scene.damping.any()
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "message"),
+    [
+        ("bodies.0.damping", 0.05, "bodies.0.damping = 0.05: the platform has no link below: remove this key"),
+        ("bodies.1.damping", -0.1, "bodies.1.damping = -0.1: must be finite, from 0 to 100"),
+        ("bodies.1.damping", 1e3, "bodies.1.damping = 1000.0: must be finite, from 0 to 100"),
+        ("bodies.1.damping", [1.0], "bodies.1.damping = [1.0]: must be a ratio of critical, or [cx, cy] in N s/m"),
+        ("bodies.1.damping", "much", "bodies.1.damping = 'much': must be a ratio of critical, or [cx, cy] in N s/m"),
+        ("bodies.1.damping", [1.0, -2.0], "bodies.1.damping.1 = -2.0: must be finite, from 0 to 1e+30 N s/m"),
+        ("bodies.1.damping", [1.0, 1e9], "bodies.1: damping ratio along y = 9"),
+    ],
+)
+def test_what_is_no_damping_is_refused_in_one_line(key: str, value: Any, message: str) -> None:
+    with pytest.raises(SceneError) as error:
+        load_scene("fig3-I").with_values({key: value})
+    assert message in str(error.value)
+    assert "\n" not in str(error.value)
