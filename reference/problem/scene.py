@@ -258,12 +258,11 @@ class Scene(Table):
         return ring_places(supports, ring)
 
     @property
-    def support_distances(self) -> NDArray[np.float64]:
-        """Distances of the supports from the axis of the links, m: (1,) on a ring, (K,) elsewhere, (0,) without any."""
-        places = self.support_places
-        if places is None:
-            return np.empty(0)
-        return np.hypot(*places.T) if isinstance(self.isolator.supports, list) else np.array([self.isolator.ring])
+    def support_radius(self) -> float | None:
+        """Radius of the ring, or root mean square distance of the supports from the axis, m; None without any."""
+        if isinstance(self.isolator.supports, list):
+            return math.sqrt(np.square(self.isolator.supports).sum(axis=1).mean())
+        return None if self.isolator.supports is None else self.isolator.ring
 
     @cached_property
     def offsets(self) -> NDArray[np.float64]:
