@@ -111,7 +111,7 @@ def drawn_boxes(scene: Scene) -> tuple[Array, Array, float]:
 
     Heights begin at zero. The boxes stay apart as long as an edge moves by no more than MAX_DIP of their distance.
     """
-    width = 2.0 * (scene.isolator.ring or float(scene.support_distances.max(initial=0.0)) or RING)
+    width = 2.0 * (scene.support_radius or scene.isolator.ring or RING)
     sizes: Array = np.array([body.size or [width, width, THICKNESS * width] for body in scene.bodies])
     width = float(sizes[:, :2].max())
     heights: Array = STORY * width * np.arange(len(sizes), dtype=np.float64)

@@ -1,9 +1,10 @@
 """
 How far the paper's assumptions carry: `python -m comparison.assumptions [SCENE ...]`.
 
-Varies the ring of supports and the heights of the bodies and prints how far mu_i then is from the translational result,
-and where it stays within 1 % and 5 %. Every variation is stored as it is finished: the same command goes on where it
-stopped. Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
+Varies the ring of supports, the heights of the bodies, their centers of mass and their angles. Prints how far mu_i then
+is from the translational result, where it stays within 1 % and 5 %, and how far uneven bodies turn. Every variation is
+stored as it is finished: the same command goes on where it stopped. Exit codes: 0 done; 2 a wrong scene or option;
+others as in `run_command`.
 """
 
 from __future__ import annotations
@@ -15,8 +16,8 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from comparison.analysis.assumptions.validity import Assumptions, describe
-from comparison.analysis.assumptions.variations import DURATION, MANY, PHASES, Cell, ranges
+from comparison.analysis.assumptions.validity import Assumptions, ValidityRanges
+from comparison.analysis.assumptions.variations import DURATION, MANY, PHASES, Cell
 from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, jobs, writing
 from comparison.cli.computing import computed
 from comparison.execution.executors import Pool
@@ -94,20 +95,21 @@ def _spatial(name: str) -> Scene:
 def _print(console: Console, scene: Scene, cells: Sequence[Cell]) -> None:
     console.print(f"{scene.title} ({scene.name}): largest change of mu_i against the translational model, per body")
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
-    for heading in ("ring, m", "heights x", "supports", "change, %", "u_D, %", "outcomes"):
+    for heading in ("ring, m", "heights x", "supports", "offset, m", "yaw, rad", "change, %", "u_D, %", "outcomes"):
         table.add_column(heading, justify="right", no_wrap=True)
     bodies = range(1, len(scene.bodies) + 1)
     for cell in cells:
-        isolator = cell.variation.of(scene).isolator
         table.add_row(
-            f"{isolator.ring:g}",
+            f"{cell.variation.ring * (scene.support_radius or 0.0):g}",
             f"{cell.variation.height:g}",
-            str(isolator.supports),
+            str(cell.variation.supports or scene.isolator.support_count),
+            f"{cell.variation.offset * (scene.support_radius or 0.0):g}",
+            f"{cell.variation.yaw:g}",
             "  ".join(f"{100.0 * cell.largest(body):.3f}" for body in bodies),
             "  ".join(f"{100.0 * cell.error_estimate(body):.3f}" for body in bodies),
             ", ".join(sorted(set(cell.status))),
         )
     console.print(table)
     console.print(f"{sum(cell.cost for cell in cells):.0f} s of compute")
-    for line in ranges([scene], cells):
-        console.print(describe(line))
+    for line in ValidityRanges([scene], cells).lines(scene):
+        console.print(line)

@@ -735,7 +735,7 @@ class Assumption(Part):
 
 
 class Variation(Part):
-    """The scene with another ring of supports and other heights."""
+    """The scene with another ring of supports and other heights, or uneven."""
 
     ring: float
     """radius of the ring, as a multiple of the stated one"""
@@ -743,6 +743,10 @@ class Variation(Part):
     """heights of the bodies, as multiples of the stated ones"""
     supports: int | None
     """number of supports; null for the stated one"""
+    offset: float
+    """by which centers of mass above the platform are moved along x and along y, over the radius of the ring"""
+    yaw: float
+    """by which bodies above the platform and their links are turned about the vertical, rad"""
 
 
 class AssumptionCell(Part):
@@ -762,6 +766,8 @@ class AssumptionCell(Part):
     """what went wrong, or empty"""
     cost: float
     """compute time of the spatial model, s"""
+    torsion: list[list[Number]]
+    """largest rotation about the vertical by phase pair and body, rad, of an uneven variation; else empty"""
 
 
 class ValidityRange(Part):
@@ -773,8 +779,8 @@ class ValidityRange(Part):
     """number of the body; 1 is the platform"""
     share: float
     """largest relative change"""
-    key: Literal["ring", "height"]
-    """what varies: ring, m, or height, as a multiple of the stated one"""
+    key: Literal["ring", "height", "offset", "yaw"]
+    """what varies: ring, m; height, as a multiple of the stated one; offset, m along x and y; or yaw, rad"""
     holds: float | None
     """last value up to which every value tried stays within; null if none does"""
     fails: float | None

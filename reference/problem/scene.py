@@ -20,7 +20,7 @@ from reference.problem.friction import DryFriction
 from reference.problem.ranges import MAX_CYCLES, SCENE
 from reference.problem.record_loading import with_samples
 from reference.problem.scene_error import EXCITATIONS, FRICTIONS, MisfitError, SceneError, first_error
-from reference.problem.supports import edge_distance, ring_places
+from reference.problem.supports import on_one_line, ring_places, static_shares
 from reference.problem.tables import (
     ALL,
     LINKS,
@@ -41,7 +41,7 @@ from reference.problem.tables import (
 )
 
 MAX_BODIES = 10_000
-MIN_EDGE_DISTANCE = 1e-9  # of the largest distance of a support: nearer, a point is on the edge of the supports
+MIN_STATIC_SHARE = 1e-9  # of the weight, on a support: one with less carries nothing
 MAX_SUPPORT_DEFLECTION = 0.1  # of the radius: what supports may give way by under the weight
 DERIVED_ROUNDING = 1e-12  # relative, of a value that follows from others
 
@@ -165,7 +165,7 @@ class Scene(Table):
                 raise MisfitError("isolator.support_stiffness", bearings, rule)
 
     def _check_supports(self) -> None:
-        """The supports must span an area, and the weight must stand inside it."""
+        """The supports must span an area, and each must carry a part of the weight at rest."""
         supports, ring, places = self.isolator.supports, self.isolator.ring, self.support_places
         if isinstance(supports, list) and ring is not None:
             raise MisfitError("isolator.ring", ring, "supports at stated positions are on no ring: remove this key")
@@ -173,11 +173,12 @@ class Scene(Table):
             return
         if len(np.unique(places, axis=0)) < len(places):
             raise MisfitError("isolator.supports", supports, "two supports are at the same place: remove one of them")
-        least = MIN_EDGE_DISTANCE * self.support_distances.max()
-        if not edge_distance(places, places.mean(axis=0)) > least:
+        if on_one_line(places):
             raise MisfitError("isolator.supports", supports, "the supports are on one line: move one of them off it")
-        if not edge_distance(places, self.center_of_mass) > least:
-            rule = "must be inside the supports, at whose edge one carries nothing: reduce the offsets or move supports"
+        shares = static_shares(places, self.center_of_mass)
+        if not shares.min() > MIN_STATIC_SHARE:
+            place = ", ".join(f"{along:.4g}" for along in places[shares.argmin()])
+            rule = f"the support at [{place}] would carry nothing at rest: reduce the offsets or move the supports"
             raise MisfitError("bodies: center of mass of all [x, y] in m", self.center_of_mass.tolist(), rule)
 
     def with_values(self, values: Mapping[str, Any]) -> Scene:
@@ -270,12 +271,11 @@ class Scene(Table):
         return ring_places(supports, ring)
 
     @property
-    def support_distances(self) -> NDArray[np.float64]:
-        """Distances of the supports from the axis of the links, m: (1,) on a ring, (K,) elsewhere, (0,) without any."""
-        places = self.support_places
-        if places is None:
-            return np.empty(0)
-        return np.hypot(*places.T) if isinstance(self.isolator.supports, list) else np.array([self.isolator.ring])
+    def support_radius(self) -> float | None:
+        """Radius of the ring, or root mean square distance of the supports from the axis, m; None without any."""
+        if isinstance(self.isolator.supports, list):
+            return math.sqrt(np.square(self.isolator.supports).sum(axis=1).mean())
+        return None if self.isolator.supports is None else self.isolator.ring
 
     @cached_property
     def offsets(self) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""Where the supports of the platform stand, and how far inside them a center of mass lies."""
+"""Where the supports of the platform stand, what they carry at rest, and how far inside them a center of mass lies."""
 
 from __future__ import annotations
 
@@ -7,11 +7,47 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+MIN_EXTENT_RATIO = 1e-6  # of the places across a line over those along it
+
 
 def ring_places(count: int, radius: float) -> Array:
     """Places (count, 2) on a ring, at angles 2 pi (k + 1/2) / count."""
     angles = 2.0 * np.pi * (np.arange(count) + 0.5) / count
     return radius * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def static_shares(places: Array, center: Array) -> Array:
+    """
+    Shares of a weight on elastic supports that are equally stiff: N_k = c0 + c1 x_k + c2 y_k, in balance with it.
+
+    Parameters
+    ----------
+    places : ndarray, (K, 2), m
+        Not on one line.
+    center : ndarray, (2,), m
+        Where the weight acts.
+
+    Returns
+    -------
+    ndarray, (K,)
+        Negative where a support would have to pull.
+
+    Examples
+    --------
+    >>> square = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
+    >>> static_shares(square, np.array([1.0, 0.0])).round(12).tolist()
+    [0.5, 0.0, 0.0, 0.5]
+    """
+    middle = places.mean(axis=0)
+    arms = places - middle
+    shares: Array = 1.0 / len(places) + arms @ np.linalg.solve(arms.T @ arms, center - middle)
+    return shares
+
+
+def on_one_line(places: Array) -> bool:
+    """Whether places (K, 2) span no area, as far as double precision tells."""
+    extents = np.linalg.svd(places - places.mean(axis=0), compute_uv=False)
+    return bool(extents[1] <= MIN_EXTENT_RATIO * extents[0])
 
 
 def edge_distance(places: Array, point: Array) -> float:

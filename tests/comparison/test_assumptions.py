@@ -4,6 +4,7 @@ first variation that fails, and the real models show that turning fades with the
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from fake_models import fake_hierarchy
 from known_analyses import collected
 from matplotlib.image import imread
 
-from comparison.analysis.assumptions.validity import ASSUMPTIONS, Assumptions, describe
+from comparison.analysis.assumptions.validity import ASSUMPTIONS, Assumptions, ValidityRanges, describe
 from comparison.analysis.assumptions.variations import FEW, MANY, PHASES, Cell, Variation, ranges
 from comparison.cli.assumptions import main
 from comparison.report.figures.assumptions import assumption_figure_name, draw_assumptions
@@ -149,3 +150,39 @@ def test_a_wider_ring_turns_the_real_platform_less() -> None:
     narrow, wide = _turning(load_scene("fig3-I"), [Variation(ring=0.5), Variation(ring=4.0)])
     for body in (1, 2):
         assert narrow.largest(body) > 3.0 * wide.largest(body), "eight times the ring; mu_1 also has errors of 3e-4"
+
+
+def test_an_uneven_variation_moves_what_stands_on_the_platform_and_nothing_else() -> None:
+    varied = Variation(offset=0.1, yaw=0.2).of(STATED)
+    assert varied.offsets.tolist() == [[0.0, 0.0], [0.1, 0.1]]
+    assert varied.yaws.tolist() == [0.0, 0.2]
+    assert varied.with_values({"bodies.1.offset": None, "bodies.1.yaw": None}) == STATED
+
+
+def test_positions_of_supports_are_varied_by_the_same_factor() -> None:
+    square = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]
+    scene = STATED.with_values({"isolator.supports": square, "isolator.ring": None})
+    assert Variation(ring=0.5).of(scene).support_places.tolist() == (0.5 * np.array(square)).tolist()
+    three = Variation(supports=3).of(scene).isolator
+    assert (three.supports, three.ring) == (3, pytest.approx(np.sqrt(2.0)))
+
+
+def test_what_uneven_bodies_change_is_said_with_their_torsion() -> None:
+    even = _cell(Variation(), 0.002, 0.001)
+    moved = replace(_cell(Variation(offset=0.1), 0.03, 0.02), torsion=((1e-3, 5e-3), (2e-3, 4e-3), (0.0, 0.0)))
+    unknown = _cell(Variation(yaw=0.2), 0.002, 0.002)
+    lines = ValidityRanges([STATED], [even, moved, unknown]).lines(STATED)
+    moving = "with centers of mass moved along x and along y by up to 0 m, no longer by 0.1 m"
+    assert f"mu_1 stays within 1 % {moving}" in lines
+    assert "mu_1 stays within 1 % with bodies and links turned by up to 0.2 rad, the largest tried" in lines
+    first, second = lines[-2:]
+    assert first.endswith("change mu_1 by up to 3 %, mu_2 by up to 0 %; they turn by up to 5 mrad")
+    assert second.endswith("no motion says how far they turn")
+
+
+def test_real_bodies_off_the_axis_turn_about_it() -> None:
+    even, moved = _turning(load_scene("fig3-I"), [Variation(), Variation(offset=0.1)])
+    assert even.torsion == ()
+    assert np.array(moved.torsion).shape == (len(PHASES), 2)
+    assert np.array(moved.torsion)[:, 1].min() > 1e-3
+    assert moved.largest(2) > 2.0 * even.largest(2)

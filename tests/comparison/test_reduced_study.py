@@ -26,7 +26,7 @@ from comparison.study.models import (
 from comparison.study.reductions import reductions
 from comparison.study.speedup import speedup
 from comparison.study.study import Study
-from reference.problem import Scene, builtin_scenes, load_scene
+from reference.problem import Scene, builtin_scenes, load_scene, mirror_symmetric
 from reference.problem.symmetry import sources
 
 GRID = 4
@@ -94,6 +94,40 @@ def test_on_an_odd_ring_the_spatial_model_is_computed_in_full() -> None:
         multibody.trajectory(scene, (2.0 + shift, 0.7), model="spatial").position[-1, 0, 0] for shift in (0.0, np.pi)
     )
     assert abs(here + there) > 1e-6 * abs(here)
+
+
+RECTANGLE = [[1.2, 0.8], [-1.2, 0.8], [-1.2, -0.8], [1.2, -0.8], [0.0, 0.8], [0.0, -0.8]]
+
+
+def test_positions_that_are_their_own_mirror_images_have_the_symmetry_of_the_loading() -> None:
+    scene = short().with_values({"isolator.supports": RECTANGLE, "isolator.ring": None})
+    assert mirror_symmetric(scene)
+    here, *there = (
+        multibody.amplification(scene, [np.add((2.0, 0.7), shift)], model="spatial")
+        for shift in ([0.0, 0.0], [np.pi, 0.0], [0.0, np.pi])
+    )
+    for mirrored in there:
+        assert (abs(here.mu - mirrored.mu) <= here.error + mirrored.error).all()
+    assert len(Study((scene,), GRID, 1e-3, [SPATIAL]).solved(scene, SPATIAL)) == GRID**2 // 4
+
+
+@pytest.mark.parametrize(
+    ("values", "shift"),
+    [
+        ({"bodies.1.offset": [0.1, 0.05]}, [np.pi, 0.0]),
+        ({"bodies.1.yaw": 0.5}, [np.pi, 0.0]),
+        ({"isolator.ring": None, "isolator.supports": [[1.2, 0.8], [-1.0, 0.9], [-0.6, -1.2]]}, [np.pi, np.pi]),
+    ],
+)
+def test_an_uneven_scene_is_computed_in_full(values: dict[str, Any], shift: list[float]) -> None:
+    scene = short().with_values(values)
+    assert not mirror_symmetric(scene)
+    assert len(Study((scene,), GRID, 1e-3, [SPATIAL]).solved(scene, SPATIAL)) == GRID**2
+    # with reason: the mirrored or turned loading has another motion
+    here, there = (
+        multibody.trajectory(scene, np.add((2.0, 0.7), by), model="spatial").position[-1, :, :2] for by in (0.0, shift)
+    )
+    assert np.abs(np.abs(here) - np.abs(there)).max() > 1e-5 * np.abs(here).max()
 
 
 def test_the_phase_of_a_harmonic_without_amplitude_is_not_varied() -> None:

@@ -38,6 +38,8 @@ def test_the_answer_is_that_of_all_supports_and_rotations(name: str) -> None:
         level("fig3-I", 1.0, isolator={"ring": 0.05}),  # friction, 0.3 m above, lifts it off a support
         level("fig3-I", 1.0, isolator={"support_stiffness": 1e5}),
         level("fig4-viscous", 1.0),  # friction without a limit
+        level("fig3-I", 1.0).with_values({"bodies.0.offset": [0.1, 0.0]}),
+        level("fig3-I", 1.0).with_values({"isolator.ring": None, "isolator.supports": [[1, 1], [-1, 1], [0, -1]]}),
     ],
 )
 def test_it_is_refused_where_something_may_turn(scene: Scene) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
+import numpy as np
 import xarray as xr
 
 from comparison.analysis.assumptions.variations import (
@@ -51,16 +52,18 @@ ASSUMPTIONS = (
     Assumption(
         "(ii)",
         "the centers of mass lie on one axis through the center of the circle",
-        "Kept: a scene states heights, no eccentricities. The heights above the contacts, which the paper's equations "
-        "do not contain, are free.",
-        "no",
+        "Kept by the equations and the translational model. Dropped in the spatial model where a scene states `offset` "
+        "of a center of mass or positions of supports: links stand on the axis, so eccentric bodies turn about it. The "
+        "heights above the contacts, which the paper's equations do not contain, are free.",
+        "yes",
     ),
     Assumption(
         "(iii)",
         "the principal axes of inertia of all bodies are parallel",
-        "Kept: bodies are boxes along the axes. Their moments of inertia, which do not enter translation, follow from "
-        "masses and sizes.",
-        "no",
+        "Kept by the equations and the translational model. Dropped in the spatial model where a scene states `yaw` of "
+        "a body: its box and the directions of its link's stiffness are turned. Moments of inertia, which do not enter "
+        "translation, follow from masses and sizes.",
+        "yes",
     ),
     Assumption(
         "(iv)",
@@ -99,8 +102,10 @@ class ValidityRanges:
     duration: float = DURATION  # s
 
     def lines(self, scene: Scene) -> list[str]:
-        """One line per body, share and direction."""
-        return [describe(validity) for validity in ranges([scene], self.cells)]
+        """One line per body, share and direction, and one per uneven variation."""
+        uneven = [cell for cell in self.cells if cell.scene == scene.name and cell.variation.is_uneven]
+        within = [describe(validity) for validity in ranges([scene], self.cells)]
+        return within + [describe_torsion(scene, cell) for cell in uneven]
 
     def listed(self) -> dict[str, Any]:
         """For summary.json: assumptions, phase pairs, duration, every cell and every range."""
@@ -149,7 +154,39 @@ def describe(validity: Range) -> str:
             return f"{what} at no ring tried, up to {validity.fails:g} m"
         fails = "every smaller one tried too" if validity.fails is None else f"no longer at {validity.fails:g} m"
         return f"{what} with rings from {validity.holds:g} m, {fails}"
+    if validity.key in ("offset", "yaw"):
+        moved, unit = "bodies and links turned", "rad"
+        if validity.key == "offset":
+            moved, unit = "centers of mass moved along x and along y", "m"
+        if validity.holds is None:
+            return f"{what} with {moved} by nothing tried, 0 included"
+        fails = "the largest tried" if validity.fails is None else f"no longer by {validity.fails:g} {unit}"
+        return f"{what} with {moved} by up to {validity.holds:g} {unit}, {fails}"
     if validity.holds is None:
         return f"{what} at no heights tried"
     fails = "the largest tried" if validity.fails is None else f"no longer at {validity.fails:g} times"
     return f"{what} with heights up to {validity.holds:g} times the stated ones, {fails}"
+
+
+def describe_torsion(scene: Scene, cell: Cell) -> str:
+    """
+    One line for people: what an uneven variation changes, and how far its bodies turn about the vertical.
+
+    Parameters
+    ----------
+    scene : Scene
+    cell : Cell
+
+    Returns
+    -------
+    str
+    """
+    moved = [f"off the axis by {cell.variation.offset * (scene.support_radius or 0.0):g} m along x and y"]
+    turned = [f"with their links at {cell.variation.yaw:g} rad to the axes"]
+    where = " and ".join((moved if cell.variation.offset else []) + (turned if cell.variation.yaw else []))
+    bodies = range(1, len(scene.bodies) + 1)
+    changes = ", ".join(f"mu_{body} by up to {100.0 * cell.largest(body):.2g} %" for body in bodies)
+    turns = np.array(cell.torsion)
+    known = turns.shape == (len(PHASES), len(scene.bodies)) and np.isfinite(turns).all()
+    torsion = f"they turn by up to {1e3 * turns.max():.3g} mrad" if known else "no motion says how far they turn"
+    return f"the bodies above the platform {where} change {changes}; {torsion}"

@@ -1,5 +1,5 @@
 """
-How far the paper's assumptions carry: the spatial model with other rings of supports and other heights of the bodies.
+How far the paper's assumptions carry: the spatial model with other supports, heights, centers of mass and angles.
 
 The translational model, which no such variation changes, is what they are held against.
 """
@@ -18,7 +18,7 @@ from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
-from reference.problem import Scene, untilted
+from reference.problem import Scene, demands, untilted
 
 Array = NDArray[np.float64]
 
@@ -30,20 +30,42 @@ WITHIN = (0.01, 0.05)  # of mu_i
 
 @dataclass(frozen=True)
 class Variation:
-    """The scene with another ring and other heights, as multiples of its own; supports: how many, None: its own."""
+    """
+    The scene with another ring and other heights, as multiples of its own, on other supports, or uneven.
+
+    supports: how many on a ring, None: its own. offset: by which the centers of mass above the platform are moved along
+    x and along y, over the radius of the ring. yaw: by which the bodies above it and their links are turned, rad.
+    """
 
     ring: float = 1.0
     height: float = 1.0
     supports: int | None = None
+    offset: float = 0.0
+    yaw: float = 0.0
+
+    @property
+    def is_uneven(self) -> bool:
+        """Whether centers of mass leave the axis, or bodies and links their common directions."""
+        return self.offset != 0.0 or self.yaw != 0.0
+
+    @property
+    def is_usual(self) -> bool:
+        """Whether it only varies the ring and the heights."""
+        return self.supports is None and not self.is_uneven
 
     def of(self, scene: Scene) -> Scene:
-        isolator = scene.isolator
-        assert isolator.ring is not None
-        values: dict[str, Any] = {"isolator.ring": isolator.ring * self.ring}
-        values["isolator.supports"] = self.supports or isolator.supports
+        radius, stated = scene.support_radius, scene.isolator.supports
+        assert radius is not None
+        values: dict[str, Any] = {"isolator.supports": self.supports or stated, "isolator.ring": radius * self.ring}
+        if isinstance(stated, list) and self.supports is None:
+            values = {"isolator.supports": self.ring * np.array(stated)}
         for number, body in enumerate(scene.bodies):
             assert body.height is not None
             values[f"bodies.{number}.height"] = body.height * self.height
+            if number and self.offset:
+                values[f"bodies.{number}.offset"] = scene.offsets[number] + self.offset * radius
+            if number and self.yaw:
+                values[f"bodies.{number}.yaw"] = float(scene.yaws[number] + self.yaw)
         return scene.with_values(values)
 
 
@@ -51,11 +73,15 @@ FEW = (
     *(Variation(ring=ring) for ring in (0.5, 1.0, 2.0, 8.0)),
     *(Variation(height=height) for height in (0.0, 0.25, 0.5)),
     Variation(supports=3),
+    Variation(offset=0.1),  # a twentieth of the width: what codes take for accidental
+    Variation(yaw=0.2),
 )
 MANY = (
     *(Variation(ring, height) for ring in (0.5, 1.0, 2.0, 4.0, 8.0) for height in (0.0, 0.25, 0.5, 1.0)),
     *(Variation(ring, 2.0) for ring in (1.0, 2.0, 4.0, 8.0)),  # on the narrowest ring the scenes would topple
     Variation(supports=3),
+    *(Variation(offset=offset) for offset in (0.025, 0.05, 0.1, 0.2)),
+    *(Variation(yaw=yaw) for yaw in (0.05, 0.1, 0.2, 0.4)),
 )
 
 
@@ -66,7 +92,8 @@ class Cell:
 
     change: mu over mu of the translational model minus one, per phase pair and body, NaN without a value; uncertainty:
     of it, the two error estimates together. status: of each phase pair. error_message: what went wrong, or "". cost: s
-    of compute of the spatial model.
+    of compute of the spatial model. torsion: rad, largest rotation of every body about the vertical per phase pair, of
+    an uneven variation; else empty.
     """
 
     scene: str
@@ -76,6 +103,7 @@ class Cell:
     status: tuple[str, ...]
     error_message: str = ""
     cost: float = 0.0
+    torsion: tuple[tuple[float, ...], ...] = ()
 
     def largest(self, body: int) -> float:
         """Largest |change| of mu_i over the phase pairs; NaN if one has no value: nothing is claimed then."""
@@ -93,9 +121,9 @@ class Cell:
 @dataclass(frozen=True)
 class Range:
     """
-    Where mu_i stays within `share` on one line of variations. key: "ring", m, or "height", times the stated ones.
-    holds: the last value up to which every value tried does, coming from where bodies turn least (wide rings, low
-    heights), None if none; fails: the next one tried, None if all hold.
+    Where mu_i stays within `share` on one line of variations. key: "ring", m, "height", times the stated ones,
+    "offset", m, or "yaw", rad. holds: the last value up to which every value tried does, coming from where bodies turn
+    least (wide rings, low heights, even bodies), None if none; fails: the next one tried, None if all hold.
     """
 
     scene: str
@@ -107,6 +135,7 @@ class Range:
 
 
 Arguments = tuple[Scene, Model, Variation | None, float]
+Rows = tuple[tuple[float, ...], ...]  # by phase pair and body
 
 
 @dataclass(frozen=True)
@@ -152,7 +181,7 @@ def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> 
 
 def variation_tasks(study: Study, stage: str, variations: Sequence[Variation] = FEW) -> list[Task]:
     """
-    `variation_arguments` as tasks.
+    `variation_arguments` as tasks, then the torsion of the uneven ones.
 
     Parameters
     ----------
@@ -165,16 +194,19 @@ def variation_tasks(study: Study, stage: str, variations: Sequence[Variation] = 
     -------
     list of Task
     """
+    arguments = variation_arguments(study, variations)
+    uneven = [argument for argument in arguments if argument[2] is not None and argument[2].is_uneven]
     return [
         Task(
-            varied,
-            arguments,
+            function,
+            argument,
             stage,
-            SECONDS["translational" if arguments[2] is None else "spatial"],
-            arguments[0],
+            SECONDS["translational" if argument[2] is None else "spatial"],
+            argument[0],
             needs_compiled_reference=False,
         )
-        for arguments in variation_arguments(study, variations)
+        for function, asked in ((varied, arguments), (torsion, uneven))
+        for argument in asked
     ]
 
 
@@ -193,10 +225,15 @@ def assumption_cells(tasks: Sequence[Task], results: TaskResults) -> list[Cell]:
     -------
     list of Cell
     """
-    answers = [(task.argument, results.value(task, _without_value)) for task in tasks]
+    answers = [(task.argument, results.value(task, _without_value)) for task in tasks if task.function is varied]
+    turns = {
+        (task.argument[0].name, task.argument[2]): results.value(task, lambda *failed: ())
+        for task in tasks
+        if task.function is torsion
+    }
     held_against = {scene.name: answer for (scene, _, variation, _), answer in answers if variation is None}
     return [
-        _cell(scene, variation, answer, held_against[scene.name])
+        _cell(scene, variation, answer, held_against[scene.name], turns.get((scene.name, variation), ()))
         for (scene, _, variation, _), answer in answers
         if variation is not None
     ]
@@ -223,19 +260,41 @@ def varied(task: Arguments) -> Solved:
     return Solved(result.mu, result.error, tuple(map(str, result.status)), "", float(result.cost))
 
 
+def torsion(task: Arguments) -> Rows:
+    """
+    Largest rotation of every body about the vertical at PHASES, rad, in an uneven variation. Runs inside a worker.
+
+    Parameters
+    ----------
+    task : tuple
+        As in `variation_arguments`.
+
+    Returns
+    -------
+    tuple of tuple of float
+        By phase pair and body; NaN where a motion ends early.
+    """
+    scene, model, variation, tolerance = task
+    assert variation is not None
+    changed = variation.of(scene.with_values({"duration": min(scene.duration, DURATION)}))
+    motions = (imported(model.trajectory)(changed, phase, **model.settings, tolerance=tolerance) for phase in PHASES)
+    return tuple(tuple(turn.value for turn in demands(motion).torsion or ()) for motion in motions)
+
+
 def _without_value(task: Arguments, failed: TaskResult) -> Solved:
     nothing = np.full((len(PHASES), len(task[0].bodies)), np.nan)
     return Solved(nothing, nothing, (failed.outcome.value,) * len(PHASES), failed.error_message, 0.0)
 
 
-def _cell(scene: Scene, variation: Variation, spatial: Solved, plain: Solved) -> Cell:
+def _cell(scene: Scene, variation: Variation, spatial: Solved, plain: Solved, turns: Rows) -> Cell:
     change = spatial.mu / plain.mu - 1.0
     uncertainty = np.hypot(spatial.error, plain.error) / plain.mu
     error_message = spatial.error_message or plain.error_message
-    return Cell(scene.name, variation, _rows(change), _rows(uncertainty), spatial.status, error_message, spatial.cost)
+    rows = _rows(change), _rows(uncertainty)
+    return Cell(scene.name, variation, *rows, spatial.status, error_message, spatial.cost, turns)
 
 
-def _rows(array: Array) -> tuple[tuple[float, ...], ...]:
+def _rows(array: Array) -> Rows:
     return tuple(tuple(map(float, row)) for row in array)
 
 
@@ -243,7 +302,7 @@ def ranges(scenes: Sequence[Scene], cells: Sequence[Cell]) -> list[Range]:
     """
     Where every mu_i stays within each share of WITHIN.
 
-    Over rings at the stated heights, and over heights at the stated ring.
+    Over rings at the stated heights, over heights at the stated ring, over offsets and over angles at both.
 
     Parameters
     ----------
@@ -256,15 +315,24 @@ def ranges(scenes: Sequence[Scene], cells: Sequence[Cell]) -> list[Range]:
     """
     validity = []
     for scene in scenes:
-        usual = [cell for cell in cells if cell.scene == scene.name and cell.variation.supports is None]
+        of_scene = [cell for cell in cells if cell.scene == scene.name]
+        usual = [cell for cell in of_scene if cell.variation.is_usual]
+        stated = [cell for cell in usual if cell.variation == Variation()]
+        moved = [cell for cell in of_scene if cell.variation.offset]
+        angled = [cell for cell in of_scene if cell.variation.yaw]
         for body in range(1, len(scene.bodies) + 1):
             for share in WITHIN:
                 wide = [cell for cell in usual if cell.variation.height == 1.0]
                 low = [cell for cell in usual if cell.variation.ring == 1.0]
-                ring = scene.isolator.ring or float("nan")
+                ring = scene.support_radius or float("nan")
                 rings = sorted(((cell.variation.ring * ring, cell) for cell in wide), key=lambda pair: -pair[0])
                 heights = sorted(((cell.variation.height, cell) for cell in low), key=lambda pair: pair[0])
-                for key, line in (("ring", rings), ("height", heights)):
+                offsets = sorted(
+                    ((cell.variation.offset * ring, cell) for cell in stated + moved), key=lambda pair: pair[0]
+                )
+                yaws = sorted(((cell.variation.yaw, cell) for cell in stated + angled), key=lambda pair: pair[0])
+                uneven = ([("offset", offsets)] if moved else []) + ([("yaw", yaws)] if angled else [])
+                for key, line in (("ring", rings), ("height", heights), *uneven):
                     validity.append(Range(scene.name, body, share, key, *_bracket(line, body, share)))
     return validity
 

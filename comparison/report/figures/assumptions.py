@@ -28,7 +28,7 @@ def assumption_figure_name(scene: Scene) -> str:
 
 def draw_assumptions(path: Path, scene: Scene, cells: Sequence[Cell]) -> None:
     """Write one map per body to `path`, PNG, and as PDF: ring across, heights upwards, largest change in percent."""
-    shown = [cell for cell in cells if cell.scene == scene.name and cell.variation.supports is None]
+    shown = [cell for cell in cells if cell.scene == scene.name and cell.variation.is_usual]
     bodies = len(scene.bodies)
     figure = Figure(figsize=(1.2 + 4.6 * bodies, 3.9), dpi=110, layout="constrained")
     FigureCanvasAgg(figure)
@@ -57,7 +57,7 @@ def _map(axes: Axes, scene: Scene, cells: Sequence[Cell], body: int) -> None:
         axes.text(column, row, text, ha="center", va="center", fontsize=9, color="w" if dark else "k")
     norm = BoundaryNorm([0.0, *WITHIN, np.inf], len(COLORS))
     axes.imshow(image, cmap=ListedColormap(COLORS), norm=norm, origin="lower", aspect="auto")
-    axes.set_xticks(range(len(rings)), [f"{ring * (scene.isolator.ring or np.nan):g}" for ring in rings])
+    axes.set_xticks(range(len(rings)), [f"{ring * (scene.support_radius or np.nan):g}" for ring in rings])
     axes.set_yticks(range(len(heights)), [f"{height:g}" for height in heights])
     axes.set_xlabel("radius of the ring of supports, m")
     axes.set_ylabel("heights, times the stated ones")

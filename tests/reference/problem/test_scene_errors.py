@@ -118,7 +118,7 @@ BROKEN = {
         "[isolator]\nsupports = [[1, 1], [2, 1], [1, 2]]",
         "bodies: center of mass of all [x, y] in m",
         [0.0, 0.0],
-        "inside the supports",
+        "would carry nothing at rest",
     ),
     "offset of one": ("mass = 1.0", "mass = 1.0\noffset = [1.0]", "bodies.1.offset", [1.0], "2 items"),
     "offset a number": ("mass = 1.0", "mass = 1.0\noffset = 1.0", "bodies.1.offset", 1.0, "list"),

@@ -1,0 +1,260 @@
+"""Centers of mass off the axis, boxes and links at an angle, supports at stated positions."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from rigid_chain import spatial_motion
+from scenes_at_hand import changed
+from scipy.integrate import cumulative_trapezoid, trapezoid
+
+import multibody
+import reference
+from multibody.models.depressions import rotation
+from reference.problem import GRAVITY, Outcome, Scene, SceneError, demands, load_scene
+
+PHASE = (2.0, 0.7)
+PENTAGON = [[1.0, 0.8], [-0.9, 1.1], [-1.2, -0.7], [0.8, -1.0], [0.1, 0.9]]
+TRIANGLE = [[1.4, 0.2], [-0.9, 1.1], [-0.6, -1.2]]
+SIZES = {"bodies.0.size": [1.0, 2.5, 0.2], "bodies.1.size": [2.0, 0.8, 0.2]}
+UNEVEN: dict[str, dict[str, Any]] = {
+    "body above off the axis": {"bodies.1.offset": [0.2, 0.1]},
+    "all off the axis": {"bodies.0.offset": [0.1, -0.15], "bodies.1.offset": [-0.2, 0.1], "isolator.supports": 3},
+    "at an angle": {"bodies.0.yaw": -0.4, "bodies.1.yaw": 0.6, **SIZES},
+    "five positions": {"isolator.supports": PENTAGON, "isolator.ring": None},
+    "three positions off the axis": {
+        "isolator.supports": TRIANGLE,
+        "isolator.ring": None,
+        "bodies.0.offset": [0.1, 0.05],
+        "bodies.1.offset": [0.2, -0.2],
+    },
+    "everything": {
+        "isolator.supports": PENTAGON,
+        "isolator.ring": None,
+        "bodies.0.offset": [-0.1, 0.05],
+        "bodies.1.offset": [0.2, -0.2],
+        "bodies.0.yaw": 0.3,
+        "bodies.1.yaw": 1.0,
+        **SIZES,
+    },
+}
+
+
+def uneven(name: str, duration: float = 2.65, **more: Any) -> Scene:
+    """The paper's case I up to its first large stop, made uneven."""
+    return load_scene("fig3-I").with_values({"duration": duration, **UNEVEN[name], **more})
+
+
+def agree(one: Any, other: Any) -> bool:
+    """Whether two results have the same values within their errors."""
+    answered = (one.status == Outcome.OK).all() and (other.status == Outcome.OK).all()
+    return bool(answered and (np.abs(one.mu - other.mu) <= one.error + other.error).all())
+
+
+@pytest.mark.long  # a minute of compiling the independent equations
+@pytest.mark.parametrize("name", UNEVEN)
+@pytest.mark.parametrize("phase", [PHASE, (0.3, 1.1)])
+def test_factors_and_torsion_agree_with_newton_euler_equations(name: str, phase: tuple[float, float]) -> None:
+    scene = uneven(name)
+    engine = multibody.amplification(scene, [phase], model="spatial")
+    independent = spatial_motion(scene, phase, 1e-3, tolerance=1e-6)
+    assert engine.status[0] == Outcome.OK
+    assert (np.abs(engine.mu[0] - independent.mu) <= engine.error[0]).all(), (engine.mu, independent.mu, engine.error)
+    torsion = demands(multibody.trajectory(scene, phase, "spatial")).torsion
+    assert torsion is not None
+    assert abs(torsion[0].value - np.abs(independent.yaw).max()) <= torsion[0].error
+
+
+@pytest.mark.long
+def test_a_whole_surface_agrees_with_newton_euler_equations() -> None:
+    scene = uneven("everything")
+    values = np.arange(8) * np.pi / 4.0
+    phases = [(a, b) for a in values for b in values]
+    engine = multibody.amplification(scene, phases, model="spatial")
+    assert (engine.status == Outcome.OK).all()
+    independent = np.array([spatial_motion(scene, phase, 1e-3, tolerance=1e-6).mu for phase in phases])
+    assert (np.abs(engine.mu - independent) <= engine.error).all()
+
+
+@pytest.mark.long
+def test_supports_that_open_under_an_eccentric_tower_agree_with_newton_euler_equations() -> None:
+    scene = uneven("body above off the axis", 4.0, **{"isolator.ring": 0.35, "bodies.1.offset": [0.03, -0.02]})
+    engine = multibody.amplification(scene, [PHASE], model="spatial")
+    independent = spatial_motion(scene, PHASE, 1e-3, tolerance=1e-6)
+    assert independent.support_force.min() == 0.0
+    assert (np.abs(engine.mu[0] - independent.mu) <= engine.error[0]).all(), (engine.mu, independent.mu, engine.error)
+
+
+def static_shares(scene: Scene) -> np.ndarray:
+    """Shares of the weight on supports that give way alike: N_k = c0 + c1 x_k + c2 y_k, in balance with the weight."""
+    places = scene.support_places
+    assert places is not None
+    patterns = np.column_stack([np.ones(len(places)), places])
+    offsets = np.array([body.offset or [0.0, 0.0] for body in scene.bodies])
+    center = scene.masses @ offsets / scene.masses.sum()
+    shares: np.ndarray = patterns @ np.linalg.solve(patterns.T @ patterns, np.array([1.0, *center]))
+    return shares
+
+
+@pytest.mark.parametrize("name", UNEVEN)
+def test_supports_of_a_building_at_rest_carry_what_statics_say(name: str) -> None:
+    scene = uneven(name, 0.02).with_amplitude(1e-6)
+    forces = multibody.single_run(scene, PHASE, "spatial", step=1e-3).extra["support_force"]
+    weight = scene.total_mass * GRAVITY
+    np.testing.assert_allclose(forces[-1] / weight, static_shares(scene), atol=2e-5)
+    balanced = multibody.trajectory(scene, PHASE, "spatial").extra["support_force"]
+    np.testing.assert_allclose(balanced / weight, np.tile(static_shares(scene), (len(balanced), 1)), atol=2e-5)
+
+
+@pytest.mark.parametrize("supports", [3, 4, 5, 6])
+def test_offsets_are_allowed_as_long_as_every_support_carries_something(supports: int) -> None:
+    """Offset by e away from it, a support of a ring carries 1/K - 2 e / (K ring) of the weight."""
+    scene = uneven("body above off the axis", **{"isolator.supports": supports})
+    places = scene.support_places
+    assert places is not None
+    inside, outside = (
+        {f"bodies.{body}.offset": -0.5 * factor * places[0] for body in range(2)} for factor in (0.999, 1.001)
+    )
+    assert static_shares(scene.with_values(inside))[0] == pytest.approx(1e-3 / supports)
+    with pytest.raises(SceneError, match="would carry nothing at rest") as caught:
+        scene.with_values(outside)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("share", [0.5, 0.9, 0.9999])
+def test_a_building_near_the_edge_of_its_supports_has_an_answer_or_an_outcome_by_name(share: float) -> None:
+    values = {f"bodies.{body}.offset": [share * 0.25 * math.sqrt(2.0)] * 2 for body in range(2)}
+    scene = uneven("body above off the axis", 1.5, **values)
+    result = multibody.amplification(scene, [PHASE], "spatial", tolerance=1e-2, max_work=2e4)
+    assert result.status[0] == Outcome.OK if share < 0.95 else result.status[0] in set(Outcome)
+    assert np.isfinite(result.mu).all() == (result.status[0] in (Outcome.OK, Outcome.TOLERANCE_NOT_MET))
+
+
+def turned(scene: Scene, angle: float) -> Scene:
+    """The same scene, loading included, turned about the vertical."""
+    matrix = rotation(np.array([0.0, 0.0, angle]))[:2, :2]
+    places = scene.support_places
+    assert places is not None
+    values: dict[str, Any] = {
+        "isolator.supports": places @ matrix.T,
+        "isolator.ring": None,
+        "excitation.amplitudes": matrix @ scene.amplitudes[:2],
+    }
+    for number, (offset, yaw) in enumerate(zip(scene.offsets, scene.yaws)):
+        values |= {f"bodies.{number}.offset": matrix @ offset, f"bodies.{number}.yaw": float(yaw + angle)}
+    return scene.with_values(values)
+
+
+@pytest.mark.parametrize("angle", [0.5 * math.pi, 0.5, -2.0])
+@pytest.mark.parametrize("name", ["all off the axis", "everything"])
+def test_a_scene_turned_as_a_whole_has_the_turned_motion(name: str, angle: float) -> None:
+    scene = uneven(name)
+    here, there = (multibody.amplification(each, [PHASE], "spatial") for each in (scene, turned(scene, angle)))
+    assert agree(here, there)
+    motions = [multibody.trajectory(each, PHASE, "spatial") for each in (scene, turned(scene, angle))]
+    ends = [motion.position[-1, :, :2] for motion in motions]
+    matrix = rotation(np.array([0.0, 0.0, angle]))[:2, :2]
+    np.testing.assert_allclose(ends[1], ends[0] @ matrix.T, atol=2e-4 * np.abs(motions[0].position[:, 0]).max())
+    np.testing.assert_allclose(motions[1].extra["turns"][-1, :, 2], motions[0].extra["turns"][-1, :, 2], atol=2e-5)
+
+
+def test_a_quarter_turn_of_a_body_swaps_its_edges_and_the_stiffness_of_its_link() -> None:
+    scene = uneven("at an angle", **{"bodies.0.yaw": 0.0, "bodies.1.yaw": 0.5 * math.pi})
+    swapped = scene.with_values({"bodies.1.yaw": None, "bodies.1.size": [0.8, 2.0, 0.2], "bodies.1.period": [1.2, 1.5]})
+    assert agree(*(multibody.amplification(each, [PHASE], "spatial") for each in (scene, swapped)))
+
+
+@pytest.mark.parametrize(
+    "law", [{}, {"isolator.friction": 0.0}, {"isolator.friction": None, "isolator.lubrication": 0.5}]
+)
+@pytest.mark.parametrize("key", ["offset", "yaw"])
+def test_rotation_grows_in_proportion_and_factors_with_the_square(key: str, law: dict[str, Any]) -> None:
+    """Loading along x: an offset along y, or an angle, of the other sign gives the mirrored motion."""
+    scene = load_scene("fig3-I").with_values(
+        {"duration": 2.0, "excitation.amplitudes": [[1.0, 1.0], [0.0, 0.0]], **law}
+    )
+    torsion, peaks = [], []
+    for size in (0.0, 0.02, 0.04):
+        value = [0.0, size] if key == "offset" else size
+        motion = multibody.trajectory(scene.with_values({f"bodies.1.{key}": value}), PHASE, "spatial", tolerance=3e-4)
+        turns = demands(motion).torsion
+        assert turns is not None
+        torsion.append(turns[1].value)
+        peaks.append(motion.peak)
+    assert torsion[0] < 1e-10
+    assert torsion[2] / torsion[1] == pytest.approx(2.0, rel=0.01)
+    changes = np.subtract(peaks[1:], peaks[0])
+    np.testing.assert_allclose(changes[1] / changes[0], 4.0, rtol=0.02)
+
+
+def test_equations_and_translation_do_not_read_the_new_keys() -> None:
+    plain, scene = load_scene("fig3-I").with_values({"duration": 1.0}), uneven("everything", 1.0)
+    for solve in (
+        lambda scene: reference.amplification(scene, [PHASE]),
+        lambda scene: reference.amplification(scene, [PHASE], equations="small"),
+        lambda scene: multibody.amplification(scene, [PHASE]),
+    ):
+        np.testing.assert_array_equal(solve(plain).mu, solve(scene).mu)
+
+
+def test_energy_comes_from_the_plate_and_goes_into_friction() -> None:
+    scene, v_reg = uneven("three positions off the axis", 2.0, **{"bodies.1.yaw": 0.4, **SIZES}), 1e-3
+    motion = multibody.trajectory(scene, PHASE, "spatial", regularization=v_reg, tolerance=1e-4)
+    time, place, velocity = motion.time, motion.position, motion.velocity
+    sizes, turns = np.array([body.size for body in scene.bodies]), motion.extra["turns"]
+    at_rest = rotation(scene.yaws[:, None] * [0.0, 0.0, 1.0])
+    attitudes = rotation(turns) @ at_rest
+    rates = np.gradient(turns, time, axis=0)
+    # rotations are small: angular velocity is the rate of the angles, to the first order
+    local = np.einsum("tnij,tni->tnj", attitudes, rates)
+    inertias = scene.masses[:, None] / 12.0 * ((sizes**2).sum(axis=1)[:, None] - sizes**2)
+    ends = [
+        place[:, body] + np.einsum("tij,j->ti", rotation(turns[:, body]), [*-scene.offsets[body], sign * 0.5])
+        for body, sign in ((0, 1.0), (1, -1.0))
+    ]
+    apart = ends[1] - ends[0] + np.append(scene.offsets[1] - scene.offsets[0], 0.0)
+    shear = np.einsum("tij,ti->tj", rotation(turns.mean(axis=1)), apart)[:, :2]  # in the axes between both bodies
+    matrix = at_rest[1][:2, :2] @ np.diag(scene.stiffness[0]) @ at_rest[1][:2, :2].T
+    places = scene.support_places
+    assert places is not None
+    twist = (places**2).sum(axis=1).mean() * scene.stiffness[0].mean()
+    stored = (
+        0.5 * (scene.masses[:, None] * velocity**2).sum(axis=(1, 2))
+        + 0.5 * (inertias * local**2).sum(axis=(1, 2))
+        + 0.5 * np.einsum("ti,ij,tj->t", shear, matrix, shear)
+        + 0.5 * twist * (turns[:, 1, 2] - turns[:, 0, 2]) ** 2
+        + GRAVITY * (scene.masses * place[:, :, 2]).sum(axis=1)
+    )
+    ground = reference.problem.ground_acceleration(scene, PHASE, time)
+    supplied = -(scene.masses[:, None] * velocity * ground[:, None, :]).sum(axis=(1, 2))
+    slip = motion.extra["slip_speed"]
+    rubbed = scene.friction_coefficient * (motion.extra["support_force"] * np.minimum(1.0, slip / v_reg) * slip).sum(
+        axis=1
+    )
+    work = cumulative_trapezoid(supplied - rubbed, time, initial=0.0)
+    lost = trapezoid(rubbed, time)
+    assert lost > 0.2 * stored.max()
+    np.testing.assert_allclose(stored - stored[0], work, atol=1e-3 * lost)
+
+
+@pytest.mark.parametrize("name", ["all off the axis", "everything"])
+def test_a_run_that_ends_early_has_the_values_of_one_to_the_end(name: str) -> None:
+    scene = uneven(name, 12.0)
+    early, whole = (multibody.amplification(scene, [PHASE], "spatial", full=full) for full in (False, True))
+    assert agree(early, whole)
+    assert early.cost < whole.cost
+
+
+@pytest.mark.parametrize("stiffness", [3e4, 1e6])
+def test_stated_bearings_carry_an_eccentric_building(stiffness: float) -> None:
+    scene = changed(uneven("body above off the axis"), isolator={"support_stiffness": stiffness})
+    loose, tight = (multibody.amplification(scene, [PHASE], "spatial", tolerance=t) for t in (1e-3, 2e-4))
+    assert agree(loose, tight)
+    # each spring carries its share, so the platform tilts
+    motion = multibody.trajectory(scene.with_amplitude(1e-6).with_values({"duration": 0.02}), PHASE, "spatial")
+    np.testing.assert_allclose(
+        motion.extra["support_force"][0] / (scene.total_mass * GRAVITY), static_shares(scene), atol=2e-3
+    )
