@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
 
 from multibody.models.contact import (
     FORCE_ROUNDING,
@@ -22,7 +23,7 @@ from multibody.models.contact import (
     set_contact_parameters,
     settled_contact,
 )
-from multibody.models.engine import exudyn, items
+from multibody.models.engine import MAX_DENSE_COORDINATES, exudyn, items
 from multibody.models.loading import Ground, ground_of, symbolic_load
 from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate, plate_for
 from multibody.models.recorders import add_recorders
@@ -153,10 +154,21 @@ def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array) -> Any
             stiffness_matrix[pair] += stiffness[link, axis] * np.array([[1.0, -1.0], [-1.0, 1.0]])
     mbs.AddObject(
         items.ObjectGenericODE2(
-            nodeNumbers=[platform_node, node], massMatrix=mass_matrix, stiffnessMatrix=stiffness_matrix
+            nodeNumbers=[platform_node, node],
+            massMatrix=_container(mass_matrix),
+            stiffnessMatrix=_container(stiffness_matrix),
         )
     )
     return node
+
+
+def _container(matrix: Array) -> Any:
+    """A matrix (n, n) as the engine takes it: only its entries, where the sparse solver is used."""
+    if len(matrix) <= MAX_DENSE_COORDINATES:
+        return matrix
+    entries = exudyn.MatrixContainer()
+    entries.SetWithSparseMatrix(csr_matrix(matrix), useDenseMatrix=False)
+    return entries
 
 
 def _inertial_loads(
