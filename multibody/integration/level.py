@@ -193,8 +193,8 @@ def for_small_peaks(level: Level, smallest: float, tolerance: float) -> Level:
     """
     `level` with a contact as soft, and a residual as small, as the smallest peak of a run asks for, in units of g.
 
-    The rounding of the contact force then stays a share of the tolerance. Only a peak as small as that of a weak loading
-    changes anything.
+    The rounding of the contact force then stays a share of the tolerance. Only a peak as small as that of a weak
+    loading changes anything.
     """
     if smallest >= WEAK_LOADING:
         return level

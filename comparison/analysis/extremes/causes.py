@@ -22,8 +22,16 @@ _QUICK_FRICTION = (
     "friction stops so light a platform within a time that the contact, as stiff as rounding allows, cannot follow"
 )
 
+_QUICK_RELAXATION = (
+    "friction relaxes at a stop within a time that the contact, as stiff as rounding allows, cannot follow, and a "
+    "larger v_reg has another answer"
+)
+
 # by quantity and extreme; by key of the model
 CAUSES: dict[tuple[str, str], dict[str, str]] = {
+    ("v_reg, m/s", "1e-06"): {"spatial": _QUICK_RELAXATION},
+    ("v_reg, m/s", "1e-07"): dict.fromkeys(("translational", "spatial"), _QUICK_RELAXATION),
+    ("v_reg, m/s", "1e-08"): dict.fromkeys(("translational", "spatial"), _QUICK_RELAXATION),
     ("amplitude, m/s^2", "1e-09"): dict.fromkeys(
         ("translational", "spatial"),
         "the contact force rounds by 1e-15 of the weight over its penetration, which is as much as the accelerations",
