@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.models.engine import exudyn
+from multibody.models.engine import MAX_DENSE_COORDINATES, exudyn
 from multibody.models.plate import COORDINATES, PLATE_MASS_RATIO, carried_along
 from multibody.models.system import EngineModel, EngineState
 
@@ -21,7 +21,6 @@ MAX_STEP_REDUCTION = 1e4  # of a step that the engine cannot solve: contacts tou
 EXPLICIT = {"RK44": "RK44", "velocity Verlet": "VelocityVerlet"}  # integrators, and their names in the engine
 INTEGRATORS = ("generalized alpha", "trapezoidal", *EXPLICIT)
 
-MAX_DENSE_COORDINATES = 40  # beyond them a sparse solver takes less time a step (measured: a third at 360)
 MAX_CONTRACTIVITY = 0.2  # of modified Newton, above which the Jacobian is renewed: least time (measured)
 
 

@@ -38,7 +38,6 @@ MAX_ROUNDING_SHARE = 0.25  # of the tolerance, that rounding of the forces may t
 MIN_PEAK = 0.2  # of g
 WEAK_LOADING = 1e-4  # of g: below, the loading itself is the peak that rounding is held against
 MAX_WEAK_PENETRATION = 4e-4  # of rho, under such a loading: the contact force hardly changes
-SMALL_PEAK_RATIO = 2.0  # of the softer contact that a small peak asks for over that of a level, from which it is taken
 WEAKEST_PEAK = 1e-300  # of g: keeps the softer contact finite
 MAX_WARPING_COMPLIANCE = 4e-4  # of rho under the weight, as of real bearings
 COMPLIANCE_RATIO = 4.0  # of the penetrations of two successive levels
@@ -194,11 +193,12 @@ def for_small_peaks(level: Level, smallest: float, tolerance: float) -> Level:
     """
     `level` with a contact as soft, and a residual as small, as the smallest peak of a run asks for, in units of g.
 
-    The rounding of the contact force then stays a share of the tolerance. Usual peaks change nothing.
+    The rounding of the contact force then stays a share of the tolerance. Only a peak as small as that of a weak
+    loading changes anything.
     """
-    wanted = level.rounding_moment / (MAX_ROUNDING_SHARE * tolerance * max(smallest, WEAKEST_PEAK))
-    if wanted <= SMALL_PEAK_RATIO * level.penetration:
+    if smallest >= WEAK_LOADING:
         return level
+    wanted = level.rounding_moment / (MAX_ROUNDING_SHARE * tolerance * max(smallest, WEAKEST_PEAK))
     penetration = max(level.penetration, min(wanted, MAX_WEAK_PENETRATION / COMPLIANCE_RATIO))
     return replace(level, penetration=penetration, strength=min(level.strength, smallest))
 

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
 
 from multibody.models.contact import (
     FORCE_ROUNDING,
@@ -23,7 +24,7 @@ from multibody.models.contact import (
     set_contact_parameters,
     settled_contact,
 )
-from multibody.models.engine import exudyn, items
+from multibody.models.engine import MAX_DENSE_COORDINATES, exudyn, items
 from multibody.models.loading import Ground, ground_of, symbolic_load
 from multibody.models.plane import farthest, plane_contact, platform_on_plane, set_extent
 from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate, plate_for
@@ -175,11 +176,20 @@ def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, dampin
             pair = np.ix_([lower, upper], [lower, upper])
             stiffness_matrix[pair] += stiffness[link, axis] * BETWEEN_TWO
             damping_matrix[pair] += damping[link, axis] * BETWEEN_TWO
-    matrices = {"massMatrix": mass_matrix, "stiffnessMatrix": stiffness_matrix}
+    matrices = {"massMatrix": _container(mass_matrix), "stiffnessMatrix": _container(stiffness_matrix)}
     if damping.any():
-        matrices["dampingMatrix"] = damping_matrix
+        matrices["dampingMatrix"] = _container(damping_matrix)
     mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=[platform_node, node], **matrices))
     return node
+
+
+def _container(matrix: Array) -> Any:
+    """A matrix (n, n) as the engine takes it: only its entries, where the sparse solver is used."""
+    if len(matrix) <= MAX_DENSE_COORDINATES:
+        return matrix
+    entries = exudyn.MatrixContainer()
+    entries.SetWithSparseMatrix(csr_matrix(matrix), useDenseMatrix=False)
+    return entries
 
 
 def _inertial_loads(

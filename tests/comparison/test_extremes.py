@@ -15,6 +15,7 @@ from rich.console import Console
 
 import reference
 from comparison.analysis.extremes.analysis import Extremes, reduced
+from comparison.analysis.extremes.causes import CAUSES
 from comparison.analysis.extremes.cells import Cell, answers, cells, read_scene, solve_cell
 from comparison.analysis.extremes.engine import amplification
 from comparison.analysis.extremes.matrix import FILE, Entry, Extreme, Matrix, as_json, load
@@ -248,6 +249,17 @@ def test_the_error_knows_what_a_bad_choice_of_stiffness_or_step_costs(choice):
     exact = reference.amplification(brief, [(0.3, 1.1)], equations="exact", regularization=1e-3)
     assert engine.status[0] in ("ok", "tolerance not met")
     assert (abs(engine.mu - exact.mu) <= engine.error + exact.error).all()
+
+
+def test_every_known_cause_of_a_limit_is_that_of_a_cell():
+    asked = {((cell.row.group, cell.row.title), cell.column.key) for cell in cells(list(rows()))}
+    assert {(extreme, model) for extreme, models in CAUSES.items() for model in models} <= asked
+
+
+def test_a_limit_states_its_cause_and_no_other_verdict_does(monkeypatch):
+    monkeypatch.setitem(CAUSES, (PLAIN.group, PLAIN.title), {"fake": "the fake gives up"})
+    assert solve_cell(Cell(PLAIN, fake("unable"))).reason == "step limit: the fake gives up"
+    assert "gives up" not in solve_cell(Cell(PLAIN, fake("honest"))).reason
 
 
 def test_the_reduced_form_asks_the_engine_as_well():

@@ -13,6 +13,9 @@ import reference
 from multibody.integration import one_run, refine
 from multibody.integration.adaptive import EngineRun, run_adaptively
 from multibody.integration.constant_step import Engine
+from multibody.integration.estimate import MAX_ERROR_PER_WARPING_LOAD, MIN_ERROR_PER_WARPING_LOAD, measured_per_load
+from multibody.integration.level import for_small_peaks
+from multibody.integration.peak import Peaks
 from reference.problem import Outcome, Scene, load_scene
 
 PHASE = [(0.3, 1.1)]
@@ -131,3 +134,52 @@ def test_a_loading_of_a_millionth_has_the_factors_of_the_equations() -> None:
     equations = reference.amplification(scene, phases, equations="exact", regularization=1e-3, tolerance=1e-6)
     assert engine.status.tolist() == ["ok", "ok"]
     assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [linked(1e3, duration=1.0), strong(duration=1.0, excitation={"decay": [1e6, 1e6]})],
+    ids=["link 1e3 s", "decay 1e6/s"],
+)
+def test_a_body_that_hardly_moves_has_the_factor_of_the_equations_to_1e_3_of_itself(scene: Scene) -> None:
+    phase = [(2.0, 0.7)]
+    engine = multibody.amplification(scene, phase, tolerance=1e-3)
+    equations = reference.amplification(scene, phase, equations="exact", regularization=V_REG)
+    assert (engine.mu < 1e-3 * engine.mu.max()).any() or engine.mu.max() < 1e-2
+    assert engine.status.tolist() == [Outcome.OK]
+    assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
+
+
+def test_only_a_small_peak_asks_for_a_softer_contact() -> None:
+    levels = multibody.levels(load_scene("fig3-I"), tolerance=1e-3)
+    assert [for_small_peaks(level, 0.2, 1e-3) for level in levels] == levels
+    softer = for_small_peaks(levels[3], 1e-6, 1e-3)
+    assert softer.rounding == pytest.approx(0.25 * 1e-3 * 1e-6)
+    assert softer.residual == pytest.approx(softer.rounding)
+    assert for_small_peaks(levels[3], 1e-20, 1e-3).penetration == pytest.approx(1e-4), "the softest that is tried"
+
+
+def test_what_warped_supports_do_is_in_proportion_to_the_load_that_a_softer_run_takes_off() -> None:
+    peaks = Peaks(2, np.inf)
+    peaks.value[:] = 1.0, 2.0
+    softer = Peaks(2, np.inf)
+    softer.value[:] = 1.003, 2.0
+    run = EngineRun(peaks, np.inf, warping_load=0.2)
+    other = EngineRun(softer, np.inf, warping_load=0.1)
+    np.testing.assert_allclose(measured_per_load(run, other), [1.5 * 0.003 / 0.1, MIN_ERROR_PER_WARPING_LOAD])
+    failed = EngineRun(softer, np.inf, Outcome.SOLVER_FAILED, warping_load=0.1)
+    assert (measured_per_load(run, failed) == MAX_ERROR_PER_WARPING_LOAD).all()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("supports", [4, 5, 6, 8])
+def test_the_error_covers_what_supports_that_open_do(supports: int) -> None:
+    isolator = {"radius": 0.25, "friction": 0.1, "supports": supports, "ring": 0.3, "sphere_radius": 0.05}
+    load = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [1.0, 0.5]], "decay": [0.0, 0.0]}
+    scene = strong(duration=2.0, excitation=load).with_values({f"isolator.{key}": isolator[key] for key in isolator})
+    loose = multibody.amplification(scene, PHASE, "spatial", V_REG, 1e-2)
+    strict = multibody.amplification(scene, PHASE, "spatial", V_REG, 1e-3)
+    if np.isfinite(loose.mu).all() and np.isfinite(strict.mu).all():
+        assert (np.abs(loose.mu - strict.mu) <= loose.error + strict.error).all()
+    else:
+        assert loose.status[0] != Outcome.OK or strict.status[0] != Outcome.OK

@@ -167,6 +167,14 @@ def tower(ring: float) -> Scene:
     )
 
 
+@pytest.mark.parametrize("tilt", [0.0, 0.1, 0.3])
+def test_a_platform_high_in_the_air_touches_no_sphere_however_it_tilts(tilt: float) -> None:
+    depressions = Depressions(CORNERS, CENTER, RADIUS, np.empty(0, np.int_))
+    flying = np.array([[0.0, 0.0, 60.0, 0.0, tilt, 0.0]])
+    assert (depressions.clearance(flying) > 0.5).all()
+    assert depressions.beyond_rim(flying)[0] == (tilt > 0.0), "its depressions are no longer above the spheres"
+
+
 def test_a_tower_that_overturns_ends_under_that_name_with_the_instant() -> None:
     results = [
         multibody.amplification(tower(0.1), [(0.3, 1.1)], model="spatial", tolerance=tolerance, full=True)

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from comparison.analysis.extremes.causes import cause
 from comparison.analysis.extremes.matrix import Entry
 from comparison.analysis.extremes.rows import COLUMNS, Column, Row
-from comparison.analysis.extremes.verdicts import NUMERICS, Reply, judged
+from comparison.analysis.extremes.verdicts import NUMERICS, Reply, Verdict, judged
 from comparison.study.batches import imported
 from reference.problem import Outcome, Scene
 from reference.problem.scene import KEYS
@@ -76,7 +77,8 @@ def solve_cell(cell: Cell) -> Entry:
     verdict = judged(reply, finer, tolerance, row.invalid, row.right)
     error = verdict.error if math.isfinite(verdict.error) else None
     total = time.process_time() - begin
-    reason = " ".join(verdict.reason.split())
+    known = cause(row, column.key) if verdict.verdict == Verdict.LIMIT else ""
+    reason = " ".join(f"{verdict.reason}: {known}".split()) if known else " ".join(verdict.reason.split())
     return Entry(verdict.verdict.value, reason, verdict.status, error, round(seconds, 3), round(total, 3))
 
 

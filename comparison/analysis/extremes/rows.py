@@ -40,7 +40,7 @@ class Column:
 # ends within the limit of its processor time
 MAX_WORK = 6e5
 MUCH_WORK = 4e6  # where nothing but the number of steps would stop the translational model, whose steps cost least
-TOWER_WORK = {10: 1.5e5, 100: 1e5, 1000: 1e3}
+TOWER_WORK = {10: 1.5e5, 100: 2.5e5, 1000: 1e3}
 
 
 @dataclass(frozen=True)
