@@ -33,6 +33,10 @@ UNITS = {
     "drift": "m",
     "contact_force_min": "N",
     "contact_force_max": "N",
+    "torsion": "rad",
+    "uplift": "m",
+    "support_force_min": "N",
+    "support_force_max": "N",
     "friction_energy": "J",
     "energy_balance": "J",
 }
