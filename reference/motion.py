@@ -34,7 +34,7 @@ from reference.surface import OUTCOMES, checked_demand, loads_are_finite
 SAMPLES_PER_PERIOD = 64  # of the shorter loading period, when no times are given
 STEP_SAMPLES = 8000  # of the steps, if these are few
 MAX_SAMPLES = 200_000
-FIRST_CAPACITY = 1024  # steps, to begin with
+FIRST_CAPACITY, STEPS_PER_KNOT = 1024, 2  # steps, to begin with: so many, and of every knot of a record
 MIN_ERROR_FRACTION = 1.0  # of the tolerance: closer agreement of two runs is accidental (measured: errors up to 0.2)
 
 
@@ -122,7 +122,7 @@ class _Run(NamedTuple):
 def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) -> _Run:
     """The run from x, v with all its steps, however many."""
     bodies = len(x)
-    capacity = FIRST_CAPACITY
+    capacity = FIRST_CAPACITY + STEPS_PER_KNOT * len(system.record)
     while True:
         record = record_of(capacity, bodies)
         run = peaks_from(x, v, system, phase[None], demand, record)

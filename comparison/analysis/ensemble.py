@@ -33,8 +33,11 @@ UNITS = {
     "drift": "m",
     "contact_force_min": "N",
     "contact_force_max": "N",
+    "torsion": "rad",
+    "uplift": "m",
+    "support_force_min": "N",
+    "support_force_max": "N",
     "friction_energy": "J",
-    "energy_balance": "J",
 }
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # steps of which fill an interval evenly
 REST = (0.0, 0.0)  # a record has no phases
@@ -233,9 +236,10 @@ def stripes(points: Sequence[Point]) -> Iterator[Stripe]:
 
 
 def quantities(points: Sequence[Point]) -> list[Quantity]:
-    """The demands that any point has, in the order of `Demands`."""
+    """The demands that any point has, in the order of `Demands`, without the check of its energy."""
     listed = (listed_demands(point.demands) for point in points if point.demands is not None)
-    return list(dict.fromkeys((name, body) for numbers in listed for name, body, _ in numbers))
+    names = dict.fromkeys((name, body) for numbers in listed for name, body, _ in numbers)
+    return [quantity for quantity in names if quantity[0] != "energy_balance"]
 
 
 def fractile(numbers: Sequence[Estimate], share: float) -> Estimate:

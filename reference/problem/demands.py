@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -247,11 +248,18 @@ class _Reading:
         """An amount of energy, which is added up over the samples."""
         if not self.answered:
             return UNKNOWN
-        energy = energy_of(self.motion)
+        (energy, *coarser), thinned = self._energies
         value = read(energy)
-        sampling = max(abs(read(part) - value) for part in energy.thinned(THINNING)) / (THINNING - 1)
-        others = [read(energy_of(other)) for other in self.accuracy.coarser] if self.accuracy else []
+        sampling = max(abs(read(part) - value) for part in thinned) / (THINNING - 1)
+        others = [read(other) for other in coarser]
         return Estimate(value, sampling + self._of_solution(value, others, energy.dissipated()))
+
+    @cached_property
+    def _energies(self) -> tuple[list[Energy], list[Energy]]:
+        """Energy of the motion and of the runs beside it, and of the motion's thinned samples."""
+        others = self.accuracy.coarser if self.accuracy else ()
+        energies = [energy_of(motion) for motion in (self.motion, *others)]
+        return energies, energies[0].thinned(THINNING)
 
     def count(self, read: Callable[[Trajectory], float]) -> Estimate:
         """A number of events: the error is what the runs differ by."""

@@ -35,7 +35,7 @@ class Energy(NamedTuple):
     def thinned(self, step: int) -> list[Energy]:
         """One of `step` instants, from the first, the second, ... on, and both ends."""
         last = len(self.time) - 1
-        kept = [np.unique([0, *range(first, last, step), last]) for first in range(step)]
+        kept = [np.unique(np.r_[0, first:last:step, last]) for first in range(step)]
         return [Energy(*(part[rows] for part in self)) for rows in kept]
 
 

@@ -18,6 +18,7 @@ COMMANDS = (
     "comparison.assumptions",
     "comparison.extremes",
     "comparison.tradeoff",
+    "comparison.ensemble",
     "multibody.animate",
 )
 BEGIN = """

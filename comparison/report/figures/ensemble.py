@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -28,12 +29,15 @@ CURVE, MEDIAN, BAND, ENGINE = "0.72", "#1f4e8c", "#1f4e8c", "#b3541e"
 def draw_ensemble(path: Path, result: EnsembleResult) -> None:
     """Write the panels to `path`, PNG, and as PDF."""
     shown = shown_quantities(result)
-    columns = min(3, len(shown))
+    columns = 3 if len(shown) > 4 else 2
     rows = -(-len(shown) // columns)
     figure = Figure(figsize=(4.4 * columns, 3.5 * rows + 0.6), dpi=110, layout="constrained")
     FigureCanvasAgg(figure)
     scene, motions = result.family.scenes[0], len({point.curve for point in result.points})
-    figure.suptitle(verbatim(f"{scene.title} ({result.family.name}): {motions} motions"), fontsize=12)
+    title = verbatim(f"{scene.title} ({result.family.name}): {motions} motions")
+    if any(stripe.answered < motions for stripe in result.stripes if stripe.quantity in shown):
+        title += "; ↑ counts those without a value"
+    figure.suptitle(title, fontsize=12)
     panels = np.atleast_1d(figure.subplots(rows, columns)).ravel()
     for axes, quantity in zip(panels, shown):
         _draw(axes, result, quantity)
@@ -69,17 +73,27 @@ def _draw(axes: Axes, result: EnsembleResult, quantity: Quantity) -> None:
         label = "one motion" if number == 0 else None
         axes.plot([point.scale for point in points], values, color=CURVE, lw=0.8, marker=".", ms=3, label=label)
     stripes = of_quantity(result.stripes, quantity)
-    scales = [stripe.scale for stripe in stripes]
+    scales = [stripe.scale for stripe in stripes] or sorted({point.scale for point in result.points})
     low, middle, high = (_column([stripe.fractiles[n].value for stripe in stripes], factor) for n in range(3))
     band = f"{100.0 * FRACTILES[0]:.0f} % to {100.0 * FRACTILES[2]:.0f} %"
-    axes.fill_between(scales, low, high, color=BAND, alpha=0.18, lw=0.0, label=band)
-    axes.plot(scales, middle, color=MEDIAN, lw=2.0, marker="o", ms=4, label="median")
+    if stripes:
+        axes.fill_between(scales, low, high, color=BAND, alpha=0.18, lw=0.0, label=band)
+        axes.plot(scales, middle, color=MEDIAN, lw=2.0, marker="o", ms=4, label="median")
     asked = [(point.scale, factor * point.estimate(quantity).value) for point in result.engine]
     if asked:
         axes.plot(*zip(*asked), "x", color=ENGINE, ms=8, mew=1.8, label="engine")
     axes.set_xlabel("scale factor of the motion")
     axes.set_ylabel(f"{TITLES[quantity[0]].format(quantity[1])}, {unit}".replace("m/s^2", "m/s$^2$"))
-    axes.set_ylim(bottom=0.0)
+    drawn = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes.get_lines()])
+    highest = float(drawn[np.isfinite(drawn)].max(initial=0.0))
+    axes.set_ylim(0.0, 1.08 * highest if highest > 0.0 else 1.0)
+    margin = 0.04 * (scales[-1] - scales[0]) if len(scales) > 1 else 0.1
+    axes.set_xlim(scales[0] - margin, scales[-1] + margin)
+    for stripe in stripes:
+        absent = sum(point.scale == stripe.scale for point in result.points) - stripe.answered
+        if absent:
+            place: dict[str, Any] = {"transform": axes.get_xaxis_transform(), "ha": "center", "va": "top"}
+            axes.text(stripe.scale, 0.985, f"↑{absent}", fontsize=7.5, color=ENGINE, **place)
     axes.grid(color="0.92")
 
 
