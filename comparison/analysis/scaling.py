@@ -38,7 +38,7 @@ Arguments = tuple[Scene, bool]  # and whether the supremum is taken
 
 
 def scaled(scene: Scene, s: float) -> Scene:
-    """The scene with loading, dry friction and travel times s, the rate at which friction changes with the speed over s."""
+    """The scene with loading, dry friction and travel times s, and the rate of a change of friction over s."""
     values: dict[str, Any] = {"excitation.scale": s * (scene.excitation.scale or 1.0)}
     law = scene.dry_friction
     if law.varies:
