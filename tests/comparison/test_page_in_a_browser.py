@@ -97,6 +97,21 @@ def _canvases(page: Page) -> list[Locator]:
     return page.locator("canvas.surface").all()
 
 
+@pytest.mark.parametrize(
+    ("low", "high", "texts"),
+    [
+        (6.83e5, 6.89e5, ["6.84·10⁵", "6.86·10⁵", "6.88·10⁵"]),
+        (-3e-4, 1e-4, ["−2·10⁻⁴", "0"]),
+        (0.0, 100.0, ["0", "50", "100"]),
+    ],
+)
+def test_ticks_tell_as_many_digits_as_their_distance_asks_for(
+    low: float, high: float, texts: list[str], visit: Visit
+) -> None:
+    ticks = visit.page.evaluate(f"ticksOf({{}}, [{low}, {high}], 3)")
+    assert [text for _, text in ticks] == texts
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [PHONE, LAPTOP, DESKTOP])
 def test_no_two_texts_overlap_and_nothing_is_wider_than_the_window(

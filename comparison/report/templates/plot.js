@@ -40,11 +40,16 @@ function ticksOf(axis, [low, high], most) {
   const rough = (high - low) / most, power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map(digit => digit * power).find(size => size >= rough) || 10 * power;
   const first = Math.ceil(low / step - 1e-9), count = Math.max(0, Math.floor(high / step + 1e-9) - first + 1);
-  return Array.from({ length: Math.min(count, 50) }, (_, i) => [(first + i) * step, shortNumber(+((first + i) * step).toPrecision(10))]);
+  return Array.from({ length: Math.min(count, 50) }, (_, i) => [(first + i) * step, shortNumber(+((first + i) * step).toPrecision(10), step)]);
 }
 const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
 const scientific = power => power === 0 ? "1" : power === 1 ? "10" : `10${[...String(power)].map(letter => RAISED[letter]).join("")}`;
-const shortNumber = value => value !== 0 && (Math.abs(value) < 1e-3 || Math.abs(value) >= 1e5) ? value.toExponential(0).replace("e", "·10^").replace(/\^\+?(-?\d+)/, (_, power) => [...power].map(letter => RAISED[letter]).join("")) : String(value).replace("-", "−");
+// a tick; step: to the next one, which decides how many digits of a very large or small value are told
+function shortNumber(value, step = Math.abs(value)) {
+  if (value === 0 || (Math.abs(value) >= 1e-3 && Math.abs(value) < 1e5)) return String(value).replace("-", "−");
+  const digits = Math.max(0, Math.floor(Math.log10(Math.abs(value)) + 1e-9) - Math.floor(Math.log10(step) + 1e-9));
+  return value.toExponential(Math.min(digits, 9)).replace("-", "−").replace(/e\+?(.*)/, (_, power) => `·10${[...power.replace("−", "-")].map(letter => RAISED[letter]).join("")}`);
+}
 
 function drawPlot(box, spec) {
   const width = Math.max(200, box.clientWidth), height = spec.height ?? 230;
