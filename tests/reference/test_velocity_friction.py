@@ -194,7 +194,7 @@ def test_the_supremum_tends_to_that_of_the_fast_friction_like_a_power_of_the_rat
     at = reference.trajectory(scene, PHASES[0], tolerance=1e-9, times=[stop])
     law = Law(scene, PHASES[0], "exact")
     place = at.position[0, :, :2].ravel().tolist()
-    share = float(np.hypot(*law.holding(stop, place[0], place[1], law.spring_forces(place))))
+    share = float(np.hypot(*law.holding(stop, place[0], place[1], law.link_forces(place, 4 * [0.0]))))
     rates = [1e6, 1e7, 1e8, 1e9, 1e10]
     gap = plain(0.1, 1e-6) - answers(rates, RISING, 1e-6)
     slope = -slopes(rates, gap)[:, 0]
