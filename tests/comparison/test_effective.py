@@ -38,6 +38,17 @@ def test_in_a_lubricated_scene_friction_is_read_per_speed() -> None:
     assert values.friction == pytest.approx(0.7, rel=1e-9)
 
 
+@pytest.mark.parametrize(("slow", "fast"), [(0.05, 0.1), (0.1, 0.05)])
+def test_where_friction_depends_on_the_velocity_the_fast_one_is_read(slow: float, fast: float) -> None:
+    law = {"slow": slow, "fast": fast, "rate": 20.0}
+    scene = load_scene("fig3-I").with_values({"isolator.friction": law, "duration": 3.0})
+    model = next(model for model in MODEL_HIERARCHY if model.key == "exact")
+    assert stated(scene).friction == fast
+    assert read_back((scene, model)).friction == pytest.approx(fast, rel=1e-5)
+    slowly = scene.with_values({"isolator.friction.rate": 0.1})
+    assert np.isnan(read_back((slowly, model)).friction), "a motion that sees no fast friction does not tell it"
+
+
 def test_the_scene_states_what_the_motion_is_held_against() -> None:
     scene = load_scene("fig3-II")
     value = stated(scene)

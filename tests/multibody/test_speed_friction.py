@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from scenes_at_hand import CONSTANT, changed, one_body
@@ -37,6 +39,23 @@ def within_errors(scene: Scene, phases: np.ndarray, tolerance: float = 1e-3) -> 
 @BOTH_LAWS
 def test_four_points_lie_within_their_errors_of_the_exact_equations(law: dict[str, float]) -> None:
     assert within_errors(paper_scene(law, duration=6.0), PHASES) <= 1.0
+
+
+TOGETHER = {
+    "flat slider": {"isolator.period": None, "isolator.radius": math.inf},
+    "damped links": {"bodies.1.damping": 0.05},
+    "vertical loading": {"excitation.amplitudes": [[1.0, 0.0], [0.0, 1.0], [2.0, 1.0]]},
+    "one axis": {"excitation.amplitudes": [[1.0, 0.6], [0.0, 0.0]]},
+}
+
+
+@pytest.mark.parametrize("values", TOGETHER.values(), ids=TOGETHER.keys())
+def test_it_goes_together_with_other_keys_of_a_scene(values: dict[str, object]) -> None:
+    assert within_errors(paper_scene(RISING, duration=3.0, **values), PHASES[:1]) <= 1.0
+
+
+def test_it_goes_together_with_a_record() -> None:
+    assert within_errors(paper_scene(FALLING, "synthetic-pair", duration=3.0), PHASES[:1]) <= 1.0
 
 
 @pytest.mark.long

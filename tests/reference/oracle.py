@@ -17,7 +17,7 @@ from oracle_integration import Observation, Peaks, march
 from oracle_law import Law, RefusalError
 from scipy.optimize import brentq, minimize_scalar
 
-from reference.problem import Scene, State, ground_peak
+from reference.problem import GRAVITY, Scene, State, ground_peak
 
 STILL = 1e-15  # m/s, where a sliding platform counts as stopped or about to reverse
 STIFF_BELOW = 2e-3  # m/s, after an onset
@@ -194,7 +194,10 @@ class _SetValued:
             here, y_here = self.rest(here, y_here, events=False, until=t + part * first)
             angle = self.attractor(here, y_here, self.driving_angle(here, y_here))
             rates.append(self.frozen(here, y_here, angle)[0])
-        speed = first / 6.0 * (4.0 * rates[0] + rates[1])
+        # friction that changes with the speed: what is gained by the middle has grown since
+        law = self.law
+        growth = math.exp(-0.5 * first * law.coefficient_slope * law.total / law.mass[0] * GRAVITY)
+        speed = first / 6.0 * (4.0 * growth * rates[0] + rates[1])
         if speed <= 0.0:
             raise RuntimeError(f"onset at {t} s that does not go on")
         y_here = y_here.copy()

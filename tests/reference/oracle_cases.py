@@ -88,7 +88,16 @@ OWN: dict[str, dict[str, Any]] = {
 }
 
 
+VELOCITY = {  # behind the name of a scene: friction that depends on the velocity
+    "rising": {"slow": 0.05, "fast": 0.1, "rate": 100.0},
+    "falling": {"slow": 0.1, "fast": 0.05, "rate": 100.0},
+}
+
+
 def scene_of(name: str) -> Scene:
+    base, _, law = name.rpartition("-")
+    if law in VELOCITY:
+        return scene_of(base).with_values({"name": name, "duration": 6.0, "isolator.friction": VELOCITY[law]})
     if name not in OWN:
         return load_scene(name)
     return Scene.model_validate({"title": name, "name": name, "duration": 20.0, **OWN[name]})
@@ -106,6 +115,15 @@ SET_VALUED = [
     *(Case("light-platform", (0.3, 1.1), e) for e in BOTH),
     *(Case("one-axis", (0.3, 1.1), e) for e in BOTH),
     Case("held", (0.3, 1.1), "exact"),
+    *(
+        Case(f"{scene}-rising", (0.3, 1.1), "exact")
+        for scene in ("fig3-I", "fig3-II", "one-body", "three-vertical", "deep", "one-axis", "five-bodies")
+    ),
+    *(
+        Case(f"{scene}-falling", (0.3, 1.1), "exact")
+        for scene in ("fig3-I", "fig4-dry", "one-body", "three-vertical", "deep", "one-axis")
+    ),
+    *(Case(f"fig3-I-{law}", (0.3, 1.1), "small") for law in VELOCITY),
 ]
 SMOOTH = [
     *(Case("fig4-viscous", p, e) for p in ((0.3, 1.1), (2.5, 4.0)) for e in BOTH),
@@ -123,5 +141,9 @@ REGULARIZED = [
     Case("three-vertical", (0.3, 1.1), "small", 1e-3),
     Case("deep", (0.3, 1.1), "exact", 1e-3),
     Case("one-axis", (0.3, 1.1), "exact", 1e-4),
+    Case("fig3-I-rising", (0.3, 1.1), "exact", 1e-3),
+    Case("fig3-I-falling", (0.3, 1.1), "exact", 1e-3),
+    Case("three-vertical-rising", (0.3, 1.1), "small", 1e-2),
+    Case("one-axis-falling", (0.3, 1.1), "exact", 1e-2),
 ]
 CASES = [*SET_VALUED, *SMOOTH, *REGULARIZED]

@@ -124,6 +124,11 @@ class Law:
             return vx * vx + vy * vy
         return vx * vx + vy * vy + ((x * vx + y * vy) / self.delta(x, y)) ** 2
 
+    @property
+    def coefficient_slope(self) -> float:
+        """Of dry friction by the sliding speed, at rest, s/m."""
+        return (self.fast - self.slow) * self.rate
+
     def coefficient(self, speed: float) -> float:
         """Of dry friction at a sliding speed."""
         if self.rate == 0.0:

@@ -16,6 +16,7 @@ from numpy.polynomial.legendre import leggauss
 
 import reference
 from reference.problem import GRAVITY, Scene, Trajectory, ground_acceleration, load_scene
+from reference.problem.tables import VelocityFriction
 
 TOLERANCE = 1e-7
 GRID = 2e-3  # s
@@ -34,6 +35,7 @@ def damped(scene: Scene, damping: float | list[float]) -> Scene:
     return scene.with_values({f"bodies.{i}.damping": damping for i in range(1, len(scene.bodies))})
 
 
+RISING, FALLING = {"slow": 0.04, "fast": 0.1, "rate": 80.0}, {"slow": 0.1, "fast": 0.05, "rate": 30.0}
 TWO = {"masses": [1.0, 1.0], "stiffness": [[17.0, 27.0]]}
 VERTICAL = [[1.0, 0.4], [-0.3, 1.2], [1.3, 0.9]]
 RUNS = [
@@ -44,6 +46,10 @@ RUNS = [
     Run("deep swing", chain(0.25, 0.1, amplitudes=[[2.8, 1.0], [0.5, 2.8]], periods=[1.2, 1.4], **TWO)),
     Run("regularized", load_scene("fig3-I"), regularization=1e-3),
     Run("regularized, small", load_scene("fig3-I"), "small", 1e-2),
+    Run("friction that rises with the speed", load_scene("fig3-I").with_values({"isolator.friction": RISING})),
+    Run("falls", load_scene("fig3-I").with_values({"isolator.friction": FALLING})),
+    Run("falls, small", load_scene("fig3-II").with_values({"isolator.friction": FALLING}), "small"),
+    Run("rises, regularized", load_scene("fig3-I").with_values({"isolator.friction": RISING}), regularization=1e-3),
     Run("lubricated", load_scene("fig4-viscous")),
     Run("lubricated, vertical", chain(0.3, lubrication=0.8, amplitudes=VERTICAL, **TWO)),
     Run("lubricated, small", load_scene("fig4-viscous"), "small"),
@@ -78,6 +84,9 @@ def slip_force(run: Run, motion: Trajectory) -> np.ndarray:
     coefficient = run.scene.friction_coefficient
     if run.scene.lubricated:
         return -coefficient * velocity
+    if isinstance(run.scene.isolator.friction, VelocityFriction):
+        law = run.scene.isolator.friction
+        coefficient = (law.fast - (law.fast - law.slow) * np.exp(-law.rate * speed))[:, None]
     if run.regularization is not None:
         return -coefficient * velocity / np.maximum(speed, run.regularization)[:, None]
     moving = speed > 0.0

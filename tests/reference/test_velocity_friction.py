@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 import reference
 from reference.analytical import circular_shaking
-from reference.problem import GRAVITY, DryFriction, Scene, State, load_scene
+from reference.problem import GRAVITY, DryFriction, Scene, State, linear, load_scene, no_friction, planar, untilted
 
 TOLERANCE = 1e-8
 STILL = ((0.0, 0.0), (0.0, 0.0))
@@ -194,7 +194,7 @@ def test_the_supremum_tends_to_that_of_the_fast_friction_like_a_power_of_the_rat
     at = reference.trajectory(scene, PHASES[0], tolerance=1e-9, times=[stop])
     law = Law(scene, PHASES[0], "exact")
     place = at.position[0, :, :2].ravel().tolist()
-    share = float(np.hypot(*law.holding(stop, place[0], place[1], law.spring_forces(place))))
+    share = float(np.hypot(*law.holding(stop, place[0], place[1], law.link_forces(place, 4 * [0.0]))))
     rates = [1e6, 1e7, 1e8, 1e9, 1e10]
     gap = plain(0.1, 1e-6) - answers(rates, RISING, 1e-6)
     slope = -slopes(rates, gap)[:, 0]
@@ -224,3 +224,32 @@ def test_small_equations_keep_mu_when_loading_and_friction_shrink_and_the_rate_g
         mu.append(reference.amplification(scaled, PHASES, equations="small", tolerance=1e-9).mu)
     changes = np.abs(np.diff(mu, axis=0))
     np.testing.assert_allclose(np.log2(changes[1] / changes[2]), 2.0, atol=0.2)
+
+
+# what a scene does not require ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("law", [RISING, FALLING], ids=["rising", "falling"])
+def test_half_turns_of_the_phases_and_motions_in_a_plane_stay_symmetries(law):
+    scene = with_law(load_scene("fig3-I").with_values({"duration": 4.0}), law)
+    turns = np.pi * np.array([(0, 0), (1, 1), (1, 0), (0, 1)])
+    answer = reference.amplification(scene, np.array(PHASES[0]) + turns)
+    assert (np.abs(answer.mu - answer.mu[0]) <= answer.error + answer.error[0]).all()
+    aslant = scene.with_values({"excitation.amplitudes": [[1.2, 0.6], [1.6, 0.8]], "bodies.1.period": [1.2, 1.2]})
+    assert planar(aslant)
+    flat, full = (reference.amplification(aslant, PHASES, regularization=v_reg, full=whole)
+                  for v_reg, whole in ((1e-3, False), (1e-3, True)))  # fmt: skip
+    assert (np.abs(flat.mu - full.mu) <= flat.error + full.error).all()
+
+
+def test_what_friction_forbids_the_larger_coefficient_forbids():
+    body = {"mass": 1.0, "height": 0.0, "size": [2.0, 2.0, 0.2]}
+    alone = load_scene("fig3-I").with_values({"bodies": [body], "isolator.ring": 0.12})
+    assert untilted(with_law(alone, 0.1))
+    assert not untilted(with_law(alone, 0.4))
+    for slow, fast in ((0.1, 0.4), (0.4, 0.1)):
+        law = {"slow": slow, "fast": fast, "rate": 10.0}
+        assert not untilted(with_law(alone, law))
+        assert not no_friction(with_law(alone, law))
+        assert not linear(with_law(alone, law))
+    assert not no_friction(with_law(alone, {"slow": 0.1, "fast": 0.0, "rate": 10.0}))

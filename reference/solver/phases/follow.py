@@ -59,6 +59,7 @@ from reference.solver.system import (
 from reference.solver.travel import travel_reached
 from reference.solver.work import REACTION, SPEED2, Work
 
+FRICTION_ROUNDING = 1e-14  # of the friction limit: no acceleration is closer, a difference of such forces
 VARYING_NEWTON_FRACTION = 1e-3  # of that change otherwise, where friction depends on the speed
 
 
@@ -151,7 +152,9 @@ def made(system: System, work: Work, contact: int, demand: Demand, h: float) -> 
         guess_slide(system, work, h)
         if system.rate > 0.0:
             # slow growth and decay of the speed pass small errors on to the next step, whose direction they turn
-            enough *= VARYING_NEWTON_FRACTION / (1.0 + h * rising_rate(system, sqrt(work.start2)))
+            rounding = FRICTION_ROUNDING * system.friction * system.mass_ratio * system.gravity
+            enough = max(VARYING_NEWTON_FRACTION * enough, rounding)
+            enough /= 1.0 + h * rising_rate(system, sqrt(work.start2))
     else:
         first_guess(work, h)
         # where friction is stiff a small error of the acceleration is a large one of the velocity, and so of the force
