@@ -93,7 +93,7 @@ def plane_factors(scene: Scene, phase) -> np.ndarray:
         corner.direction = 1.0 if creeping else -1.0
         events = None if scene.lubricated else corner
         run = solve_ivp(
-            slope, (begin, ends[0]), state, "LSODA", events=events, dense_output=True, rtol=1e-10, atol=1e-13
+            slope, (begin, ends[0]), state, "LSODA", events=events, dense_output=True, rtol=1e-11, atol=1e-14
         )
         steps = np.union1d(run.t, 0.5 * (run.t[1:] + run.t[:-1]))
         instants = np.union1d(steps, np.linspace(begin, run.t[-1], 2 + math.ceil((run.t[-1] - begin) / 2e-4)))
