@@ -220,6 +220,19 @@ def test_the_modes_of_a_chain_on_a_plane_begin_with_its_rigid_motion():
     assert reference.modes(flat(bodies=[{"mass": 2.0}])).frequency.tolist() == [[0.0], [0.0]]
 
 
+def test_the_damped_modes_of_a_chain_on_a_plane_begin_with_its_rigid_motion():
+    """The others are those of an oscillator with the reduced mass 2/3 kg."""
+    bodies = [{"mass": 2.0}, {"mass": 1.0, "stiffness": [30.0, 12.0], "damping": [0.4, 0.3]}]
+    natural = reference.damped_modes(flat(bodies=bodies))
+    omega = np.sqrt(np.array([30.0, 12.0]) * 1.5)
+    np.testing.assert_array_equal(natural.eigenvalue[:, :2], 0.0)
+    np.testing.assert_array_equal(natural.damping_ratio[:, :2], 0.0)
+    np.testing.assert_array_equal(natural.shape[:, :, :2], 1.0)
+    np.testing.assert_allclose(natural.frequency[:, 2:], np.column_stack([omega, omega]), rtol=1e-12)
+    ratio = np.array([0.4, 0.3]) * 1.5 / (2.0 * omega)
+    np.testing.assert_allclose(natural.damping_ratio[:, 2:], np.column_stack([ratio, ratio]), rtol=1e-12)
+
+
 # limits, reductions, scaling -----------------------------------------------------------------------------------------
 
 
