@@ -72,7 +72,8 @@ class DampedModes:
     Attributes
     ----------
     eigenvalue : ndarray of complex, (2, 2 N), 1/s
-        lambda. A vibration has a conjugate pair, first the one with a positive imaginary part.
+        lambda. A vibration has a conjugate pair, first the one with a positive imaginary part. On a flat slider the
+        first two are 0: all bodies go along as one, at any speed.
     shape : ndarray of complex, (2, N, 2 N)
         shape[axis, body, mode], X scaled so that its largest entry is 1.
     """
@@ -88,8 +89,9 @@ class DampedModes:
 
     @property
     def damping_ratio(self) -> Array:
-        """-Re lambda / |lambda|, (2, 2 N): 0 without damping, 1 of a motion that does not swing."""
-        result: Array = -self.eigenvalue.real / self.frequency
+        """-Re lambda / |lambda|, (2, 2 N): 0 without damping, 1 of a motion that does not swing, 0 of the rigid one."""
+        size = self.frequency
+        result: Array = np.divide(-self.eigenvalue.real, size, where=size > 0.0, out=np.zeros_like(size))
         return result
 
 
@@ -171,15 +173,20 @@ def _damped_axis(
     """Eigenvalues (2 N,) and shapes (N, 2 N) along one axis."""
     count = len(masses)
     elongation = (np.eye(count) - np.eye(count, k=-1)) / np.sqrt(masses)  # of links by M0^1/2 q
-    factor = np.sqrt(stiffness)[:, None] * elongation
-    state = np.zeros((2 * count, 2 * count))
-    state[:count, count:] = factor
-    state[count:, :count] = -factor.T
-    state[count:, count:] = -(elongation.T * damping) @ elongation
+    held = stiffness > 0.0  # the first link of a flat slider is none
+    factor = np.sqrt(stiffness[held])[:, None] * elongation[held]
+    links = len(factor)
+    state = np.zeros((links + count, links + count))
+    state[:links, links:] = factor
+    state[links:, :links] = -factor.T
+    state[links:, links:] = -(elongation.T * damping) @ elongation
     values, vectors = eig(state)
     order = np.lexsort((-values.imag, np.abs(values)))
-    values, vectors = values[order], vectors[count:, order]
+    rigid = 2 * count - len(order)
+    values, vectors = values[order[rigid:]], vectors[links:, order[rigid:]]
     shape = vectors / np.sqrt(masses)[:, None] / values
+    values = np.concatenate([np.zeros(2 * rigid), values])
+    shape = np.hstack([np.ones((count, 2 * rigid)), shape])
     largest = np.abs(shape).argmax(axis=0)
     return values, shape / shape[largest, np.arange(2 * count)]
 

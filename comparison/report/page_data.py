@@ -28,12 +28,12 @@ def page_data(findings: Findings) -> str:
     """
     JSON of all that is drawn; NaN is null.
 
-    grid: phases per axis of the study. titles: by model. scenes, each: name, title, bodies, duration (s), recorded;
-    pairs, each: key, title, sentence, first, second (models), contours (per body: polylines
-    [[alpha1, alpha2], ...], rad, on which |D| = u_D), uncertainty (per body: u_D relative to the first model on the
-    phases of both, or null where both are surfaces); models (by key: see `_model`); contact (`contact_geometry`);
-    places (row, column, phases or null under a record, why, and motions: see `motion_data`); spectra
-    (`spectrum_axis`). A surface is a list of rows, one per alpha1, of values, one per alpha2.
+    grid: phases per axis of the study. titles: by model. scenes, each: name, title, bodies, duration (s), recorded,
+    flat (whether it is a flat slider); pairs, each: key, title, sentence, first, second (models), contours (per body:
+    polylines [[alpha1, alpha2], ...], rad, on which |D| = u_D), uncertainty (per body: u_D relative to the first model
+    on the phases of both, or null where both are surfaces); models (by key: see `_model`); contact
+    (`contact_geometry`); places (row, column, phases or null under a record, why, and motions: see `motion_data`);
+    spectra (`spectrum_axis`). A surface is a list of rows, one per alpha1, of values, one per alpha2.
     """
     study = findings.study
     starts = starts_of(findings.motions or [])
@@ -47,6 +47,7 @@ def page_data(findings: Findings) -> str:
                 "bodies": len(scene.bodies),
                 "duration": scene.duration,
                 "recorded": scene.recorded,
+                "flat": scene.flat,
                 "pairs": [_pair(findings, scene, pair) for pair in study.pairs(scene)],
                 "models": _models(findings, scene),
                 "contact": contact_geometry(scene),

@@ -48,7 +48,8 @@ def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> 
         rate = np.where(rate > MAX_CREDIBLE_RATE, MIN_RATE, np.clip(rate, MIN_RATE, MAX_RATE))
     change = safety * change * (1.0 + lag(levels[-2], model)) / (rate - 1.0)
     level_error: Array = np.maximum(change, levels[-1].error_floor * last)
-    return level_error + peaks[-1].sampling + levels[-1].rounding + MIN_RELATIVE_ERROR * last
+    unsolved = levels[-1].newton * levels[-1].load
+    return level_error + peaks[-1].sampling + levels[-1].rounding + unsolved + MIN_RELATIVE_ERROR * last
 
 
 def widened_by_impacts(errors: Array, run: EngineRun, number: int) -> Array:

@@ -76,6 +76,9 @@ class Level:
         For everything that dies faster than the largest step resolves: the instant until which it lasts, and its step.
     strength : float
         Of a weak loading, in units of g; one for any other. The residual is held against it.
+    load : float
+        The loading of a flat slider, in units of g; zero for any other. What accelerates the bodies is friction, which
+        may be a small difference of forces that Newton's iteration solves to its tolerance.
 
     Examples
     --------
@@ -95,6 +98,7 @@ class Level:
     warping_compliance: float
     decays: tuple[tuple[float, float], ...] = ()
     strength: float = 1.0
+    load: float = 0.0
 
     @property
     def rounding(self) -> float:
@@ -184,6 +188,7 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
             warping_compliance=MIN_WARPING_COMPLIANCE,
             decays=tuple((until, needed / 2.0**level) for until, needed in brief),
             strength=strength,
+            load=2.0 * scene.largest_acceleration / GRAVITY if scene.flat else 0.0,
         )
         for level, penetration in enumerate(penetrations)
     ]

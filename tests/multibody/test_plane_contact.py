@@ -23,6 +23,10 @@ SCENES = {
     "lubricated": load_scene("fig4-viscous").with_values(FLAT),
     "vertical": load_scene("fig3-I").with_values({**FLAT, **VERTICAL}),
     "one body": load_scene("fig3-I").with_values({**FLAT, "bodies": [{"mass": 1.0}], "excitation.scale": 3.0}),
+    "friction by speed": load_scene("fig3-I").with_values(
+        {**FLAT, "isolator.friction": {"slow": 0.05, "fast": 0.1, "rate": 20.0}}
+    ),
+    "damped links": load_scene("fig3-I").with_values({**FLAT, "bodies.1.damping": 0.1}),
     "six bodies": frame(10.0, 6).with_values(
         {"isolator": {"radius": math.inf, "friction": frame(10.0, 6).friction_coefficient}}
     ),
@@ -39,7 +43,7 @@ def within_errors(scene: Scene, phases: np.ndarray, **asked: object) -> float:
     return float((np.abs(engine.mu - equations.mu) / (engine.error + equations.error)).max())
 
 
-@pytest.mark.parametrize("name", ["own axes", "lubricated", "vertical"])
+@pytest.mark.parametrize("name", ["own axes", "lubricated", "vertical", "friction by speed", "damped links"])
 def test_every_factor_lies_within_its_error_of_the_exact_equations(name):
     scene = SCENES[name].with_values({"duration": 6.0})
     assert within_errors(scene, PHASES if name == "own axes" else PHASES[:1]) <= 1.0

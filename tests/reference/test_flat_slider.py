@@ -93,7 +93,7 @@ def plane_factors(scene: Scene, phase) -> np.ndarray:
         corner.direction = 1.0 if creeping else -1.0
         events = None if scene.lubricated else corner
         run = solve_ivp(
-            slope, (begin, ends[0]), state, "LSODA", events=events, dense_output=True, rtol=1e-10, atol=1e-13
+            slope, (begin, ends[0]), state, "LSODA", events=events, dense_output=True, rtol=1e-11, atol=1e-14
         )
         steps = np.union1d(run.t, 0.5 * (run.t[1:] + run.t[:-1]))
         instants = np.union1d(steps, np.linspace(begin, run.t[-1], 2 + math.ceil((run.t[-1] - begin) / 2e-4)))
@@ -218,6 +218,19 @@ def test_the_modes_of_a_chain_on_a_plane_begin_with_its_rigid_motion():
     np.testing.assert_allclose(natural.effective_mass, [[3.0, 0.0], [3.0, 0.0]], atol=1e-13)
     np.testing.assert_allclose(natural.shape[:, :, 0], 1.0 / math.sqrt(3.0), rtol=1e-13)
     assert reference.modes(flat(bodies=[{"mass": 2.0}])).frequency.tolist() == [[0.0], [0.0]]
+
+
+def test_the_damped_modes_of_a_chain_on_a_plane_begin_with_its_rigid_motion():
+    """The others are those of an oscillator with the reduced mass 2/3 kg."""
+    bodies = [{"mass": 2.0}, {"mass": 1.0, "stiffness": [30.0, 12.0], "damping": [0.4, 0.3]}]
+    natural = reference.damped_modes(flat(bodies=bodies))
+    omega = np.sqrt(np.array([30.0, 12.0]) * 1.5)
+    np.testing.assert_array_equal(natural.eigenvalue[:, :2], 0.0)
+    np.testing.assert_array_equal(natural.damping_ratio[:, :2], 0.0)
+    np.testing.assert_array_equal(natural.shape[:, :, :2], 1.0)
+    np.testing.assert_allclose(natural.frequency[:, 2:], np.column_stack([omega, omega]), rtol=1e-12)
+    ratio = np.array([0.4, 0.3]) * 1.5 / (2.0 * omega)
+    np.testing.assert_allclose(natural.damping_ratio[:, 2:], np.column_stack([ratio, ratio]), rtol=1e-12)
 
 
 # limits, reductions, scaling -----------------------------------------------------------------------------------------

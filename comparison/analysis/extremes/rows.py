@@ -244,8 +244,10 @@ def _sizes() -> Iterator[Row]:
     yield Row("amplitude, m/s^2", "12, friction 0.02, along the rim", near_rim, PLANAR, phases=PHASES[:1])
     for radius in (1e-3, 3e-2, 30.0, 1e3):
         yield Row("rho, m", f"{radius:g}", scene(radius=radius), ALL)
-    yield Row("rho, m", "inf", scene(radius=math.inf), PLANAR)
-    yield Row("rho, m", "inf, upward 5 m/s^2", scene(radius=math.inf, amplitudes=_upward(5.0)), PLANAR)
+    yield Row("rho, m", "inf", scene(radius=math.inf), ALL)
+    yield Row("rho, m", "inf, upward 5 m/s^2", scene(radius=math.inf, amplitudes=_upward(5.0)), ALL)
+    for amplitude in (1e-6, 1e3):
+        yield Row("rho, m", f"inf, {amplitude:g} m/s^2", scene(radius=math.inf, amplitudes=_along(amplitude)), ALL)
     for travel in (1e-6, 0.02, 0.24):
         yield Row("travel, m", f"{travel:g}", scene(travel=travel), ALL)
 

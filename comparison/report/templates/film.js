@@ -16,7 +16,7 @@ function startFilm(scene, titles, motions) {
     return (1 - w) * list[low] + w * list[high];
   };
   film.draw = () => {
-    const [pen, width, height] = prepared(canvas), ink = variable("--ink"), soft = variable("--soft"), each = width / Math.max(1, shown.length);
+    const [pen, width, height] = prepared(canvas), ink = variable("--ink"), soft = variable("--soft"), each = width / Math.max(1, shown.length), bowl = scene.flat ? 0 : 22;
     pen.clearRect(0, 0, width, height);
     shown.forEach(({ title, k }, column) => {
       const middle = each * (column + 0.5), reach = each * 0.3, ground = height - 34, color = variable(`--c${k}`), tall = Math.min(34, (ground - 60) / scene.bodies);
@@ -25,13 +25,13 @@ function startFilm(scene, titles, motions) {
       pen.fillText(title.replaceAll("_", " "), middle, 14);
       pen.strokeStyle = soft;
       pen.lineWidth = 2;
-      pen.beginPath();  // the bowl, deeper than it is
-      for (let x = -reach * 1.25; x <= reach * 1.25; x += 4) pen.lineTo(middle + x, ground - 22 * (x / reach) ** 2);
+      pen.beginPath();  // the bowl, deeper than it is, or the plane
+      for (let x = -reach * 1.25; x <= reach * 1.25; x += 4) pen.lineTo(middle + x, ground - bowl * (x / reach) ** 2);
       pen.stroke();
       pen.lineWidth = 1;
       let above = null;
       for (let body = 0; body < scene.bodies; body++) {
-        const x = middle + reach * at(column, body, 0) / most, rise = body ? 0 : 22 * ((x - middle) / reach) ** 2, y = ground - 10 - rise - body * (tall + 8) - (body ? 8 : 0), wide = body ? each * 0.11 : each * 0.17;
+        const x = middle + reach * at(column, body, 0) / most, rise = body ? 0 : bowl * ((x - middle) / reach) ** 2, y = ground - 10 - rise - body * (tall + 8) - (body ? 8 : 0), wide = body ? each * 0.11 : each * 0.17;
         pen.strokeStyle = color;
         if (above) strokeLine(pen, [[above[0], above[1] - 6], [x, y + 6]]);
         pen.fillStyle = color;
