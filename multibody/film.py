@@ -65,7 +65,7 @@ class Drawing:
     @property
     def reach(self) -> float:
         """Half of the width that everything needs."""
-        return 1.08 * float(np.abs(self.corners[..., :2]).max())
+        return 1.08 * float(max(np.abs(self.corners[..., :2]).max(), np.abs(self.supports).max()))
 
 
 def frames(time: Array, values: Array, count: int) -> Array:

@@ -327,7 +327,7 @@ class Body(Table):
         Annotated[float, within("bodies.yaw")] | None,
         about(
             "angle about the vertical from the axes x and y to those of the box, and to the directions in which "
-            "`period` or `stiffness` of its link act",
+            "`period`, `stiffness` and `damping` of its link act",
             "rad",
             SPATIAL,
         ),

@@ -115,6 +115,7 @@ def test_the_matrix_has_every_extreme_and_at_least_120_cells():
         "friction", "v_reg, m/s", "amplitude, m/s^2", "rho, m", "bodies N", "total mass, kg",
         "platform's share of the mass", "link periods, s", "harmonics", "decay, 1/s", "duration, s",
         "vertical loading, m/s^2", "phases", "direction", "start at the friction limit", "three supports, ring in m",
+        "offset over the ring", "yaw, rad", "positions of supports",
     ):  # fmt: skip
         assert groups[group] > 0, group
     assert len(cells(every)) >= 120

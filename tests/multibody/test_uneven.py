@@ -13,6 +13,7 @@ from scipy.integrate import cumulative_trapezoid, trapezoid
 
 import multibody
 import reference
+from multibody.models.assembly import assemble
 from multibody.models.depressions import rotation
 from reference.problem import GRAVITY, Outcome, Scene, SceneError, demands, load_scene
 
@@ -151,7 +152,7 @@ def turned(scene: Scene, angle: float) -> Scene:
 @pytest.mark.parametrize("angle", [0.5 * math.pi, 0.5, -2.0])
 @pytest.mark.parametrize("name", ["all off the axis", "everything"])
 def test_a_scene_turned_as_a_whole_has_the_turned_motion(name: str, angle: float) -> None:
-    scene = uneven(name)
+    scene = uneven(name, **{"bodies.1.damping": [0.3, 1.5]})
     here, there = (multibody.amplification(each, [PHASE], "spatial") for each in (scene, turned(scene, angle)))
     assert agree(here, there)
     motions = [multibody.trajectory(each, PHASE, "spatial") for each in (scene, turned(scene, angle))]
@@ -258,3 +259,19 @@ def test_stated_bearings_carry_an_eccentric_building(stiffness: float) -> None:
     np.testing.assert_allclose(
         motion.extra["support_force"][0] / (scene.total_mass * GRAVITY), static_shares(scene), atol=2e-3
     )
+
+
+def test_a_box_at_an_angle_has_the_turned_tensor_of_inertia() -> None:
+    scene = uneven("at an angle")
+    model = assemble(scene, "spatial", 1e-3)
+    unit = model.units.mass * model.units.length**2
+    for number, body in enumerate(scene.bodies):
+        xx, yy, zz, yz, xz, xy = np.array(model.mbs.GetObject(number)["inertia"]) * unit
+        cosine, sine = math.cos(body.yaw or 0.0), math.sin(body.yaw or 0.0)
+        assert body.size is not None
+        along, across, up = np.square(body.size)
+        about_along, about_across = body.mass * (across + up) / 12.0, body.mass * (along + up) / 12.0
+        assert xx == pytest.approx(about_along * cosine**2 + about_across * sine**2)
+        assert yy == pytest.approx(about_along * sine**2 + about_across * cosine**2)
+        assert xy == pytest.approx((about_along - about_across) * sine * cosine)
+        assert (zz, yz, xz) == (pytest.approx(body.mass * (along + across) / 12.0), 0.0, 0.0)

@@ -109,6 +109,7 @@ PLANAR = ALL[:4]  # every model whose bodies do not turn
 REFERENCE = ALL[:3]
 WITH_V_REG = ALL[2:]
 WITH_ENGINE = ALL[3:]
+SPATIAL = ALL[4:]
 
 
 def scene(
@@ -199,6 +200,7 @@ def rows() -> Iterator[Row]:
     yield from _excitations()
     yield from _directions()
     yield from _starts_and_supports()
+    yield from _uneven()
     yield from _tolerances()
     yield from _outside_the_rules()
 
@@ -329,6 +331,33 @@ def _starts_and_supports() -> Iterator[Row]:
     for ring in (1.0, 0.1, 0.01):
         three = scene(amplitudes=_along(4.0), friction=0.05, supports=3, ring=ring)
         yield Row("three supports, ring in m", f"{ring:g}", three, ("spatial",))
+
+
+def _uneven() -> Iterator[Row]:
+    """Uneven buildings: the equations and translation do not read what makes them so."""
+    for share in (1e-6, 0.1, 0.45):  # of the ring, towards a support: at 0.5 its opposite carries nothing
+        moved = _with_bodies(offset=[share * math.sqrt(0.5)] * 2)
+        yield Row("offset over the ring", f"{share:g}", moved, SPATIAL, max_work=1e5)
+    for share in (0.5, 1.0):
+        beyond = _with_bodies(offset=[share * math.sqrt(0.5)] * 2)
+        yield Row("offset over the ring", f"{share:g}", beyond, SPATIAL, invalid=True)
+    for yaw in (1e-6, 0.25 * math.pi):
+        yield Row("yaw, rad", f"{yaw:.3g}", _with_bodies(yaw=yaw), SPATIAL)
+    positions = {
+        "2 m by 0.02 m": [[1.0, 0.01], [-1.0, 0.01], [-1.0, -0.01], [1.0, -0.01]],
+        "one 100 m away": [[-0.5, -0.5], [0.5, -0.5], [0.0, 100.0]],
+        "9 in a grid": [[x, y] for x in (-1.0, 0.0, 1.0) for y in (-1.0, 0.0, 1.0)],
+    }
+    for title, places in positions.items():
+        yield Row("positions of supports", title, scene(ring=None, supports=places), SPATIAL, max_work=5e4)
+    line = scene(ring=None, supports=[[-1.0, -1.0], [0.0, 0.0], [1.0, 1.0]])
+    yield Row("positions of supports", "on one line", line, SPATIAL, invalid=True)
+
+
+def _with_bodies(**keys: Any) -> dict[str, Any]:
+    """The plain scene with keys of every body."""
+    stated = scene()
+    return {**stated, "bodies": [{**body, **keys} for body in stated["bodies"]]}
 
 
 def _tolerances() -> Iterator[Row]:
