@@ -26,36 +26,12 @@ from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from reference.problem import Estimate, Estimates, Scene, phase_axis, phase_distribution, phase_grid
 from reference.problem.distribution import FRACTILES
-from reference.problem.peak_demands import demands_of_motions
+from reference.problem.peak_demands import PER_BODY, QUANTITIES, demands_of_motions
 
 Array = NDArray[np.float64]
 
 SECONDS = {"reference": 0.06, "engine": 0.5}  # predicted cost of one motion, s on `study.models.RECORDED_ON`
 BATCH_SECONDS = 2.0  # of the motions of one task, as predicted
-PER_BODY = {
-    "acceleration": 0,
-    "drift": 1,
-    "torsion": 0,
-}  # demands of bodies, and the index of the body that comes first
-QUANTITIES = {  # fields of `Demands` in words, and their units
-    "displacement": ("largest displacement of the isolator", "m"),
-    "residual": ("displacement at the end", "m"),
-    "cap_share": ("largest displacement over rho", "1"),
-    "travel_share": ("largest displacement over the travel", "1"),
-    "acceleration": ("largest absolute acceleration", "m/s^2"),
-    "base_shear": ("base shear", "N"),
-    "drift": ("drift against the body below", "m"),
-    "contact_force_min": ("smallest contact force", "N"),
-    "contact_force_max": ("largest contact force", "N"),
-    "support_force_min": ("smallest support force", "N"),
-    "support_force_max": ("largest support force", "N"),
-    "torsion": ("largest rotation about the vertical", "rad"),
-    "stops": ("number of stops", "1"),
-    "uplift": ("largest uplift of a support", "m"),
-    "friction_energy": ("energy dissipated by friction", "J"),
-    "damping_energy": ("energy dissipated by dampers of the links", "J"),
-    "energy_balance": ("work of the ground less energy dissipated and stored", "J"),
-}
 PREFIX = "demand_"  # of a demand in surfaces.nc
 
 # scene, model, relative error asked, phases (M, 2), rad

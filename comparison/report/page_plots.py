@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import Any
 
-from comparison.analysis.demand_surfaces import QUANTITIES
 from comparison.analysis.distribution import CURVE
 from comparison.analysis.tradeoff.trade import Answered, Entry, Trade
 from comparison.report.results import FamilyResult, Results, SceneResult, Trend, Worst
 from comparison.wording import scientific, significant
+from reference.problem.peak_demands import QUANTITIES
 
 Panel = dict[str, Any]  # title, and plot: see plot.js
 

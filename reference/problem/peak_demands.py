@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,7 +17,31 @@ from reference.problem.phases import flat_phases
 from reference.problem.result import Trajectory
 from reference.problem.scene import Scene
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 Array = NDArray[np.float64]
+
+PER_BODY = {"acceleration": 0, "drift": 1, "torsion": 0}  # demands of bodies: index of the body that comes first
+QUANTITIES = {  # fields of `Demands` in words, and their units
+    "displacement": ("largest displacement of the isolator", "m"),
+    "residual": ("displacement at the end", "m"),
+    "cap_share": ("largest displacement over rho", "1"),
+    "travel_share": ("largest displacement over the travel", "1"),
+    "acceleration": ("largest absolute acceleration", "m/s^2"),
+    "base_shear": ("base shear", "N"),
+    "drift": ("drift against the body below", "m"),
+    "contact_force_min": ("smallest contact force", "N"),
+    "contact_force_max": ("largest contact force", "N"),
+    "support_force_min": ("smallest support force", "N"),
+    "support_force_max": ("largest support force", "N"),
+    "torsion": ("largest rotation about the vertical", "rad"),
+    "stops": ("number of stops", "1"),
+    "uplift": ("largest uplift of a support", "m"),
+    "friction_energy": ("energy dissipated by friction", "J"),
+    "damping_energy": ("energy dissipated by dampers of the links", "J"),
+    "energy_balance": ("work of the ground less energy dissipated and stored", "J"),
+}
 
 
 @dataclass(frozen=True)
@@ -53,12 +78,15 @@ class PeakDemands(Mapping[str, Estimates]):
         When the status arose; NaN where it is "ok".
     cost : float, s
         Processor time.
+    phases : ndarray, (..., 2), rad
+        The phase pairs, as they were computed: beyond a full turn reduced to (-pi, pi].
     """
 
     estimates: dict[str, Estimates]
     status: NDArray[np.str_]
     instant: Array
     cost: float
+    phases: Array
 
     def __getitem__(self, name: str) -> Estimates:
         return self.estimates[name]
@@ -68,6 +96,49 @@ class PeakDemands(Mapping[str, Estimates]):
 
     def __len__(self) -> int:
         return len(self.estimates)
+
+    def to_xarray(self) -> xr.Dataset:
+        """
+        The demands with coordinates and units.
+
+        Returns
+        -------
+        xarray.Dataset
+            Every demand, its error as "base_shear_error", `status` and `instant`, on the dimensions of
+            `Amplification.to_xarray`. A drift is that of the body above.
+
+        Examples
+        --------
+        >>> import reference
+        >>> data = reference.peak_demands(reference.load_scene("fig4-dry"), [(0.3, 1.1)]).to_xarray()
+        >>> data["drift"].dims, data["drift"].attrs["units"]
+        (('phase', 'body'), 'm')
+        """
+        import xarray as xr  # loaded on first use
+
+        from reference.problem.labeled import phase_coordinates
+
+        dims, alpha = phase_coordinates(self.phases)
+        bodies = self["acceleration"].value.shape[-1] if "acceleration" in self else 0
+        variables: dict[str, Any] = {
+            "status": (dims, self.status),
+            "instant": (dims, self.instant, {"units": "s", "long_name": "when the status arose"}),
+        }
+        for name, estimates in self.items():
+            meaning, unit = QUANTITIES[name]
+            for key, values, text in (
+                (name, estimates.value, meaning),
+                (f"{name}_error", estimates.error, f"estimated absolute error: {meaning}"),
+            ):
+                about = {"units": unit, "long_name": text}
+                if name in PER_BODY:
+                    column = np.full((*self.status.shape, bodies), np.nan)
+                    column[..., PER_BODY[name] :] = values
+                    variables[key] = ((*dims, "body"), column, about)
+                else:
+                    variables[key] = (dims, values, about)
+        coordinates = {**alpha, "body": np.arange(1, bodies + 1)}
+        return xr.Dataset(variables, coordinates, {"cost": self.cost, "cost_units": "s"})
 
 
 def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], Trajectory]) -> PeakDemands:
@@ -99,7 +170,7 @@ def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], 
     for name, table in _stacked(answers).items():
         values, errors = np.moveaxis(table.reshape((*shape, *table.shape[1:])), -1, 0)
         stacked[name] = Estimates(values, errors)
-    return PeakDemands(stacked, status.reshape(shape), instant.reshape(shape), cost)
+    return PeakDemands(stacked, status.reshape(shape), instant.reshape(shape), cost, pairs.reshape(*shape, 2))
 
 
 def _stacked(answers: list[Demands | None]) -> dict[str, Array]:

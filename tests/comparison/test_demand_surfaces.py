@@ -15,10 +15,11 @@ from fake_models import fake_hierarchy
 from known_analyses import analyses_are, collected
 
 import reference
-from comparison.analysis.demand_surfaces import PREFIX, QUANTITIES, DemandSurfaces, demand_statistics, with_demands
+from comparison.analysis.demand_surfaces import PREFIX, DemandSurfaces, demand_statistics, with_demands
 from comparison.study.models import EXACT, REGULARIZED, SMALL
 from comparison.study.study import Study
 from reference.problem import Demands, Scene, load_scene, phase_axis
+from reference.problem.peak_demands import QUANTITIES
 
 MODELS = (SMALL, EXACT, REGULARIZED)
 

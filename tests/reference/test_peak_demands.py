@@ -64,6 +64,18 @@ def test_phases_may_have_any_shape() -> None:
     assert reference.peak_demands(scene, (0.3, 1.1))["drift"].value.shape == (1,)
 
 
+def test_labeled_demands_are_those_of_the_result() -> None:
+    scene = reference.load_scene("fig3-I").with_values({"duration": 2.0})
+    square = reference.peak_demands(scene, phase_grid(2).reshape(2, 2, 2))
+    data = square.to_xarray()
+    assert data["base_shear"].dims == ("alpha1", "alpha2")
+    np.testing.assert_array_equal(data["base_shear_error"], square["base_shear"].error)
+    np.testing.assert_array_equal(data["drift"].sel(body=2), square["drift"].value[..., 0])
+    assert np.isnan(data["drift"].sel(body=1)).all()
+    assert data["friction_energy"].attrs["units"] == "J"
+    assert reference.peak_demands(scene, [(0.3, 1.1)]).to_xarray()["status"].dims == ("phase",)
+
+
 def test_the_accelerations_are_those_of_the_amplification_factors() -> None:
     scene, phases = reference.load_scene("fig3-II"), phase_grid(3)
     surface = reference.peak_demands(scene, phases)
