@@ -100,8 +100,7 @@ def refine(
     complete: _Candidate | None = None  # the last candidate whose error lacks nothing
     for number, level in enumerate(remaining):
         shared = number > 0 and level.penetration >= remaining[number - 1].penetration
-        lifted = any(other.last_open > -math.inf for other in runs)
-        beside = shared + (lifted and per_load is None)  # runs that complete the error
+        beside = shared + (per_load is None and _warps(runs))  # runs that complete the error
         if runs and budget.left < _work_of_next(runs[-1], stop, pair.end) * (1.0 + beside):
             break
         run = pair.at_level(level, budget, stop, keep=keep)
@@ -135,8 +134,7 @@ def refine(
         if lifted and compliances[0] != compliances[-2]:
             finished = finished[-2:]
         errors = widened_by_impacts(from_levels(finished, remaining[: number + 1], model), run, number)
-        # supports that open warp the ring: that load may be large
-        unmeasured = lifted and run.warping_load > 0.0 and per_load is None
+        unmeasured = per_load is None and _warps(runs)
         sharing = from_sharing(run, np.full(len(errors), ERROR_PER_WARPING_LOAD) if per_load is None else per_load)
         uneven = (sharing > np.maximum(tolerance * run.peaks.value, MAX_SHARING_ERROR * errors)).all()
         errors = widened_without_convergence(errors if unmeasured else errors + sharing, run)
@@ -159,6 +157,11 @@ def refine(
     if candidate is not None:
         return _beyond_tolerance(pair, candidate.completed(pair, budget, keep), complete)
     return _unfinished(pair, runs)
+
+
+def _warps(runs: Sequence[EngineRun]) -> bool:
+    """Whether a support opened in any of the runs and more than three of them share the load: warping may take much."""
+    return any(run.last_open > -math.inf for run in runs) and runs[-1].warping_load > 0.0
 
 
 def _work_of_next(run: EngineRun, stop: float, end: float) -> float:
