@@ -3,14 +3,16 @@ Circular shaking of a whole chain: every body runs on its own horizontal circle 
 
 Ground acceleration a exp(i omega t) in the complex plane x + i y, z = Z exp(i omega t). The contact carries m_sum g
 vertically and the slip is horizontal, so N = m_sum g / n_z with n_z = sqrt(1 - |Z1|^2/rho^2) is constant:
-    (K - omega^2 M) Z = -M 1 a - i mu N e_1 Z1/|Z1|,
-K the chain with the pendulum stiffness N/rho at its foot. With G = (K - omega^2 M)^-1, b = -(G M 1)_1 a and
-c = mu N G_11, the first row is |Z1|^2 = b^2 - c^2; n_z = 1 in the linearized equations, and one unknown |Z1| in the
-exact ones. (4.3) as printed has the same solution as the linearized ones: its extra friction terms hold p . v = 0.
+    (K + i omega C - omega^2 M) Z = -M 1 a - i mu N e_1 Z1/|Z1|,
+K the chain with the pendulum stiffness N/rho at its foot, C its dampers. With G = (K + i omega C - omega^2 M)^-1,
+b = -(G M 1)_1 a and c = mu N G_11, the first row is ||Z1| + i c| = |b|; n_z = 1 in the linearized equations, and one
+unknown |Z1| in the exact ones. (4.3) as printed has the same solution as the linearized ones: its extra friction terms
+hold p . v = 0.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -40,49 +42,52 @@ def circular_shaking(scene: Scene, acceleration: float, frequency: float, equati
     """
     Steady circular motion of the chain under ground acceleration `acceleration`, m/s^2, at `frequency`, rad/s.
 
-    Dry friction and links that are equal in x and y. equations: "exact" or "small". Of several circles of the exact
-    equations the smallest is given. Raises ValueError where friction holds the platform, or no circle fits the cap.
+    Dry friction, and springs and dampers of the links that are equal in x and y. equations: "exact" or "small". Of
+    several circles of the exact equations the smallest is given. Raises ValueError where friction holds the platform,
+    or no circle fits the cap.
     """
-    if not np.array_equal(scene.stiffness[:, 0], scene.stiffness[:, 1]):
+    if any((links[:, 0] != links[:, 1]).any() for links in (scene.stiffness, scene.damping)):
         raise ValueError("links differ in x and y: the motion is not circular")
     if scene.lubricated or scene.dry_friction.varies:
         raise ValueError("constant dry friction only")
 
     def misfit(radius: float) -> float:
         free, held, _ = _response(scene, acceleration, frequency, radius if equations == "exact" else 0.0)
-        return free * free - held * held - radius * radius
+        return float(abs(free) ** 2 - abs(radius + 1j * held) ** 2)
 
     if equations == "small":
-        square = misfit(0.0)
-        if square <= 0.0:
+        free, held, _ = _response(scene, acceleration, frequency, 0.0)
+        square = abs(free) ** 2 - held.real**2
+        radius = held.imag + math.sqrt(max(square, 0.0))
+        if square <= 0.0 or radius <= 0.0:
             raise ValueError("friction is too strong for steady sliding")
-        radius = float(np.sqrt(square))
     else:
         radius = _first_circle(misfit, scene.radius)
     free, held, normal = _response(scene, acceleration, frequency, radius if equations == "exact" else 0.0)
     platform = free / (1.0 + 1j * held / radius)
     load = (-acceleration * scene.masses).astype(np.complex128)
     load[0] -= 1j * scene.friction_coefficient * normal * platform / radius
-    dynamic = _chain(scene, normal / scene.radius) - frequency**2 * np.diag(scene.masses)
+    dynamic = _chain(scene, normal / scene.radius, frequency) - frequency**2 * np.diag(scene.masses)
     amplitude: Complex = np.linalg.solve(dynamic, load).astype(np.complex128)
     factor = np.abs(acceleration - frequency**2 * amplitude) / abs(acceleration)
     return CircularMotion(amplitude, factor, normal)
 
 
-def _response(scene: Scene, acceleration: float, frequency: float, radius: float) -> tuple[float, float, float]:
+def _response(scene: Scene, acceleration: float, frequency: float, radius: float) -> tuple[complex, complex, float]:
     """b, c and N for a platform on a circle of this radius; 0 gives the linearized equations."""
     normal = scene.total_mass * GRAVITY / np.sqrt(1.0 - (radius / scene.radius) ** 2)
-    dynamic = _chain(scene, normal / scene.radius) - frequency**2 * np.diag(scene.masses)
+    dynamic = _chain(scene, normal / scene.radius, frequency) - frequency**2 * np.diag(scene.masses)
     first = np.linalg.solve(dynamic, np.eye(len(scene.masses))[0])  # row 1 of G, which is symmetric
     return (
-        float(-acceleration * (first @ scene.masses)),
-        float(scene.friction_coefficient * normal * first[0]),
+        complex(-acceleration * (first @ scene.masses)),
+        complex(scene.friction_coefficient * normal * first[0]),
         float(normal),
     )
 
 
-def _chain(scene: Scene, foot: float) -> NDArray[np.float64]:
-    links = np.append(scene.stiffness[:, 0], 0.0)
+def _chain(scene: Scene, foot: float, frequency: float) -> Complex:
+    """K + i w C, (N, N), on a spring under the platform."""
+    links = np.append(scene.stiffness[:, 0] + 1j * frequency * scene.damping[:, 0], 0.0)
     below = np.concatenate([[foot], links[:-1]])
     return np.diag(below + links) - np.diag(links[:-1], 1) - np.diag(links[:-1], -1)
 

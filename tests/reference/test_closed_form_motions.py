@@ -181,14 +181,16 @@ def test_den_hartog_s_oscillation_goes_on_as_it_was_begun(ratio, dead_zone, equa
 
 
 @BOTH
-@pytest.mark.parametrize("count", [1, 2, 3, 6])
-def test_a_shaken_chain_stays_on_its_circles(count, equations):
+@pytest.mark.parametrize(
+    ("count", "damping"), [(1, None), (2, None), (3, None), (6, None), (2, 0.05), (3, 0.5), (6, 3.0)]
+)
+def test_a_shaken_chain_stays_on_its_circles(count, damping, equations):
     """Every body on its own circle, the platform sliding at constant speed on a fifth of the radius or more."""
     acceleration, period = 3.0, 0.8
     masses, links = [2.0, 1.0, 0.7, 1.5, 0.4, 1.0][:count], [300.0, 500.0, 800.0, 200.0, 400.0][: count - 1]
     scene = chain(
         0.3, 0.08, masses, [[k, k] for k in links], amplitudes=[[acceleration, 0.0], [0.0, acceleration]],
-        periods=[period, period], decay=[0.0, 0.0], duration=4.0,
+        periods=[period, period], decay=[0.0, 0.0], duration=4.0, damping=damping,
     )  # fmt: skip
     omega = 2.0 * np.pi / period
     circle = circular_shaking(scene, acceleration, omega, equations)
