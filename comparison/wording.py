@@ -9,6 +9,7 @@ from markupsafe import Markup, escape
 
 from reference.problem import verbatim
 
+MAX_NAMES = 12  # on an axis of values that are no numbers; of more values every n-th is named
 POWERS = re.compile(r"\^(\w)")
 SUBSCRIPTS = re.compile(r"(?<=[\w>])_(\w+)")
 INDEXED = re.compile(r"\b([a-zA-Z]+)_(\w+)")

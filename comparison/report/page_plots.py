@@ -10,7 +10,7 @@ from typing import Any
 from comparison.analysis.distribution import CURVE
 from comparison.analysis.tradeoff.trade import Answered, Entry, Trade
 from comparison.report.results import FamilyResult, Results, SceneResult, Trend, Worst
-from comparison.wording import scientific, significant
+from comparison.wording import MAX_NAMES, scientific, significant
 from reference.problem.peak_demands import QUANTITIES
 
 Panel = dict[str, Any]  # title, and plot: see plot.js
@@ -281,7 +281,8 @@ def _axis(family: FamilyResult) -> tuple[list[float], dict[str, Any]]:
     if any(isinstance(value, str) for value in family.values):
         places = [float(number) for number in range(len(family.values))]
         names = [[place, str(value)] for place, value in zip(places, family.values)]
-        return places, {"title": family.key, "ticks": names, "range": [-0.3, len(places) - 0.7]}
+        every = -(-len(names) // MAX_NAMES)
+        return places, {"title": family.key, "ticks": names[::every], "range": [-0.3, len(places) - 0.7]}
     values = [float(value) for value in family.values]
     if min(values) > 0.0 and max(values) >= DECADES * min(values):
         return values, {"title": family.key, "log": True}

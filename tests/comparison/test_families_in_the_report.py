@@ -167,3 +167,21 @@ def test_a_value_that_runs_over_decades_has_a_logarithmic_axis(file: Path) -> No
     assert axis(1e-3, 1e-2, 1e-1).get("log") is True
     assert "log" not in axis(0.1, 0.15, 0.2)
     assert "log" not in axis(0.0, 1.0, 100.0)
+
+
+def test_of_many_named_values_some_are_named_on_the_axis(file: Path) -> None:
+    family = load_family(file)
+    study = Study(family.scenes, 2, 1e-3, fake_hierarchy())
+    surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
+    results = assemble(collect_findings(study, surfaces, {}, [], RUN, families=[family]))
+    assert results.families is not None
+
+    def ticks(count: int) -> list[list[object]]:
+        changed = results.families[0].model_copy(update={"values": [f"{n}, 0.5" for n in range(count)]})
+        [listed] = family_panels(results.model_copy(update={"families": [changed]}))
+        named: list[list[object]] = listed["panels"][0]["plot"]["x"]["ticks"]
+        return named
+
+    assert len(ticks(12)) == 12
+    assert [tick[1] for tick in ticks(220)][:3] == ["0, 0.5", "19, 0.5", "38, 0.5"]
+    assert len(ticks(220)) <= 12

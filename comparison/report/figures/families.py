@@ -15,6 +15,7 @@ from comparison.analysis.budget import TOTAL, Entry
 from comparison.report.figures.file_names import figure_file
 from comparison.report.findings import Findings
 from comparison.study.models import Model
+from comparison.wording import MAX_NAMES
 from reference.problem import Family, verbatim
 
 COLORS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00")  # told apart by every eye
@@ -68,7 +69,9 @@ def draw_family(path: Path, family: Family, entries: Sequence[Entry], hierarchy:
         axes.set_xlabel(verbatim(family.key))
         axes.grid(color="0.9")
         if not numbers:
-            axes.set_xticks(places, [verbatim(str(value)) for value in family.values], rotation=20.0, fontsize=8)
+            every = slice(None, None, -(-len(places) // MAX_NAMES))
+            names = [verbatim(str(value)) for value in family.values[every]]
+            axes.set_xticks(places[every], names, rotation=20.0, fontsize=8)
     figure.legend(*right.get_legend_handles_labels(), loc="center left", bbox_to_anchor=(0.765, 0.5), frameon=False)
     figure.savefig(path)
 
