@@ -19,6 +19,8 @@ DIFFERENCE_FRACTION = 0.4
 MIN_ERROR_PER_STEP_TOLERANCE = 5e-4
 # Lower bound on the error, in units of the tolerance asked for: closer agreement is treated as accidental.
 MIN_ERROR_FRACTION = 0.007
+# Likewise where friction depends on the velocity: stiff creep takes more and shorter steps (measured: up to 0.015).
+MIN_ERROR_FRACTION_VARYING = 0.07
 READING_ERROR_FACTOR = 2.0  # times the interpolation error at the peak: the step before may add as much
 ROUNDING_ERROR = 1e-12  # relative error that no tolerance removes: some hundred steps of some ten operations
 # Bounds on the tolerance inside a step, relative to the accelerations; a looser one saves few steps.
@@ -94,7 +96,8 @@ def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool 
             for part, again in zip(after, peaks_at(system, phases[unfinished[lost]], demand, tolerance)):
                 part[lost] = again
         error = _error(before, after, tolerance, demand.unit)
-        error_or_minimum = np.maximum(error, MIN_ERROR_FRACTION * demand.tolerance * after.value)
+        fraction = MIN_ERROR_FRACTION if system.rate == 0.0 else MIN_ERROR_FRACTION_VARYING
+        error_or_minimum = np.maximum(error, fraction * demand.tolerance * after.value)
         for total, part in zip(peaks, after._replace(error=error_or_minimum)):
             total[unfinished] = part
         solved = (before.code == SOLVED) & (after.code == SOLVED)
