@@ -465,6 +465,7 @@ class PhaseExtreme(Part):
     """The largest or smallest value on the phases that were computed."""
 
     value: Number
+    """largest or smallest value"""
     error: Number
     """estimated absolute error; null where it is not known"""
     phases: Phases
