@@ -465,7 +465,7 @@ class PhaseExtreme(Part):
     """The largest or smallest value on the phases that were computed."""
 
     value: Number
-    """in the unit of the demand; null without an answer"""
+    """largest or smallest value, in the unit of the demand; null without an answer"""
     error: Number
     """estimated absolute error; null where it is not known"""
     phases: Phases

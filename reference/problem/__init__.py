@@ -9,6 +9,7 @@ ground_acceleration, ground_velocity, ground_displacement       motion of the gr
 exponents, loading_period                                       of the loading
 ground_peak                                                     denominator of (5.1)
 demands                                                         what a motion demands of isolator and structure
+floor_spectra                                                   response spectra of the floors of a motion
 phase_distribution                                              mean and fractiles of mu over uniform phases
 checked_phase, checked_phases, flat_phases, phase_axis,
 phase_grid                                                      phase pairs
@@ -21,8 +22,9 @@ Classes
 Scene, Family                       the system with its loading; the scenes of one file
 State, Amplification, Trajectory    arguments and results of both sides
 Demands, PhaseDistribution           numbers of one motion; of mu over all phases
+PeakDemands, FloorSpectra           demands of many phase pairs; response spectra
 DryFriction                         coefficient of friction over the slip speed
-Estimate, Accuracy                  a number with its error; what errors are made from
+Estimate, Estimates, Accuracy       a number with its error; what errors are made from
 Outcome, Reduction, SceneError      why a point has no answer; why work is left out; what is wrong with a scene
 
 Constants
