@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from pathlib import Path
 
+import pytest
+
 from comparison.cli.record import surface_costs
+from reference.problem import Scene
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -34,3 +38,21 @@ def test_nothing_is_left_to_be_filled_in() -> None:
 
 def test_the_table_of_costs_is_that_of_the_record() -> None:
     assert [row for row in surface_costs() if row not in README.splitlines()] == []
+
+
+def test_the_keys_that_it_shows_make_a_scene() -> None:
+    block = re.search(r"^```toml\n(.*?)^```$", README, flags=re.MULTILINE | re.DOTALL)
+    assert block is not None
+    shown = tomllib.loads(block.group(1))
+    box = {"size": [5.0, 5.0, 0.6]}
+    scene = Scene.model_validate(
+        {
+            "title": "as shown",
+            "duration": 5.0,
+            "isolator": {**shown["isolator"], "sphere_radius": 0.1},
+            "bodies": [{"mass": 3e4, "height": 0.5, **box}, {**shown["bodies"][0], "height": 3.5, **box}],
+            "excitation": {"amplitudes": [[1.5, 0.0], [0.0, 1.5]], "periods": [1.1, 0.7], "decay": [0.3, 0.3]},
+        }
+    )
+    assert scene.stiffness[0, 0] == pytest.approx(12 * 4 * 2e6 / 3.0**3)
+    assert scene.isolator.travel == 0.3
