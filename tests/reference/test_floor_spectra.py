@@ -73,6 +73,16 @@ def test_a_jump_of_a_rigid_floor_is_twice_amplified_without_damping() -> None:
     np.testing.assert_allclose(spectra.acceleration[0], 2.0, rtol=1e-4)
 
 
+@pytest.mark.parametrize("period", [0.4, 2.0])
+def test_between_two_samples_the_motion_is_exact(period) -> None:
+    """u'' + w^2 u = -t from rest: w^2 u = -(t - sin(w t) / w)."""
+    time, natural = np.array([0.0, 3.0]), 2.0 * np.pi / period
+    ramp = floor(time, np.stack([time, -time], axis=1))
+    spectra = reference.floor_spectra(ramp, [period], 0.0)
+    expected = 3.0 - np.sin(3.0 * natural) / natural
+    np.testing.assert_allclose(spectra.acceleration[0, :, 0], expected, rtol=1e-9)
+
+
 def test_an_oscillator_that_is_much_stiffer_than_the_motion_follows_the_floor() -> None:
     motion = reference.trajectory(reference.load_scene("fig4-viscous"), PHASE)
     spectra = reference.floor_spectra(motion, [0.01])
