@@ -248,8 +248,8 @@ def _sizes() -> Iterator[Row]:
         yield Row("rho, m", f"{radius:g}", scene(radius=radius), ALL)
     yield Row("rho, m", "inf", scene(radius=math.inf), ALL)
     yield Row("rho, m", "inf, upward 5 m/s^2", scene(radius=math.inf, amplitudes=_upward(5.0)), ALL)
-    for amplitude in (1e-6, 1e3):
-        yield Row("rho, m", f"inf, {amplitude:g} m/s^2", scene(radius=math.inf, amplitudes=_along(amplitude)), ALL)
+    for amplitude, models in ((1e-6, ALL), (1e3, PLANAR)):  # the stronger one takes the platform far off its supports
+        yield Row("rho, m", f"inf, {amplitude:g} m/s^2", scene(radius=math.inf, amplitudes=_along(amplitude)), models)
     for travel in (1e-6, 0.02, 0.24):
         yield Row("travel, m", f"{travel:g}", scene(travel=travel), ALL)
 
