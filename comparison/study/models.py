@@ -151,7 +151,7 @@ SMALL = Model(
     assumptions={
         "equations": "(4.3)-(4.4), as printed",
         "geometry": "small: the sphere enters through g x/rho and the kept friction terms only",
-        "friction": "set-valued Coulomb, or mu = f_c |v| in a lubricated scene",
+        "friction": "set-valued Coulomb, mu constant or of the slip velocity, or mu = f_c |v| in a lubricated scene",
         "normal contact": "rigid, m_sum (g + zeta'') to the kept order",
         "unknowns": "2 N horizontal displacements; the vertical one follows from the sphere (2.1)",
         "mu_i": "supremum of (5.1) with one-sided limits at stops, in closed form",
@@ -185,7 +185,7 @@ RESOLVED = _next(
 )
 REGULARIZED = _next(
     EXACT,
-    {"friction": "Coulomb, linear below v_reg = 1e-3 m/s", "mu_i": _PEAK},
+    {"friction": "the same Coulomb law, times |v| / v_reg below v_reg = 1e-3 m/s", "mu_i": _PEAK},
     key="regularised",
     title="exact equations, v_reg",
     effect="friction smoothed near rest",
@@ -197,8 +197,8 @@ TRANSLATIONAL = _next(
     REGULARIZED,
     {
         "equations": "Newton-Euler of the bodies, assembled by Exudyn",
-        "geometry": "exact spheres: support of radius r in a depression of radius R",
-        "friction": "Coulomb, linear below v_reg = 1e-3 m/s, or mu = f_c |v| in a lubricated scene",
+        "geometry": "exact spheres: support of radius r in a depression of radius R; a plane for a flat slider",
+        "friction": "the same Coulomb law, times |v| / v_reg below v_reg = 1e-3 m/s, or mu = f_c |v| if lubricated",
         "normal contact": "elastic: spring and damper, so the platform sinks by N/k_c",
         "unknowns": "translations of every body, the platform's vertical one free",
     },
