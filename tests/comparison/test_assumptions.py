@@ -172,7 +172,7 @@ def test_what_uneven_bodies_change_is_said_with_their_torsion() -> None:
     moved = replace(_cell(Variation(offset=0.1), 0.03, 0.02), torsion=((1e-3, 5e-3), (2e-3, 4e-3), (0.0, 0.0)))
     unknown = _cell(Variation(yaw=0.2), 0.002, 0.002)
     lines = ValidityRanges([STATED], [even, moved, unknown]).lines(STATED)
-    moving = "with centers of mass moved along x and along y by up to 0 m, no longer by 0.1 m"
+    moving = "with the stated offsets, no longer with centers of mass moved along x and along y by 0.1 m"
     assert f"mu_1 stays within 1 % {moving}" in lines
     assert "mu_1 stays within 1 % with bodies and links turned by up to 0.2 rad, the largest tried" in lines
     first, second = lines[-2:]

@@ -52,16 +52,16 @@ ASSUMPTIONS = (
     Assumption(
         "(ii)",
         "the centers of mass lie on one axis through the center of the circle",
-        "Kept by the equations and the translational model. Dropped in the spatial model where a scene states `offset` "
-        "of a center of mass or positions of supports: links stand on the axis, so eccentric bodies turn about it. The "
+        "Kept by the equations and the translational model. Dropped in the spatial model where a scene states "
+        "the offset of a center of mass or positions of supports: links stand on the axis, so eccentric bodies turn about it. The "
         "heights above the contacts, which the paper's equations do not contain, are free.",
         "yes",
     ),
     Assumption(
         "(iii)",
         "the principal axes of inertia of all bodies are parallel",
-        "Kept by the equations and the translational model. Dropped in the spatial model where a scene states `yaw` of "
-        "a body: its box and the directions of its link's stiffness are turned. Moments of inertia, which do not enter "
+        "Kept by the equations and the translational model. Dropped in the spatial model where a scene states "
+        "the yaw of a body: its box and the directions of its link's stiffness are turned. Moments of inertia, which do not enter "
         "translation, follow from masses and sizes.",
         "yes",
     ),
@@ -155,11 +155,13 @@ def describe(validity: Range) -> str:
         fails = "every smaller one tried too" if validity.fails is None else f"no longer at {validity.fails:g} m"
         return f"{what} with rings from {validity.holds:g} m, {fails}"
     if validity.key in ("offset", "yaw"):
-        moved, unit = "bodies and links turned", "rad"
+        stated, moved, unit = "angles", "bodies and links turned", "rad"
         if validity.key == "offset":
-            moved, unit = "centers of mass moved along x and along y", "m"
+            stated, moved, unit = "offsets", "centers of mass moved along x and along y", "m"
         if validity.holds is None:
-            return f"{what} with {moved} by nothing tried, 0 included"
+            return f"{what} at none of the {stated} tried, the stated ones among them"
+        if validity.holds == 0.0:
+            return f"{what} with the stated {stated}, no longer with {moved} by {validity.fails:g} {unit}"
         fails = "the largest tried" if validity.fails is None else f"no longer by {validity.fails:g} {unit}"
         return f"{what} with {moved} by up to {validity.holds:g} {unit}, {fails}"
     if validity.holds is None:
