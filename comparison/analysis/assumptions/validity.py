@@ -53,16 +53,16 @@ ASSUMPTIONS = (
         "(ii)",
         "the centers of mass lie on one axis through the center of the circle",
         "Kept by the equations and the translational model. Dropped in the spatial model where a scene states "
-        "the offset of a center of mass or positions of supports: links stand on the axis, so eccentric bodies turn about it. The "
-        "heights above the contacts, which the paper's equations do not contain, are free.",
+        "the offset of a center of mass or positions of supports: links stand on the axis, so eccentric bodies turn "
+        "about it. The heights above the contacts, which the paper's equations do not contain, are free.",
         "yes",
     ),
     Assumption(
         "(iii)",
         "the principal axes of inertia of all bodies are parallel",
         "Kept by the equations and the translational model. Dropped in the spatial model where a scene states "
-        "the yaw of a body: its box and the directions of its link's stiffness are turned. Moments of inertia, which do not enter "
-        "translation, follow from masses and sizes.",
+        "the yaw of a body: its box and the directions of its link's stiffness are turned. Moments of inertia, which do "
+        "not enter translation, follow from masses and sizes.",
         "yes",
     ),
     Assumption(
