@@ -61,8 +61,8 @@ ASSUMPTIONS = (
         "(iii)",
         "the principal axes of inertia of all bodies are parallel",
         "Kept by the equations and the translational model. Dropped in the spatial model where a scene states "
-        "the yaw of a body: its box and the directions of its link's stiffness are turned. Moments of inertia, which do "
-        "not enter translation, follow from masses and sizes.",
+        "the yaw of a body: its box and the directions of its link's stiffness are turned. Moments of inertia, which "
+        "do not enter translation, follow from masses and sizes.",
         "yes",
     ),
     Assumption(
