@@ -15,7 +15,6 @@ from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
-from scipy.stats import linregress
 
 from comparison.analysis.protocol import Analysis
 from comparison.analysis.stored import FILE_FORMAT, json_text, load_file
@@ -198,8 +197,8 @@ def fitted_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[flo
         return float("nan"), float("nan")
     x, y = np.log(values[:known]), np.log(seconds[:known])
     larger = slice(-max(3, (len(x) + 1) // 2), None)
-    line = linregress(x[larger], y[larger])
-    return float(line.slope), float(line.stderr)
+    (slope, _), covariance = np.polyfit(x[larger], y[larger], 1, cov=True)
+    return float(slope), float(np.sqrt(max(covariance[0, 0], 0.0)))
 
 
 @dataclass(frozen=True)

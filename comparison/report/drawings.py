@@ -12,7 +12,6 @@ import xarray as xr
 from comparison.analysis.assumptions.variations import Cell
 from comparison.analysis.completion import Completion
 from comparison.execution.task import Task
-from comparison.report.figures import assumptions, print_maps
 from comparison.report.figures.pictures import SHOWN, Files, Pictures
 from comparison.report.findings import Findings
 from comparison.study.models import Model
@@ -66,12 +65,16 @@ def drawn(findings: Findings, task: Task) -> Files:
 
 def draw_print_maps(maps: PrintMaps) -> Files:
     """One SVG. Runs inside a worker process."""
+    from comparison.report.figures import print_maps  # matplotlib: only a worker that draws needs it
+
     content = print_maps.draw_maps(maps.surfaces, maps.scene, maps.models, maps.bodies, maps.completed)
     return (("maps.svg", content),)
 
 
 def draw_assumption_figure(figure: AssumptionFigure) -> Files:
     """PNG and PDF. Runs inside a worker process."""
+    from comparison.report.figures import assumptions  # likewise
+
     with tempfile.TemporaryDirectory() as name:
         place = Path(name) / assumptions.assumption_figure_name(figure.scene)
         assumptions.draw_assumptions(place, figure.scene, figure.cells)
