@@ -103,7 +103,8 @@ def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on_in_process(
     assert batches == {batch_key(batch).name for batch in study.batches()}
 
 
-@pytest.mark.parametrize("nanny", [False, pytest.param(True, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("nanny", [False, True])
 def test_a_hang_ends_at_its_limit_and_costs_no_worker_of_the_cluster(tmp_path: Path, nanny: bool) -> None:
     started = LocalCluster(tmp_path, workers=1, nanny=nanny)
     tasks = [

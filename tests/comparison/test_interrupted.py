@@ -39,7 +39,11 @@ def _runs(pid: int) -> bool:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of a process group")
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["Ctrl-C", "SIGTERM"])
+@pytest.mark.parametrize(
+    ("number", "code"),
+    [(signal.SIGINT, 130), pytest.param(signal.SIGTERM, 143, marks=pytest.mark.long)],
+    ids=["Ctrl-C", "SIGTERM"],
+)
 def test_a_stopped_run_keeps_what_is_finished_and_says_how_to_go_on(tmp_path: Path, number: int, code: int) -> None:
     old = tmp_path / "report"
     publish(old, {"summary.json": b'{"schema": "phase-resonance/summary"}'}, "comparison.run")

@@ -14,7 +14,7 @@ from conftest import Run
 from fake_models import fake_hierarchy, known_motions
 from known_analyses import analyses_are
 from playwright.sync_api import sync_playwright
-from test_page_in_a_browser import CHROMIUM, DESKTOP, FLAGS, LAPTOP, OVERLAPS, PHONE, _opened, _unfolded, _until
+from test_page_in_a_browser import CHROMIUM, FLAGS, LAPTOP, OVERLAPS, PHONE, _opened, _unfolded, _until
 
 from comparison.analysis.budget import budget
 from comparison.analysis.surfaces import NOT_ASKED, labeled_surfaces
@@ -107,7 +107,7 @@ def test_the_page_shows_the_table_and_the_motions_of_a_record_without_a_click(tm
         assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        for width in (PHONE, LAPTOP, DESKTOP):
+        for width in (PHONE, LAPTOP):
             visit = _opened(browser, place / "index.html", width)
             page = visit.page
             assert page.locator("canvas.surface:visible").count() == 0

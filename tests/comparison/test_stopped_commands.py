@@ -72,6 +72,7 @@ def forbidden(jobs: int) -> Executor:
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="fork")
+@pytest.mark.long
 def test_extremes_killed_at_random_instants_go_on_to_the_same_matrix(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -97,6 +98,7 @@ def test_extremes_killed_at_random_instants_go_on_to_the_same_matrix(
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of a process group")
+@pytest.mark.long
 def test_ctrl_c_ends_the_extremes_at_once_with_the_command_that_goes_on(tmp_path: Path) -> None:
     process = subprocess.Popen(
         [sys.executable, "-c", STOPPED.format(here=str(HERE), root=str(HERE.parents[1]))],

@@ -44,8 +44,8 @@ print((resident() - before) / {calls})
     ("scene", "function", "phases", "settings"),
     [
         ("fig3-I", "amplification", "[(0.3, 1.1)]", "loading='plate'"),
-        ("fig3-I", "trajectory", "(0.3, 1.1)", "model='spatial'"),
-        ("synthetic-pair", "amplification", "[(0.3, 1.1)]", ""),
+        pytest.param("fig3-I", "trajectory", "(0.3, 1.1)", "model='spatial'", marks=pytest.mark.long),
+        pytest.param("synthetic-pair", "amplification", "[(0.3, 1.1)]", "", marks=pytest.mark.long),
     ],
 )
 def test_calls_of_the_engine_do_not_grow_the_memory(scene: str, function: str, phases: str, settings: str) -> None:

@@ -254,6 +254,7 @@ def test_supports_share_the_load_as_the_overturning_moment_demands() -> None:
     assert forces @ places == pytest.approx(push * (height - lever), rel=1e-2)
 
 
+@pytest.mark.long
 def test_a_body_on_a_narrow_ring_lifts_off_and_comes_back() -> None:
     # the push turns from 1.5 m/s^2 to its opposite within 0.5 s; tipping starts at g * (ring / sqrt 2) / lever
     scene = pushed(1.5, ring=0.1, height=1.2, duration=0.5)

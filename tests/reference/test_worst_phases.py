@@ -120,7 +120,7 @@ def largest_on(scene: Scene, points: int, **law: Any) -> tuple[Array, float]:
 
 def test_no_point_of_a_grid_exceeds_the_maximum() -> None:
     scene = reference.load_scene("fig3-I")
-    mu, _ = largest_on(scene, 64)
+    mu, _ = largest_on(scene, 24)
     worst = reference.worst_phases(scene)
     assert mu[0] <= worst.value + worst.error < mu[0] + 0.1
 
