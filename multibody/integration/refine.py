@@ -119,7 +119,8 @@ def refine(
         if too_stiff:
             rest = slice(number + 1, len(remaining))
             remaining[rest] = [_softer(later, run.warping_load, tolerance) for later in remaining[rest]]
-        if levels is None and run.outcome == Outcome.OK:
+        # a softer contact would let a platform that turns tilt
+        if levels is None and run.outcome == Outcome.OK and model.depressions is None:
             smallest = float(run.peaks.value.min())
             remaining[number + 1 :] = [for_small_peaks(later, smallest, tolerance) for later in remaining[number + 1 :]]
         if number == 0 or runs[-2].outcome != run.outcome:
