@@ -26,6 +26,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
 
 from multibody.models.contact import (
     FORCE_ROUNDING,
@@ -53,7 +54,7 @@ from multibody.models.supports import (
 from multibody.models.system import EngineModel, EngineState
 from multibody.models.units import Units, link_damping, link_stiffness, units_of
 from reference.problem import DryFriction, Scene, State
-from reference.problem.supports import edge_distance, ring_places
+from reference.problem.supports import ring_places
 
 Array = NDArray[np.float64]
 
@@ -250,7 +251,9 @@ def _inertias(masses: Array, sizes: Array) -> Array:
 def _critical_tilt(ring: Array, radius: float, masses: Array, centers: Array) -> float:
     """Angle from the nearest edge of the supports to the center of mass over it, from the vertical, rad."""
     center = masses @ centers / masses.sum()
-    return float(np.arctan2(edge_distance(ring, center[:2]), center[2] - (1.0 + radius)))
+    edges = ConvexHull(ring).equations  # outward normals, and distances from the origin, negative
+    inside = -float((edges[:, :2] @ center[:2] + edges[:, 2]).max())
+    return float(np.arctan2(inside, center[2] - (1.0 + radius)))
 
 
 def _links(

@@ -1,4 +1,4 @@
-"""Where the supports of the platform stand, what they carry at rest, and how far inside them a center of mass lies."""
+"""Where the supports of the platform stand, and what they carry at rest."""
 
 from __future__ import annotations
 
@@ -48,51 +48,3 @@ def on_one_line(places: Array) -> bool:
     """Whether places (K, 2) span no area, as far as double precision tells."""
     extents = np.linalg.svd(places - places.mean(axis=0), compute_uv=False)
     return bool(extents[1] <= MIN_EXTENT_RATIO * extents[0])
-
-
-def edge_distance(places: Array, point: Array) -> float:
-    """
-    Distance from a point to the nearest edge of the convex hull of places.
-
-    Parameters
-    ----------
-    places : ndarray, (K, 2), m
-    point : ndarray, (2,), m
-
-    Returns
-    -------
-    float, m
-        Negative outside the hull. Not positive where the places lie on one line.
-
-    Examples
-    --------
-    >>> edge_distance(np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]]), np.array([1.0, 2.0]))
-    1.0
-    """
-    corners = _hull(places)
-    edges = np.roll(corners, -1, axis=0) - corners
-    lengths = np.hypot(*edges.T)
-    if not lengths.all():
-        return 0.0
-    apart = point - corners
-    inward = (edges[:, 0] * apart[:, 1] - edges[:, 1] * apart[:, 0]) / lengths
-    return float(inward.min())
-
-
-def _hull(places: Array) -> Array:
-    """Corners (C, 2) of the convex hull of places (K, 2), counterclockwise (Andrew's monotone chain)."""
-    ordered = sorted(set(map(tuple, places.tolist())))
-    return np.array([*_lower_chain(ordered), *_lower_chain(ordered[::-1])])
-
-
-def _lower_chain(ordered: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
-    """Corners that turn to the left on the way through ordered points, without the last one."""
-    chain: list[tuple[float, ...]] = []
-    for x, y in ordered:
-        while len(chain) > 1:
-            (ax, ay), (bx, by) = chain[-2:]
-            if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0.0:
-                break
-            chain.pop()
-        chain.append((x, y))
-    return chain[:-1]
