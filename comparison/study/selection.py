@@ -46,9 +46,7 @@ class Selection:
             names = selected(*asked, besides)
             on_request = set() if asked[0] is not None else on_request - {*names, *(asked[1] or ())}
             if asked[0] is None and scene.name not in builtin_scenes():
-                by_scene[scene.name] = tuple(
-                    name for name in names if name not in OF_THE_PAPER or name in (besides or ())
-                )
+                by_scene[scene.name] = tuple(name for name in names if name not in OF_THE_PAPER or name in besides)
             else:
                 by_scene[scene.name] = names
                 unnamed.clear()

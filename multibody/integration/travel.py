@@ -9,6 +9,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from multibody.integration.constant_step import Motion
 from multibody.models.system import EngineModel
+from reference.problem.demands import squares_and_summits
 
 BISECTIONS = 50
 
@@ -17,25 +18,23 @@ def travel_reached(motion: Motion, model: EngineModel) -> tuple[float, int]:
     """
     When the platform's displacement passes the travel, in units of time, and the last row before.
 
-    Infinite and the last row if it does not. Between two rows the rate of its square is taken as linear, as for the
-    largest displacement (`reference.problem.demands.largest_displacement`).
+    Infinite and the last row if it does not.
     """
     time, axes, limit = motion.time, model.bodies[0, :2], model.travel**2
     if model.travel == math.inf:
         return math.inf, len(time) - 1
     place, velocity = motion.coordinates[:, axes], motion.velocities[:, axes]
-    square, rate = (place**2).sum(axis=1), 2.0 * (place * velocity).sum(axis=1)
-    before, after = rate[:-1], rate[1:]
-    turns = (before > 0.0) & (after < 0.0)
-    share = np.divide(before, before - after, where=turns, out=np.ones_like(before))  # of the step, to its summit
-    summit = np.where(turns, square[:-1] + 0.5 * before * share * np.diff(time), square[1:])
-    beyond = np.flatnonzero((summit > limit) | (square[1:] > limit))
+    square, summits = squares_and_summits(time, place, velocity)
+    beyond = np.flatnonzero((summits > limit) | (square[1:] > limit))
     if not len(beyond):
         return math.inf, len(time) - 1
     row = int(beyond[0])
-    path = CubicHermiteSpline(time[row : row + 2], square[row : row + 2], rate[row : row + 2])
+    ends = slice(row, row + 2)
+    before, after = (2.0 * (place[ends] * velocity[ends]).sum(axis=1)).tolist()
+    path = CubicHermiteSpline(time[ends], square[ends], [before, after])
+    share = before / (before - after) if before > 0.0 > after else 1.0  # of the step, to its summit
     low = float(time[row])
-    high = low + float(share[row]) * float(time[row + 1] - low)
+    high = low + share * float(time[row + 1] - low)
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if path(middle) > limit else (middle, high)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
-
 from reference.problem.ranges import brief
 from reference.problem.scene_error import SceneError, unknown_key
 
@@ -42,7 +40,7 @@ def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapp
             place["record"] = value
             place.pop("samples", None)  # those of the record before
         elif value is not None:
-            place[index] = value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+            place[index] = value
         elif isinstance(place, dict):
             place.pop(index, None)
         else:

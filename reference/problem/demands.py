@@ -165,18 +165,22 @@ def _share(displacement: Estimate, limit: float) -> Estimate:
 
 
 def largest_displacement(time: Array, place: Array, velocity: Array) -> float:
-    """
-    Largest length of `place` (T, 2), m, also between the instants `time` (T,).
+    """Largest length of `place` (T, 2), m, also between the instants `time` (T,)."""
+    square, summits = squares_and_summits(time, place, velocity)
+    return float(np.sqrt(max(square.max(), summits.max(initial=0.0))))
 
-    Where the rate of its square changes sign, that is taken as linear in between.
+
+def squares_and_summits(time: Array, place: Array, velocity: Array) -> tuple[Array, Array]:
+    """
+    Squared length of `place` (T, 2) at the instants, (T,), and the largest from each of them to the next, (T - 1,).
+
+    Where its rate changes sign, that is taken as linear in between. Elsewhere the largest is that of the next instant.
     """
     square, rate = (place**2).sum(axis=1), (place * velocity).sum(axis=1)
     before, behind = rate[:-1], rate[1:]
     turns = (before > 0.0) & (behind < 0.0)
-    summits = square[:-1] + np.divide(before**2, before - behind, where=turns, out=np.zeros_like(before)) * np.diff(
-        time
-    )
-    return float(np.sqrt(max(square.max(), summits.max(initial=0.0, where=turns))))
+    rise = np.divide(before**2, before - behind, where=turns, out=np.zeros_like(before)) * np.diff(time)
+    return square, np.where(turns, square[:-1] + rise, square[1:])
 
 
 class _Samples(NamedTuple):
