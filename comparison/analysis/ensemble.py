@@ -16,6 +16,7 @@ import xarray as xr
 
 from comparison.analysis.parameter import listed_demands
 from comparison.analysis.protocol import Analysis
+from comparison.analysis.stored import finite_or_none
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
@@ -25,20 +26,6 @@ from reference.problem import Demands, Estimate, Family, Scene, SceneError, dema
 
 SCALE = "excitation.scale"
 FRACTILES = (0.16, 0.5, 0.84)
-UNITS = {
-    "displacement": "m",
-    "residual": "m",
-    "acceleration": "m/s^2",
-    "base_shear": "N",
-    "drift": "m",
-    "contact_force_min": "N",
-    "contact_force_max": "N",
-    "torsion": "rad",
-    "uplift": "m",
-    "support_force_min": "N",
-    "support_force_max": "N",
-    "friction_energy": "J",
-}
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # steps of which fill an interval evenly
 REST = (0.0, 0.0)  # a record has no phases
 SECONDS_PER_KNOT = {"reference": 8e-5, "engine": 4e-3}  # of processor time, for six bodies
@@ -319,9 +306,7 @@ def as_rows(result: EnsembleResult) -> list[dict[str, object]]:
         for quantity in names:
             number = point.estimate(quantity)
             name = quantity_name(quantity)
-            row[name], row[f"{name}_error"] = (
-                value if math.isfinite(value) else None for value in (number.value, number.error)
-            )
+            row[name], row[f"{name}_error"] = (finite_or_none(value) for value in (number.value, number.error))
         rows.append(row)
     return rows
 

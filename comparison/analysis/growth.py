@@ -7,7 +7,6 @@ logarithms of the larger half of the values, where fixed costs count least.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -17,7 +16,7 @@ import numpy as np
 import xarray as xr
 
 from comparison.analysis.protocol import Analysis
-from comparison.analysis.stored import FILE_FORMAT, json_text, load_file
+from comparison.analysis.stored import FILE_FORMAT, finite_or_none, json_text, load_file
 from comparison.analysis.tradeoff.measure import Measurement, measure, sample, without_value
 from comparison.execution.task import Task
 from comparison.execution.task_results import TaskResults
@@ -167,10 +166,8 @@ def with_slope(quantity: str, unit: str, model: str, values: Sequence[float], se
     Series
     """
     slope, uncertainty = fitted_slope(values, seconds)
-    known = [value if math.isfinite(value) else None for value in seconds]
-    if not math.isfinite(slope):
-        return Series(quantity, unit, model, list(values), known, None, None)
-    return Series(quantity, unit, model, list(values), known, slope, uncertainty)
+    numbers = finite_or_none(slope), finite_or_none(uncertainty)
+    return Series(quantity, unit, model, list(values), [finite_or_none(each) for each in seconds], *numbers)
 
 
 def fitted_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:

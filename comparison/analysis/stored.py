@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
@@ -13,6 +14,11 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 FILE_FORMAT = ConfigDict(extra="forbid", use_attribute_docstrings=True)
 
 T = TypeVar("T")
+
+
+def finite_or_none(value: float) -> float | None:
+    """A number as JSON can hold it: None for NaN and infinity."""
+    return value if math.isfinite(value) else None
 
 
 def json_text(content: Mapping[str, Any] | Sequence[Any]) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from comparison.analysis.stored import finite_or_none
 from comparison.analysis.surfaces import asked_of
 from comparison.study.models import Model
 from comparison.study.planning import StudyPlan
@@ -84,5 +85,5 @@ def _met(study: Study, model: Model, surfaces: xr.Dataset) -> dict[str, Any]:
         "asked": model.tolerance(study.tolerance),
         "points": len(every),
         "met": float((every <= study.tolerance).mean()),
-        "error99": worst if np.isfinite(worst) else None,
+        "error99": finite_or_none(worst),
     }

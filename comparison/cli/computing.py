@@ -9,8 +9,11 @@ from __future__ import annotations
 
 import argparse
 import signal
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from datetime import UTC, datetime, timedelta
+from typing import Any
 
 from rich.console import Console
 
@@ -19,11 +22,42 @@ from comparison.execution.cache import Cache, StoreError, refuse_foreign_store, 
 from comparison.execution.executors import ExecutorLostError, Pool
 from comparison.execution.keys import task_key
 from comparison.execution.output import destination
-from comparison.execution.resume import resume_hint, without_scheduler
+from comparison.execution.provenance import provenance
+from comparison.execution.resume import command_line, resume_hint, without_scheduler
 from comparison.execution.runner import Runner
 from comparison.execution.task import Task
 from comparison.execution.task_results import TaskResults
 from comparison.execution.workers import workers
+
+
+def run_facts(command: str, options: argparse.Namespace, words: Sequence[str], begin: float) -> dict[str, Any]:
+    """
+    What is known of a run that ends now: command line, beginning, duration, workers, provenance.
+
+    Parameters
+    ----------
+    command : str
+        Its name, as in "comparison.NAME".
+    options : argparse.Namespace
+        Parsed by a `CommandParser` with `add_computing`.
+    words : sequence of str
+        The command line.
+    begin : float, s
+        `time.monotonic()` when it began.
+
+    Returns
+    -------
+    dict of str to object
+        For a JSON file.
+    """
+    seconds = time.monotonic() - begin
+    return {
+        "command": command_line(words, command),
+        "began": (datetime.now(UTC) - timedelta(seconds=seconds)).isoformat(timespec="seconds"),
+        "seconds": round(seconds, 1),
+        "jobs": jobs(options),
+        "provenance": provenance(),
+    }
 
 
 def computed(

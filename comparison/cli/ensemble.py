@@ -21,14 +21,13 @@ from rich.console import Console
 from comparison.analysis.ensemble import (
     FRACTILES,
     SCALE,
-    UNITS,
     Ensemble,
     EnsembleResult,
     as_rows,
     quantity_name,
     refuse_unfit,
 )
-from comparison.analysis.stored import json_text
+from comparison.analysis.stored import finite_or_none, json_text
 from comparison.cli.arguments import CommandParser, command, jobs, number, whole_number, writing
 from comparison.cli.computing import computed
 from comparison.cli.terminal import new_table
@@ -42,6 +41,7 @@ from comparison.study.models import EXACT, TRANSLATIONAL
 from comparison.wording import percent
 from reference.problem import Estimate, Family
 from reference.problem.families import family_of
+from reference.problem.peak_demands import unit_of
 from reference.problem.scene_file import scene_tables, scene_text
 
 SUMMARY, TABLE, PICTURE = "ensemble.json", "ensemble.csv", "ensemble.png"
@@ -137,7 +137,7 @@ def summary(result: EnsembleResult, words: Sequence[str], seconds: float) -> dic
             {
                 "quantity": stripe.quantity[0],
                 "body": stripe.quantity[1] or None,
-                "unit": UNITS.get(stripe.quantity[0], ""),
+                "unit": unit_of(stripe.quantity[0]),
                 "scale": stripe.scale,
                 "answered": stripe.answered,
                 "fractiles": [{"share": s, **_number(value)} for s, value in zip(FRACTILES, stripe.fractiles)],
@@ -151,9 +151,9 @@ def summary(result: EnsembleResult, words: Sequence[str], seconds: float) -> dic
                 {
                     "quantity": bound.quantity[0],
                     "body": bound.quantity[1] or None,
-                    "largest": _finite(bound.largest),
-                    "like_for_like": _finite(bound.like_for_like),
-                    "errors": _finite(bound.errors),
+                    "largest": finite_or_none(bound.largest),
+                    "like_for_like": finite_or_none(bound.like_for_like),
+                    "errors": finite_or_none(bound.errors),
                     "points": bound.points,
                 }
                 for bound in result.bounds
@@ -186,7 +186,7 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
             bound = bounds.get(stripe.quantity)
             apart = [percent(size) for size in (bound.largest, bound.like_for_like)] if bound else ["none", "none"]
             numbers = [f"{value.value:.4g}" if math.isfinite(value.value) else "none" for value in stripe.fractiles]
-            unit = UNITS.get(stripe.quantity[0], "")
+            unit = unit_of(stripe.quantity[0])
             table.add_row(quantity_name(stripe.quantity), unit, *numbers, str(stripe.answered), *apart)
     console.print(table)
     ended = ", ".join(f"{count} {name}" for name, count in result.outcomes().items())
@@ -203,11 +203,7 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
 
 
 def _number(estimate: Estimate) -> dict[str, float | None]:
-    return {"value": _finite(estimate.value), "error": _finite(estimate.error)}
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
+    return {"value": finite_or_none(estimate.value), "error": finite_or_none(estimate.error)}
 
 
 def _parser() -> CommandParser:

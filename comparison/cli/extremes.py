@@ -12,7 +12,6 @@ import argparse
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from datetime import UTC, datetime
 
 from rich.console import Console
 
@@ -22,13 +21,11 @@ from comparison.analysis.extremes.matrix import FILE, PICTURE, Matrix, as_json
 from comparison.analysis.extremes.rows import COLUMNS, ENGINE, EQUATIONS, STATED, rows
 from comparison.analysis.extremes.verdicts import Verdict
 from comparison.cli.arguments import CommandParser, command, jobs, number, writing
-from comparison.cli.computing import computed
+from comparison.cli.computing import computed, run_facts
 from comparison.execution.executors import Pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
 from comparison.execution.processes import process_pool
 from comparison.execution.progress import wide_console
-from comparison.execution.provenance import provenance
-from comparison.execution.resume import command_line
 from reference.problem import SceneError
 
 MODELS = {EQUATIONS, ENGINE, STATED}  # what the workers ask
@@ -76,21 +73,17 @@ def judged_matrix(
     -------
     Matrix
     """
-    begin, began = time.monotonic(), datetime.now(UTC)
+    begin = time.monotonic()
     tasks = extremes.tasks()
     results = computed("extremes", options, words, tasks, MODELS, console, executor)
     matrix = extremes.collect(None, None, results)
     totals = [entry.total for row in matrix.rows for entry in row.entries.values() if entry.total is not None]
     run = {
-        "command": command_line(words, "extremes"),
-        "began": began.isoformat(timespec="seconds"),
-        "seconds": round(time.monotonic() - begin, 1),
+        **run_facts("extremes", options, words, begin),
         "cpu_seconds": round(sum(totals), 1),
         "stored_before": results.parts[extremes.stage].stored,
-        "jobs": jobs(options),
         "limit": extremes.limit,
         "reduced": len(tasks) < len(cells(list(rows()))),
-        "provenance": provenance(),
     }
     return replace(matrix, run=run)
 

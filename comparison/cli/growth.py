@@ -6,20 +6,16 @@ import argparse
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
-from datetime import UTC, datetime
 
 from rich.console import Console
 
 from comparison.analysis.growth import FILE, PICTURE, SCHEMA, Growth, MeasuredGrowth, Series, with_slope
 from comparison.analysis.tradeoff.measure import Measurement, measure, sample
-from comparison.cli.arguments import jobs
-from comparison.cli.computing import computed
+from comparison.cli.computing import computed, run_facts
 from comparison.cli.terminal import new_table
 from comparison.execution.executors import Pool, cores
 from comparison.execution.output import made_by
 from comparison.execution.processes import process_pool
-from comparison.execution.provenance import provenance
-from comparison.execution.resume import command_line
 from comparison.study.models import EXACT
 from comparison.study.study import Study
 from reference.problem import Scene
@@ -50,20 +46,13 @@ def measured_growth(
     -------
     MeasuredGrowth
     """
-    begin, began = time.monotonic(), datetime.now(UTC)
+    begin = time.monotonic()
     growth, study = Growth(), Study((scene,), 1, TOLERANCE)
     tasks = growth.tasks(study)
     models = {task.argument.function[0] for task in tasks}
     results = computed("tradeoff", options, words, tasks, models, console, executor)
     series = [*growth.collect(study, None, results), by_workers(scene, process_pool)]
-    run = {
-        "command": command_line(words, "tradeoff"),
-        "began": began.isoformat(timespec="seconds"),
-        "jobs": jobs(options),
-        "provenance": provenance(),
-        "seconds": round(time.monotonic() - begin, 1),
-    }
-    return MeasuredGrowth(SCHEMA, scene.name, scene.title, series, run)
+    return MeasuredGrowth(SCHEMA, scene.name, scene.title, series, run_facts("tradeoff", options, words, begin))
 
 
 def by_workers(scene: Scene, pool: Callable[[int], Executor], most: int | None = None) -> Series:

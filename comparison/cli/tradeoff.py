@@ -13,7 +13,6 @@ import argparse
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from datetime import UTC, datetime
 from pathlib import Path
 
 from rich.box import SIMPLE_HEAD
@@ -25,14 +24,12 @@ from comparison.analysis.tradeoff.analysis import MeasuredTrade, TradeOff
 from comparison.analysis.tradeoff.settings import CONSTANT, ENGINE, LEVEL, REFERENCE, RUN, SCIPY
 from comparison.analysis.tradeoff.trade import FILE, Trade, as_json, load
 from comparison.cli.arguments import CommandParser, command, jobs, writing
-from comparison.cli.computing import computed
+from comparison.cli.computing import computed, run_facts
 from comparison.cli.growth import FILES, growth_files, measured_growth, print_growth
 from comparison.execution.executors import Pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
 from comparison.execution.processes import process_pool
 from comparison.execution.progress import wide_console
-from comparison.execution.provenance import provenance
-from comparison.execution.resume import command_line
 from comparison.report.figures.file_names import figure_file, with_ending
 from comparison.study.study import Study, refuse_same_names
 from reference.problem import Scene, SceneError, load_scene
@@ -130,18 +127,14 @@ def measured_trades(
     for scene in scenes:
         console.print(f"{scene.title} ({scene.name})")
     console.print(f"Unless they are stored: about {about:.0f} s with {width} workers.")
-    begin, began = time.monotonic(), datetime.now(UTC)
+    begin = time.monotonic()
     results = computed("tradeoff", options, words, tasks, MODELS, console, executor)
     run = {
-        "command": command_line(words, "tradeoff"),
-        "began": began.isoformat(timespec="seconds"),
-        "jobs": width,
+        **run_facts("tradeoff", options, words, begin),
         "quick": options.quick,
         "stored_before": results.parts[tradeoff.stage].stored,
-        "provenance": provenance(),
-        "seconds": round(time.monotonic() - begin, 1),
     }
-    attributes = {"command": run["command"], **provenance()}
+    attributes = {"command": run["command"], **run["provenance"]}
     return [
         MeasuredTrade(replace(measured.trade, run=run), measured.values.assign_attrs(attributes))
         for measured in tradeoff.collect(study, None, results)

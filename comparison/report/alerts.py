@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Literal
+
 from comparison.analysis.surfaces import largest_cap_share, largest_travel_share
 from comparison.report.findings import Findings
 from comparison.report.results import Alert
-from comparison.study.models import models_of
+from comparison.study.models import Model, models_of
+from reference.problem import Scene
 
 NEARLY_ALL = 0.9  # of the travel, that a reader must know of
 WIDE = 0.5  # of rho: a displacement of the platform from the middle that a reader must know of
@@ -65,32 +69,46 @@ def _faults(findings: Findings) -> list[Alert]:
 
 
 def _swings(findings: Findings) -> list[Alert]:
-    study = findings.study
-    return [
-        Alert(
-            level="amber",
-            kind="swing",
-            scene=scene.name,
-            text=f"{model.title}: the platform moves up to {100.0 * share:.1f} % of rho from the middle",
-            help="the model assumes a cap that reaches so far: compare with the isolator that is to be built",
-        )
-        for scene in study.scenes
-        for model in models_of(scene, study.hierarchy)
-        if (share := largest_cap_share(findings.surfaces, scene.name, model.key)) > WIDE
-    ]
+    return _moving_far(
+        findings,
+        "swing",
+        lambda scene, model: largest_cap_share(findings.surfaces, scene.name, model.key),
+        WIDE,
+        "moves up to {:.1f} % of rho from the middle",
+        "the model assumes a cap that reaches so far: compare with the isolator that is to be built",
+    )
 
 
 def _travels(findings: Findings) -> list[Alert]:
+    return _moving_far(
+        findings,
+        "travel",
+        lambda scene, model: largest_travel_share(findings.surfaces, scene, model.key),
+        NEARLY_ALL,
+        "uses up to {:.1f} % of the isolator's travel",
+        "a larger displacement ends the motion as travel reached",
+    )
+
+
+def _moving_far(
+    findings: Findings,
+    kind: Literal["swing", "travel"],
+    share_of: Callable[[Scene, Model], float],
+    limit: float,
+    text: str,
+    advice: str,
+) -> list[Alert]:
+    """Models whose platform moves by more than a share of what it may."""
     study = findings.study
     return [
         Alert(
             level="amber",
-            kind="travel",
+            kind=kind,
             scene=scene.name,
-            text=f"{model.title}: the platform uses up to {100.0 * share:.1f} % of the isolator's travel",
-            help="a larger displacement ends the motion as travel reached",
+            text=f"{model.title}: the platform {text.format(100.0 * share)}",
+            help=advice,
         )
         for scene in study.scenes
         for model in models_of(scene, study.hierarchy)
-        if (share := largest_travel_share(findings.surfaces, scene, model.key)) > NEARLY_ALL
+        if (share := share_of(scene, model)) > limit
     ]

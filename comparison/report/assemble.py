@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from comparison.analysis.claims.table import ClaimTable
+from comparison.analysis.demand_surfaces import DemandStatistics as StatisticsOfDemand
 from comparison.analysis.demand_surfaces import demand_statistics
 from comparison.analysis.distribution import distributions
 from comparison.analysis.errata import ERRATA
@@ -84,12 +85,16 @@ def assemble(findings: Findings) -> Results:
         scene.name: [waterfall(study, findings.surfaces, scene, body) for body in range(1, len(scene.bodies) + 1)]
         for scene in study.scenes
     }
+    statistics = {
+        scene.name: [] if findings.demands is None else demand_statistics(study, findings.demands, scene)
+        for scene in study.scenes
+    }
     return Results(
         run=Run.model_validate(findings.run),
         grid=study.grid,
         tolerance=study.tolerance,
         models=[ModelDescription.model_validate(model) for model in study.hierarchy],
-        scenes=[_scene(findings, scene, waterfalls[scene.name]) for scene in study.scenes],
+        scenes=[_scene(findings, scene, waterfalls[scene.name], statistics[scene.name]) for scene in study.scenes],
         errata=None if "errata" in study.absent else _errata(findings),
         assumptions=None if findings.assumptions is None else Assumptions.model_validate(findings.assumptions.listed()),
         worst_phases=None
@@ -103,7 +108,7 @@ def assemble(findings: Findings) -> Results:
         growth=findings.growth,
         families=None
         if findings.families is None
-        else [_family(findings, family, waterfalls) for family in findings.families],
+        else [_family(findings, family, waterfalls, statistics) for family in findings.families],
         unanswered=[Unanswered.model_validate(lacking) for lacking in findings.unanswered],
         absent=study.absent,
         alerts=alerts(findings),
@@ -112,7 +117,9 @@ def assemble(findings: Findings) -> Results:
     )
 
 
-def _scene(findings: Findings, scene: Scene, waterfalls: Sequence[BodyWaterfall]) -> SceneResult:
+def _scene(
+    findings: Findings, scene: Scene, waterfalls: Sequence[BodyWaterfall], statistics: Sequence[StatisticsOfDemand]
+) -> SceneResult:
     def of_scene(rows: Sequence[Any]) -> list[Any]:
         return [row for row in rows if row.scene == scene.name]
 
@@ -141,9 +148,7 @@ def _scene(findings: Findings, scene: Scene, waterfalls: Sequence[BodyWaterfall]
         limits=[Limit.model_validate(limit) for limit in of_scene(findings.limits)],
         effective=[Effective.model_validate(values) for values in of_scene(findings.effective)],
         demands=_demands(findings, scene),
-        demand_statistics=[]
-        if findings.demands is None
-        else [DemandStatistics.model_validate(each) for each in demand_statistics(study, findings.demands, scene)],
+        demand_statistics=[DemandStatistics.model_validate(each) for each in statistics],
     )
 
 
@@ -203,15 +208,17 @@ def _values(findings: Findings, scene: Scene) -> list[RecordValue]:
     ]
 
 
-def _family(findings: Findings, family: Family, waterfalls: Mapping[str, Sequence[BodyWaterfall]]) -> FamilyResult:
-    table = (
-        {}
-        if findings.demands is None
-        else {scene.name: demand_statistics(findings.study, findings.demands, scene) for scene in family.scenes}
-    )
-    of_phases = any(table.values())
-    stored = [] if of_phases else family_demands(family, findings.motions or [])
-    demands = family_demands_over_phases(family, table) if of_phases else stored
+def _family(
+    findings: Findings,
+    family: Family,
+    waterfalls: Mapping[str, Sequence[BodyWaterfall]],
+    statistics: Mapping[str, Sequence[StatisticsOfDemand]],
+) -> FamilyResult:
+    of_phases = any(statistics[scene.name] for scene in family.scenes)
+    if of_phases:
+        demands = family_demands_over_phases(family, statistics)
+    else:
+        demands = family_demands(family, findings.motions or [])
     return FamilyResult(
         name=family.name,
         key=family.key,

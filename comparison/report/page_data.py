@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from comparison.analysis.completion import Completion
 from comparison.analysis.differences import pair_step
+from comparison.analysis.stored import finite_or_none
 from comparison.analysis.surfaces import common_phases
 from comparison.report.findings import Findings
 from comparison.report.motion_data import contact_geometry, places, spectrum_axis, starts_of
@@ -136,7 +137,7 @@ def _completed(completion: Completion | None) -> dict[str, Any] | None:
         return None
     return {
         "through": completion.through,
-        "error": completion.error if np.isfinite(completion.error) else None,
+        "error": finite_or_none(completion.error),
         "reason": completion.reason,
         "difference": completion.difference_accepted,
         "mu": _rows(completion.mu, DIGITS) if completion.accepted else None,

@@ -8,10 +8,11 @@ from itertools import groupby
 from typing import Any
 
 from comparison.analysis.distribution import CURVE
+from comparison.analysis.stored import finite_or_none
 from comparison.analysis.tradeoff.trade import Answered, Entry, Trade
 from comparison.report.results import FamilyResult, Results, SceneResult, Trend, Worst
 from comparison.wording import MAX_NAMES, scientific, significant
-from reference.problem.peak_demands import QUANTITIES
+from reference.problem.peak_demands import QUANTITIES, unit_of
 
 Panel = dict[str, Any]  # title, and plot: see plot.js
 
@@ -112,10 +113,10 @@ def demand_lines(results: Results) -> list[dict[str, Any]]:
     lines = []
     for scene in results.scenes:
         for row in scene.demand_statistics:
-            meaning, unit = QUANTITIES[row.quantity]
+            meaning, _ = QUANTITIES[row.quantity]
             name = f"{meaning} of body {row.body}" if row.body else meaning
-            unit = "" if unit == "1" else f", {unit}"
-            lines.append({"scene": scene.name, "name": f"{name}{unit}", "title": titles[row.model], "row": row})
+            name = f"{name}, {unit_of(row.quantity)}".removesuffix(", ")
+            lines.append({"scene": scene.name, "name": name, "title": titles[row.model], "row": row})
     return lines
 
 
@@ -350,4 +351,4 @@ def _family_demand(
 
 def _plain(values: Sequence[float]) -> list[float | None]:
     """What JSON can hold: NaN is null."""
-    return [value if math.isfinite(value) else None for value in values]
+    return [finite_or_none(value) for value in values]

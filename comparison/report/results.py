@@ -18,7 +18,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSeriali
 
 from comparison.analysis.extremes.matrix import Matrix
 from comparison.analysis.growth import MeasuredGrowth
-from comparison.analysis.stored import json_text
+from comparison.analysis.stored import finite_or_none, json_text
 from comparison.analysis.tradeoff.trade import Trade
 from reference.problem.acceptance import Acceptance
 
@@ -26,12 +26,8 @@ SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"
 VERSION: Literal[4] = 4  # grows when a key changes its meaning or goes
 
 
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
-
-
 def _finite_or_inf(value: float) -> float | Literal["inf"] | None:
-    return "inf" if value == math.inf else _finite(value)
+    return "inf" if value == math.inf else finite_or_none(value)
 
 
 def _nan(value: Any) -> Any:
@@ -43,7 +39,7 @@ def _encodable(value: Any) -> Any:
     return value.encode("utf-16", "surrogatepass").decode("utf-16", "replace") if isinstance(value, str) else value
 
 
-Number = Annotated[float, BeforeValidator(_nan), PlainSerializer(_finite, return_type=float | None)]
+Number = Annotated[float, BeforeValidator(_nan), PlainSerializer(finite_or_none, return_type=float | None)]
 Radius = Annotated[
     float,
     BeforeValidator(_nan),

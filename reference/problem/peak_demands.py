@@ -44,6 +44,29 @@ QUANTITIES = {  # fields of `Demands` in words, and their units
 }
 
 
+def unit_of(quantity: str) -> str:
+    """
+    Unit of a demand in words.
+
+    Parameters
+    ----------
+    quantity : str
+        Field of `Demands`.
+
+    Returns
+    -------
+    str
+        Empty for a pure number.
+
+    Examples
+    --------
+    >>> unit_of("base_shear"), unit_of("stops")
+    ('N', '')
+    """
+    unit = QUANTITIES[quantity][1]
+    return "" if unit == "1" else unit
+
+
 @dataclass(frozen=True)
 class Estimates:
     """

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,6 +15,7 @@ from comparison.analysis.extremes.causes import cause
 from comparison.analysis.extremes.matrix import Entry
 from comparison.analysis.extremes.rows import COLUMNS, Column, Row
 from comparison.analysis.extremes.verdicts import NUMERICS, Reply, Verdict, judged
+from comparison.analysis.stored import finite_or_none
 from comparison.study.batches import imported
 from reference.problem import Outcome, Scene
 from reference.problem.scene import KEYS
@@ -75,7 +75,7 @@ def solve_cell(cell: Cell) -> Entry:
         seconds = time.process_time() - begin
         finer = list(_finer_replies(cell, function, tolerance)) if answers(reply) else []
     verdict = judged(reply, finer, tolerance, row.invalid, row.right)
-    error = verdict.error if math.isfinite(verdict.error) else None
+    error = finite_or_none(verdict.error)
     total = time.process_time() - begin
     known = cause(row, column.key) if verdict.verdict == Verdict.LIMIT else ""
     reason = " ".join(f"{verdict.reason}: {known}".split()) if known else " ".join(verdict.reason.split())

@@ -12,6 +12,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from comparison.analysis.protocol import Analysis
+from comparison.analysis.stored import finite_or_none
 from comparison.analysis.tradeoff.measure import Function, Measured, Measurement, joined, measure, sample, without_value
 from comparison.analysis.tradeoff.settings import Question, Setting, asked, settings
 from comparison.analysis.tradeoff.trade import Answered, Entry, Trade, labeled, quantile, with_pareto_fronts
@@ -171,7 +172,7 @@ def entry(setting: Setting, measured: Measured, reference_solution: Array) -> En
         median=[quantile(error[:, body], 0.5) for body in range(bodies)],
         most=[quantile(error[:, body], 0.95) for body in range(bodies)],
         error_estimate=[quantile(error_estimate[:, body], 0.95) for body in range(bodies)],
-        step=measured.step if np.isfinite(measured.step) else None,
+        step=finite_or_none(measured.step),
         error_message=measured.error_message,
     )
 

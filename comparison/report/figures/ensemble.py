@@ -12,9 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from comparison.analysis.ensemble import FRACTILES, UNITS, EnsembleResult, Quantity, of_quantity
+from comparison.analysis.ensemble import FRACTILES, EnsembleResult, Quantity, of_quantity
 from comparison.report.figures.pairs import save
 from reference.problem import GRAVITY, verbatim
+from reference.problem.peak_demands import unit_of
 
 TITLES = {
     "displacement": "isolator displacement",
@@ -64,7 +65,7 @@ def _known(value: float) -> float:
 
 
 def _draw(axes: Axes, result: EnsembleResult, quantity: Quantity) -> None:
-    unit, factor = UNITS[quantity[0]], 1.0
+    unit, factor = unit_of(quantity[0]), 1.0
     if quantity[0] == "base_shear":
         unit, factor = "of the weight", 1.0 / (result.family.scenes[0].total_mass * GRAVITY)
     for number, curve in enumerate(dict.fromkeys(point.curve for point in result.points)):
