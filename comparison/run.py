@@ -24,6 +24,7 @@ from typing import Any
 
 from rich.console import Console
 
+from comparison.analysis.ensemble_file import load as stored_ensemble
 from comparison.analysis.extremes.matrix import load as stored_extremes
 from comparison.analysis.growth import load as stored_growth
 from comparison.analysis.surfaces import labeled_surfaces
@@ -195,6 +196,7 @@ def _run(
         extremes=None if "extremes" in study.absent else _taken_up(stored_extremes, options.out),
         tradeoff=None if "tradeoff" in study.absent else _taken_up(stored_trades, options.out),
         growth=None if "tradeoff" in study.absent else _taken_up(stored_growth, options.out),
+        ensemble=None if "ensemble" in study.absent else _taken_up(stored_ensemble, options.out),
     )
     results = assemble(findings)
     drawings = drawing_tasks(results, findings)

@@ -2,8 +2,9 @@
 Incremental dynamic analysis: `python -m comparison.ensemble SCENE --suite SUITE --scales LOW HIGH COUNT`.
 
 Every motion of the suite at every scale factor, by the equations, and by the engine at some of them. Writes
-ensemble.json, ensemble.csv and a picture. Every motion is stored as it is finished: the same command goes on where it
-stopped. Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
+ensemble.json, which the next report beside it shows, ensemble.csv and a picture. Every motion is stored as it is
+finished: the same command goes on where it stopped. `--plan` only says what it would cost. Exit codes: 0 done; 2 a
+wrong scene or option; others as in `run_command`.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import argparse
 import csv
 import io
 import math
+import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -27,25 +29,23 @@ from comparison.analysis.ensemble import (
     quantity_name,
     refuse_unfit,
 )
-from comparison.analysis.stored import finite_or_none, json_text
+from comparison.analysis.ensemble_file import FILE, PICTURE, stored
 from comparison.cli.arguments import CommandParser, command, jobs, number, whole_number, writing
-from comparison.cli.computing import computed
+from comparison.cli.computing import computed, run_facts
 from comparison.cli.terminal import new_table
 from comparison.execution.executors import Pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
 from comparison.execution.processes import process_pool
 from comparison.execution.progress import wide_console
-from comparison.execution.provenance import provenance
-from comparison.execution.resume import command_line
 from comparison.study.models import EXACT, TRANSLATIONAL
 from comparison.wording import percent
-from reference.problem import Estimate, Family
+from reference.problem import Family
 from reference.problem.families import family_of
 from reference.problem.peak_demands import unit_of
 from reference.problem.scene_file import scene_tables, scene_text
 
-SUMMARY, TABLE, PICTURE = "ensemble.json", "ensemble.csv", "ensemble.png"
-FILES = (SUMMARY, TABLE, PICTURE, "ensemble.pdf")
+TABLE = "ensemble.csv"
+FILES = (FILE, TABLE, PICTURE, "ensemble.pdf")
 MODELS = {EXACT.trajectory, TRANSLATIONAL.trajectory}  # what the workers ask
 SUBSET = 2  # scenes that the engine computes, unless the command says otherwise
 MAX_SCALES = 100
@@ -66,13 +66,20 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     engine = len(ensemble.chosen())
     seconds = sum(task.seconds for task in tasks)
     console.print(f"{len(family.scenes)} motions by the equations, {engine} by the engine: {seconds:.0f} s of compute.")
+    if options.plan:
+        lengths = [scene.duration for scene in family.scenes]
+        console.print(f"The motions last {min(lengths):g} to {max(lengths):g} s. Nothing was computed.")
+        return 0
+    begin = time.monotonic()
     results = computed("ensemble", options, argv, tasks, MODELS, console, executor)
     result = ensemble.collect(None, None, results)
     from comparison.report.figures.ensemble import draw_ensemble  # matplotlib: not needed to refuse a command
 
     cost = results.parts[ensemble.stage].seconds
     files = {
-        SUMMARY: json_text(summary(result, argv, cost)).encode(),
+        FILE: stored(
+            result, {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
+        ).as_json(),
         TABLE: table_text(result).encode(),
         **made_by(lambda folder: draw_ensemble(folder / PICTURE, result)),
     }
@@ -122,47 +129,6 @@ def asked_family(options: argparse.Namespace) -> Family:
     return family_of(data, options.scene)
 
 
-def summary(result: EnsembleResult, words: Sequence[str], seconds: float) -> dict[str, Any]:
-    """The content of ensemble.json."""
-    return {
-        "scene": result.family.name,
-        "title": result.family.scenes[0].title,
-        "command": command_line(words, "ensemble"),
-        "keys": list(result.family.columns),
-        "scales": sorted({point.scale for point in result.points}),
-        "motions": len({point.curve for point in result.points}),
-        "compute_seconds": round(seconds, 1),
-        "outcomes": result.outcomes(),
-        "stripes": [
-            {
-                "quantity": stripe.quantity[0],
-                "body": stripe.quantity[1] or None,
-                "unit": unit_of(stripe.quantity[0]),
-                "scale": stripe.scale,
-                "answered": stripe.answered,
-                "fractiles": [{"share": s, **_number(value)} for s, value in zip(FRACTILES, stripe.fractiles)],
-            }
-            for stripe in result.stripes
-        ],
-        "engine": {
-            "model": TRANSLATIONAL.key,
-            "points": [{"scene": point.scene, "status": point.status} for point in result.engine],
-            "differences": [
-                {
-                    "quantity": bound.quantity[0],
-                    "body": bound.quantity[1] or None,
-                    "largest": finite_or_none(bound.largest),
-                    "like_for_like": finite_or_none(bound.like_for_like),
-                    "errors": finite_or_none(bound.errors),
-                    "points": bound.points,
-                }
-                for bound in result.bounds
-            ],
-        },
-        "provenance": provenance(),
-    }
-
-
 def table_text(result: EnsembleResult) -> str:
     """The content of ensemble.csv: a row for every motion, scale and model."""
     rows, stream = as_rows(result), io.StringIO()
@@ -176,7 +142,10 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
     """Medians and fractiles at the largest scale, outcomes, and how far the engine is."""
     top = max(point.scale for point in result.points)
     motions = len({point.curve for point in result.points})
-    console.print(f"{result.family.scenes[0].title}: {motions} motions, at scale {top:g}:", soft_wrap=True)
+    console.print(
+        f"{result.family.scenes[0].title}: {motions} {'motion' if motions == 1 else 'motions'}, at scale {top:g}:",
+        soft_wrap=True,
+    )
     table = new_table(
         "quantity", "unit", *(f"{100.0 * share:.0f} %" for share in FRACTILES), "answered", "engine", "like for like"
     )
@@ -202,10 +171,6 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
         console.print(line, soft_wrap=True)
 
 
-def _number(estimate: Estimate) -> dict[str, float | None]:
-    return {"value": finite_or_none(estimate.value), "error": finite_or_none(estimate.error)}
-
-
 def _parser() -> CommandParser:
     parser = CommandParser(
         "ensemble", "Demands under every motion of a suite at many scale factors (incremental dynamic analysis)."
@@ -217,6 +182,7 @@ def _parser() -> CommandParser:
     parser.add_argument(
         "--engine", default=str(SUBSET), metavar="N", help="motions that the engine computes, too (default %(default)s)"
     )
-    parser.add_out(f"where {SUMMARY}, {TABLE} and {PICTURE} go")
+    parser.add_argument("--plan", action="store_true", help="print what would be computed and its cost; run nothing")
+    parser.add_out(f"where {FILE}, {TABLE} and {PICTURE} go; the next report there shows them")
     parser.add_computing()
     return parser

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from comparison.analysis.ensemble_file import load as stored_ensemble
 from comparison.analysis.extremes.matrix import load as stored_extremes
 from comparison.analysis.growth import load as stored_growth
 from comparison.analysis.tradeoff.trade import load as stored_trades
@@ -99,6 +100,7 @@ def parsed(argv: Sequence[str]) -> Options:
             stored_extremes(options.out)
             stored_trades(options.out)
             stored_growth(options.out)
+            stored_ensemble(options.out)
         except (OSError, ValueError) as error:
             rule = f"the report cannot take up {error}"
             raise SceneError("command line", "--out", str(options.out), rule) from None

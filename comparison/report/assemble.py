@@ -106,6 +106,7 @@ def assemble(findings: Findings) -> Results:
         extremes=findings.extremes,
         tradeoff=None if findings.tradeoff is None else list(findings.tradeoff),
         growth=findings.growth,
+        ensemble=findings.ensemble,
         families=None
         if findings.families is None
         else [_family(findings, family, waterfalls, statistics) for family in findings.families],

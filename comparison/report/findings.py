@@ -15,6 +15,7 @@ from comparison.analysis.claims.table import ClaimTable
 from comparison.analysis.completion import Completion, completions, with_completed
 from comparison.analysis.differences import Difference, differences
 from comparison.analysis.effective import Effective
+from comparison.analysis.ensemble_file import StoredEnsemble
 from comparison.analysis.errata import Effect
 from comparison.analysis.extremes.matrix import Matrix
 from comparison.analysis.growth import MeasuredGrowth
@@ -70,6 +71,7 @@ class Findings:
     extremes: Matrix | None = None  # what python -m comparison.extremes left beside the report
     tradeoff: Sequence[Trade] | None = None  # what python -m comparison.tradeoff left beside the report
     growth: MeasuredGrowth | None = None  # what python -m comparison.tradeoff --growth left beside the report
+    ensemble: StoredEnsemble | None = None  # what python -m comparison.ensemble left beside the report
     drawings: Mapping[str, Any] = field(default_factory=dict)  # files of the other drawings, by key of their task
 
 

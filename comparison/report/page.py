@@ -37,6 +37,7 @@ from comparison.report.page_plots import (
     demand_lines,
     demand_panels,
     distribution_panels,
+    ensemble_panels,
     family_panels,
     growth_panels,
     tradeoff_answers,
@@ -110,6 +111,12 @@ SECTIONS = (
         "worst_phases", "Over all phases", ("worst_phases",), "python -m comparison.run makes it, of scenes with phases"
     ),
     Section("demands", "Demands over all phases"),
+    Section(
+        "ensemble",
+        "Demands under many motions",
+        ("ensemble",),
+        "python -m comparison.ensemble SCENE makes it, beside the report; the next run of the study shows it",
+    ),
     Section("differences", "Differences"),
     Section("budget", "What makes the difference"),
     Section("scaling", "Scaling test", ("scaling",), "python -m comparison.run makes it, of scenes with phases"),
@@ -214,6 +221,7 @@ def page(figures: Path, findings: Findings, results: Results) -> str:
         tradeoff_panels=tradeoff_panels,
         tradeoff_answers=tradeoff_answers,
         growth_panels=growth_panels(results),
+        ensemble_panels=ensemble_panels(results),
         family_panels=family_panels(results),
         claim_heat=claim_heat(results),
         claim_findings=_claim_findings,

@@ -8,6 +8,7 @@ from itertools import groupby
 from typing import Any
 
 from comparison.analysis.distribution import CURVE
+from comparison.analysis.ensemble_file import StoredCurve
 from comparison.analysis.stored import finite_or_none
 from comparison.analysis.tradeoff.trade import Answered, Entry, Trade
 from comparison.report.results import FamilyResult, Results, SceneResult, Trend, Worst
@@ -190,6 +191,61 @@ def growth_panels(results: Results) -> list[Panel]:
         }
         panels.append({"title": quantity, "plot": plot})
     return panels
+
+
+def ensemble_panels(results: Results) -> list[Panel]:
+    """One panel for each demand that is drawn: every motion over its scale, the fractiles, and the engine."""
+    ensemble = results.ensemble
+    if ensemble is None:
+        return []
+    top = ("acceleration", ensemble.bodies, "acceleration of the uppermost body", "m/s²", 1.0)
+    panels = []
+    for quantity, number, title, unit, factor in (*DEMANDS, *([top] if ensemble.bodies > 1 else [])):
+        shown = quantity, number or None
+        stripes = [stripe for stripe in ensemble.stripes if (stripe.quantity, stripe.body) == shown]
+        if not stripes:
+            continue
+        curves = [curve for curve in ensemble.curves if (curve.quantity, curve.body) == shown]
+        motions = [curve for curve in curves if curve.model != ensemble.engine.model]
+        series = [
+            {
+                **_over_scales(curve, factor),
+                "name": "one motion",
+                "color": "gray",
+                "width": 0.8,
+                "legend": curve is motions[0],
+            }
+            for curve in motions
+        ]
+        low, median, high = ([_scaled(stripe.fractiles[n].value, factor) for stripe in stripes] for n in range(3))
+        shares = [f"{100.0 * each.share:.0f} %" for each in stripes[0].fractiles]
+        fractiles = {"name": f"median, {shares[0]} to {shares[2]}", "y": median, "low": low, "high": high, "band": True}
+        series.append({**fractiles, "x": [stripe.scale for stripe in stripes], "color": 0, "marks": True, "width": 2.4})
+        asked = [curve for curve in curves if curve.model == ensemble.engine.model]
+        series += [
+            {
+                **_over_scales(curve, factor),
+                "name": "engine",
+                "color": 1,
+                "marks": True,
+                "line": False,
+                "legend": curve is asked[0],
+            }
+            for curve in asked
+        ]
+        axes = {"x": {"title": "scale factor of the motion"}, "y": {"title": f"{title}, {unit}"}}
+        label = f"{title} of {ensemble.scene} over the scale factor of {ensemble.motions} motions"
+        panels.append({"title": title, "plot": {"label": label, **axes, "series": series}})
+    return panels
+
+
+def _over_scales(curve: StoredCurve, factor: float) -> dict[str, Any]:
+    values = [_scaled(value, factor) for value in curve.values]
+    return {"x": list(curve.scales), "y": values, "titles": [f"{curve.motion}, {scale:g}" for scale in curve.scales]}
+
+
+def _scaled(value: float | None, factor: float) -> float | None:
+    return None if value is None else factor * value
 
 
 def family_panels(results: Results) -> list[dict[str, Any]]:

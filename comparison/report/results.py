@@ -16,6 +16,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
 
+from comparison.analysis.ensemble_file import StoredEnsemble
 from comparison.analysis.extremes.matrix import Matrix
 from comparison.analysis.growth import MeasuredGrowth
 from comparison.analysis.stored import finite_or_none, json_text
@@ -1038,6 +1039,8 @@ class Results(Part):
     growth: MeasuredGrowth | None
     """how the cost grows with bodies, duration, phase pairs and workers; null unless python -m comparison.tradeoff
     --growth left it beside the report"""
+    ensemble: StoredEnsemble | None
+    """demands under many motions at many scales; null unless python -m comparison.ensemble left it beside the report"""
     families: list[FamilyResult] | None
     """families of scenes in which one value runs; null without any"""
     absent: dict[str, str]

@@ -24,6 +24,7 @@ ANALYSES = (
     "assumptions",
     "extremes",
     "tradeoff",
+    "ensemble",
     "effective",
     "demands",
 )

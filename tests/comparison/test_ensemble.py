@@ -187,3 +187,11 @@ def test_wrong_input_is_one_line_at_the_start(
     assert line in said
     assert said.count("\n") == 1
     assert not Path("out").exists()
+
+
+def test_a_plan_says_what_it_would_cost_and_computes_nothing(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("mine.toml", "--suite", "suite", "--scales", "0.5", "1", "2", "--engine", "1", "--plan") == 0
+    out = capsys.readouterr().out
+    assert "6 motions by the equations, 1 by the engine" in out
+    assert "Nothing was computed" in out
+    assert not list(Path().glob("out*"))

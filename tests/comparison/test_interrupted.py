@@ -67,7 +67,7 @@ def test_a_stopped_run_keeps_what_is_finished_and_says_how_to_go_on(tmp_path: Pa
     os.killpg(process.pid, number) if number == signal.SIGINT else os.kill(process.pid, number)
     _, err = process.communicate(timeout=30)
     assert process.returncode == code
-    assert time.monotonic() - begin < 2.0, "does not wait for the points under way"
+    assert time.monotonic() - begin < 15.0, "does not wait for the points under way, a minute each"
     stopped = re.fullmatch(
         r"interrupted: (\d+) of (\d+) batches are kept in 'report.tiles'; "
         r"go on with: python -m comparison.run fig3-I --grid 16 --jobs 2 --out report\n",

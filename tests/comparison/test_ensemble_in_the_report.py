@@ -1,0 +1,91 @@
+"""An ensemble beside the report is part of the next one."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from conftest import Run
+from jsonschema import Draft202012Validator
+
+from comparison.analysis import ensemble_file
+from comparison.analysis.ensemble_file import FILE, SCHEMA, StoredCurve, StoredEngine, StoredEnsemble
+from comparison.analysis.ensemble_file import StoredDifference as Difference
+from comparison.analysis.ensemble_file import StoredFractile as Fractile
+from comparison.analysis.ensemble_file import StoredStripe as Stripe
+from comparison.execution.output import publish
+
+SMALL = ["fig3-I", "--grid", "2"]
+RUN = {"command": "made <by a test>", "began": "then", "compute_seconds": 1.0,
+       "provenance": {"commit": "abc", "processor": "one"}}  # fmt: skip
+
+
+def three_motions() -> StoredEnsemble:
+    """Displacements of three motions at two scales: the third reaches the rim at the larger one."""
+    known = {"motion 1": (0.1, 0.2), "motion 2": (0.2, 0.5), "motion 3": (0.3, None)}
+    errors = [(0.0, None if value is None else 0.0) for _, value in known.values()]
+    curves = [
+        StoredCurve("displacement", None, "exact", motion, (1.0, 2.0), values, error)
+        for (motion, values), error in zip(known.items(), errors)
+    ]
+    engine = StoredCurve("displacement", None, "translational", "motion 2", (2.0,), (0.51,), (1e-3,))
+    low = [Fractile(share, value, 0.0) for share, value in ((0.16, 0.132), (0.5, 0.2), (0.84, 0.268))]
+    high = [Fractile(0.16, 0.296, 0.0), Fractile(0.5, 0.5, 0.0), Fractile(0.84, None, None)]
+    return StoredEnsemble(
+        schema=SCHEMA, scene="tower", title="Tower & <town>", keys=["excitation.scale"], scales=(1.0, 2.0),
+        motions=3, bodies=1, outcomes={"ok": 5, "rim reached": 1},
+        stripes=[Stripe("displacement", None, "m", 1.0, 3, low), Stripe("displacement", None, "m", 2.0, 2, high)],
+        curves=[*curves, engine],
+        engine=StoredEngine("translational", [{"scene": "tower[2]", "status": "ok"}],
+                            [Difference("displacement", None, 0.02, 1e-4, 2e-3, 1)]),
+        run=RUN,
+    )  # fmt: skip
+
+
+def test_what_is_written_is_what_is_read(tmp_path: Path) -> None:
+    assert ensemble_file.load(tmp_path) is None
+    written = three_motions()
+    (tmp_path / FILE).write_bytes(written.as_json())
+    read = ensemble_file.load(tmp_path)
+    assert read is not None
+    assert read.as_json() == written.as_json()
+
+
+def test_the_ensemble_beside_a_report_is_part_of_the_next(command: Callable[..., Run]) -> None:
+    report = command(*SMALL).report
+    assert "python -m comparison.ensemble SCENE makes it" in (report / "index.html").read_text(encoding="utf-8")
+    publish(report, {FILE: three_motions().as_json()}, "a test")
+    assert command(*SMALL).code == 0
+    page = (report / "index.html").read_text(encoding="utf-8")
+    for seen in ('id="ensemble"', "Tower &amp; &lt;town&gt;", "5 ok, 1 rim reached", "made &lt;by a test&gt;", "none"):
+        assert seen in page, seen
+    summary = json.loads((report / "summary.json").read_text(encoding="utf-8"))
+    schema = json.loads((report / "summary.schema.json").read_text(encoding="utf-8"))
+    assert [error.message for error in Draft202012Validator(schema).iter_errors(summary)] == []
+    assert summary["ensemble"]["curves"][2]["values"] == [0.3, None]
+    assert command(*SMALL, "--skip", "ensemble").code == 0
+    assert 'id="ensemble"' not in (report / "index.html").read_text(encoding="utf-8")
+
+
+def test_a_file_that_is_no_ensemble_is_refused_before_anything_is_computed(
+    command: Callable[..., Run], tmp_path: Path
+) -> None:
+    report = command(*SMALL).report
+    (report / FILE).write_text('{"schema": "phase-resonance/ensemble", "scene": 3}')
+    run = command(*SMALL)
+    assert run.code == 2
+    assert "not an ensemble" in run.err
+    assert "python -m comparison.ensemble" in run.err
+
+
+@pytest.mark.parametrize("stripes", [[], None])
+def test_an_ensemble_without_any_answer_is_shown(command: Callable[..., Run], stripes: list[Stripe] | None) -> None:
+    report = command(*SMALL).report
+    content = json.loads(three_motions().as_json())
+    content |= {"curves": [], "outcomes": {"rim reached": 6}}
+    content["stripes"] = stripes if stripes is not None else content["stripes"][1:]
+    publish(report, {FILE: json.dumps(content).encode()}, "a test")
+    assert command(*SMALL).code == 0
+    assert "6 rim reached" in (report / "index.html").read_text(encoding="utf-8")
