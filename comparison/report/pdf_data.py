@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from comparison.analysis.assumptions.validity import ASSUMPTIONS
+from comparison.report.pdf_demands import HEADINGS, demand_rows, demands_note
 from comparison.report.results import Headline, Limit, ModelDescription, ModelOutcome, Results, SceneResult, Waterfall
 from comparison.report.waterfall_chart import Scale, bars_of, scale_of
 from comparison.wording import significant
@@ -55,6 +56,9 @@ def pdf_data(results: Results, shown: Sequence[Headline], maps: Sequence[dict[st
         "dots mark the computed phases of a surface that is completed through a finer model.",
         "record_models": [titles[key] for key in keys],
         "records": [_record(scene, body, keys) for scene in recorded for body in range(1, scene.bodies + 1)][:16],
+        "demand_headings": list(HEADINGS),
+        "demands": demand_rows(results, MAX_LINES),
+        "demands_note": demands_note(results),
         "models": [_model(results, model) for model in results.models if _outcomes(results, model)],
         "assumptions": [[a.number, a.statement, a.engine, a.relaxed] for a in ASSUMPTIONS],
         **_limits(results),

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import Run
-from fake_models import fake_hierarchy, silenced
+from fake_models import fake_hierarchy, known_motions, silenced
 from pypdf import PdfReader
 from test_texts_of_scenes import RUN
 
@@ -17,6 +17,7 @@ from comparison.analysis.unanswered import with_silent_models
 from comparison.report import pdf
 from comparison.report.assemble import assemble
 from comparison.report.findings import Fault, Findings, collect_findings
+from comparison.report.pdf_demands import demand_rows
 from comparison.report.results import Results
 from comparison.study.batches import execute_batch
 from comparison.study.models import Model
@@ -110,3 +111,19 @@ def test_without_the_package_one_line_says_how_to_get_it(
     assert run.out.count(line) == 1
     assert "phase-resonance[pdf]" in (run.report / "index.html").read_text(encoding="utf-8")
     assert run.err == ""
+
+
+def test_the_demands_of_the_stored_motions_are_in_a_table(tmp_path: Path) -> None:
+    results, findings = studied([load_scene("fig3-I")], fake_hierarchy(), 2)
+    motions = known_motions(findings.study, findings.surfaces)
+    findings = collect_findings(findings.study, findings.surfaces, {"motions": motions}, [], RUN)
+    results = assemble(findings)
+    numbers = ["1500", "", "1.5", "1.5", "1.5", "1500", "1.5"]  # lengths in mm; the residual is not known
+    rows = demand_rows(results, 8)
+    assert [row[2:] for row in rows] == [numbers, numbers]
+    assert [row[1] for row in rows] == ["small equations", "spatial engine"]
+    pdf.write_pdf(tmp_path / "report.pdf", results, findings)
+    pages, text = text_of(tmp_path / "report.pdf")
+    assert 2 <= pages <= 4
+    assert flat("Largest values over the stored motions") in flat(text)
+    assert "base shear, N" in text
