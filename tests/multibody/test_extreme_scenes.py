@@ -51,9 +51,10 @@ def adaptive_runs(monkeypatch: pytest.MonkeyPatch) -> list[EngineRun]:
         (strong(duration=0.1, excitation={"decay": [1e3, 0.3]}), V_REG),
         (linked(1e-2, duration=0.6), V_REG),  # undamped, it rings when the loading begins
         (linked(1e-3, duration=0.02), V_REG),
+        (linked(1e-3, duration=0.3, isolator={"friction": 0.1}), V_REG),  # a slow contact's damper would end its swing
         (strong(duration=3.0), 1e-4),  # two levels agree to 0.9 of what both are off
     ],
-    ids=["decay 1e6/s", "decay 1e3/s", "link 1e-2 s", "link 1e-3 s", "v_reg 1e-4 m/s"],
+    ids=["decay 1e6/s", "decay 1e3/s", "link 1e-2 s", "link 1e-3 s", "link 1e-3 s, longer", "v_reg 1e-4 m/s"],
 )
 def test_the_error_holds_where_a_scene_is_much_quicker_than_its_loading(scene: Scene, regularization: float) -> None:
     # what is left of a loading of 1 us is weak beside the rounding of the contact force
