@@ -103,6 +103,7 @@ def assemble(findings: Findings) -> Results:
         claims=None if findings.claims is None else _claims(findings.claims),
         scaling=_trends(findings.scaling),
         convergence=_trends(findings.convergence),
+        benchmarks=findings.benchmarks,
         extremes=findings.extremes,
         tradeoff=None if findings.tradeoff is None else list(findings.tradeoff),
         growth=findings.growth,

@@ -10,6 +10,7 @@ import xarray as xr
 
 from comparison.analysis.acceptance import Limit, checked_limits
 from comparison.analysis.assumptions.validity import ValidityRanges
+from comparison.analysis.benchmarks.table import Benchmarks
 from comparison.analysis.budget import Entry, budget
 from comparison.analysis.claims.table import ClaimTable
 from comparison.analysis.completion import Completion, completions, with_completed
@@ -68,6 +69,7 @@ class Findings:
     convergence: Sequence[Trend] | None = None
     assumptions: ValidityRanges | None = None
     families: Sequence[Family] | None = None  # those of more than one scene
+    benchmarks: Benchmarks | None = None  # what python -m comparison.benchmarks left beside the report
     extremes: Matrix | None = None  # what python -m comparison.extremes left beside the report
     tradeoff: Sequence[Trade] | None = None  # what python -m comparison.tradeoff left beside the report
     growth: MeasuredGrowth | None = None  # what python -m comparison.tradeoff --growth left beside the report

@@ -15,6 +15,9 @@ from typing import Any
 import jinja2
 import numpy as np
 
+from comparison.analysis.benchmarks.page import stated, with_error
+from comparison.analysis.benchmarks.table import MEANING as BENCHMARK_VERDICTS
+from comparison.analysis.benchmarks.table import Verdict as BenchmarkVerdict
 from comparison.analysis.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE
 from comparison.analysis.claims.table import SIGNS
 from comparison.analysis.effective import PHASES
@@ -143,6 +146,12 @@ SECTIONS = (
         draw_all_assumptions,
     ),
     Section(
+        "benchmarks",
+        "External benchmarks",
+        ("benchmarks",),
+        "python -m comparison.benchmarks makes it, beside the report; the next run of the study shows it",
+    ),
+    Section(
         "extremes",
         "Stability at the extremes",
         ("extremes",),
@@ -160,6 +169,13 @@ SECTIONS = (
     Section("verification", "What checks each side alone"),
     Section("provenance", "Provenance"),
 )
+BENCHMARK_COLORS = {
+    BenchmarkVerdict.MET: "v-converged",
+    BenchmarkVerdict.FRICTION: "v-refused",
+    BenchmarkVerdict.MODEL: "v-limit",
+    BenchmarkVerdict.OFF: "v-FAILED",
+    BenchmarkVerdict.NONE: "v-FAILED",
+}  # class of each verdict
 SCRIPTS = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions.js", "page.js")
 
 
@@ -236,6 +252,10 @@ def page(figures: Path, findings: Findings, results: Results) -> str:
         claim_signs=SIGNS,
         verdicts=[(verdict.value, MEANING[verdict]) for verdict in Verdict],
         describe=describe,
+        benchmark_verdicts=BENCHMARK_VERDICTS,
+        benchmark_colors=BENCHMARK_COLORS,
+        stated=stated,
+        with_error=with_error,
         digests={scene.digest for scene in results.scenes},
         peak_share=SHARE,
         peak_shares=(LEAST_SHARE, MOST_SHARE),

@@ -17,6 +17,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
 
 from comparison.analysis.ensemble_file import StoredEnsemble
+from comparison.analysis.benchmarks.table import Benchmarks
 from comparison.analysis.extremes.matrix import Matrix
 from comparison.analysis.growth import MeasuredGrowth
 from comparison.analysis.stored import finite_or_none, json_text
@@ -1030,6 +1031,9 @@ class Results(Part):
     """the step from small to exact equations over a common scale of loading and friction; null if not computed"""
     convergence: list[Trend] | None
     """what the steps of friction law and contact tend to; null if not computed"""
+    benchmarks: Benchmarks | None
+    """numbers published elsewhere beside what both sides compute; null unless python -m comparison.benchmarks left it
+    beside the report"""
     extremes: Matrix | None
     """every model at the extremes of every quantity; null unless python -m comparison.extremes left it beside the
     report"""

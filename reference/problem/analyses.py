@@ -22,6 +22,7 @@ ANALYSES = (
     "claims",
     "errata",
     "assumptions",
+    "benchmarks",
     "extremes",
     "tradeoff",
     "ensemble",
