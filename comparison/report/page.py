@@ -55,6 +55,7 @@ from comparison.study.study import Study
 from comparison.wording import degrees, percent, scientific, signed, significant, symbols
 from reference.problem import Outcome
 from reference.problem.distribution import FRACTILES
+from reference.problem.peak_demands import QUANTITIES, unit_of
 
 
 @dataclass(frozen=True)
@@ -144,6 +145,13 @@ SECTIONS = (
         ("assumptions",),
         "no scene with phases says where its supports are and how high and large its bodies, as the spatial model asks",
         draw_all_assumptions,
+    ),
+    Section(
+        "measured",
+        "Measured peaks",
+        ("measured",),
+        "a scene file with [[measured]] peaks makes it: whoever has measurements can set them beside the models",
+        folded=False,
     ),
     Section(
         "benchmarks",
@@ -252,6 +260,8 @@ def page(figures: Path, findings: Findings, results: Results) -> str:
         claim_signs=SIGNS,
         verdicts=[(verdict.value, MEANING[verdict]) for verdict in Verdict],
         describe=describe,
+        measured_titles={"mu": "amplification factor"} | {key: text for key, (text, _) in QUANTITIES.items()},
+        measured_units={"mu": ""} | {key: unit_of(key) for key in QUANTITIES},
         benchmark_verdicts=BENCHMARK_VERDICTS,
         benchmark_colors=BENCHMARK_COLORS,
         stated=stated,

@@ -22,6 +22,7 @@ ANALYSES = (
     "claims",
     "errata",
     "assumptions",
+    "measured",
     "benchmarks",
     "extremes",
     "tradeoff",
