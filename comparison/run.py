@@ -24,8 +24,8 @@ from typing import Any
 
 from rich.console import Console
 
-from comparison.analysis.ensemble_file import load as stored_ensemble
 from comparison.analysis.benchmarks.table import load as stored_benchmarks
+from comparison.analysis.ensemble_file import load as stored_ensemble
 from comparison.analysis.extremes.matrix import load as stored_extremes
 from comparison.analysis.growth import load as stored_growth
 from comparison.analysis.surfaces import labeled_surfaces

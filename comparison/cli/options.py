@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from comparison.analysis.ensemble_file import load as stored_ensemble
 from comparison.analysis.benchmarks.table import load as stored_benchmarks
+from comparison.analysis.ensemble_file import load as stored_ensemble
 from comparison.analysis.extremes.matrix import load as stored_extremes
 from comparison.analysis.growth import load as stored_growth
 from comparison.analysis.tradeoff.trade import load as stored_trades

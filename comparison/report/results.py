@@ -16,8 +16,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
 
-from comparison.analysis.ensemble_file import StoredEnsemble
 from comparison.analysis.benchmarks.table import Benchmarks
+from comparison.analysis.ensemble_file import StoredEnsemble
 from comparison.analysis.extremes.matrix import Matrix
 from comparison.analysis.growth import MeasuredGrowth
 from comparison.analysis.stored import finite_or_none, json_text
