@@ -11,6 +11,7 @@ from comparison.analysis.convergence import Convergence
 from comparison.analysis.demand_surfaces import DemandSurfaces
 from comparison.analysis.effective import EffectiveValues
 from comparison.analysis.errata import Errata
+from comparison.analysis.measured import MeasuredPeaks
 from comparison.analysis.protocol import Analysis
 from comparison.analysis.scaling import Scaling
 from comparison.analysis.trajectories import Motions
@@ -29,6 +30,7 @@ ANALYSES: tuple[Analysis[Any], ...] = (
     Motions(),
     WorstPhases(),
     DemandSurfaces(),
+    MeasuredPeaks(),
     Pictures(),
 )
 

@@ -24,6 +24,7 @@ from typing import Any
 
 from rich.console import Console
 
+from comparison.analysis.benchmarks.table import load as stored_benchmarks
 from comparison.analysis.ensemble_file import load as stored_ensemble
 from comparison.analysis.extremes.matrix import load as stored_extremes
 from comparison.analysis.growth import load as stored_growth
@@ -193,6 +194,7 @@ def _run(
         _faults(study, computed),
         run,
         families=[family for family in options.families if len(family.scenes) > 1] or None,
+        benchmarks=None if "benchmarks" in study.absent else _taken_up(stored_benchmarks, options.out),
         extremes=None if "extremes" in study.absent else _taken_up(stored_extremes, options.out),
         tradeoff=None if "tradeoff" in study.absent else _taken_up(stored_trades, options.out),
         growth=None if "tradeoff" in study.absent else _taken_up(stored_growth, options.out),

@@ -12,7 +12,7 @@ from reference.problem.ranges import MAX_CYCLES, SCENE
 
 PAGE = Path(__file__).with_name("scene.md")
 SET_BY_THE_READER = {"name", "samples"}  # fields of the models that are no keys of a file
-NESTED = {"isolator", "bodies", "excitation", "acceptance", "analyses"}
+NESTED = {"isolator", "bodies", "excitation", "acceptance", "analyses", "measured"}
 TABLES = (  # heading, model in the schema, dotted name, introduction
     ("At the top of the file", "", "", ""),
     ("`[isolator]`", "Isolator", "isolator", "The spherical gravity-friction isolator under the platform."),
@@ -53,6 +53,13 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         "analyses",
         f"What the report tells of the scene beside its amplification factors: {', '.join(ANALYSES)}. `--only`,"
         " `--skip` and `--also` of the command line come before it.",
+    ),
+    (
+        "`[[measured]]`",
+        "Measured",
+        "measured",
+        "One table per measured peak. The report sets it beside what every model computes, with both errors; it changes"
+        " no result. [Validation](validation.md) says what an experiment must record.",
     ),
 )
 INTRODUCTION = f"""# The scene file

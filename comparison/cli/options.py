@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from comparison.analysis.benchmarks.table import load as stored_benchmarks
 from comparison.analysis.ensemble_file import load as stored_ensemble
 from comparison.analysis.extremes.matrix import load as stored_extremes
 from comparison.analysis.growth import load as stored_growth
@@ -97,6 +98,7 @@ def parsed(argv: Sequence[str]) -> Options:
         raise SceneError("command line", "--budget", words.budget, rule)
     if not options.plan:
         try:
+            stored_benchmarks(options.out)
             stored_extremes(options.out)
             stored_trades(options.out)
             stored_growth(options.out)

@@ -19,6 +19,7 @@ COMMANDS = {  # module whose `main` is the command, and what it does
     "run": ("comparison.run", "compare the equations with the engine and write the report"),
     "claims": ("comparison.cli.claims", "the paper's claims against readings of what it leaves open"),
     "assumptions": ("comparison.cli.assumptions", "how far the paper's assumptions carry"),
+    "benchmarks": ("comparison.cli.benchmarks", "numbers published elsewhere, by the equations and by the engine"),
     "extremes": ("comparison.cli.extremes", "every model at the extremes of every quantity"),
     "tradeoff": ("comparison.cli.tradeoff", "error against compute time"),
     "ensemble": ("comparison.cli.ensemble", "demands under a suite of motions at many intensities"),

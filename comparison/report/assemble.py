@@ -48,6 +48,7 @@ from comparison.report.results import (
     GridMaximum,
     Headline,
     Limit,
+    MeasuredPeak,
     ModelDescription,
     ModelOutcome,
     MotionDemands,
@@ -103,6 +104,10 @@ def assemble(findings: Findings) -> Results:
         claims=None if findings.claims is None else _claims(findings.claims),
         scaling=_trends(findings.scaling),
         convergence=_trends(findings.convergence),
+        measured=None
+        if findings.measured is None
+        else [MeasuredPeak.model_validate(peak) for peak in findings.measured],
+        benchmarks=findings.benchmarks,
         extremes=findings.extremes,
         tradeoff=None if findings.tradeoff is None else list(findings.tradeoff),
         growth=findings.growth,

@@ -10,6 +10,7 @@ import xarray as xr
 
 from comparison.analysis.acceptance import Limit, checked_limits
 from comparison.analysis.assumptions.validity import ValidityRanges
+from comparison.analysis.benchmarks.table import Benchmarks
 from comparison.analysis.budget import Entry, budget
 from comparison.analysis.claims.table import ClaimTable
 from comparison.analysis.completion import Completion, completions, with_completed
@@ -19,6 +20,7 @@ from comparison.analysis.ensemble_file import StoredEnsemble
 from comparison.analysis.errata import Effect
 from comparison.analysis.extremes.matrix import Matrix
 from comparison.analysis.growth import MeasuredGrowth
+from comparison.analysis.measured import MeasuredPeak
 from comparison.analysis.tradeoff.trade import Trade
 from comparison.analysis.trajectories import StoredMotion
 from comparison.analysis.trends import Trend
@@ -68,6 +70,8 @@ class Findings:
     convergence: Sequence[Trend] | None = None
     assumptions: ValidityRanges | None = None
     families: Sequence[Family] | None = None  # those of more than one scene
+    measured: Sequence[MeasuredPeak] | None = None  # measured peaks of the scenes beside the models
+    benchmarks: Benchmarks | None = None  # what python -m comparison.benchmarks left beside the report
     extremes: Matrix | None = None  # what python -m comparison.extremes left beside the report
     tradeoff: Sequence[Trade] | None = None  # what python -m comparison.tradeoff left beside the report
     growth: MeasuredGrowth | None = None  # what python -m comparison.tradeoff --growth left beside the report
@@ -105,7 +109,7 @@ def collect_findings(
         All of it, with differences, budget, gaps and limits.
     """
     rows, lacking = differences(study, surfaces), unanswered(study, surfaces)
-    names = ("motions", "worst_phases", "demands", "claims", "scaling", "convergence", "assumptions")
+    names = ("motions", "worst_phases", "demands", "claims", "scaling", "convergence", "assumptions", "measured")
     optional: dict[str, Any] = {name: collected.get(name) for name in names}
     completed = [surface for scene in study.scenes for surface in completions(study, surfaces, scene)]
     return Findings(

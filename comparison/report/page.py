@@ -15,6 +15,9 @@ from typing import Any
 import jinja2
 import numpy as np
 
+from comparison.analysis.benchmarks.page import stated, with_error
+from comparison.analysis.benchmarks.table import MEANING as BENCHMARK_VERDICTS
+from comparison.analysis.benchmarks.table import Verdict as BenchmarkVerdict
 from comparison.analysis.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE
 from comparison.analysis.claims.table import SIGNS
 from comparison.analysis.effective import PHASES
@@ -52,6 +55,7 @@ from comparison.study.study import Study
 from comparison.wording import degrees, percent, scientific, signed, significant, symbols
 from reference.problem import Outcome
 from reference.problem.distribution import FRACTILES
+from reference.problem.peak_demands import QUANTITIES, unit_of
 
 
 @dataclass(frozen=True)
@@ -143,6 +147,19 @@ SECTIONS = (
         draw_all_assumptions,
     ),
     Section(
+        "measured",
+        "Measured peaks",
+        ("measured",),
+        "a scene file with [[measured]] peaks makes it: whoever has measurements can set them beside the models",
+        folded=False,
+    ),
+    Section(
+        "benchmarks",
+        "External benchmarks",
+        ("benchmarks",),
+        "python -m comparison.benchmarks makes it, beside the report; the next run of the study shows it",
+    ),
+    Section(
         "extremes",
         "Stability at the extremes",
         ("extremes",),
@@ -160,6 +177,13 @@ SECTIONS = (
     Section("verification", "What checks each side alone"),
     Section("provenance", "Provenance"),
 )
+BENCHMARK_COLORS = {
+    BenchmarkVerdict.MET: "v-converged",
+    BenchmarkVerdict.FRICTION: "v-refused",
+    BenchmarkVerdict.MODEL: "v-limit",
+    BenchmarkVerdict.OFF: "v-FAILED",
+    BenchmarkVerdict.NONE: "v-FAILED",
+}  # class of each verdict
 SCRIPTS = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions.js", "page.js")
 
 
@@ -236,6 +260,12 @@ def page(figures: Path, findings: Findings, results: Results) -> str:
         claim_signs=SIGNS,
         verdicts=[(verdict.value, MEANING[verdict]) for verdict in Verdict],
         describe=describe,
+        measured_titles={"mu": "amplification factor"} | {key: text for key, (text, _) in QUANTITIES.items()},
+        measured_units={"mu": ""} | {key: unit_of(key) for key in QUANTITIES},
+        benchmark_verdicts=BENCHMARK_VERDICTS,
+        benchmark_colors=BENCHMARK_COLORS,
+        stated=stated,
+        with_error=with_error,
         digests={scene.digest for scene in results.scenes},
         peak_share=SHARE,
         peak_shares=(LEAST_SHARE, MOST_SHARE),

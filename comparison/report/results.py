@@ -16,6 +16,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
 
+from comparison.analysis.benchmarks.table import Benchmarks
 from comparison.analysis.ensemble_file import StoredEnsemble
 from comparison.analysis.extremes.matrix import Matrix
 from comparison.analysis.growth import MeasuredGrowth
@@ -417,6 +418,44 @@ class Worst(Part):
     """estimated absolute error of it"""
     reason: Text
     """why there is no value, or empty"""
+
+
+class ComputedPeak(Part):
+    """A measured peak by one model."""
+
+    model: str
+    """key of the model"""
+    value: Number
+    """in the unit of the quantity; null without an answer"""
+    error: Number
+    """estimated absolute error"""
+    difference: Number
+    """computed less measured value"""
+    exceeds: bool | None
+    """whether its size exceeds the uncertainty and the error together; null where it is not known"""
+    status: str
+    """how the motion ended"""
+
+
+class MeasuredPeak(Part):
+    """A peak that an experiment measured, beside the models."""
+
+    scene: Text
+    """name of the scene"""
+    quantity: str
+    """mu, or a key in `demands` with the unit stated there"""
+    body: int
+    """number of the body, 1 is the platform; 0 where the quantity is of the isolator"""
+    phases: Phases
+    """(alpha1, alpha2), rad; null under a record"""
+    value: float
+    """measured value"""
+    uncertainty: float
+    """its absolute uncertainty, as the scene states it"""
+    source: Text
+    """where it is from, as the scene states it"""
+    computed: list[ComputedPeak]
+    """one per model that has the quantity"""
 
 
 class Mean(Part):
@@ -1030,6 +1069,11 @@ class Results(Part):
     """the step from small to exact equations over a common scale of loading and friction; null if not computed"""
     convergence: list[Trend] | None
     """what the steps of friction law and contact tend to; null if not computed"""
+    measured: list[MeasuredPeak] | None
+    """measured peaks beside what every model computes; null where no scene has any"""
+    benchmarks: Benchmarks | None
+    """numbers published elsewhere beside what both sides compute; null unless python -m comparison.benchmarks left it
+    beside the report"""
     extremes: Matrix | None
     """every model at the extremes of every quantity; null unless python -m comparison.extremes left it beside the
     report"""

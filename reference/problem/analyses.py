@@ -22,6 +22,8 @@ ANALYSES = (
     "claims",
     "errata",
     "assumptions",
+    "measured",
+    "benchmarks",
     "extremes",
     "tradeoff",
     "ensemble",

@@ -282,11 +282,7 @@ class _Reading:
         return tuple(Estimate(float(value), float(error)) for value, error in zip(self.motion.peak, errors))
 
     def _of_solution(self, value: float, others: list[float], scale: float | None = None) -> float:
-        """scale: what the lower bound of the relative error belongs to, if not to the value."""
-        if self.accuracy is None:
-            return math.nan
-        changes = (share * abs(value - other) for share, other in zip(self.accuracy.share, others, strict=True))
-        return self.accuracy.floor * abs(value if scale is None else scale) + sum(changes)
+        return math.nan if self.accuracy is None else self.accuracy.error_of(value, others, scale)
 
 
 def _drift_of(link: int) -> Read:

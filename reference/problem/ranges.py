@@ -72,6 +72,10 @@ SCENE: dict[str, Range] = {
     "excitation.amplitudes": Range(-1e308, 1e308, "m/s^2"),  # from about 1e150 on the outcome is "non-finite load"
     "excitation.periods": Range(1e-9, 1e12, "s"),
     "excitation.decay": Range(0.0, 1e12, "1/s"),
+    "measured.body": Range(1, 10_000),
+    "measured.value": Range(-1e30, 1e30),
+    "measured.uncertainty": Range(0.0, 1e30),
+    "measured.phases": Range(-1e6, 1e6, "rad"),
 }
 SUPPORT_POSITION = Range(-1e6, 1e6, "m")  # of a support, along x and y
 DAMPING_COEFFICIENT = Range(0.0, 1e30, "N s/m")  # of a link along one axis

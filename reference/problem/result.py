@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -285,6 +286,26 @@ class Accuracy:
     coarser: tuple[Trajectory, ...]
     share: tuple[float, ...]
     floor: float
+
+    def error_of(self, value: float, others: Sequence[float], scale: float | None = None) -> float:
+        """
+        Estimated absolute error of a number that is read from the motion.
+
+        Parameters
+        ----------
+        value : float
+            Read from the motion.
+        others : sequence of float
+            The same, read from each of `coarser`.
+        scale : float, optional
+            What the lower bound of the relative error belongs to, if not to the value.
+
+        Returns
+        -------
+        float
+        """
+        changes = (share * abs(value - other) for share, other in zip(self.share, others, strict=True))
+        return self.floor * abs(value if scale is None else scale) + sum(changes)
 
 
 @dataclass(frozen=True)

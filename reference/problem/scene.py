@@ -17,6 +17,7 @@ from reference.problem.analyses import Analyses
 from reference.problem.changed_values import put_value
 from reference.problem.constants import GRAVITY
 from reference.problem.friction import DryFriction
+from reference.problem.measured import Measured
 from reference.problem.ranges import MAX_CYCLES, SCENE
 from reference.problem.record_loading import with_samples
 from reference.problem.scene_error import EXCITATIONS, FRICTIONS, MisfitError, SceneError, first_error
@@ -95,6 +96,7 @@ class Scene(Table):
     ]
     acceptance: Acceptance = Acceptance()
     analyses: Analyses = Analyses()
+    measured: Annotated[list[Measured], Field(min_length=1)] | None = None
     name: Text = "scene"  # file stem or built-in name; set by load_scene, no key of a scene file
 
     @model_validator(mode="before")
@@ -122,6 +124,7 @@ class Scene(Table):
                 raise MisfitError(f"bodies.{number}", body.model_dump(exclude_none=True), str(error)) from None
         self._check_derived()
         self._check_supports()
+        self._check_measured()
         if not np.isfinite(self.record if isinstance(self.excitation, Record) else self.amplitudes).all():
             raise MisfitError("excitation.scale", self.excitation.scale, "must leave every acceleration finite")
         return self
@@ -180,6 +183,19 @@ class Scene(Table):
             place = ", ".join(f"{along:.4g}" for along in places[shares.argmin()])
             rule = f"the support at [{place}] would carry nothing at rest: reduce the offsets or move the supports"
             raise MisfitError("bodies: center of mass of all [x, y] in m", self.center_of_mass.tolist(), rule)
+
+    def _check_measured(self) -> None:
+        """A measured peak belongs to a body, and to phases where the scene has them."""
+        phased = isinstance(self.excitation, Excitation)
+        for number, peak in enumerate(self.measured or ()):
+            if peak.body is not None and peak.body > len(self.bodies):
+                rule = f"the scene has {len(self.bodies)} bodies, the platform is 1"
+                raise MisfitError(f"measured.{number}.body", peak.body, rule)
+            if phased == (peak.phases is None):
+                rule = (
+                    "give the phases of the test, [alpha1, alpha2]" if phased else "a record has no phases: remove it"
+                )
+                raise MisfitError(f"measured.{number}.phases", peak.phases, rule)
 
     def with_values(self, values: Mapping[str, Any]) -> Scene:
         """
@@ -388,7 +404,8 @@ class Scene(Table):
     @cached_property
     def _digest(self) -> str:
         content = self.model_dump_json(
-            exclude={"title": True, "name": True, "acceptance": True, "analyses": True, "excitation": {"record": True}},
+            exclude=dict.fromkeys(("title", "name", "acceptance", "analyses", "measured"), True)
+            | {"excitation": {"record": True}},
             exclude_none=True,  # a key that is not given changes no result
         )
         return hashlib.sha256(content.encode()).hexdigest()[:16]
@@ -412,6 +429,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "bodies.bars": tuple(Bars.model_fields),
     "acceptance": tuple(Acceptance.model_fields),
     "analyses": tuple(Analyses.model_fields),
+    "measured": tuple(Measured.model_fields),
     **{f"acceptance.{pair}": tuple(Limits.model_fields) for pair in ("like_for_like", "total", "translational")},
     "excitation": (*Excitation.model_fields, "record"),
     f"excitation.{EXCITATIONS[0]}": tuple(Excitation.model_fields),

@@ -26,7 +26,12 @@ from comparison.execution.task_results import TaskResults
 from comparison.study.study import Study
 
 SCALES = (1.0, 0.5, 0.25)
-ASKED = ("effective", "assumptions", "pictures")  # of the models of the hierarchy, or drawn from their surfaces
+ASKED = (
+    "effective",
+    "assumptions",
+    "measured",
+    "pictures",
+)  # of the models of the hierarchy, or drawn from their surfaces
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,15 @@ def test_the_page_of_keys_is_what_the_schema_says() -> None:
 
 def test_the_page_has_a_row_for_every_key() -> None:
     page = (DOCS / "scene.md").read_text(encoding="utf-8")
-    tables = {"isolator", "bodies", "excitation", "acceptance", "analyses", "name"}  # headings, and the file's own name
-    for table in ("", "isolator", "bodies", "excitation", "acceptance", "analyses"):
+    tables = {
+        "isolator",
+        "bodies",
+        "excitation",
+        "acceptance",
+        "analyses",
+        "measured",
+        "name",
+    }  # headings, and the file's own name
+    for table in ("", "isolator", "bodies", "excitation", "acceptance", "analyses", "measured"):
         for key in KEYS[table]:
             assert key in tables or f"\n| `{key}` | " in page, f"{table}.{key}"

@@ -1,0 +1,1 @@
+"""Numbers published elsewhere, by the equations and by the engine."""

@@ -1,0 +1,190 @@
+"""
+What a benchmark publishes, read from a motion.
+
+Between its instants a motion is the cubic with its positions and velocities, so that a reading does not depend on where
+the instants are.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import CubicHermiteSpline
+
+from reference.problem import Trajectory
+
+Array = NDArray[np.float64]
+
+PARTS = 16  # between two instants, for extremes and lengths
+ROUNDING = 1e-12  # relative, of the last instant
+STILL = 1e-3  # of the largest speed: slower turns are creep, not swings
+
+
+def positions_at(motion: Trajectory, times: ArrayLike) -> Array:
+    """
+    Position of the platform along x at some instants.
+
+    Parameters
+    ----------
+    motion : Trajectory
+    times : array_like, (T,), s
+
+    Returns
+    -------
+    ndarray, (T,), m
+        NaN behind the end of a motion that ended early.
+    """
+    instants = np.asarray(times, dtype=float)
+    values: Array = _along(motion, 0)(instants)
+    return np.where(instants <= motion.time[-1] * (1.0 + ROUNDING), values, np.nan)
+
+
+def turning_points(motion: Trajectory) -> Array:
+    """
+    Positions of the platform along x where its velocity changes sign.
+
+    Parameters
+    ----------
+    motion : Trajectory
+
+    Returns
+    -------
+    ndarray, m
+        In the order of time. Where the last swing ends in rest or creep, the last one is where it ends.
+    """
+    speed = motion.velocity[:, 0, 0]
+    moving = np.flatnonzero(np.abs(speed) > STILL * np.abs(speed).max())
+    sign = np.sign(speed[moving])
+    last = np.flatnonzero(np.diff(sign))  # of every swing but the last one, among the moving samples
+    place = _along(motion, 0)
+    turns = []
+    for end, begin in [*zip(moving[last], moving[last + 1]), (moving[-1], len(speed) - 1)]:
+        dense = place(_dense(motion, float(motion.time[end]), float(motion.time[begin])))
+        turns.append(dense[np.argmax(np.sign(speed[end]) * dense)])
+    return np.array(turns)
+
+
+def path_length(motion: Trajectory, begin: float, end: float) -> float:
+    """
+    Way that the platform slides.
+
+    Parameters
+    ----------
+    motion : Trajectory
+    begin, end : float, s
+
+    Returns
+    -------
+    float, m
+    """
+    dense = np.stack([_along(motion, axis)(_dense(motion, begin, end)) for axis in (0, 1)])
+    return float(np.hypot(*np.diff(dense)).sum())
+
+
+def extremes(motion: Trajectory, axis: int, begin: float = 0.0) -> tuple[float, float]:
+    """
+    Smallest and largest position of the platform.
+
+    Parameters
+    ----------
+    motion : Trajectory
+    axis : int
+        0 for x, 1 for y.
+    begin : float, s
+        From this instant to the end.
+
+    Returns
+    -------
+    tuple of float, m
+    """
+    dense = _along(motion, axis)(_dense(motion, begin, float(motion.time[-1])))
+    return float(dense.min()), float(dense.max())
+
+
+def ranges(motion: Trajectory) -> list[float]:
+    """
+    Smallest and largest position of the platform along x, then along y.
+
+    Parameters
+    ----------
+    motion : Trajectory
+
+    Returns
+    -------
+    list of float, m
+    """
+    return [*extremes(motion, 0), *extremes(motion, 1)]
+
+
+def half_range(motion: Trajectory, begin: float) -> float:
+    """
+    Amplitude of the platform's oscillation along x.
+
+    Parameters
+    ----------
+    motion : Trajectory
+    begin : float, s
+        From this instant to the end: a whole period.
+
+    Returns
+    -------
+    float, m
+    """
+    lowest, highest = extremes(motion, 0, begin)
+    return 0.5 * (highest - lowest)
+
+
+def period(motion: Trajectory) -> float:
+    """
+    Mean time between two passages of the platform through x = 0 in the same direction.
+
+    Parameters
+    ----------
+    motion : Trajectory
+
+    Returns
+    -------
+    float, s
+    """
+    passages = _along(motion, 0).roots(extrapolate=False)
+    return float(np.diff(passages[::2]).mean())
+
+
+def natural_periods(motion: Trajectory) -> Array:
+    """
+    Natural periods of a linear chain from its free motion along x.
+
+    Parameters
+    ----------
+    motion : Trajectory
+        Of N bodies on still ground, without friction or held by it.
+
+    Returns
+    -------
+    ndarray, s
+        Longest first; those of the bodies that move.
+
+    Notes
+    -----
+    The accelerations are -A x with one matrix A, which is fitted to all instants. Its eigenvalues are the squared
+    frequencies.
+    """
+    place, acceleration = motion.position[:, :, 0], motion.absolute_acceleration[:, :, 0]
+    moving = np.abs(place).max(axis=0) > STILL * np.abs(place).max()
+    fitted = np.linalg.lstsq(place[:, moving], -acceleration[:, moving], rcond=None)[0]
+    squared = np.sort(np.linalg.eigvals(fitted.T).real)
+    periods: Array = 2.0 * np.pi / np.sqrt(np.where(squared > 0.0, squared, np.nan))
+    return periods
+
+
+def _along(motion: Trajectory, axis: int) -> CubicHermiteSpline:
+    return CubicHermiteSpline(motion.time, motion.position[:, 0, axis], motion.velocity[:, 0, axis])
+
+
+def _dense(motion: Trajectory, begin: float, end: float) -> Array:
+    """Instants from `begin` to `end`: those of the motion, and PARTS between any two of them."""
+    inner = motion.time[(motion.time > begin) & (motion.time < end)]
+    knots = np.concatenate([[begin], inner, [end]])
+    parts = np.arange(PARTS) / PARTS
+    dense: Array = np.append((knots[:-1, None] + np.diff(knots)[:, None] * parts).ravel(), end)
+    return dense
