@@ -29,7 +29,8 @@ Array = NDArray[np.float64]
 CALLED_THROUGH = "comparison.study.entered:amplification"
 LIKE = "regularised"  # key of the reference's model that an engine is held against unless it names another
 MOST = 8  # phases per axis, as the dearest model of the hierarchy: what a call costs is unknown
-TIME_LIMIT = 30.0  # s of processor time of one call, which is asked for one phase pair
+TIME_LIMIT = 60.0  # s of processor time of one call, which is asked for one phase pair
+ALWAYS_GIVEN = ("tolerance", "regularization", "equations")  # to a function that names it
 UNKNOWN_ERROR = np.nan  # of an engine that states none
 
 
@@ -94,7 +95,7 @@ def entered_function(path: str) -> Callable[..., Any]:
     if not callable(function):
         raise TypeError(f"{name} is {type(function).__name__}, not a function")
     with suppress(ValueError):  # some compiled functions have no signature
-        inspect.signature(function).bind(None, None)
+        inspect.signature(function).bind(None, None, **_named_by(function, dict.fromkeys(ALWAYS_GIVEN)))
     return function  # type: ignore[no-any-return]
 
 
@@ -154,7 +155,9 @@ def _read(answer: Any, points: int, bodies: int, seconds: float) -> Amplificatio
         mu, parts = answer.mu, {name: getattr(answer, name, None) for name in ("error", "instant", "displacement")}
         outcomes = getattr(answer, "status", None)
     else:
-        mu, *rest = answer if isinstance(answer, tuple) else (answer,)
+        mu, *rest = answer if isinstance(answer, tuple) and answer else (answer,)
+        if mu is None:
+            raise TypeError("the engine's mu is None")
         if len(rest) > 1:
             raise TypeError(f"the engine returned a tuple of {1 + len(rest)}: give mu, (mu, error) or an object")
         parts, outcomes = {"error": rest[0] if rest else None}, None
@@ -169,7 +172,7 @@ def _array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
     """A new array of this shape; NaN without a value."""
     if value is None:
         return np.full(shape, np.nan)
-    array: Array = np.array(value)
+    array = np.array(value)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"the engine's {name} has {array.dtype} in place of real numbers")
     if array.shape != shape:
