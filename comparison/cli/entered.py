@@ -17,7 +17,7 @@ from comparison.cli.arguments import CommandParser, number
 from comparison.execution.environment import engine_fingerprint
 from comparison.execution.executors import TimeLimitError, WorkerDiedError
 from comparison.execution.processes import Workers
-from comparison.study.entered import LIKE, TIME_LIMIT, entered_function, entered_model, silent
+from comparison.study.entered import LIKE, TIME_LIMIT, entered_function, entered_model, names_of, silent
 from comparison.study.models import MODEL_HIERARCHY, Model
 from reference.problem import SceneError
 
@@ -169,8 +169,8 @@ def look_at(path: str) -> tuple[str, dict[str, str]]:
     module, name = path.split(":")
     with silent():
         try:
-            entered_function(path)
-            return "", engine_fingerprint(module)
+            function = entered_function(path)
+            return "", {"names": names_of(function), **engine_fingerprint(module)}
         except ModuleNotFoundError as error:
             missing = error.name or module
             where = ": run the command in the folder of its file, or install it" if module.startswith(missing) else ""

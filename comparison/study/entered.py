@@ -136,6 +136,17 @@ def entered_model(name: str, engine: Mapping[str, Any], like: str = LIKE, limit:
     )
 
 
+def engine_of(settings: Mapping[str, Any]) -> Mapping[str, str]:
+    """What is known of the engine that settings are for: its function, what that takes, versions; empty for none."""
+    engine: Mapping[str, str] = settings.get("engine", {})
+    return engine
+
+
+def names_of(function: Callable[..., Any]) -> str:
+    """Which of ALWAYS_GIVEN a function takes, separated by spaces."""
+    return " ".join(_named_by(function, dict.fromkeys(ALWAYS_GIVEN)))
+
+
 def _named_by(function: Callable[..., Any], settings: Mapping[str, Any]) -> dict[str, Any]:
     """The settings that a function names among its arguments, or all of them if it takes any."""
     try:

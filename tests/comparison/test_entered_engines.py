@@ -21,7 +21,12 @@ from fake_models import fake_hierarchy, smooth
 
 from comparison.analysis.budget import budget
 from comparison.analysis.differences import differences, pair_step
+from comparison.analysis.extremes.cells import cells
+from comparison.analysis.extremes.rows import entered_column, rows
+from comparison.analysis.extremes.verdicts import Reply, judged
 from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.tradeoff.analysis import TradeOff
+from comparison.analysis.tradeoff.settings import settings
 from comparison.analysis.unanswered import unanswered, with_silent_models
 from comparison.cli.entered import as_words, entered_models, look_at
 from comparison.execution.environment import engine_fingerprint, source_digest
@@ -287,14 +292,13 @@ def test_engines_that_hang_print_or_end_their_process_cost_nobody_else_anything(
     monkeypatch.setattr("comparison.execution.processes.STALLED", 5.0)
     engines = ("plain", "prints", "computes_for_ever", "waits_for_ever", "leaves", "spoils_its_process")
     words = [word for name in engines for word in ("--model", f"{name}=entered_engines:{name}")]
-    run = command("fig3-I", "--grid", "2", "--model-limit", "1", *words, executor=process_pool)
+    run = command("fig3-I", "--grid", "2", "--model-limit", "2", *words, executor=process_pool)
     assert run.code == 0
     assert "noise" not in run.out + run.err
     with xr.open_dataset(run.report / "surfaces.nc", engine="h5netcdf") as data:
         outcomes = {name: set(data["status"].sel(model=name).values.ravel().tolist()) for name in engines}
         mu = data["mu"].sel(model=["small", "plain", "prints"]).values
-    assert np.isfinite(mu).all()
-    assert outcomes == {
+    assert {name: outcomes[name] for name in engines} == {
         "plain": {"ok"},
         "prints": {"ok"},
         "computes_for_ever": {"time limit"},
@@ -302,3 +306,41 @@ def test_engines_that_hang_print_or_end_their_process_cost_nobody_else_anything(
         "leaves": {"worker died", "time limit"},
         "spoils_its_process": {"ok"},
     }
+    assert np.isfinite(mu).all()
+
+
+def test_the_extremes_judge_an_engine_that_claims_nothing_by_how_far_it_is_off() -> None:
+    def verdict(off: float, error: float = np.nan) -> tuple[str, str]:
+        mu, right = np.array([[1.0, 2.0 + off]]), np.array([[1.0, 2.0]])
+        reply = Reply(mu, np.full((1, 2), error), ("ok",))
+        judgment = judged(reply, [Reply(right, np.full((1, 2), 1e-9), ("ok",))], 1e-3, False, ())
+        return judgment.verdict, judgment.reason
+
+    assert verdict(1e-3) == ("converged", "states no error, off by 5.0e-04")
+    assert verdict(1e-2) == ("limit", "states no error, off by 5.0e-03")
+    assert verdict(1e-2, error=1e-4)[0] == "FAILED", "a false claim is one"
+
+
+def test_every_extreme_of_its_law_concerns_an_entered_engine_but_none_of_the_numerics_of_ours() -> None:
+    every = list(rows())
+    met = {cell.row.name for cell in cells(every, [entered_column(entered("plain"))])}
+    alike = {row.name for row in every if "regularised" in row.columns and not row.amplification}
+    assert met == alike
+    assert all(row.name not in met for row in every if row.amplification)
+
+
+def test_the_curve_of_an_entered_engine_runs_over_the_tolerance_that_it_takes() -> None:
+    def curve(names: str, like: str = "regularised") -> list[tuple[str, float, bool]]:
+        model = entered_model("mine", {"function": "entered_engines:plain", "names": names}, like)
+        listed = settings(SCENE, quick=True, entered=[model])
+        assert [one for one in listed if one.method != "entered: mine"] == settings(SCENE, quick=True)
+        mine = [one for one in listed if one.method == "entered: mine"]
+        return [(one.question, one.value, one.against is None) for one in mine]
+
+    assert curve("tolerance") == [("regularised", value, True) for value in (1e-2, 1e-3, 1e-4, 1e-5)]
+    assert curve("") == [("regularised", 1e-3, True)]
+    assert curve("", like="resolved") == [("exact", 1e-3, False)]
+    tasks = TradeOff(True, (entered("plain"),)).tasks(Study((SCENE,), 1, 1e-3))
+    mine = [task for task in tasks if task.lane]
+    assert mine
+    assert all(task.timeout == 60.0 * len(task.argument.phases) for task in mine)
