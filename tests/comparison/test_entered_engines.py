@@ -286,10 +286,7 @@ def test_its_source_and_that_of_its_helpers_are_part_of_what_its_results_are_fou
 
 
 @pytest.mark.long
-def test_engines_that_hang_print_or_end_their_process_cost_nobody_else_anything(
-    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("comparison.execution.processes.STALLED", 5.0)
+def test_engines_that_hang_print_or_end_their_process_cost_nobody_else_anything(command: Callable[..., Run]) -> None:
     engines = ("plain", "prints", "computes_for_ever", "waits_for_ever", "leaves", "spoils_its_process")
     words = [word for name in engines for word in ("--model", f"{name}=entered_engines:{name}")]
     run = command("fig3-I", "--grid", "2", "--model-limit", "2", *words, executor=process_pool)
