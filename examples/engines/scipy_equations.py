@@ -3,8 +3,8 @@ SciPy on equations written out by hand: a chain on a sphere, friction linear bel
 
     python -m comparison.run fig3-I --grid 4 --model SciPy=examples.engines.scipy_equations:amplification
 
-Newton-Euler; the vertical motion of the platform follows from the sphere and carries the mass of all bodies. `method` and
-`rtol` are for trying.
+Newton-Euler; the vertical motion of the platform follows from the sphere and carries the mass of all bodies.
+`method` and `rtol` are for trying.
 """
 
 from __future__ import annotations
