@@ -36,6 +36,7 @@ from comparison.cli.arguments import command, writing
 from comparison.cli.budgeted import allotment, drawings_first, spend
 from comparison.cli.closing import print_closing, print_errors
 from comparison.cli.computing import ending_early
+from comparison.cli.entered import Engines, as_words
 from comparison.cli.options import Options, parsed
 from comparison.cli.terminal import print_plan, print_tolerance
 from comparison.execution.cache import Cache, store_beside
@@ -60,7 +61,12 @@ from reference.problem.command import stoppable
 
 
 @command
-def main(argv: Sequence[str], hierarchy: Sequence[Model] = MODEL_HIERARCHY, executor: Pool = process_pool) -> int:
+def main(
+    argv: Sequence[str],
+    hierarchy: Sequence[Model] = MODEL_HIERARCHY,
+    executor: Pool = process_pool,
+    models: Engines | None = None,
+) -> int:
     """
     Run the study the command line asks for.
 
@@ -72,6 +78,9 @@ def main(argv: Sequence[str], hierarchy: Sequence[Model] = MODEL_HIERARCHY, exec
         The models, each adding one effect to the one before.
     executor : Executor or callable
         What makes an executor for a number of workers, or any executor, which is left open.
+    models : mapping of str to callable or str, optional
+        Engines of the user by name, as `--model` enters them: a function at the top level of a module, or its place as
+        "module:function".
 
     Returns
     -------
@@ -80,6 +89,7 @@ def main(argv: Sequence[str], hierarchy: Sequence[Model] = MODEL_HIERARCHY, exec
     """
     with stoppable():
         try:
+            argv = [*argv, *as_words(models or {})]
             options = parsed(argv)
             console = wide_console()
             plan = _chosen(options, hierarchy)
@@ -99,6 +109,7 @@ def _chosen(options: Options, hierarchy: Sequence[Model]) -> StudyPlan:
     """What is computed; under a budget, of what as much is computed as fits."""
     if options.max_work is not None:
         hierarchy = with_max_work(hierarchy, options.max_work)
+    hierarchy = (*hierarchy, *options.models)
     return plan_study(
         StudyRequest(
             options.scenes,

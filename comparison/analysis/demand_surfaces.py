@@ -22,7 +22,7 @@ from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.costs import at_samples
-from comparison.study.models import Model, models_of
+from comparison.study.models import Model, steps_of
 from comparison.study.study import Study
 from reference.problem import Estimate, Estimates, Scene, phase_axis, phase_distribution, phase_grid
 from reference.problem.distribution import FRACTILES
@@ -122,7 +122,7 @@ class DemandSurfaces(Analysis[xr.Dataset]):
 
 def _moving(study: Study, scene: Scene) -> list[Model]:
     """The models whose motions differ: a resolved peak is another reading of the same motion."""
-    return [model for model in models_of(scene, study.hierarchy) if "cutoff" not in model.settings]
+    return [model for model in steps_of(scene, study.hierarchy) if "cutoff" not in model.settings]
 
 
 def _batches(study: Study) -> Iterator[tuple[Scene, Model, NDArray[np.intp], float]]:

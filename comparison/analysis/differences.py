@@ -24,8 +24,8 @@ class Difference:
 
     median, percentile95, maximum: of its absolute value, NaN without any such phase. phases: (alpha1, alpha2) of the
     maximum, rad. beyond_error: share of these phases where it exceeds u_D = sqrt(u_A^2 + u_B^2), the two error
-    estimates together. ratio: largest |D| / u_D. asked: phases that both models were asked for; not_ok: those of them
-    where either outcome is not ok; unanswered: where either has no value.
+    estimates together. ratio: largest |D| / u_D. Both are NaN where a model states no error. asked: phases that both
+    models were asked for; not_ok: those of them where either outcome is not ok; unanswered: where either has no value.
     """
 
     scene: str
@@ -65,6 +65,7 @@ def _difference(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> Diff
     not_ok = (status.sel(model=[pair.first.key, pair.second.key]) != Outcome.OK.value).any("model")
     valid = signed.known
     size = np.abs(signed.size[valid])
+    stated = valid & np.isfinite(signed.uncertainty)
     median, percentile95, maximum = np.percentile(size, [50, 95, 100]) if size.size else [np.nan] * 3
     return Difference(
         scene=scene,
@@ -76,8 +77,8 @@ def _difference(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> Diff
         percentile95=float(percentile95),
         maximum=float(maximum),
         phases=signed.phases,
-        beyond_error=float((size > signed.uncertainty[valid]).mean()) if size.size else float("nan"),
-        ratio=float(signed.ratio[valid].max()) if size.size else float("nan"),
+        beyond_error=float((np.abs(signed.size) > signed.uncertainty)[stated].mean()) if stated.any() else float("nan"),
+        ratio=float(signed.ratio[stated].max()) if stated.any() else float("nan"),
         asked=valid.size,
         not_ok=int(not_ok.sum()),
         unanswered=int((~valid).sum()),

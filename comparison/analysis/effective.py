@@ -19,7 +19,7 @@ from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.costs import at_samples
-from comparison.study.models import Model, models_of
+from comparison.study.models import Model, steps_of
 from comparison.study.study import Study
 from reference.problem import GRAVITY, Outcome, Scene, Trajectory, ground_acceleration
 
@@ -94,7 +94,7 @@ class EffectiveValues(Analysis[list[Effective]]):
     def _of(self, study: Study, scene: Scene) -> list[Task]:
         return [
             Task(read_back, (scene, model), self.stage, SECONDS[model.side] * at_samples(scene), scene)
-            for model in models_of(scene, study.hierarchy)
+            for model in steps_of(scene, study.hierarchy)
         ]
 
 

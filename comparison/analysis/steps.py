@@ -23,7 +23,8 @@ class Step:
     (mu of `second` - mu of `first`) / scale at the phases (alpha1, alpha2), rad, that both models were asked for.
 
     size: signed, NaN where a value is missing. uncertainty: u_D = sqrt(u_A^2 + u_B^2) of the two error estimates in the
-    same unit. stride: the phases are every so many-th of the study's. recorded: the scene has none of them.
+    same unit, NaN where one is not stated. stride: the phases are every so many-th of the study's. recorded: the scene
+    has none of them.
     """
 
     key: str
@@ -39,8 +40,8 @@ class Step:
 
     @property
     def known(self) -> NDArray[np.bool_]:
-        """Where all values that the step needs are there."""
-        return np.isfinite(self.size) & np.isfinite(self.uncertainty)
+        """Where all values that the step needs are there. The uncertainty may be unknown: then none of it is real."""
+        return np.isfinite(self.size)
 
     @property
     def real(self) -> NDArray[np.bool_]:
@@ -88,8 +89,8 @@ def known_mu(data: xr.Dataset, model: Model) -> Array:
 
 
 def known(mu: Array, error: Array) -> Array:
-    """mu where it is known to half of itself, NaN elsewhere."""
-    return np.where(error <= WORTHLESS * mu, mu, np.nan)
+    """mu where it is known to half of itself, or of unknown error, NaN elsewhere."""
+    return np.where(error > WORTHLESS * mu, np.nan, mu)
 
 
 def step(surfaces: xr.Dataset, scene: str, key: str, first: Model, second: Model, body: int, per: Model) -> Step:

@@ -182,8 +182,9 @@ def _moving(study: Study, scene: Scene) -> list[Model]:
 
 
 def shown_models(study: Study, scene: Scene) -> list[Model]:
-    """The models whose surfaces the page shows, each once."""
-    return list({model.key: model for pair in study.pairs(scene) for model in (pair.first, pair.second)}.values())
+    """The models whose surfaces the page shows, each once; those that have motions."""
+    shown = {model.key: model for pair in study.pairs(scene) for model in (pair.first, pair.second)}
+    return [model for model in shown.values() if model.trajectory]
 
 
 def moved(task: Arguments) -> StoredMotion:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from comparison.analysis.steps import known_mu
 from comparison.analysis.surfaces import asked_of, outcome_counts
 from comparison.study.batches import refusal_of
-from comparison.study.models import Model, models_of
+from comparison.study.models import Model, models_of, steps_of
 from comparison.study.study import Study
 from reference.problem import ADVICE, Outcome, Scene
 
@@ -71,10 +71,13 @@ def with_silent_models(study: Study, surfaces: xr.Dataset) -> Study:
     """
     silent = {}
     for scene in study.scenes:
-        models = models_of(scene, study.hierarchy)
-        mute = tuple(model.key for model in models if not _usable(surfaces, scene, model).any())
-        if mute and len(mute) < len(models) - 1:
-            silent[scene.name] = mute
+        steps = steps_of(scene, study.hierarchy)
+        mute = {model.key for model in models_of(scene, study.hierarchy) if not _usable(surfaces, scene, model).any()}
+        entered = mute - {model.key for model in steps}
+        if len(mute - entered) >= len(steps) - 1:
+            mute = entered
+        if mute:
+            silent[scene.name] = tuple(model.key for model in study.hierarchy if model.key in mute)
     return replace(study, silent=silent or None)
 
 
@@ -82,12 +85,12 @@ def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
     """Every model of every scene that lacks a value somewhere, in the order of scenes and models."""
     gaps = []
     for scene in study.scenes:
-        compared = {model.key for model in study.compared(scene)}
+        silent = (study.silent or {}).get(scene.name, ())
         for model in models_of(scene, study.hierarchy):
             lacking = int((~_answered(surfaces, scene, model)).sum())
-            if lacking or model.key not in compared:
+            if lacking or model.key in silent:
                 asked = study.points(model, scene)
-                used = model.key in compared and lacking < asked
+                used = model.key not in silent and lacking < asked
                 notes = _notes(study, surfaces, scene, model)
                 gaps.append(Unanswered(scene.name, model.key, model.title, lacking, asked, used, notes))
     return gaps
@@ -95,6 +98,8 @@ def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
 
 def advice(study: Study, scene: Scene, model: Model, outcome: str) -> str:
     """What an outcome of a model on a scene means, and what helps."""
+    if model.side == "entered" and outcome in (Outcome.SOLVER_FAILED, Outcome.TIME_LIMIT, Outcome.WORKER_DIED):
+        return "see what the solvers reported"
     refused = ""
     if outcome == Outcome.STEP_LIMIT:
         refused = refusal_of(scene, model, model.tolerance(study.tolerance), study.full)

@@ -18,10 +18,11 @@ from rich.console import Console
 from comparison.analysis.extremes.analysis import LIMIT, Extremes, reduced
 from comparison.analysis.extremes.cells import cells
 from comparison.analysis.extremes.matrix import FILE, PICTURE, Matrix, as_json
-from comparison.analysis.extremes.rows import COLUMNS, ENGINE, EQUATIONS, STATED, rows
+from comparison.analysis.extremes.rows import COLUMNS, ENGINE, EQUATIONS, STATED, entered_column, rows
 from comparison.analysis.extremes.verdicts import Verdict
 from comparison.cli.arguments import CommandParser, command, jobs, number, writing
 from comparison.cli.computing import computed, run_facts
+from comparison.cli.entered import add_models, entered_models
 from comparison.execution.executors import Pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
 from comparison.execution.processes import process_pool
@@ -83,7 +84,7 @@ def judged_matrix(
         "cpu_seconds": round(sum(totals), 1),
         "stored_before": results.parts[extremes.stage].stored,
         "limit": extremes.limit,
-        "reduced": len(tasks) < len(cells(list(rows()))),
+        "reduced": len([task for task in tasks if not task.lane]) < len(cells(list(rows()))),
     }
     return replace(matrix, run=run)
 
@@ -105,9 +106,11 @@ def _chosen(options: argparse.Namespace) -> Extremes:
         raise SceneError("command line", "--only", options.only, rule)
     limit = LIMIT if options.limit is None else number("--limit", options.limit, 0.1, 1e6, "s of processor time")
     jobs(options)  # refused before anything else is looked at
+    entered = entered_models(options.model, options.model_limit, options.scheduler)
     every = list(rows())
     kept = [row for row in (reduced(every) if options.reduced else every) if options.rows in row.name]
     columns = [column for column in COLUMNS if not options.models or column.key in options.models]
+    columns += [entered_column(model) for model in entered]
     if not cells(kept, columns):
         raise SceneError("command line", "--rows", options.rows, "no cell is left: take part of a row's name")
     return Extremes(kept, columns, limit)
@@ -124,5 +127,6 @@ def _parser() -> CommandParser:
     parser.add_argument("--only", help=argparse.SUPPRESS)  # answered with the name of the option that is meant
     keys = [column.key for column in COLUMNS]
     parser.add_argument("--models", nargs="+", choices=keys, metavar="KEY", help=f"some of {', '.join(keys)}")
+    add_models(parser)
     parser.add_argument("--reduced", action="store_true", help="what takes little: mostly the equations alone")
     return parser

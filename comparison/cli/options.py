@@ -12,8 +12,10 @@ from comparison.analysis.extremes.matrix import load as stored_extremes
 from comparison.analysis.growth import load as stored_growth
 from comparison.analysis.tradeoff.trade import load as stored_trades
 from comparison.cli.arguments import CommandParser, jobs, number, whole_number
+from comparison.cli.entered import add_models, entered_models
 from comparison.execution.cache import refuse_foreign_store
 from comparison.execution.output import destination, refuse_foreign_report
+from comparison.study.models import Model
 from comparison.study.planning import DEFAULT_GRID, DEFAULT_TOLERANCE, tightest
 from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.study import refuse_same_names
@@ -38,6 +40,7 @@ class Options:
     full: bool = False
     max_work: float | None = None
     selection: Selection = EVERYTHING
+    models: tuple[Model, ...] = ()  # engines of the user
 
     @property
     def by_trade(self) -> bool:
@@ -89,6 +92,7 @@ def parsed(argv: Sequence[str]) -> Options:
         max_work=_optional("--max-work", words.max_work, 1.0, 1e12, "steps of the engine for a phase pair"),
         scheduler=words.scheduler,
         selection=Selection.of((scene for family in families for scene in family.scenes), only, skip, also),
+        models=entered_models(words.model, words.model_limit, words.scheduler),
     )
     sources = list(zip(names, options.families))
     refuse_same_names((source, family.name) for source, family in sources)
@@ -145,6 +149,7 @@ def _parser() -> CommandParser:
         help="most steps that the engine may take for a phase pair (default 2e6); a scene that needs more is refused "
         "before any step",
     )
+    add_models(parser)
     names = ", ".join(ANALYSES)
     parser.add_argument("--only", metavar="LIST", help=f"make these analyses only, separated by commas: {names}")
     parser.add_argument("--skip", metavar="LIST", help="make all analyses but these")

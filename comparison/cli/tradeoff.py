@@ -25,6 +25,7 @@ from comparison.analysis.tradeoff.settings import CONSTANT, ENGINE, LEVEL, REFER
 from comparison.analysis.tradeoff.trade import FILE, Trade, as_json, load
 from comparison.cli.arguments import CommandParser, command, jobs, writing
 from comparison.cli.computing import computed, run_facts
+from comparison.cli.entered import add_models, entered_models
 from comparison.cli.growth import FILES, growth_files, measured_growth, print_growth
 from comparison.execution.executors import Pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
@@ -121,7 +122,8 @@ def measured_trades(
     list of MeasuredTrade
         In the order of the scenes.
     """
-    tradeoff, study = TradeOff(options.quick), Study(tuple(scenes), 1, TOLERANCE)
+    entered = entered_models(options.model, options.model_limit, options.scheduler)
+    tradeoff, study = TradeOff(options.quick, entered), Study(tuple(scenes), 1, TOLERANCE)
     tasks, width = tradeoff.tasks(study), jobs(options)
     about = STARTING + sum(task.seconds for task in tasks) / width
     for scene in scenes:
@@ -183,5 +185,6 @@ def _parser() -> CommandParser:
         action="store_true",
         help="instead: cost against bodies, duration, phase pairs and workers, with slopes",
     )
+    add_models(parser)
     parser.add_argument("--quick", action="store_true", help="fewer points and values: under a minute")
     return parser

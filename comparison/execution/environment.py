@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import platform
+import sys
 from functools import cache
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import PackageNotFoundError, packages_distributions, version
 from importlib.util import find_spec
 from pathlib import Path
 
 PACKAGES = ("exudyn", "llvmlite", "numba", "numpy", "scipy")
+OURS = ("reference", "multibody", "comparison")
+ENTERED = "comparison.study.entered"  # engines of the user are called through it; their own source is in the settings
 SHARED = ("reference.problem", "comparison.study.batches")  # what every model is asked through
 DRAWING = ("matplotlib", "pillow", "xarray")
 ANSWERING = ("reference", "multibody", "comparison.study", "comparison.analysis", "comparison.wording")
@@ -17,7 +21,9 @@ ANSWERING = ("reference", "multibody", "comparison.study", "comparison.analysis"
 
 def environment_fingerprint(model: str) -> dict[str, str]:
     """Versions of the packages that compute, and hashes of the source behind the function `model` ("package:name")."""
-    sources = dict.fromkeys((*SHARED, model.split(":")[0].split(".")[0]))
+    module = model.split(":")[0]
+    package = module.split(".")[0]
+    sources = dict.fromkeys((*SHARED, module if module == ENTERED else package))
     return {
         "python": platform.python_version(),
         "machine": platform.machine(),
@@ -35,6 +41,46 @@ def task_environment_fingerprint(module: str) -> dict[str, str]:
         **{name: _version(name) for name in (*PACKAGES, *DRAWING)},
         **{f"source of {name}": source_digest(name) for name in sources},
     }
+
+
+def engine_fingerprint(module: str) -> dict[str, str]:
+    """
+    What the numbers of an engine that a user enters depend on.
+
+    Parameters
+    ----------
+    module : str
+        Full name of the module that has its function.
+
+    Returns
+    -------
+    dict of str to str
+        Hashes of the source of the module's package and of what the module imports, and versions of what is installed.
+    """
+    package = module.split(".")[0]
+    spec = find_spec(package)
+    names = {package if spec is not None and spec.origin is not None else module}  # a folder alone has no source
+    file = find_spec(module)
+    if file is not None and file.origin is not None and file.origin.endswith(".py"):
+        names |= _imported_packages(Path(file.origin).read_text(encoding="utf-8"))
+    installed = packages_distributions()
+    versions = {part: version(part) for name in names for part in installed.get(name.split(".")[0], ())}
+    local = {name for name in names if name in OURS or name.split(".")[0] not in installed}
+    return {
+        **{name: versions[name] for name in sorted(versions)},
+        **{f"source of {name}": source_digest(name) for name in sorted(local)},
+    }
+
+
+def _imported_packages(source: str) -> set[str]:
+    """The packages that a module imports anywhere in its text, without those of Python."""
+    names = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            names |= {alias.name.split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            names.add(node.module.split(".")[0])
+    return names - set(sys.stdlib_module_names)
 
 
 @cache

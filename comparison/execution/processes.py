@@ -14,6 +14,7 @@ import pickle
 import signal
 import threading
 import time
+from collections import defaultdict
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
@@ -33,6 +34,7 @@ except ImportError:  # Windows limits no process: the wall time has to do
 
 CONTEXT = multiprocessing.get_context("spawn")
 STALLED = 20.0  # times the limit: wall time after which a silent process waits for something that never comes
+SLOWEST, SPARE = 5.0, 60.0  # times a limit of more than a few seconds, and s: the same, on a processor that is shared
 LONGEST_WAIT = 1e6  # s: the system takes no longer one
 EXIT = 5.0  # s from the end of a pipe to the end of its process
 
@@ -66,7 +68,7 @@ class Workers(Executor):
         self.width = jobs
         self._threads = ThreadPoolExecutor(jobs)  # each of them waits for one process
         self._lock = threading.Lock()
-        self._idle: list[_Process] = []
+        self._idle: dict[str, list[_Process]] = defaultdict(list)  # by the lane of the tasks that they have run
         self._all: set[_Process] = set()
         self._abandoned = False
 
@@ -94,7 +96,8 @@ class Workers(Executor):
         self._threads.shutdown(wait=False, cancel_futures=True)
 
     def _run(self, call: Call, seconds: float | None) -> Any:
-        process = self._free_process()
+        lane = _lane(call)
+        process = self._free_process(lane)
         try:
             value, error = process.run(call, seconds)
         except (WorkerDiedError, TimeLimitError):
@@ -103,22 +106,27 @@ class Workers(Executor):
                 self._all.discard(process)
             raise
         except BaseException:  # what cannot be sent to or from the process, which has not noticed
-            self._idle.append(process)
+            self._idle[lane].append(process)
             raise
-        self._idle.append(process)
+        self._idle[lane].append(process)
         if error is not None:
             raise error
         return value
 
-    def _free_process(self) -> _Process:
+    def _free_process(self, lane: str) -> _Process:
         with self._lock:
-            if self._idle:
-                return self._idle.pop()
+            if self._idle[lane]:
+                return self._idle[lane].pop()
             if self._abandoned:
                 raise WorkerDiedError("the workers have been ended")
             process = _Process()
             self._all.add(process)
             return process
+
+
+def _lane(call: Call) -> str:
+    """The `lane` of the task that is run, as `study.batches.Batch` has it: tasks of two lanes share no process."""
+    return next((str(part.lane) for part in getattr(call, "args", ()) if hasattr(part, "lane")), "")
 
 
 class _Process:
@@ -133,7 +141,7 @@ class _Process:
 
     def run(self, call: Call, seconds: float | None) -> tuple[Any, BaseException | None]:
         """What the call returned and what it raised. Raises WorkerDiedError or TimeLimitError; the process has ended"""
-        wait = None if seconds is None else min(STALLED * seconds, LONGEST_WAIT)
+        wait = None if seconds is None else min(STALLED * seconds, SLOWEST * seconds + SPARE, LONGEST_WAIT)
         try:
             self._pipe.send((call, seconds))
             if not self._pipe.poll(wait):

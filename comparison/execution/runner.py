@@ -8,6 +8,7 @@ progress.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -28,6 +29,7 @@ from comparison.study.study import Study
 from reference.problem import Outcome
 
 COMPILING = "compiling the reference"
+GIVEN_UP_AFTER = 2  # calls of one of the user's engines that hang or end their process: it is not asked again
 
 Piece = Batch | Task
 
@@ -156,6 +158,7 @@ class Runner:
         first = pieces[0] if pending else None
         waiting = {id(first)} if pending else set()
         computed: list[tuple[Batch, BatchResult]] = []
+        lost: Counter[str] = Counter()  # calls by lane
         with progress(self.console, stages, self.jobs, self.deadline) as display:
 
             def done(piece: Piece, answer: BatchResult | TaskResult) -> None:
@@ -169,6 +172,8 @@ class Runner:
                     display.advance(piece.stage, 1, piece.seconds)
                     return
                 assert isinstance(answer, BatchResult)
+                if piece.lane and {Outcome.TIME_LIMIT.value, Outcome.WORKER_DIED.value} & {*answer.status}:
+                    lost[piece.lane] += 1
                 if piece is not first:
                     computed.append((piece, answer))
                     if self.results.cache is not None:
@@ -180,12 +185,20 @@ class Runner:
                 return not (waiting and needs)
 
             def seconds_left(piece: Piece) -> float:
+                if isinstance(piece, Batch) and lost[piece.lane] >= GIVEN_UP_AFTER:
+                    return 0.0
                 if self.deadline is None:
                     return math.inf
                 return self.deadline.left if self.deadline.allows(piece.kind, piece.seconds) else 0.0
 
             execution = self.jobs, self.executor, ready, _split, _merge, seconds_left
             sweep(pieces, _execute, _unfinished, done, *execution)
+        asked = {id(batch) for batch, _ in computed}
+        given_up = [piece for piece in pieces if isinstance(piece, Batch) and lost[piece.lane] >= GIVEN_UP_AFTER]
+        message = f"{GIVEN_UP_AFTER} calls hung or ended their process: not asked for the other phase pairs"
+        computed += [
+            (piece, unanswered(piece, Outcome.TIME_LIMIT, message)) for piece in given_up if id(piece) not in asked
+        ]
         return computed
 
 

@@ -34,6 +34,7 @@ class Task:
     about: Any = None  # what its directory in the cache belongs to
     needs_compiled_reference: bool = True  # on a new installation it waits until one worker has compiled the reference
     timeout: float | None = None  # most processor time, s, rounded up; what takes longer is ended: Outcome.TIME_LIMIT
+    lane: str = ""  # as `study.batches.Batch`
 
     @property
     def kind(self) -> str:

@@ -85,7 +85,8 @@ def _pair(findings: Findings, scene: Scene, pair: Pair) -> dict[str, Any]:
 
 def _surface(findings: Findings, scene: Scene, model: Model) -> bool:
     """Whether the values of a model are drawn as a surface as they are: what may need completing is not."""
-    return not any((each.scene, each.model) == (scene.name, model.key) for each in findings.completions)
+    incomplete = any((each.scene, each.model) == (scene.name, model.key) for each in findings.completions)
+    return model.side != "entered" and not incomplete
 
 
 def _models(findings: Findings, scene: Scene) -> dict[str, Any]:

@@ -28,6 +28,8 @@ class Batch:
     phases: Array
     level: int = 0  # of the nested grids, the first that has these phases
     seconds: float = 0.0  # predicted processor time
+    timeout: float | None = None  # most processor time of the call, s; what takes longer is ended: Outcome.TIME_LIMIT
+    lane: str = ""  # workers are shared within a lane only: an engine of the user may spoil the process it runs in
 
     @property
     def kind(self) -> tuple[str, str]:
@@ -118,7 +120,8 @@ def execute_batch(batch: Batch) -> BatchResult:
     except Exception as exception:
         return unanswered(batch, Outcome.SOLVER_FAILED, f"{type(exception).__name__}: {exception}")
     named = ""
-    for index in np.flatnonzero(~(np.isfinite(mu) & np.isfinite(error)).all(axis=1)):
+    error_may_be_unknown = bool(batch.lane)
+    for index in np.flatnonzero(~(np.isfinite(mu) & (np.isfinite(error) | error_may_be_unknown)).all(axis=1)):
         if status[index] == Outcome.OK:  # never let a number that is none pass as an answer
             status[index] = Outcome.SOLVER_FAILED.value
             named = f"{batch.amplification} called a non-finite answer ok"

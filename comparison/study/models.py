@@ -52,13 +52,16 @@ class Model:
     `most`: phases per axis that its cost allows, or None; of a finer study it computes every k-th phase. `symmetric`:
     whether mirrored phases (symmetry.py) are known to give mirrored motions of the scene and are not computed again.
     `asks`: the tolerance that was chosen for it (planning.py). `refusal`: the function that tells from the scene alone
-    why all phase pairs would be refused, or "" ("package:function", the contract of `multibody.refusal`).
+    why all phase pairs would be refused, or "" ("package:function", the contract of `multibody.refusal`). `side`:
+    "entered" for an engine of the user (entered.py), which has no place in the steps from model to model and no
+    trajectory. `like`: key of the reference's model that such an engine is held against. `timeout`: most processor
+    time of one call, s.
     """
 
     key: str
     title: str
     adds: str
-    side: Literal["reference", "engine"]
+    side: Literal["reference", "engine", "entered"]
     amplification: str
     trajectory: str
     settings: Mapping[str, object]
@@ -70,6 +73,8 @@ class Model:
     asks: float | None = None
     refusal: str | None = None
     effect: str = ""
+    like: str | None = None
+    timeout: float | None = None
 
     def tolerance(self, asked: float) -> float:
         """Relative error this model asks of its own numbers when the study asks for `asked`."""
@@ -102,9 +107,15 @@ def models_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
     return [model for model in hierarchy if model.applies(scene)]
 
 
+def steps_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
+    """The models of the scene that lead from one to the next: all but those that a user has entered."""
+    return [model for model in models_of(scene, hierarchy) if model.side != "entered"]
+
+
 def pairs_of(scene: Scene, hierarchy: Sequence[Model], silent: Collection[str] = ()) -> list[Pair]:
     """
-    The total difference, that within the paper's assumptions, and the like-for-like one: what the scene allows.
+    The total difference, that within the paper's assumptions, the like-for-like one, and a like-for-like one of every
+    entered engine: what the scene allows.
 
     Parameters
     ----------
@@ -112,23 +123,29 @@ def pairs_of(scene: Scene, hierarchy: Sequence[Model], silent: Collection[str] =
         Keys of models without a value. The total then leads from the first to the last model that has values. The
         other two compare fixed models: without one of these they are left out.
     """
-    asked = models_of(scene, hierarchy)
+    asked = steps_of(scene, hierarchy)
     models = [model for model in asked if model.key not in silent]
     first, last = models[0], models[-1]
     printed = "the paper's printed equations" if first is asked[0] else f"the {first.title}"
-    reference = [model for model in asked if model.side == "reference"][-1]
+    equations = [model for model in asked if model.side == "reference"]
+    reference = equations[-1]
     engine = next((model for model in asked if model.side == "engine"), None)
     complete = last is asked[-1] and engine is not None
     other = "the most complete engine model" if complete else f"the {last.title}"
     pairs = [Pair("total", "total", f"{printed} against {other}", first, last)]
-    if engine is None or engine not in models:  # it does not meet the tolerance, fit the budget, or answer
-        return pairs
-    if engine is not last and first is asked[0]:
-        sentence = f"{printed} against the engine under the paper's own assumption that no body turns"
-        pairs.append(Pair("translational", "translational", sentence, first, engine))
-    if reference in models:
-        sentence = "same geometry and same friction law on both sides: this gap must close"
-        pairs.append(Pair("like-for-like", "like for like", sentence, reference, engine))
+    if engine is not None and engine in models:  # else it does not meet the tolerance, fit the budget, or answer
+        if engine is not last and first is asked[0]:
+            sentence = f"{printed} against the engine under the paper's own assumption that no body turns"
+            pairs.append(Pair("translational", "translational", sentence, first, engine))
+        if reference in models:
+            sentence = "same geometry and same friction law on both sides: this gap must close"
+            pairs.append(Pair("like-for-like", "like for like", sentence, reference, engine))
+    for entered in models_of(scene, hierarchy):
+        if entered.side == "entered" and entered.key not in silent:
+            like = next((model for model in equations if model.key == entered.like), reference)
+            if like in models:
+                sentence = f"the {like.title} against an engine that the user entered, which solves the same"
+                pairs.append(Pair(entered.key, f"{entered.title}, like for like", sentence, like, entered))
     return pairs
 
 

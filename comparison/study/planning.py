@@ -87,7 +87,7 @@ def plan_study(request: StudyRequest) -> StudyPlan:
 
 def _most(model: Model, grid: int, finest: bool) -> int | None:
     """The finest of the nested grids that a model may have."""
-    most = FINEST.get(model.key) if finest else model.most
+    most = FINEST.get(model.key, model.most) if finest else model.most
     chain = nested_grids(grid)
     return most and max([allowed for allowed in chain if allowed <= most], default=chain[0])
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from comparison.study.accuracy_record import recorded
 from comparison.study.batches import Batch
 from comparison.study.costs import seconds_per_point
-from comparison.study.models import MODEL_HIERARCHY, Model, Pair, models_of, pairs_of
+from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, steps_of
 from comparison.study.nesting import levels
 from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.speedup import speedup
@@ -41,6 +41,11 @@ def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
             rule = f"same name as {seen[name]}, which names its surfaces: give each scene once, rename a file"
             raise SceneError(source, "scene", name, rule)
         seen[name] = source
+
+
+def _lane(model: Model) -> str:
+    """The workers of a model: engines of the user share none with anything else."""
+    return model.key if model.side == "entered" else ""
 
 
 @dataclass(frozen=True)
@@ -95,9 +100,13 @@ class Study:
         }
 
     def compared(self, scene: Scene) -> list[Model]:
-        """The models of a scene that have values there, in order; all of them while nothing is computed."""
+        """
+        The models of a scene that have values there, in order; all of them while nothing is computed.
+
+        Without the engines that a user has entered, which are compared in a pair of their own.
+        """
         silent = (self.silent or {}).get(scene.name, ())
-        return [model for model in models_of(scene, self.hierarchy) if model.key not in silent]
+        return [model for model in steps_of(scene, self.hierarchy) if model.key not in silent]
 
     def pairs(self, scene: Scene) -> list[Pair]:
         """The pairs of models that are compared on a scene."""
@@ -167,7 +176,9 @@ class Study:
             for start in range(0, len(places), size):
                 part = phases[places[start : start + size]]
                 about = first + start, part, level, each * len(part)
-                batches.append(Batch(scene, model.key, model.amplification, settings, *about))
+                batches.append(
+                    Batch(scene, model.key, model.amplification, settings, *about, model.timeout, _lane(model))
+                )
             first += len(places)
         return batches
 

@@ -48,7 +48,12 @@ def cells(rows: Sequence[Row], columns: Sequence[Column] = COLUMNS) -> list[Cell
     list of Cell
         Row by row.
     """
-    return [Cell(row, column) for row in rows for column in columns if column.key in row.columns]
+    return [Cell(row, column) for row in rows for column in columns if _concerns(row, column)]
+
+
+def _concerns(row: Row, column: Column) -> bool:
+    """Whether the model meets the extreme; one of the numerics of our engine is none for an engine of the user."""
+    return not row.amplification and column.like in row.columns if column.like else column.key in row.columns
 
 
 def solve_cell(cell: Cell) -> Entry:

@@ -12,6 +12,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from comparison.study.models import Model
+
 Phases = tuple[tuple[float, float], ...]
 
 PHASES: Phases = ((0.3, 1.1), (2.0, 0.7))  # rad
@@ -34,6 +36,7 @@ class Column:
     # how a value is confirmed, in this order until one answers: function, settings, relative error asked
     finer: tuple[tuple[str, Mapping[str, Any], float], ...]
     seconds: float = 0.5  # processor time of a cell with its finer runs, recorded as `costs.seconds_per_point`
+    like: str = ""  # of an engine of the user: the column whose rows concern it, too
 
 
 # steps of the engine for a phase pair, and for one of a tower by its number of bodies, whose steps cost more: a cell
@@ -105,6 +108,28 @@ COLUMNS = (
     ),
 )
 ALL = tuple(column.key for column in COLUMNS)
+
+
+def entered_column(model: Model) -> Column:
+    """
+    The column of an engine of the user.
+
+    Parameters
+    ----------
+    model : Model
+        As `study.entered.entered_model` makes it.
+
+    Returns
+    -------
+    Column
+        Confirmed by the equations with the same law.
+    """
+    law = {key: value for key, value in model.settings.items() if key != "engine"}
+    like = str(model.like) if model.like in ALL else "exact"
+    finer = ((EQUATIONS, law, 1e-8), (EQUATIONS, law, 1e-6))
+    return Column(model.key, model.title, model.amplification, model.settings, 1e-3, finer, like=like)
+
+
 PLANAR = ALL[:4]  # every model whose bodies do not turn
 REFERENCE = ALL[:3]
 WITH_V_REG = ALL[2:]

@@ -117,6 +117,8 @@ def _point(reply: Reply, m: int, finer: Sequence[Reply], tolerance: float, right
 
 def _value(status: str, mu: Array, error: Array, finer: Sequence[tuple[Reply, int]], tolerance: float) -> Judged:
     """Judge a value with its error estimate."""
+    if np.isfinite(mu).all() and np.isnan(error).all():
+        return _without_error(status, mu, finer, tolerance)
     if not (np.isfinite(mu).all() and np.isfinite(error).all()):
         return Judged(Verdict.FAILED, f"{status}, but no finite number", status)
     claimed = float((error / np.abs(mu)).max()) if (mu != 0.0).all() else float("inf")
@@ -139,3 +141,15 @@ def _value(status: str, mu: Array, error: Array, finer: Sequence[tuple[Reply, in
         return Judged(Verdict.LIMIT, f"{status}: {claimed:.1e}", status, claimed)
     refused = next((other.status[m] for other, m in finer if len(other.status) > m), "none")
     return Judged(Verdict.FAILED, f"ok, but no finer run confirms it: {refused}", status, claimed)
+
+
+def _without_error(status: str, mu: Array, finer: Sequence[tuple[Reply, int]], tolerance: float) -> Judged:
+    """Judge a value that claims nothing: whether it is as good as asked is all that can be said."""
+    for other, m in finer:
+        if len(other.status) > m and np.isfinite(other.mu[m]).all():
+            with np.errstate(divide="ignore", invalid="ignore"):
+                off = float(np.nan_to_num(np.abs(mu - other.mu[m]) / np.abs(other.mu[m]), nan=0.0).max())
+            verdict = Verdict.CONVERGED if off <= tolerance else Verdict.LIMIT
+            return Judged(verdict, f"states no error, off by {off:.1e}", status)
+    refused = next((other.status[m] for other, m in finer if len(other.status) > m), "none")
+    return Judged(Verdict.FAILED, f"{status}, but no finer run confirms it: {refused}", status)

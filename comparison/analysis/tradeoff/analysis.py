@@ -18,6 +18,8 @@ from comparison.analysis.tradeoff.settings import Question, Setting, asked, sett
 from comparison.analysis.tradeoff.trade import Answered, Entry, Trade, labeled, quantile, with_pareto_fronts
 from comparison.execution.task import Task
 from comparison.execution.task_results import TaskResults
+from comparison.study.entered import engine_of
+from comparison.study.models import Model
 from comparison.study.study import Study
 from reference.problem import Scene
 
@@ -45,10 +47,13 @@ class TradeOff(Analysis[list[MeasuredTrade]]):
     ----------
     quick : bool
         Fewer points and values.
+    entered : tuple of Model
+        Engines of the user.
     """
 
     key, stage = "tradeoff", "trade-off"
     quick: bool = False
+    entered: tuple[Model, ...] = ()
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """Every function of every scene, its sample in parts of about CHUNK seconds."""
@@ -61,10 +66,13 @@ class TradeOff(Analysis[list[MeasuredTrade]]):
     def _by_function(self, scene: Scene) -> dict[str, list[Task]]:
         """The tasks of a scene by the key of their function."""
         tasks: dict[str, list[Task]] = {}
-        for name, (function, count, seconds) in functions(scene, self.quick).items():
+        limits = {engine_of(model.settings)["function"]: model.timeout for model in self.entered}
+        for name, (function, count, seconds) in functions(scene, self.quick, self.entered).items():
             each = seconds * scene.duration / 20.0
             size = int(np.clip(CHUNK / each, 1, count))
             phases = sample(count)
+            engine = engine_of(function[1]).get("function", "")
+            limit = limits.get(engine)
             tasks[name] = [
                 Task(
                     measure,
@@ -72,6 +80,8 @@ class TradeOff(Analysis[list[MeasuredTrade]]):
                     self.stage,
                     each * min(size, count - first),
                     scene,
+                    timeout=limit and limit * size,
+                    lane=engine,
                 )
                 for first in range(0, count, size)
             ]
@@ -84,7 +94,7 @@ class TradeOff(Analysis[list[MeasuredTrade]]):
         }
         questions = {question.key: question for question in asked(scene)}
         entries, answers, reference_solutions = [], [], []
-        for setting in settings(scene, self.quick):
+        for setting in settings(scene, self.quick, self.entered):
             question = questions[setting.question]
             count = question.quick if self.quick else question.points
             reference_solution = measured[key(setting.against or question.reference_solution)].upto(count)
@@ -109,7 +119,7 @@ def key(function: Function) -> str:
     return f"{function[0]} {sorted(function[1].items())}"
 
 
-def functions(scene: Scene, quick: bool) -> dict[str, tuple[Function, int, float]]:
+def functions(scene: Scene, quick: bool, entered: Sequence[Model] = ()) -> dict[str, tuple[Function, int, float]]:
     """
     Every function that is called for a scene, once each.
 
@@ -119,6 +129,8 @@ def functions(scene: Scene, quick: bool) -> dict[str, tuple[Function, int, float
         Scene with phases.
     quick : bool
         Fewer points and values.
+    entered : sequence of Model
+        Engines of the user.
 
     Returns
     -------
@@ -126,7 +138,7 @@ def functions(scene: Scene, quick: bool) -> dict[str, tuple[Function, int, float
         By its key: function, number of phase pairs, about how many s each takes.
     """
     points = {question.key: question.quick if quick else question.points for question in asked(scene)}
-    measured = settings(scene, quick)
+    measured = settings(scene, quick, entered)
     calls = [(question.reference_solution, points[question.key], question.seconds) for question in asked(scene)]
     calls += [(setting.against, points[setting.question], CHEAP) for setting in measured if setting.against]
     calls += [((setting.function, setting.settings), points[setting.question], setting.seconds) for setting in measured]

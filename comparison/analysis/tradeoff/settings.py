@@ -10,7 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from comparison.study.models import V_REG, dry, has_spatial_data
+from comparison.study.entered import engine_of
+from comparison.study.models import V_REG, Model, dry, has_spatial_data
 from reference.problem import Scene
 
 REFERENCE, ENGINE = "reference:amplification", "multibody:amplification"
@@ -117,7 +118,7 @@ def asked(scene: Scene) -> list[Question]:
     return [question for question in QUESTIONS if question.key != "spatial" or has_spatial_data(scene)]
 
 
-def settings(scene: Scene, quick: bool = False) -> list[Setting]:
+def settings(scene: Scene, quick: bool = False, entered: Sequence[Model] = ()) -> list[Setting]:
     """
     Every setting that is measured for a scene.
 
@@ -126,13 +127,15 @@ def settings(scene: Scene, quick: bool = False) -> list[Setting]:
     scene : Scene
     quick : bool
         Every other one of the expensive ones.
+    entered : sequence of Model
+        Engines of the user.
 
     Returns
     -------
     list of Setting
     """
     keys = {question.key for question in asked(scene)}
-    every = [*_reference(scene), *_scipy(quick), *_engine(quick)]
+    every = [*_reference(scene), *_scipy(quick), *_engine(quick), *_entered(entered)]
     return [setting for setting in every if setting.question in keys]
 
 
@@ -223,3 +226,22 @@ def _constant(quick: bool) -> list[Setting]:
         for method, integrator, steps, cost in curves
         for step in steps[:: 2 if quick else 1]
     ]  # fmt: skip
+
+
+def _entered(models: Sequence[Model]) -> list[Setting]:
+    """Engines of the user at the tolerances that they take, or as they are."""
+    keys = {question.key for question in QUESTIONS}
+    measured = []
+    for model in models:
+        law = {key: value for key, value in model.settings.items() if key != "engine"}
+        question, against = (
+            (model.like, None) if model.like in keys else ("exact", (REFERENCE, {**law, "tolerance": TIGHT}))
+        )
+        takes_tolerance = "tolerance" in engine_of(model.settings).get("names", "")
+        for value in (1e-2, 1e-3, 1e-4, 1e-5) if takes_tolerance else (1e-3,):
+            parameter = "tolerance of mu" if takes_tolerance else "as it is, beside a tolerance of"
+            measured.append(
+                Setting(str(question), f"entered: {model.title}", parameter, "", value, model.amplification,
+                        {**model.settings, "tolerance": value}, 1.0, against=against)
+            )  # fmt: skip
+    return measured

@@ -25,6 +25,7 @@ FAMILIES = (
     ("Exudyn", "#b3541e", "#f0a35e"),
     ("translational", "#6a1b9a", "#ce93d8"),
     ("spatial", "#6a1b9a", "#ce93d8"),
+    ("entered", "#b3124b", "#ec7aa2"),
 )
 MARKERS = "osD^v<>PX*"
 
@@ -73,7 +74,7 @@ def _panel(axes: Axes, trade: Trade, question: Answered, body: int) -> None:
     for method, entries in trade.methods(question.key).items():
         family, dark, light = next((one for one in FAMILIES if method.startswith(one[0])), FAMILIES[0])
         number = seen[family] = seen.get(family, -1) + 1
-        _curve(axes, method, entries, body, dark if number % 2 == 0 else light, MARKERS[number])
+        _curve(axes, method, entries, body, dark if number % 2 == 0 else light, MARKERS[number % len(MARKERS)])
     front = sorted(
         (entry.seconds, _height(entry.most[body])) for entry in trade.of(question.key) if entry.pareto_front[body]
     )

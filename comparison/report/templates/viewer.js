@@ -104,7 +104,7 @@ function readOut() {
   const scene = sceneNow(), pair = pairNow();
   if (!state.cursor) return;
   const [a, b, d] = shown.map(panel => valueAt(panel, state.cursor));
-  const written = (value, text) => text(value.z) + (value.error ? ` ± ${digits(value.error, 1)}` : "");
+  const written = (value, text) => text(value.z) + (value.error ? ` ± ${digits(value.error, 1)}` : value.error === null ? " (error unknown)" : "");
   const sizes = [`${study.titles[pair.first]} ${written(a, digits)}`, `${study.titles[pair.second]} ${written(b, digits)}`, `difference ${written(d, percentText)}`];
   part("readout").replaceChildren(...indexed(`${at(state.cursor)}: ${sizes.join(", ")}`));
 }

@@ -1,0 +1,184 @@
+"""
+`--model NAME=module:function[@KEY]`: an engine of the user joins the models of a study.
+
+The function is imported and looked at in a process of its own, so that one that hangs, prints or ends the process is
+refused in one line before anything is computed.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from comparison.cli.arguments import CommandParser, number
+from comparison.execution.environment import engine_fingerprint
+from comparison.execution.executors import TimeLimitError, WorkerDiedError
+from comparison.execution.processes import Workers
+from comparison.study.entered import LIKE, TIME_LIMIT, entered_function, entered_model, names_of, silent
+from comparison.study.models import MODEL_HIERARCHY, Model
+from reference.problem import SceneError
+
+OPTION, LIMIT_OPTION = "--model", "--model-limit"
+FORM = "NAME=module:function[@KEY]"
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,29}")
+DOTTED = r"[^\W\d]\w*(?:\.[^\W\d]\w*)*"
+SPEC = re.compile(rf"(?P<name>[^=]*)=(?P<function>{DOTTED}:{DOTTED})(?:@(?P<like>.*))?")
+LAWS = [model.key for model in MODEL_HIERARCHY if model.side == "reference"]
+TAKEN = {*(model.key for model in MODEL_HIERARCHY), "total", "like-for-like"}  # keys of models and of differences
+IMPORTING = 60.0  # s of processor time that importing an engine may take
+
+Engines = Mapping[str, str | Callable[..., Any]]
+
+
+def add_models(parser: CommandParser) -> None:
+    """The options that enter engines."""
+    parser.add_argument(
+        OPTION,
+        action="append",
+        default=[],
+        metavar=FORM,
+        help="enter an engine of your own: a function of (scene, phases) as multibody.amplification, held against the "
+        f"model KEY of the equations: {', '.join(LAWS)} (default {LIKE}); repeatable; see docs/other-engines.md",
+    )
+    parser.add_argument(
+        LIMIT_OPTION,
+        metavar="SECONDS",
+        help=f"most processor time of one call of an entered engine (default {TIME_LIMIT:g})",
+    )
+
+
+def entered_models(specs: Sequence[str], limit: str | None = None, scheduler: str | None = None) -> tuple[Model, ...]:
+    """
+    The models that `--model` enters.
+
+    Parameters
+    ----------
+    specs : sequence of str
+        Values of the option.
+    limit : str, optional
+        Value of `--model-limit`.
+    scheduler : str, optional
+        Value of `--scheduler`, whose workers cannot import what lies on this machine.
+
+    Returns
+    -------
+    tuple of Model
+
+    Raises
+    ------
+    SceneError
+        One line.
+    """
+    seconds = TIME_LIMIT if limit is None else number(LIMIT_OPTION, limit, 1.0, 1e6, "s of processor time")
+    if specs and scheduler is not None:
+        rule = "is a function of this machine, --scheduler computes on others: give one of the two"
+        raise SceneError("command line", OPTION, specs[0], rule)
+    parts = [_parts(spec) for spec in specs]
+    names = [name for name, _, _ in parts]
+    for spec, name in zip(specs, names):
+        if name in TAKEN:
+            raise SceneError("command line", OPTION, spec, f"{name} names a model or a difference: choose another name")
+        if names.count(name) > 1:
+            raise SceneError("command line", OPTION, spec, f"{name} is there twice: every engine needs a name")
+    if specs and (folder := os.getcwd()) not in sys.path and "" not in sys.path:
+        sys.path.append(folder)  # behind all else: a file of the user hides no module of the project
+    return tuple(
+        entered_model(name, _looked_at(spec, function), like, seconds)
+        for spec, (name, function, like) in zip(specs, parts)
+    )
+
+
+def as_words(engines: Engines) -> list[str]:
+    """
+    Engines given in Python as words of the command line.
+
+    Parameters
+    ----------
+    engines : mapping of str to str or callable
+        By name: the function, or where it is as "module:function[@KEY]".
+
+    Returns
+    -------
+    list of str
+
+    Raises
+    ------
+    SceneError
+        If a worker process could not import a function by its name.
+    """
+    words = []
+    for name, function in engines.items():
+        path = function
+        if not isinstance(function, str):
+            module, place = getattr(function, "__module__", None), getattr(function, "__qualname__", "<unnamed>")
+            if module in (None, "__main__") or "<" in place:
+                rule = "worker processes import an engine by its name: define it at the top level of a module file"
+                raise SceneError("models", name, str(place), rule)
+            path = f"{module}:{place}"
+        words += [OPTION, f"{name}={path}"]
+    return words
+
+
+def _parts(spec: str) -> tuple[str, str, str]:
+    """Name, place of the function and key of the model with the same law."""
+    match = SPEC.fullmatch(spec)
+    if match is None:
+        raise SceneError("command line", OPTION, spec, f"must be {FORM}, as mine=my_engine:amplification")
+    name, function, like = match["name"], match["function"], match["like"] or LIKE
+    if not NAME.fullmatch(name):
+        rule = "NAME must begin with a letter and have at most 30 letters, digits, _ and -"
+        raise SceneError("command line", OPTION, spec, rule)
+    if like not in LAWS:
+        raise SceneError("command line", OPTION, spec, f"KEY must be one of {', '.join(LAWS)}")
+    return name, function, like
+
+
+def _looked_at(spec: str, path: str) -> dict[str, Any]:
+    """What is known of a function. Raises SceneError where it cannot be called."""
+    workers = Workers(1)
+    try:
+        fault, about = workers.submit_within(IMPORTING, look_at, path).result()
+    except TimeLimitError as error:
+        fault = f"importing it does not end: {error}"
+    except WorkerDiedError as error:
+        fault = f"importing it ends the process: {error}"
+    finally:
+        workers.abandon()
+    if fault:
+        raise SceneError("command line", OPTION, spec, fault)
+    return {"function": path, **about}
+
+
+def look_at(path: str) -> tuple[str, dict[str, str]]:
+    """
+    Import a function. Runs inside a worker process.
+
+    Parameters
+    ----------
+    path : str
+        "module:name".
+
+    Returns
+    -------
+    tuple
+        Why it cannot be entered, or empty; and what its numbers depend on.
+    """
+    module, name = path.split(":")
+    with silent():
+        try:
+            function = entered_function(path)
+            return "", {"names": names_of(function), **engine_fingerprint(module)}
+        except ModuleNotFoundError as error:
+            missing = error.name or module
+            where = ": run the command in the folder of its file, or install it" if module.startswith(missing) else ""
+            fault = f"there is no module {missing}{where}"
+        except AttributeError as error:
+            fault = f"{module} has no {name}" if name in str(error) else f"importing {module}: {error}"
+        except TypeError as error:
+            fault = f"cannot be called as {name}(scene, phases): {error}"
+        except BaseException as error:
+            fault = f"importing {module} raises {type(error).__name__}: {error}"
+    return " ".join(fault.split()), {}

@@ -1,0 +1,244 @@
+"""
+Engines that a user enters beside the models of the hierarchy: a function of theirs becomes a model of the study.
+
+Every call goes through `amplification` here, in a worker process of its own kind: whatever the function prints is
+dropped, and what it returns is read into the arrays of `reference.problem.Amplification` or refused with a reason.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import inspect
+import multiprocessing
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparison.study.models import MODEL_HIERARCHY, Model
+from reference.problem import Amplification, Outcome, Scene
+
+Array = NDArray[np.float64]
+
+CALLED_THROUGH = "comparison.study.entered:amplification"
+LIKE = "regularised"  # key of the reference's model that an engine is held against unless it names another
+MOST = 8  # phases per axis, as the dearest model of the hierarchy: what a call costs is unknown
+TIME_LIMIT = 60.0  # s of processor time of one call, which is asked for one phase pair
+ALWAYS_GIVEN = ("tolerance", "regularization", "equations")  # to a function that names it
+UNKNOWN_ERROR = np.nan  # of an engine that states none
+
+
+def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **settings: Any) -> Amplification:
+    """
+    What an entered function answers, in the form of `multibody.amplification`.
+
+    Parameters
+    ----------
+    scene : Scene
+    phases : ndarray, (M, 2)
+        rad.
+    engine : mapping
+        "function": where it is, as "module:name". All else only tells its versions apart in the cache.
+    **settings
+        Those of the reference's model with the same law and the tolerance asked. The function gets those it names.
+
+    Returns
+    -------
+    Amplification
+        NaN in `error` where the function states none, in `instant` and `displacement` where it has none. `cost` is
+        measured here, with the processes that the function starts.
+
+    Raises
+    ------
+    ValueError, TypeError, RuntimeError
+        If the function answers in another form, or ends the process. What it raises itself is not caught.
+    """
+    with silent():
+        function = entered_function(engine["function"])
+        begin = _processor_time()
+        try:
+            answer = function(scene, np.array(phases), **_named_by(function, settings))
+        except SystemExit as ended:
+            raise RuntimeError(f"the engine asked the process to end: exit code {ended.code}") from None
+        seconds = _processor_time() - begin
+        return _read(answer, len(phases), len(scene.bodies), seconds)
+
+
+def entered_function(path: str) -> Callable[..., Any]:
+    """
+    The function of an entered engine.
+
+    Parameters
+    ----------
+    path : str
+        "module:name".
+
+    Returns
+    -------
+    callable
+
+    Raises
+    ------
+    TypeError
+        If it cannot be called with a scene and phases. What the module raises on import is not caught.
+    """
+    module, name = path.split(":")
+    function: Any = import_module(module)
+    for part in name.split("."):
+        function = getattr(function, part)
+    if not callable(function):
+        raise TypeError(f"{name} is {type(function).__name__}, not a function")
+    with suppress(ValueError):  # some compiled functions have no signature
+        inspect.signature(function).bind(None, None, **_named_by(function, dict.fromkeys(ALWAYS_GIVEN)))
+    return function  # type: ignore[no-any-return]
+
+
+def entered_model(name: str, engine: Mapping[str, Any], like: str = LIKE, limit: float = TIME_LIMIT) -> Model:
+    """
+    The model of an entered engine.
+
+    Parameters
+    ----------
+    name : str
+        Key and title.
+    engine : mapping
+        As `amplification` takes it.
+    like : str
+        Key of the reference's model with the same law, whose settings the function is called with.
+    limit : float
+        Most processor time of one call, s.
+
+    Returns
+    -------
+    Model
+        The last of a hierarchy: no step of another model leads over it.
+    """
+    model = next(known for known in MODEL_HIERARCHY if known.key == like)
+    return Model(
+        key=name,
+        title=name,
+        adds=f"Entered by the user: {engine['function']}, held against the {model.title}.",
+        side="entered",
+        amplification=CALLED_THROUGH,
+        trajectory="",
+        settings={**model.settings, "engine": dict(engine)},
+        assumptions={"equations": f"those of {engine['function']}: not known here"},
+        batch=1,
+        most=MOST,
+        like=like,
+        timeout=limit,
+    )
+
+
+def engine_of(settings: Mapping[str, Any]) -> Mapping[str, str]:
+    """What is known of the engine that settings are for: its function, what that takes, versions; empty for none."""
+    engine: Mapping[str, str] = settings.get("engine", {})
+    return engine
+
+
+def names_of(function: Callable[..., Any]) -> str:
+    """Which of ALWAYS_GIVEN a function takes, separated by spaces."""
+    return " ".join(_named_by(function, dict.fromkeys(ALWAYS_GIVEN)))
+
+
+def _named_by(function: Callable[..., Any], settings: Mapping[str, Any]) -> dict[str, Any]:
+    """The settings that a function names among its arguments, or all of them if it takes any."""
+    try:
+        parameters = inspect.signature(function).parameters.values()
+    except ValueError:
+        return {}
+    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters):
+        return dict(settings)
+    kinds = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
+    names = {parameter.name for parameter in parameters if parameter.kind in kinds}
+    return {key: value for key, value in settings.items() if key in names}
+
+
+def _read(answer: Any, points: int, bodies: int, seconds: float) -> Amplification:
+    """An answer of any accepted form: an object with `mu`, an array mu, or a tuple (mu, error)."""
+    if hasattr(answer, "mu"):
+        mu, parts = answer.mu, {name: getattr(answer, name, None) for name in ("error", "instant", "displacement")}
+        outcomes = getattr(answer, "status", None)
+    else:
+        mu, *rest = answer if isinstance(answer, tuple) and answer else (answer,)
+        if mu is None:
+            raise TypeError("the engine's mu is None")
+        if len(rest) > 1:
+            raise TypeError(f"the engine returned a tuple of {1 + len(rest)}: give mu, (mu, error) or an object")
+        parts, outcomes = {"error": rest[0] if rest else None}, None
+    shapes = {"mu": (points, bodies), "error": (points, bodies), "instant": (points,), "displacement": (points,)}
+    arrays = {name: _array(name, {"mu": mu, **parts}.get(name), shape) for name, shape in shapes.items()}
+    arrays["mu"][~np.isfinite(arrays["mu"]) | (arrays["mu"] < 0.0)] = np.nan
+    arrays["error"][~(arrays["error"] >= 0.0) | np.isnan(arrays["mu"])] = UNKNOWN_ERROR
+    return Amplification(status=np.array(_outcomes(outcomes, arrays["mu"])), cost=seconds, **arrays)
+
+
+def _array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
+    """A new array of this shape; NaN without a value."""
+    if value is None:
+        return np.full(shape, np.nan)
+    array = np.array(value)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"the engine's {name} has {array.dtype} in place of real numbers")
+    if array.shape != shape:
+        raise ValueError(f"the engine's {name} has shape {array.shape}, asked: {shape}")
+    return array.astype(float)
+
+
+def _outcomes(stated: Sequence[Any] | None, mu: Array) -> list[str]:
+    """The engine's outcomes where they are known ones; a point without a value is never ok."""
+    points = len(mu)
+    texts = ["ok"] * points if stated is None else [str(text) for text in stated]
+    if len(texts) != points:
+        raise ValueError(f"the engine's status has {len(texts)} entries, asked: {points}")
+    known = {outcome.value: outcome for outcome in Outcome}
+    outcomes = [known.get(text, Outcome.OK if text.startswith("ok") else Outcome.SOLVER_FAILED) for text in texts]
+    return [
+        (Outcome.SOLVER_FAILED if outcome is Outcome.OK and not np.isfinite(values).all() else outcome).value
+        for outcome, values in zip(outcomes, mu)
+    ]
+
+
+def _processor_time() -> float:
+    """Processor time of this process and of those it has waited for, s."""
+    spent = os.times()
+    return time.process_time() + spent.children_user + spent.children_system
+
+
+@contextmanager
+def silent() -> Iterator[None]:
+    """
+    Drop what the block prints, also from compiled code, and give it nothing to read.
+
+    Only in a worker process: the files of a process belong to all its threads.
+    """
+    if multiprocessing.parent_process() is None:
+        yield
+        return
+    _flush()
+    kept = [os.dup(number) for number in range(3)]
+    nothing = os.open(os.devnull, os.O_RDWR)
+    try:
+        for number in range(3):
+            os.dup2(nothing, number)
+        yield
+    finally:
+        _flush()
+        for number, before in enumerate(kept):
+            os.dup2(before, number)
+        for number in (*kept, nothing):
+            os.close(number)
+
+
+def _flush() -> None:
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(Exception):
+            stream.flush()
+    with suppress(Exception):
+        ctypes.CDLL(None).fflush(None)

@@ -1,0 +1,114 @@
+"""Engines of a user: good ones and bad ones. Workers import them by name."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from reference.problem import Scene
+
+NUMBER = 3
+told: dict[str, Any] = {}
+
+
+def plain(scene: Scene, phases: np.ndarray) -> np.ndarray:
+    """As `fake_models.smooth`, without what that imports: importing counts as time of a call."""
+    shape = 2.0 + np.cos(phases[:, 0]) + np.sin(phases[:, 1])
+    return shape[:, None] + np.arange(1, len(scene.bodies) + 1)
+
+
+def as_list(scene: Scene, phases: np.ndarray) -> list[list[float]]:
+    return plain(scene, phases).tolist()
+
+
+def with_error(scene: Scene, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return plain(scene, phases), 1e-3 * plain(scene, phases)
+
+
+def as_object(scene: Scene, phases: np.ndarray) -> SimpleNamespace:
+    return SimpleNamespace(mu=plain(scene, phases))
+
+
+def as_full_object(scene: Scene, phases: np.ndarray) -> SimpleNamespace:
+    mu, count = plain(scene, phases), len(phases)
+    nothing = [np.nan] * count
+    return SimpleNamespace(mu=mu, error=1e-3 * mu, status=["ok"] * count, instant=nothing, displacement=[0.1] * count)
+
+
+def listens(scene: Scene, phases: np.ndarray, tolerance: float, *, regularization: float | None) -> np.ndarray:
+    told.update(tolerance=tolerance, regularization=regularization)
+    return plain(scene, phases)
+
+
+def half(scene: Scene, phases: np.ndarray) -> np.ndarray:
+    mu = plain(scene, phases)
+    mu[0] = np.inf, -1.0
+    return mu
+
+
+def own_words(scene: Scene, phases: np.ndarray) -> SimpleNamespace:
+    return SimpleNamespace(mu=np.full((len(phases), 2), np.nan), status=["rim reached", "the matrix is singular"])
+
+
+def raises(scene: Scene, phases: np.ndarray) -> None:
+    raise RuntimeError("the matrix is singular")
+
+
+def misshapen(scene: Scene, phases: np.ndarray) -> np.ndarray:
+    return np.zeros(3)
+
+
+def texts(scene: Scene, phases: np.ndarray) -> list[list[str]]:
+    return [["a", "b"]] * len(phases)
+
+
+def nothing_at_all(scene: Scene, phases: np.ndarray) -> None:
+    return None
+
+
+def complex_numbers(scene: Scene, phases: np.ndarray) -> np.ndarray:
+    return plain(scene, phases) + 1j
+
+
+def too_few_outcomes(scene: Scene, phases: np.ndarray) -> SimpleNamespace:
+    return SimpleNamespace(mu=plain(scene, phases), status=["ok"])
+
+
+def exits(scene: Scene, phases: np.ndarray) -> None:
+    sys.exit(0)
+
+
+def with_three(scene: Scene, phases: np.ndarray, needed: float) -> None: ...
+
+
+def prints(scene: Scene, phases: np.ndarray) -> np.ndarray:
+    print("noise")
+    os.write(1, b"noise\n")
+    os.system("echo noise; echo noise >&2")
+    return plain(scene, phases)
+
+
+def computes_for_ever(scene: Scene, phases: np.ndarray) -> None:
+    while True:
+        pass
+
+
+def waits_for_ever(scene: Scene, phases: np.ndarray) -> None:
+    time.sleep(1e9)
+
+
+def leaves(scene: Scene, phases: np.ndarray) -> None:
+    os._exit(7)
+
+
+def spoils_its_process(scene: Scene, phases: np.ndarray) -> np.ndarray:
+    mu = plain(scene, phases)
+    os.chdir("/")
+    os.environ.clear()
+    np.cos = np.sin = None  # type: ignore[assignment]
+    return mu

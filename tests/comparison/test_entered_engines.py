@@ -1,0 +1,343 @@
+"""An engine of the user joins a study, is never more than its numbers allow, and spoils nothing for the others."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import json
+import re
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import entered_engines
+import numpy as np
+import pytest
+import xarray as xr
+from conftest import Run
+from fake_models import fake_hierarchy, smooth
+
+from comparison.analysis.budget import budget
+from comparison.analysis.differences import differences, pair_step
+from comparison.analysis.extremes.cells import cells
+from comparison.analysis.extremes.rows import entered_column, rows
+from comparison.analysis.extremes.verdicts import Reply, judged
+from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.tradeoff.analysis import TradeOff
+from comparison.analysis.tradeoff.settings import settings
+from comparison.analysis.unanswered import unanswered, with_silent_models
+from comparison.cli.entered import as_words, entered_models, look_at
+from comparison.execution.environment import engine_fingerprint, source_digest
+from comparison.execution.keys import batch_key
+from comparison.execution.processes import process_pool
+from comparison.study.batches import execute_batch
+from comparison.study.entered import amplification, entered_model
+from comparison.study.models import Model, pairs_of
+from comparison.study.planning import StudyRequest, plan_study
+from comparison.study.study import Study
+from reference.problem import Outcome, SceneError, load_scene
+
+DOCS = Path(__file__).parents[2] / "docs/other-engines.md"
+SCENE = load_scene("fig3-I")
+PHASES = np.array([(0.0, 0.0), (1.0, 2.0)])
+
+
+def entered(function: str, name: str = "mine", like: str = "regularised") -> Model:
+    return entered_model(name, {"function": f"entered_engines:{function}"}, like)
+
+
+def studied(*models: Model) -> tuple[Study, xr.Dataset]:
+    """A study with models of known answer and these, computed here."""
+    study = Study((SCENE,), 4, 1e-3, [*fake_hierarchy(gap=0.01), *models])
+    batches = study.batches()
+    surfaces = labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
+    return with_silent_models(study, surfaces), surfaces
+
+
+@pytest.fixture
+def stranger(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """The engine of the documentation in a folder of its own, as a user would have it."""
+    (code,) = re.findall(r"```python\n(.*?)```", DOCS.read_text(encoding="utf-8"), re.DOTALL)
+    assert len([line for line in code.splitlines() if line.strip()]) <= 22
+    (tmp_path / "my_engine.py").write_text(code, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    (option,) = re.findall(r"--model (mine=\S+)\n", DOCS.read_text(encoding="utf-8"))
+    yield option
+    sys.modules.pop("my_engine", None)
+
+
+def test_the_engine_of_the_documentation_appears_in_the_report(command: Callable[..., Run], stranger: str) -> None:
+    run = command("fig3-I", "--grid", "2", "--model", stranger)
+    assert (run.code, run.err) == (0, "")
+    with xr.open_dataset(run.report / "surfaces.nc", engine="h5netcdf") as data:
+        mine = data.sel(model="mine", scene="fig3-I")
+        assert (mine["status"] == "ok").all()
+        assert np.isnan(mine["error"]).all(), "it states none"
+        assert (mine["cost"] > 0.0).all(), "measured, though it states none"
+        mu = mine["mu"].values
+    exact = [1.35816825, 2.07784522]  # reference.amplification at (0, 0), v_reg = 1e-3 m/s
+    np.testing.assert_allclose(mu[:, 0, 0], exact, rtol=0.03)  # geometry left out
+    page = (run.report / "index.html").read_text(encoding="utf-8")
+    (packed,) = re.findall(r'id="data"[^>]*>(.*?)</script>', page, re.DOTALL)
+    data = json.loads(gzip.decompress(base64.b64decode(packed)))
+    (pair,) = [pair for pair in data["scenes"][0]["pairs"] if pair["key"] == "mine"]
+    assert (pair["first"], pair["second"]) == ("regularised", "mine")
+    assert pair["uncertainty"] == [[[None, None]] * 2] * 2, "unknown"
+    assert not data["scenes"][0]["models"]["mine"]["surface"]
+    summary = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))
+    rows = [row for row in summary["scenes"][0]["differences"] if row["pair"] == "mine"]
+    assert [(row["beyond_error"], row["ratio"], row["not_ok"]) for row in rows] == [(None, None, 0)] * 2
+    assert "mine" in summary["scenes"][0]["models"]
+
+
+@pytest.mark.parametrize(
+    ("spec", "rule"),
+    [
+        ("mine", "must be NAME=module:function"),
+        ("mine=my_engine", "must be NAME=module:function"),
+        ("mine=my engine:f", "must be NAME=module:function"),
+        ("=my_engine:f", "NAME must begin with a letter"),
+        ("../a=my_engine:f", "NAME must begin with a letter"),
+        ("exact=my_engine:f", "exact names a model"),
+        ("spatial=my_engine:f", "spatial names a model"),
+        ("total=my_engine:f", "total names a model or a difference"),
+        ("mine=my_engine:f@spatial", "KEY must be one of small, exact, resolved, regularised"),
+    ],
+)
+def test_a_wrong_spelling_is_one_line_and_exit_code_2(command: Callable[..., Run], spec: str, rule: str) -> None:
+    run = command("fig3-I", "--grid", "2", "--model", spec)
+    assert (run.code, run.out, run.report.exists()) == (2, "", False)
+    assert run.err.startswith(f"command line: --model = '{spec}': ")
+    assert rule in run.err
+    assert run.err.count("\n") == 1
+
+
+def test_a_name_is_there_once_and_a_cluster_has_no_engine_of_this_machine(command: Callable[..., Run]) -> None:
+    twice = command("fig3-I", "--model", "a=entered_engines:plain", "--model", "a=entered_engines:raises")
+    assert (twice.code, twice.err.count("\n")) == (2, 1)
+    assert "a is there twice" in twice.err
+    far = command("fig3-I", "--model", "a=entered_engines:plain", "--scheduler", "tcp://127.0.0.1:1")
+    assert (far.code, "give one of the two" in far.err) == (2, True)
+    limit = command("fig3-I", "--model", "a=entered_engines:plain", "--model-limit", "soon")
+    assert (limit.code, "--model-limit = 'soon': must be a number" in limit.err) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("path", "fault"),
+    [
+        ("no_such_module:f", "there is no module no_such_module: run the command in the folder of its file"),
+        ("entered_engines:nothing", "entered_engines has no nothing"),
+        ("entered_engines:NUMBER", "cannot be called as NUMBER(scene, phases): NUMBER is int, not a function"),
+        ("entered_engines:with_three", "cannot be called as with_three(scene, phases): missing a required argument"),
+        ("engine_that_raises:f", "importing engine_that_raises raises ZeroDivisionError: division by zero"),
+        ("engine_that_exits:f", "importing engine_that_exits raises SystemExit: 0"),
+        ("engine_that_lacks:f", "there is no module no_such_package"),
+    ],
+)
+def test_what_cannot_be_imported_or_called_is_named(
+    path: str, fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "engine_that_raises.py").write_text("1 / 0\n")
+    (tmp_path / "engine_that_exits.py").write_text("raise SystemExit(0)\n")
+    (tmp_path / "engine_that_lacks.py").write_text("import no_such_package\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    said, _ = look_at(path)
+    assert said.startswith(fault)
+    assert "\n" not in said
+
+
+def test_a_process_that_the_import_ends_is_named_and_harms_no_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "engine_that_leaves.py").write_text("import os\nprint('noise')\nos._exit(7)\n")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    with pytest.raises(SceneError, match="importing it ends the process: exit code 7"):
+        entered_models(["mine=engine_that_leaves:f"])
+
+
+def test_functions_are_entered_from_python_by_their_place() -> None:
+    words = as_words({"a": entered_engines.plain, "b": "entered_engines:raises@exact"})
+    assert words == ["--model", "a=entered_engines:plain", "--model", "b=entered_engines:raises@exact"]
+    with pytest.raises(SceneError, match=r"models: a = '.*<lambda>': worker processes import an engine by its name"):
+        as_words({"a": lambda scene, phases: None})
+
+
+@pytest.mark.parametrize("form", ["plain", "with_error", "as_object", "as_full_object", "as_list"])
+def test_every_form_of_answer_is_read(form: str) -> None:
+    answer = amplification(SCENE, PHASES, engine={"function": f"entered_engines:{form}"}, tolerance=1e-3)
+    np.testing.assert_array_equal(answer.mu, smooth(SCENE, PHASES, 1e-3).mu)
+    if form in ("with_error", "as_full_object"):
+        np.testing.assert_array_equal(answer.error, 1e-3 * answer.mu)
+    else:
+        assert np.isnan(answer.error).all()
+    assert list(answer.status) == ["ok", "ok"]
+    assert answer.displacement.tolist() == (
+        [0.1, 0.1] if form == "as_full_object" else pytest.approx([np.nan] * 2, nan_ok=True)
+    )
+
+
+@pytest.mark.parametrize(
+    ("function", "message"),
+    [
+        ("raises", "RuntimeError: the matrix is singular"),
+        ("misshapen", "ValueError: the engine's mu has shape (3,), asked: (4, 2)"),
+        ("texts", "TypeError: the engine's mu has <U1 in place of real numbers"),
+        ("nothing_at_all", "TypeError: the engine's mu is None"),
+        ("complex_numbers", "TypeError: the engine's mu has complex128 in place of real numbers"),
+        ("exits", "RuntimeError: the engine asked the process to end: exit code 0"),
+        ("too_few_outcomes", "ValueError: the engine's status has 1 entries, asked: 4"),
+    ],
+)
+def test_what_is_no_answer_costs_its_own_points_and_says_why(function: str, message: str) -> None:
+    model = replace(entered(function), batch=4)
+    study = Study((SCENE,), 2, 1e-3, [*fake_hierarchy(), model])
+    (batch,) = [batch for batch in study.batches() if batch.model == "mine" and len(batch.phases) == 4]
+    result = execute_batch(batch)
+    assert np.isnan(result.mu).all()
+    assert set(result.status) == {Outcome.SOLVER_FAILED.value}
+    assert result.error_message == message
+
+
+def test_values_that_are_none_are_never_ok() -> None:
+    answer = amplification(SCENE, PHASES, engine={"function": "entered_engines:half"})
+    assert list(answer.status) == [Outcome.SOLVER_FAILED, "ok"]
+    assert np.isnan(answer.mu[0]).all()
+    own_words = amplification(SCENE, PHASES, engine={"function": "entered_engines:own_words"})
+    assert list(own_words.status) == [Outcome.RIM_REACHED, Outcome.SOLVER_FAILED]
+
+
+def test_the_function_gets_what_it_names_of_the_law_that_it_is_held_against() -> None:
+    def told(like: str) -> SimpleNamespace:
+        entered_engines.told.clear()
+        model = entered("listens", like=like)
+        amplification(SCENE, PHASES, **model.settings, tolerance=1e-3)
+        return SimpleNamespace(**entered_engines.told)
+
+    assert told("regularised") == SimpleNamespace(tolerance=1e-3, regularization=1e-3)
+    assert told("exact") == SimpleNamespace(tolerance=1e-3, regularization=None)
+
+
+def test_no_difference_to_an_unknown_error_is_real_and_one_to_a_stated_error_is() -> None:
+    study, surfaces = studied(entered("plain", "silent"), entered("with_error", "open"))
+    pairs = {pair.key: pair for pair in study.pairs(SCENE)}
+    for body in (1, 2):
+        silent, stated = (pair_step(surfaces, SCENE.name, pairs[key], body) for key in ("silent", "open"))
+        assert silent.known.all()
+        assert stated.known.all()
+        np.testing.assert_array_equal(silent.size, stated.size)
+        assert not (silent.real | silent.unresolved).any()
+    rows = [row for row in differences(study, surfaces) if row.pair == "silent"]
+    assert len(rows) == 2
+    assert all(np.isnan(row.beyond_error) and np.isnan(row.ratio) and row.unanswered == 0 for row in rows)
+
+
+@pytest.mark.parametrize("function", ["plain", "raises"])
+def test_an_entered_engine_changes_no_other_number(function: str) -> None:
+    alone, without = studied()
+    study, surfaces = studied(entered(function))
+    others = [model.key for model in alone.hierarchy]
+    xr.testing.assert_identical(surfaces.sel(model=others), without)
+    assert repr(budget(study, surfaces)) == repr(budget(alone, without))  # repr: NaN is not equal to itself
+    theirs = [row for row in differences(study, surfaces) if row.pair != "mine"]
+    assert repr(theirs) == repr(differences(alone, without))
+    keys = [batch_key(batch) for batch in study.batches() if batch.model != "mine"]
+    assert keys == [batch_key(batch) for batch in alone.batches()]
+    assert {gap.model for gap in unanswered(study, surfaces)} == ({"mine"} if function == "raises" else set())
+    assert ("mine" in {pair.key for pair in study.pairs(SCENE)}) == (function == "plain")
+
+
+def test_it_is_held_against_the_model_of_its_law_and_where_that_does_not_apply_against_the_last_of_the_equations() -> (
+    None
+):
+    for like in ("small", "exact", "resolved", "regularised"):
+        pairs = {pair.key: pair.first.key for pair in pairs_of(SCENE, [*fake_hierarchy(), entered("plain", like=like)])}
+        assert pairs["mine"] == like
+    wet = load_scene("fig4-viscous")
+    pairs = {pair.key: pair.first.key for pair in pairs_of(wet, [*fake_hierarchy(), entered("plain")])}
+    assert pairs["mine"] == pairs["like-for-like"] == "exact"
+
+
+def test_no_budget_gives_it_more_phases_than_the_dearest_model() -> None:
+    hierarchy = [*fake_hierarchy(), entered("plain")]
+    study = plan_study(StudyRequest((SCENE,), hierarchy, budgeted=True)).study
+    assert len(study.axis(study.hierarchy[-1])) <= 8
+
+
+def test_its_source_and_that_of_its_helpers_are_part_of_what_its_results_are_found_by(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(tmp_path))
+    seen = []
+    for helper, engine in (("1", "1"), ("2", "1"), ("2", "2"), ("2", "2")):
+        (tmp_path / "its_helper.py").write_text(f"NUMBER = {helper}\n")
+        (tmp_path / "its_engine.py").write_text(f"import json, numpy\nimport its_helper\nNUMBER = {engine}\n")
+        source_digest.cache_clear()
+        seen.append(engine_fingerprint("its_engine"))
+    assert seen[2] == seen[3]
+    assert len({json.dumps(about, sort_keys=True) for about in seen}) == 3
+    assert set(seen[0]) == {"numpy", "source of its_engine", "source of its_helper"}
+    (tmp_path / "its_folder").mkdir()  # without __init__.py
+    (tmp_path / "its_folder" / "inner.py").write_text("import reference\n")
+    assert {"source of its_folder.inner", "source of reference"} <= set(engine_fingerprint("its_folder.inner"))
+
+
+@pytest.mark.long
+def test_engines_that_hang_print_or_end_their_process_cost_nobody_else_anything(command: Callable[..., Run]) -> None:
+    engines = ("plain", "prints", "computes_for_ever", "waits_for_ever", "leaves", "spoils_its_process")
+    words = [word for name in engines for word in ("--model", f"{name}=entered_engines:{name}")]
+    run = command("fig3-I", "--grid", "2", "--model-limit", "2", *words, executor=process_pool)
+    assert run.code == 0
+    assert "noise" not in run.out + run.err
+    with xr.open_dataset(run.report / "surfaces.nc", engine="h5netcdf") as data:
+        outcomes = {name: set(data["status"].sel(model=name).values.ravel().tolist()) for name in engines}
+        mu = data["mu"].sel(model=["small", "plain", "prints"]).values
+    assert {name: outcomes[name] for name in engines} == {
+        "plain": {"ok"},
+        "prints": {"ok"},
+        "computes_for_ever": {"time limit"},
+        "waits_for_ever": {"time limit"},
+        "leaves": {"worker died", "time limit"},
+        "spoils_its_process": {"ok"},
+    }
+    assert np.isfinite(mu).all()
+
+
+def test_the_extremes_judge_an_engine_that_claims_nothing_by_how_far_it_is_off() -> None:
+    def verdict(off: float, error: float = np.nan) -> tuple[str, str]:
+        mu, right = np.array([[1.0, 2.0 + off]]), np.array([[1.0, 2.0]])
+        reply = Reply(mu, np.full((1, 2), error), ("ok",))
+        judgment = judged(reply, [Reply(right, np.full((1, 2), 1e-9), ("ok",))], 1e-3, False, ())
+        return judgment.verdict, judgment.reason
+
+    assert verdict(1e-3) == ("converged", "states no error, off by 5.0e-04")
+    assert verdict(1e-2) == ("limit", "states no error, off by 5.0e-03")
+    assert verdict(1e-2, error=1e-4)[0] == "FAILED", "a false claim is one"
+
+
+def test_every_extreme_of_its_law_concerns_an_entered_engine_but_none_of_the_numerics_of_ours() -> None:
+    every = list(rows())
+    met = {cell.row.name for cell in cells(every, [entered_column(entered("plain"))])}
+    alike = {row.name for row in every if "regularised" in row.columns and not row.amplification}
+    assert met == alike
+    assert all(row.name not in met for row in every if row.amplification)
+
+
+def test_the_curve_of_an_entered_engine_runs_over_the_tolerance_that_it_takes() -> None:
+    def curve(names: str, like: str = "regularised") -> list[tuple[str, float, bool]]:
+        model = entered_model("mine", {"function": "entered_engines:plain", "names": names}, like)
+        listed = settings(SCENE, quick=True, entered=[model])
+        assert [one for one in listed if one.method != "entered: mine"] == settings(SCENE, quick=True)
+        mine = [one for one in listed if one.method == "entered: mine"]
+        return [(one.question, one.value, one.against is None) for one in mine]
+
+    assert curve("tolerance") == [("regularised", value, True) for value in (1e-2, 1e-3, 1e-4, 1e-5)]
+    assert curve("") == [("regularised", 1e-3, True)]
+    assert curve("", like="resolved") == [("exact", 1e-3, False)]
+    tasks = TradeOff(True, (entered("plain"),)).tasks(Study((SCENE,), 1, 1e-3))
+    mine = [task for task in tasks if task.lane]
+    assert mine
+    assert all(task.timeout == 60.0 * len(task.argument.phases) for task in mine)
