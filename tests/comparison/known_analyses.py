@@ -79,7 +79,7 @@ def known_others() -> dict[str, Any]:
     """Three claims under two readings; one trend that falls like s^2 and one that is nothing but noise."""
     held, drawn = Verdict(Finding.REPRODUCED, "periodic 4 and 3"), Verdict(Finding.AS_DRAWN, "drawn 4 and 3")
     no, unanswered = Verdict(Finding.NOT, "|x_2 - y_2| up to 0"), Verdict(Finding.OPEN, "fig3-I: rim reached")
-    table = ClaimTable(CLAIMS[3:6], READINGS[3:5], 16, [[held, drawn], [no, held], [no, unanswered]])
+    table = ClaimTable(CLAIMS[3:6], READINGS[2:4], 16, [[held, drawn], [no, held], [no, unanswered]])
     sizes = np.array([[4e-3, 1e-3, 2.5e-4]])
     return {
         "claims": table,
