@@ -35,9 +35,14 @@ class Settled:
     grids: Sequence[int]
     counts: Sequence[dict[str, Counts]]
 
+    @property
+    def known(self) -> bool:
+        """Whether there is a count on every grid."""
+        return all(self.counts)
+
     def grid(self, view: str) -> int | None:
         """The coarsest grid from which on the counts of a view stay what they are; None if the last two differ."""
-        if not all(self.counts):
+        if not self.known:
             return None
         last = self.counts[-1][view]
         settled = None
@@ -104,7 +109,7 @@ def describe(settled: Settled) -> str:
     -------
     str
     """
-    if not all(settled.counts):
+    if not settled.known:
         return "flat or without an answer"
     words = []
     for view in VIEWS:
