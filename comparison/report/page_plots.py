@@ -296,9 +296,9 @@ def spike_panels(results: Results) -> list[Panel]:
     for number, phases in enumerate(SPIKE_PHASES):
         place = f"({phases[0]:g}, {phases[1]:g})"
         for words, values, dashed in (
-            ("with that instant", [row[number] for row in spike.counted], False),
-            ("without it", [row[number] for row in spike.left_out], False),
-            ("reference, condition of rest alone", [spike.limit[number]] * len(spike.steps), True),
+            ("spike counted", [row[number] for row in spike.counted], False),
+            ("left out", [row[number] for row in spike.left_out], False),
+            ("reference", [spike.limit[number]] * len(spike.steps), True),
         ):
             line = {
                 "x": spike.steps,

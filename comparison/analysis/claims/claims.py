@@ -63,7 +63,7 @@ class Claim:
 
 _PEAKS_AND_VALLEYS = (
     f"prominence of {100 * SHARE:.0f} % of the range or more, both numbers on the periodic square, or both as drawn or"
-    " on the drawn profile over alpha_1 - alpha_2"
+    " on the drawn profile over α_1 - α_2"
 )
 _SIMILAR = f"correlation over the phases at least {SIMILAR:g}"
 _ZOOM = "where it bends most on the grid, in a zoom of 32 times, the second difference falls like"
@@ -80,7 +80,7 @@ CLAIMS: tuple[Claim, ...] = (
     Claim(
         "Fig. 3",
         "the harmonics are close to resonance",
-        f"|T_load / T_natural - 1| at most {EPSILON:g}, the paper's epsilon, for a natural period of (4.8) and each",
+        f"|T_load / T_natural - 1| at most {EPSILON:g}, the paper's ε, for a natural period of (4.8) and each",
         (_I,),
         near_resonance(_I),
     ),
@@ -121,7 +121,7 @@ CLAIMS: tuple[Claim, ...] = (
         f"the top of every peak within {np.degrees(CORNER):.0f}° of a corner",
         (_II,),
         near_corners(_II, 2),
-        proof="From rest, mu at (alpha_1 + pi, alpha_2 + pi) is that at (alpha_1, alpha_2): every peak in a corner has"
+        proof="From rest, mu at (α_1 + π, α_2 + π) is that at (α_1, α_2): every peak in a corner has"
         " a twin in the center of the square.",
         impossible=twin_peaks(_II),
     ),
