@@ -117,7 +117,8 @@ def test_a_second_integration_gives_every_claim_the_same_verdict(reading: Readin
         asked = without_effect(reading, CASES[case](reading))
         first[case], second[case] = gathered(Claims(GRID).task(case, reading).argument), _second(case, asked)
     verdicts = {(c.figure, c.says): (c.verdict(first), c.verdict(second)) for c in CLAIMS}
-    print("\n", reading.name, *(f"{key}: {a.finding} {a.found} | {b.found}" for key, (a, b) in verdicts.items()), sep="\n")
+    lines = [f"{key}: {a.finding} {a.found} | {b.found}" for key, (a, b) in verdicts.items()]
+    print("", reading.name, *lines, sep="\n")
     differing = {key: pair for key, pair in verdicts.items() if pair[0].finding is not pair[1].finding}
     assert not differing
 
