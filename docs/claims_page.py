@@ -38,7 +38,7 @@ FOLDER = Path(__file__).parent
 DRAWN = 32  # phases per axis of the pictures
 PRINTED = Reading(1.0)
 AMPLITUDES = (0.6, 1.0, 1.5)  # m/s^2, of the literal reading
-SEARCHED = 160
+SEARCHED = 96
 PICTURES = (
     ("print", PRINTED, "The parameters as printed, amplitudes in m/s²"),
     ("light-body", LIGHT_BODY, "The reading that reproduces most, a light, soft second body"),
