@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from comparison.analysis.claims.cases import CASES
 from comparison.analysis.claims.checks import Finding, Verdict
 from comparison.analysis.claims.claims import CLAIMS
-from comparison.analysis.claims.evidence import Question, gathered
+from comparison.analysis.claims.evidence import Evidence, Question, gathered
 from comparison.analysis.claims.literal import literal_peaks
 from comparison.analysis.claims.peaks_and_valleys import Counts, profiled
 from comparison.analysis.claims.readings import LIGHT_BODY, LITERAL, OWN_PERIOD, READINGS, Reading
 from comparison.analysis.claims.search import BEST, RANGES, Selection, best_readings, searched_readings
 from comparison.analysis.claims.settled import Settled, describe
-from comparison.analysis.claims.spike import spike_over_the_step
+from comparison.analysis.claims.spike import Spike, spike_over_the_step
 from comparison.analysis.claims.table import ClaimTable
 from comparison.analysis.forced_ratio import forced_ratios
+from comparison.report.figures.claims import PANELS, draw_reading, draw_spike
 from reference import amplification, load_scene, modes
 from reference.problem import ground_peak, phase_grid
 
@@ -173,3 +176,14 @@ def test_grids_of_phases_are_those_of_the_surfaces() -> None:
     evidence = gathered(Question("fig3-I", LITERAL, 4))
     expected = literal_peaks(CASES["fig3-I"](LITERAL), phase_grid(4)).mu.reshape(4, 4, 2)
     assert np.array_equal(evidence.mu, expected)
+
+
+def test_pictures_show_a_reading_and_its_gaps_and_the_spike(tmp_path: Path) -> None:
+    mu = np.random.default_rng(1).uniform(size=(4, 4, 2))
+    evidence = {case: Evidence(mu, 0.0, ("ok",)) for case, *_ in PANELS} | {"fig4-dry": Evidence()}
+    draw_reading(tmp_path / "reading.png", "a reading", evidence)
+    row, count = (1.0, 2.0, 3.0), (1, 2, 4)
+    draw_spike(tmp_path / "spike.png", {1.0: Spike((2e-3, 1e-3), (row, row), (row, row), (count, count), row)})
+    for name in ("reading", "spike"):
+        with Image.open(tmp_path / f"{name}.png") as picture:
+            assert np.ptp(np.asarray(picture.convert("L"))) > 200
