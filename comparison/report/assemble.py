@@ -11,6 +11,7 @@ from comparison.analysis.demand_surfaces import DemandStatistics as StatisticsOf
 from comparison.analysis.demand_surfaces import demand_statistics
 from comparison.analysis.distribution import distributions
 from comparison.analysis.errata import ERRATA
+from comparison.analysis.forced_ratio import forced_ratios
 from comparison.analysis.grid_maxima import grid_maxima
 from comparison.analysis.headline import headline
 from comparison.analysis.parameter import (
@@ -45,6 +46,7 @@ from comparison.report.results import (
     FamilyResult,
     FamilyStep,
     FloorSpectra,
+    ForcedRatio,
     GridMaximum,
     Headline,
     Limit,
@@ -56,6 +58,7 @@ from comparison.report.results import (
     Results,
     Run,
     SceneResult,
+    Spike,
     Trend,
     Unanswered,
     Waterfall,
@@ -153,6 +156,7 @@ def _scene(
         values=_values(findings, scene) if scene.recorded else [],
         limits=[Limit.model_validate(limit) for limit in of_scene(findings.limits)],
         effective=[Effective.model_validate(values) for values in of_scene(findings.effective)],
+        forced=[ForcedRatio.model_validate(ratio) for ratio in forced_ratios(scene)],
         demands=_demands(findings, scene),
         demand_statistics=[DemandStatistics.model_validate(each) for each in statistics],
     )
@@ -257,6 +261,8 @@ def _claims(table: ClaimTable) -> Claims:
     return Claims(
         grid=table.grid,
         readings=[reading.name for reading in table.readings],
+        origins=[reading.origin for reading in table.readings],
+        spike=Spike.model_validate(table.spike),
         reproduced=[table.held(column) for column in range(len(table.readings))],
         best=[reading.name for reading in table.best],
         never=[f"{claim.figure}: {claim.says}" for claim in table.never],
@@ -267,6 +273,7 @@ def _claims(table: ClaimTable) -> Claims:
                     "says": claim.says,
                     "rule": claim.rule,
                     "weaker": claim.weaker,
+                    "proof": claim.proof,
                     "verdicts": list(row),
                 }
             )

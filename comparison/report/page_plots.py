@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import Any
 
+from comparison.analysis.claims.spike import PHASES as SPIKE_PHASES
 from comparison.analysis.distribution import CURVE
 from comparison.analysis.ensemble_file import StoredCurve
 from comparison.analysis.stored import finite_or_none
@@ -278,12 +279,58 @@ def claim_heat(results: Results) -> list[dict[str, Any]]:
     for figure in dict.fromkeys(claim.figure for claim in counted):
         claims = [claim for claim in counted if claim.figure == figure]
         held = [
-            sum(claim.verdicts[column].finding == "reproduced" for claim in claims)
+            sum(claim.verdicts[column].finding in ("reproduced", "as drawn") for claim in claims)
             for column in range(len(results.claims.readings))
         ]
         cells = [{"held": h, "claims": len(claims), "level": math.ceil(4 * h / len(claims))} for h in held]
         rows.append({"figure": figure, "cells": cells})
     return rows
+
+
+def spike_panels(results: Results) -> list[Panel]:
+    """mu_1 of the literal integration over its step, with and without the instants at which slip begins."""
+    if results.claims is None or not results.claims.spike.steps:
+        return []
+    spike = results.claims.spike
+    series: list[dict[str, Any]] = []
+    for number, phases in enumerate(SPIKE_PHASES):
+        place = f"({phases[0]:g}, {phases[1]:g})"
+        for words, values, dashed in (
+            ("spike counted", [row[number] for row in spike.counted], False),
+            ("left out", [row[number] for row in spike.left_out], False),
+            ("reference", [spike.limit[number]] * len(spike.steps), True),
+        ):
+            line = {
+                "x": spike.steps,
+                "y": _plain(values),
+                "color": number,
+                "marks": not dashed,
+                "dash": "5 4" if dashed else "",
+            }
+            series.append({"name": f"{place}, {words}", **line})
+    plot = {
+        "label": "mu_1 of the literal integration over its step, with and without the instants at which slip begins",
+        "x": {"title": "step, s", "log": True},
+        "y": {"title": "μ_1"},
+        "series": series,
+    }
+    starts = [
+        {
+            "name": f"({phases[0]:g}, {phases[1]:g})",
+            "x": spike.steps,
+            "y": [row[number] for row in spike.starts],
+            "color": number,
+            "marks": True,
+        }
+        for number, phases in enumerate(SPIKE_PHASES)
+    ]
+    counts = {
+        "label": "How often slip begins over the step",
+        "x": {"title": "step, s", "log": True},
+        "y": {"title": "beginnings of slip", "log": True},
+        "series": starts,
+    }
+    return [{"title": "fig3-I, literal (4.6)", "plot": plot}, {"title": "How often slip begins", "plot": counts}]
 
 
 def _tradeoff_panel(trade: Trade, question: Answered, body: int) -> Panel:

@@ -681,6 +681,23 @@ class MotionDemands(Part):
     """floor response spectra; null where the motion ended early"""
 
 
+class ForcedRatio(Part):
+    """Amplitude of a body over that of the platform under one harmonic, by (4.4) alone."""
+
+    body: int
+    """from 2"""
+    harmonic: int
+    """1 or 2"""
+    axis: str
+    """x or y"""
+    period: float
+    """period of the harmonic, s"""
+    ratio: Radius
+    """with the decay of the loading"""
+    steady: Radius
+    """without it; "inf" at resonance"""
+
+
 class SceneResult(Part):
     """One scene."""
 
@@ -722,6 +739,8 @@ class SceneResult(Part):
     """every acceptance limit that the scene states"""
     effective: list[Effective]
     """the scene, then every model"""
+    forced: list[ForcedRatio]
+    """one per axis, harmonic and body above the platform; empty under a recorded motion"""
     demands: list[MotionDemands]
     """one per stored phase pair and model; empty without stored motions"""
     demand_statistics: list[DemandStatistics]
@@ -843,7 +862,7 @@ class ClaimVerdict(Part):
     """What the surfaces of one reading say about a claim."""
 
     finding: str
-    """reproduced, as drawn, not reproduced, or no answer"""
+    """reproduced, as drawn, not reproduced, cannot hold, or no answer"""
     found: Text
     """numbers behind it"""
 
@@ -859,8 +878,25 @@ class Claim(Part):
     """how it is decided"""
     weaker: bool
     """whether it is a weaker form of a claim, which is not counted"""
+    proof: str
+    """why it cannot hold; empty where it can"""
     verdicts: list[ClaimVerdict]
     """one per reading"""
+
+
+class Spike(Part):
+    """mu_1 of the literal integration of (4.6) over its step."""
+
+    steps: list[float]
+    """steps, s; none where it could not be computed"""
+    counted: list[list[Number]]
+    """for each step mu_1 at each phase pair, with the instants at which slip begins"""
+    left_out: list[list[Number]]
+    """the same without these instants"""
+    starts: list[list[int]]
+    """how many these are"""
+    limit: list[Number]
+    """mu_1 of the reference at each phase pair, with (4.6) as its condition of rest alone"""
 
 
 class Claims(Part):
@@ -870,6 +906,10 @@ class Claims(Part):
     """phases per axis"""
     readings: list[str]
     """names of the readings"""
+    origins: list[str]
+    """why anyone would read the paper so, and by what selection each was found"""
+    spike: Spike
+    """what the step does to the literal reading"""
     reproduced: list[int]
     """how many claims each reading reproduces"""
     best: list[str]

@@ -16,6 +16,7 @@ import comparison.registry
 from comparison.analysis.claims.checks import Finding, Verdict
 from comparison.analysis.claims.claims import CLAIMS
 from comparison.analysis.claims.readings import READINGS
+from comparison.analysis.claims.spike import Spike
 from comparison.analysis.claims.table import ClaimTable
 from comparison.analysis.protocol import Analysis
 from comparison.analysis.trends import trend
@@ -84,7 +85,8 @@ def known_others() -> dict[str, Any]:
     """Three claims under two readings; one trend that falls like s^2 and one that is nothing but noise."""
     held, drawn = Verdict(Finding.REPRODUCED, "periodic 4 and 3"), Verdict(Finding.AS_DRAWN, "drawn 4 and 3")
     no, unanswered = Verdict(Finding.NOT, "|x_2 - y_2| up to 0"), Verdict(Finding.OPEN, "fig3-I: rim reached")
-    table = ClaimTable(CLAIMS[3:6], READINGS[3:5], 16, [[held, drawn], [no, held], [no, unanswered]])
+    spike = Spike((2e-3, 1e-3), ((4.0, 5.0, 6.0),) * 2, ((2.0, 3.0, 2.5),) * 2, ((1, 1, 2), (1, 2, 4)), (2.0, 3.0, 2.5))
+    table = ClaimTable(CLAIMS[3:6], READINGS[2:4], 16, [[held, drawn], [no, held], [no, unanswered]], spike)
     sizes = np.array([[4e-3, 1e-3, 2.5e-4]])
     return {
         "claims": table,

@@ -1,4 +1,8 @@
-"""Checks of what the paper says about its surfaces: each sees the evidence of one reading and computes its answer."""
+"""
+Checks of what the paper says about its surfaces: each sees the evidence of one reading and computes its answer.
+
+Those that count peaks and valleys are in `peak_checks`.
+"""
 
 from __future__ import annotations
 
@@ -9,26 +13,24 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.analysis.budget import torus_distance
 from comparison.analysis.claims.evidence import Evidence
-from comparison.analysis.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE, Counts, drawn, periodic, relief
-from reference import modes
-from reference.problem import exponents, load_scene
+from comparison.analysis.claims.readings import EPSILON
+from comparison.analysis.claims.smoothness import Bend
 
 Array = NDArray[np.float64]
 
-CORNER = np.pi / 4.0  # rad: "near" a corner
 SIMILAR = 0.7  # correlation of two surfaces: half of what one does is in the other
 PLANE = 1e-6  # |x - y| relative to the largest displacement: the same to the solver's tolerance
 APART = 0.1  # the same, above which two motions differ for good
 SMALL = 0.1  # (x^2 + y^2) / rho^2 that is still much less than 1
-CLOSE = 0.1  # relative distance of two periods that are close: the paper's epsilon
+ROUNDING = 1e-9  # of epsilon: T_c (1 -+ epsilon) itself is close to T_c
 
 
 class Finding(StrEnum):
     REPRODUCED = "reproduced"
     AS_DRAWN = "as drawn"  # only when counted on the square as drawn, cut open at its edges
     NOT = "not reproduced"
+    CANNOT = "cannot hold"  # under any parameters: the claim states the proof
     OPEN = "no answer"
 
     @property
@@ -51,36 +53,6 @@ def judged(holds: bool, words: str) -> Verdict:
     return Verdict(Finding.REPRODUCED if holds else Finding.NOT, words)
 
 
-def counted(case: str, body: int, peaks: int, valleys: int) -> Check:
-    """As many peaks and valleys as the paper counts, both on the periodic square or both as drawn."""
-
-    def check(evidence: Mapping[str, Evidence]) -> Verdict:
-        mu, error = evidence[case].mu[..., body - 1], evidence[case].error
-        if evidence[case].flat(body):
-            return judged(False, "flat")
-        shares = SHARE, LEAST_SHARE, MOST_SHARE
-        views = {"periodic": [periodic(mu, error, s) for s in shares], "drawn": [drawn(mu, error, s) for s in shares]}
-        holds = {name: counts[0] == Counts(peaks, valleys) for name, counts in views.items()}
-        finding = Finding.NOT
-        if holds["drawn"]:
-            finding = Finding.AS_DRAWN
-        if holds["periodic"]:
-            finding = Finding.REPRODUCED
-        return Verdict(finding, "; ".join(f"{name} {_told(counts)}" for name, counts in views.items()))
-
-    return check
-
-
-def _told(counts: list[Counts]) -> str:
-    peaks, valleys = [count.peaks for count in counts], [count.valleys for count in counts]
-    return f"{_span(peaks)} and {_span(valleys)}"
-
-
-def _span(counts: list[int]) -> str:
-    """The count at SHARE, and between which it lies at other shares."""
-    return f"{counts[0]}" if min(counts) == max(counts) else f"{counts[0]} ({min(counts)} to {max(counts)})"
-
-
 def more_intense(case: str) -> Check:
     """The first mass above the second at more than half of the phases."""
 
@@ -88,32 +60,6 @@ def more_intense(case: str) -> Check:
         first, second = evidence[case].mu[..., 0], evidence[case].mu[..., 1]
         share = float((first > second).mean())
         return judged(share > 0.5, f"mu_1 > mu_2 at {100.0 * share:.0f} % of the phases")
-
-    return check
-
-
-def more_complex(case: str) -> Check:
-    def check(evidence: Mapping[str, Evidence]) -> Verdict:
-        first, second = (periodic(evidence[case].mu[..., body], evidence[case].error, LEAST_SHARE) for body in (0, 1))
-        several = second.peaks > 1 and second.valleys > 1
-        exceeds = second.peaks + second.valleys > first.peaks + first.valleys
-        words = f"mu_2 {second.peaks} and {second.valleys}, mu_1 {first.peaks} and {first.valleys}"
-        return judged(several and exceeds, words)
-
-    return check
-
-
-def near_corners(case: str, body: int) -> Check:
-    """Every peak's top near a corner of the square: on the square that closes, its four corners are one point."""
-
-    def check(evidence: Mapping[str, Evidence]) -> Verdict:
-        mu = evidence[case].mu[..., body - 1]
-        if evidence[case].flat(body):
-            return judged(False, "flat")
-        step = 2.0 * np.pi / len(mu)
-        tops = [(step * row, step * column) for row, column in relief(mu, evidence[case].error).tops]
-        places = ", ".join(f"({np.degrees(top[0]):.0f}°, {np.degrees(top[1]):.0f}°)" for top in tops)
-        return judged(all(torus_distance(top, (0.0, 0.0)) <= CORNER for top in tops), f"peaks at {places}")
 
     return check
 
@@ -148,16 +94,47 @@ def not_smooth(case: str, *others: str) -> Check:
 
 def _all_bodies(cases: tuple[str, ...], wanted: bool) -> Check:
     def check(evidence: Mapping[str, Evidence]) -> Verdict:
-        holds, words = True, []
-        for case in cases:
-            for body, bend in enumerate(evidence[case].bends, start=1):
-                flat = evidence[case].flat(body)
-                holds &= (flat or bend.smooth) == wanted
-                at = ", ".join(f"{np.degrees(phase):.0f}°" for phase in bend.phases)
-                words.append(f"{case} mu_{body} " + ("flat" if flat else f"{bend.kind} ({at}: {bend.exponent:.1f})"))
-        return judged(holds, "; ".join(words))
+        surfaces = [
+            (f"{case} mu_{body}", evidence[case].flat(body), bend)
+            for case in cases
+            for body, bend in enumerate(evidence[case].bends, start=1)
+        ]
+        holds = all((flat or bend.smooth) == wanted for _, flat, bend in surfaces)
+        return judged(holds, "; ".join(f"{name} {'flat' if flat else describe(bend)}" for name, flat, bend in surfaces))
 
     return check
+
+
+def smooth_between_kinks(case: str) -> Check:
+    """What friction without a corner can do: each numerator of (5.1) smooth, and mu_i wherever its denominator is."""
+
+    def check(evidence: Mapping[str, Evidence]) -> Verdict:
+        numerators = evidence[case].numerators
+        words = [f"numerator of mu_{body} {describe(bend)}" for body, bend in enumerate(numerators, start=1)]
+        return judged(all(bend.smooth for bend in numerators), "; ".join(words))
+
+    return check
+
+
+def describe(bend: Bend) -> str:
+    """A bend in words: kind, place and exponent."""
+    place = ", ".join(f"{np.degrees(phase):.0f}°" for phase in bend.phases)
+    return f"{bend.kind} ({place}: {bend.exponent:.1f})"
+
+
+def kinked_denominator(case: str) -> Callable[[Mapping[str, Evidence]], bool]:
+    """Whether the denominator of (5.1) has a fold, which no numerator that is smooth there can undo."""
+
+    def impossible(evidence: Mapping[str, Evidence]) -> bool:
+        ground = evidence[case].ground
+        return ground is not None and not ground.smooth
+
+    return impossible
+
+
+def twin_peaks(case: str) -> Callable[[Mapping[str, Evidence]], bool]:
+    """Whether the surface is the same half a period further in both phases."""
+    return lambda evidence: evidence[case].twins
 
 
 def smoother(case: str, other: str) -> Check:
@@ -203,14 +180,15 @@ def small(*cases: str) -> Check:
 
 
 def near_resonance(case: str) -> Check:
-    """Both loading periods close to a natural period; the same under every reading."""
+    """Both loading periods within epsilon of a natural period, |T_load / T_natural - 1| <= epsilon as the paper's."""
 
     def check(evidence: Mapping[str, Evidence]) -> Verdict:
-        scene = load_scene(case)
-        natural, periods = modes(scene).period.ravel(), 2.0 * np.pi / exponents(scene).imag
-        gaps = [float(np.abs(natural / period - 1.0).min()) for period in periods]
-        return judged(
-            max(gaps) <= CLOSE, f"nearest natural period off by {' and '.join(f'{100.0 * g:.0f} %' for g in gaps)}"
-        )
+        pairs = evidence[case].resonance
+        words = [
+            f"{period:.2f} s is {100.0 * (period / natural - 1.0):+.0f} % from {natural:.2f} s"
+            for period, natural in pairs
+        ]
+        gaps = [abs(period / natural - 1.0) for period, natural in pairs]
+        return judged(max(gaps) <= EPSILON * (1.0 + ROUNDING), "; ".join(words))
 
     return check

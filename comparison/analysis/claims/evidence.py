@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.analysis.claims.readings import CASES, Reading, settings
+from comparison.analysis.claims.cases import CASES
+from comparison.analysis.claims.literal import literal_peaks
+from comparison.analysis.claims.readings import Reading, has_stops, settings
 from comparison.analysis.claims.smoothness import Bend, bends
 from comparison.execution.task import TaskResult
-from reference import amplification, trajectory
-from reference.problem import Amplification, Scene
+from reference import amplification, modes, trajectory
+from reference.problem import Amplification, Outcome, Scene, exponents, ground_peak, phase_grid
+from reference.problem.reductions import half_turn
 from reference.problem.symmetry import surface
 
 Array = NDArray[np.float64]
@@ -27,10 +30,13 @@ class Evidence:
     """
     One case under one reading, by the printed equations (4.3)-(4.4).
 
-    mu: (n, n, N) on phases 2 pi k / n, NaN where a point has no answer. error: largest absolute error estimate.
+    mu: (n, n, N) on phases 2 pi k / n, NaN where a point has no answer. error: largest absolute error estimate; 0 of
+    the literal integration, which has none.
     statuses: the outcomes met. bends: sharpest bend of each body's surface. apart: max |x_i - y_i| over the largest of
-    |x_i| and |y_i|, for each body over MOTIONS. swing: max (x_1^2 + y_1^2) / rho^2 over the same. error_message: why
-    there is nothing, or "".
+    |x_i| and |y_i|, for each body over MOTIONS. swing: max (x_1^2 + y_1^2) / rho^2 over the same. resonance: for each
+    harmonic its period and the natural period closest to it, s. twins: whether mu is the same where both phases are
+    shifted by pi. ground: sharpest bend of the denominator of (5.1). numerators: of each body's numerator, where the
+    case is lubricated. error_message: why there is nothing, or "".
     """
 
     mu: Array = field(default_factory=lambda: np.full((0, 0, 0), np.nan))
@@ -39,6 +45,10 @@ class Evidence:
     bends: tuple[Bend, ...] = ()
     apart: tuple[float, ...] = ()
     swing: float = float("nan")
+    resonance: tuple[tuple[float, float], ...] = ()
+    twins: bool = False
+    ground: Bend | None = None
+    numerators: tuple[Bend, ...] = ()
     error_message: str = ""
 
     def flat(self, body: int) -> bool:
@@ -64,6 +74,11 @@ class Question:
     def scene(self) -> Scene:
         return CASES[self.case](self.reading)
 
+    @property
+    def literal(self) -> bool:
+        """Whether it is integrated by `literal`: where friction has no corner, (4.6) says nothing."""
+        return self.reading.peak == "literal (4.6)" and has_stops(self.scene)
+
 
 def gathered(question: Question) -> Evidence:
     """
@@ -78,18 +93,42 @@ def gathered(question: Question) -> Evidence:
     -------
     Evidence
     """
-    scene = question.scene
+    scene, literal = question.scene, question.literal
     law = settings(scene, question.reading)
 
     def solved(scene: Scene, phases: Array, tolerance: float = TOLERANCE) -> Amplification:
         return amplification(scene, phases, equations="small", tolerance=tolerance, **law)
 
-    mu, error, statuses = surface(scene, question.grid, solved)
+    def factors(phases: Array) -> Array:
+        return literal_peaks(scene, phases).mu if literal else solved(scene, phases, SHARP).mu
+
+    def ground(phases: Array) -> Array:
+        return ground_peak(scene, phases)[:, None]
+
+    grid = question.grid
+    if literal:
+        mu, error, statuses = factors(phase_grid(grid)).reshape(grid, grid, -1), np.zeros(1), [str(Outcome.OK)]
+    else:
+        mu, error, statuses = surface(scene, grid, solved)
     surfaces = Evidence(mu, float(np.nanmax(error, initial=0.0)), tuple(statuses))
-    if not surfaces.complete or len(scene.bodies) == 1:
+    if not surfaces.complete:
+        return replace(surfaces, statuses=(*statuses, str(Outcome.RIM_REACHED))) if literal else surfaces
+    if len(scene.bodies) == 1:
         return surfaces
-    sharp = bends(mu, lambda phases: solved(scene, phases, SHARP).mu)
-    return Evidence(mu, surfaces.error, surfaces.statuses, tuple(sharp), *_motion(scene, law.get("regularization")))
+    apart, swing = _literal_motion(scene) if literal else _motion(scene, law.get("regularization"))
+    peaks = ground(phase_grid(grid)).reshape(grid, grid, 1)
+    return replace(
+        surfaces,
+        bends=tuple(bends(mu, factors)),
+        apart=apart,
+        swing=swing,
+        resonance=_resonance(scene),
+        twins=bool(half_turn(scene)),
+        ground=bends(peaks, ground)[0],
+        numerators=tuple(bends(mu * peaks, lambda phases: factors(phases) * ground(phases)))
+        if scene.lubricated
+        else (),
+    )
 
 
 def without_value(question: Question, failed: TaskResult) -> Evidence:
@@ -105,3 +144,13 @@ def _motion(scene: Scene, v_reg: float | None) -> tuple[tuple[float, ...], float
         apart = np.maximum(apart, np.abs(place[..., 0] - place[..., 1]).max(axis=0) / np.where(reach > 0, reach, 1.0))
         swing = max(swing, float((place[:, 0] ** 2).sum(axis=-1).max()) / scene.radius**2)
     return tuple(map(float, apart)), swing
+
+
+def _literal_motion(scene: Scene) -> tuple[tuple[float, ...], float]:
+    motions = literal_peaks(scene, np.array(MOTIONS))
+    return tuple(map(float, motions.apart.max(axis=0))), float(motions.swing.max())
+
+
+def _resonance(scene: Scene) -> tuple[tuple[float, float], ...]:
+    natural, periods = modes(scene).period.ravel(), 2.0 * np.pi / exponents(scene).imag
+    return tuple((float(period), float(natural[np.abs(period / natural - 1.0).argmin()])) for period in periods)

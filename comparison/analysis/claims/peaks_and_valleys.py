@@ -5,7 +5,7 @@ A peak is a maximum whose prominence is at least SHARE of the surface's range (h
 than what the errors of the values can make; its prominence is how far one must go down from it to reach anything
 higher. A valley is a peak of the surface upside down. The square is periodic, so a ridge that leaves through one edge
 comes back through the opposite one and counts once. `drawn` counts on one period as it is drawn instead, bounded by
-its edges, where the same ridge is cut in two.
+its edges, where the same ridge is cut in two. `profiled` counts on the mean along the diagonals alpha1 - alpha2.
 """
 
 from __future__ import annotations
@@ -90,8 +90,61 @@ def drawn(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
     -------
     Counts
     """
-    square = np.pad(mu, ((0, 1), (0, 1)), mode="wrap")
-    peaks, valleys = (relief(side * square, error, share, closed=False) for side in (1.0, -1.0))
+    return _bounded(np.pad(mu, ((0, 1), (0, 1)), mode="wrap"), error, share)
+
+
+def profiled(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
+    """
+    Peaks and valleys of the profile over alpha1 - alpha2 as the drawn square shows it, from -2 pi to 2 pi.
+
+    Ridges along the other diagonal, or none, leave a profile of less than `share` of the surface's range: no peaks.
+
+    Parameters
+    ----------
+    mu : ndarray, (n, n)
+        Finite values at phases 2 pi k / n.
+    error : float
+        Absolute error of the values.
+    share : float
+        Least prominence, as a share of the profile's range.
+
+    Returns
+    -------
+    Counts
+
+    Examples
+    --------
+    >>> phases = 2.0 * np.pi * np.arange(16) / 16
+    >>> profiled(-np.cos(phases[:, None] - phases))
+    Counts(peaks=2, valleys=1)
+    """
+    along = profile(mu)
+    if np.ptp(along) < share * np.ptp(mu):
+        return Counts(0, 0)
+    return _bounded(np.concatenate([along, along, along[:1]])[:, None], error, share)
+
+
+def profile(mu: Array) -> Array:
+    """
+    Mean of a surface along the diagonals alpha1 - alpha2 = const.
+
+    Parameters
+    ----------
+    mu : ndarray, (n, n)
+
+    Returns
+    -------
+    ndarray, (n,)
+        At alpha1 - alpha2 = 2 pi k / n.
+    """
+    n = len(mu)
+    rows = np.arange(n)
+    along: Array = np.array([mu[(rows + k) % n, rows].mean() for k in range(n)])
+    return along
+
+
+def _bounded(mu: Array, error: float, share: float) -> Counts:
+    peaks, valleys = (relief(side * mu, error, share, closed=False) for side in (1.0, -1.0))
     between = [np.unique(peaks.regions[valleys.regions == number]) for number in range(len(valleys.tops))]
     return Counts(len(peaks.tops), sum(len(sides) > 1 for sides in between))
 

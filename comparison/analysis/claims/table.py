@@ -8,14 +8,16 @@ table says which, names the reading that reproduces most, and lists what none re
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import xarray as xr
 
+from comparison.analysis.claims.cases import CASES
 from comparison.analysis.claims.checks import Finding, Verdict
 from comparison.analysis.claims.claims import CLAIMS, Claim
 from comparison.analysis.claims.evidence import Evidence, Question, gathered, without_value
-from comparison.analysis.claims.readings import CASES, READINGS, Reading, without_effect
+from comparison.analysis.claims.readings import LITERAL, READINGS, Reading, without_effect
+from comparison.analysis.claims.spike import Spike, no_spike, spike_over_the_step
 from comparison.analysis.protocol import Analysis
 from comparison.execution.task import Task
 from comparison.execution.task_results import TaskResults
@@ -29,16 +31,26 @@ COARSE = 2  # every second phase for surfaces that are only correlated with anot
 
 @dataclass(frozen=True)
 class ClaimTable:
-    """Verdicts, one row for each of `claims`, in each one column for each of `readings`, on `grid` phases per axis."""
+    """
+    Verdicts, one row for each of `claims`, in each one column for each of `readings`, on `grid` phases per axis.
+
+    spike: what the step does to the literal reading.
+    """
 
     claims: Sequence[Claim]
     readings: Sequence[Reading]
     grid: int
     verdicts: Sequence[Sequence[Verdict]]
+    spike: Spike = field(default_factory=Spike)
 
     def held(self, column: int) -> int:
         """How many of the paper's own claims a reading reproduces."""
         return sum(row[column].finding.holds for claim, row in zip(self.claims, self.verdicts) if not claim.weaker)
+
+    @property
+    def stated(self) -> int:
+        """How many claims the paper makes."""
+        return sum(not claim.weaker for claim in self.claims)
 
     @property
     def best(self) -> list[Reading]:
@@ -64,6 +76,9 @@ class ClaimTable:
         return "every reading" if len(names) == len(self.readings) else "; ".join(names) or "no reading"
 
 
+SPIKE = Task(spike_over_the_step, LITERAL, "claims", 2.0 * SECONDS)
+
+
 @dataclass(frozen=True)
 class Claims(Analysis[ClaimTable]):
     """Every claim under every reading, on `grid` phases per axis."""
@@ -77,20 +92,22 @@ class Claims(Analysis[ClaimTable]):
         """One task for each case under each reading; none unless the study has every scene of the paper."""
         if not paper_complete(study):
             return []
-        return [self._task(question) for question in questions(self.readings, self.claims, self.grid)]
+        return [*(self._task(question) for question in questions(self.readings, self.claims, self.grid)), SPIKE]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> ClaimTable | None:
         """The table; None unless the study has every scene of the paper."""
         if not paper_complete(study):
             return None
         columns = [
-            {
-                case: results.value(self._task(_question(case, reading, self.grid)), without_value)
-                for case in _cases(self.claims)
-            }
+            {case: results.value(self.task(case, reading), without_value) for case in _cases(self.claims)}
             for reading in self.readings
         ]
-        return tabulated(self.claims, self.readings, self.grid, columns)
+        table = tabulated(self.claims, self.readings, self.grid, columns)
+        return replace(table, spike=results.value(SPIKE, no_spike))
+
+    def task(self, case: str, reading: Reading) -> Task:
+        """What computes a case under a reading."""
+        return self._task(_question(case, reading, self.grid))
 
     def _task(self, question: Question) -> Task:
         return Task(gathered, question, self.stage, SECONDS * (self.grid / GRID) ** 2)
@@ -167,4 +184,10 @@ def _question(case: str, reading: Reading, grid: int) -> Question:
     )
 
 
-SIGNS = {Finding.REPRODUCED: "yes", Finding.AS_DRAWN: "drawn", Finding.NOT: "no", Finding.OPEN: "?"}
+SIGNS = {
+    Finding.REPRODUCED: "yes",
+    Finding.AS_DRAWN: "drawn",
+    Finding.NOT: "no",
+    Finding.CANNOT: "cannot",
+    Finding.OPEN: "?",
+}

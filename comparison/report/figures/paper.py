@@ -54,13 +54,27 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
                 place = (0.02 + 0.5 * column, 1.0 - (row + 0.98) / bodies, 0.46, 0.88 / bodies)
                 axes = figure.add_axes(place, projection="3d")
                 letter = chr(ord("a") + 2 * row + column)
-                _surface(axes, phase, height, (low, high), rf"$\mu_{{{row + 1}}}$")
+                draw_surface(axes, phase, height, (low, high), rf"$\mu_{{{row + 1}}}$")
                 axes.set_title(f"({letter}) $\\mu_{{{row + 1}}}$, {mathtext(model.title)}", y=1.0, fontsize=9.0)
         figure.savefig(with_ending(path, ".pdf"), metadata={"CreationDate": None})
         figure.savefig(path, dpi=RESOLUTION)
 
 
-def _surface(axes: Axes, phase: np.ndarray, height: np.ndarray, limits: tuple[float, float], name: str) -> None:
+def draw_surface(axes: Axes, phase: np.ndarray, height: np.ndarray, limits: tuple[float, float], name: str) -> None:
+    """
+    One gray surface in the manner of the paper.
+
+    Parameters
+    ----------
+    axes : Axes3D
+    phase : ndarray, (n + 1,), rad
+        With both ends.
+    height : ndarray, (n + 1, n + 1)
+    limits : tuple of float
+        Of the height axis.
+    name : str
+        Of the height.
+    """
     assert isinstance(axes, Axes3D)
     low, high = limits if limits[0] < limits[1] else (0.9 * limits[0] - 0.1, 1.1 * limits[1] + 0.1)
     alpha1, alpha2 = np.meshgrid(phase, phase, indexing="ij")

@@ -1,0 +1,136 @@
+"""
+Equations (4.3)-(4.6) taken to the letter, by an explicit method of fixed step.
+
+A platform at rest compares |F_F| and |F_3| of (4.6) as printed. Where F_3 exceeds F_F, its direction takes the place of
+the direction of the velocity in (4.3) for the first step, and the acceleration of that instant counts in (5.1). F_3 is
+printed with two wrong signs, so that it does not point along the force that drives the platform: this acceleration is a
+spike of one step. Its height does not fade as the step becomes shorter.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.problem import GRAVITY, Scene, exponents, ground_peak
+from reference.solver.compiled import cached_entry_point
+
+Array = NDArray[np.float64]
+
+STEP = 1e-3  # s, 540 steps in the shortest period of the loading
+
+
+class LiteralPeaks(NamedTuple):
+    """
+    What the motions show.
+
+    mu: (M, N), of (5.1), NaN where the platform reaches the rim (4.1). apart: (M, N), max |x_i - y_i| over the largest
+    of |x_i| and |y_i|. swing: (M,), max (x_1^2 + y_1^2) / rho^2. spikes: (M,), first steps of slip.
+    """
+
+    mu: Array
+    apart: Array
+    swing: Array
+    spikes: NDArray[np.int64]
+
+
+def literal_peaks(scene: Scene, phases: Array, step: float = STEP, spike: bool = True) -> LiteralPeaks:
+    """
+    Motions from rest of a chain with dry friction on two frequencies, under (4.3)-(4.6) as printed.
+
+    Parameters
+    ----------
+    scene : Scene
+        Dry friction, horizontal two-frequency loading, no dampers.
+    phases : ndarray, (M, 2), rad
+    step : float, s
+    spike : bool
+        Whether the instant at which slip begins counts in (5.1).
+
+    Returns
+    -------
+    LiteralPeaks
+    """
+    masses, count = scene.masses, len(scene.bodies)
+    below, above = np.zeros((count, 2)), np.zeros((count, 2))
+    below[1:] = scene.stiffness / masses[1:, None]
+    above[:-1] = scene.stiffness / masses[:-1, None]
+    steps = round(scene.duration / step)
+    support = scene.total_mass / masses[0] * GRAVITY
+    square, apart, reach, swing, spikes = _motions(
+        np.ascontiguousarray(phases, dtype=float), scene.amplitudes[:2].copy(), exponents(scene), below, above,
+        support, scene.friction_coefficient, 1.0 / scene.radius, step, steps, spike,
+    )  # fmt: skip
+    mu = np.sqrt(square) / ground_peak(scene, phases)[:, None]
+    mu[~(swing < scene.radius**2)] = np.nan
+    return LiteralPeaks(mu, apart / np.where(reach > 0.0, reach, 1.0), swing / scene.radius**2, spikes)
+
+
+@cached_entry_point
+def _motions(
+    phases: Array, amplitudes: Array, s: Any, below: Array, above: Array, support: float, friction: float,
+    curvature: float, h: float, steps: int, spike: bool,
+) -> Any:  # fmt: skip
+    """
+    Largest squares of absolute accelerations, differences x_i - y_i, displacements, swings; numbers of first steps.
+
+    below, above: (N, 2), stiffness of the links over the mass of the body, 1/s^2. support: R_N = m_sum g / m_1.
+    Semi-implicit Euler: v += h a(x, v), x += h v.
+    """
+    runs, n = len(phases), len(below)
+    square, apart, reach = np.zeros((runs, n)), np.zeros((runs, n)), np.zeros((runs, n))
+    swing, spikes = np.zeros(runs), np.zeros(runs, np.int64)
+    x, v, a = np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 2))
+    growth = np.exp(h * s)
+    for run in range(runs):
+        x[:] = 0.0
+        v[:] = 0.0
+        z1, z2 = np.exp(1j * phases[run, 0]), np.exp(1j * phases[run, 1])
+        for _ in range(steps):
+            ux = amplitudes[0, 0] * z1.real + amplitudes[0, 1] * z2.real
+            uy = amplitudes[1, 0] * z1.real + amplitudes[1, 1] * z2.real
+            for i in range(n):
+                for axis in range(2):
+                    force = -uy if axis else -ux
+                    if i > 0:
+                        force -= below[i, axis] * (x[i, axis] - x[i - 1, axis])
+                    if i + 1 < n:
+                        force -= above[i, axis] * (x[i, axis] - x[i + 1, axis])
+                    a[i, axis] = force
+            p, q = x[0, 0] * curvature, x[0, 1] * curvature
+            vx, vy = v[0, 0], v[0, 1]
+            resting = vx == 0.0 and vy == 0.0
+            starts = False
+            if resting:  # (4.6): the signs of both restoring forces are those of the print
+                limit_x = friction * (support - p * ux - q * ux)
+                limit_y = friction * (support - q * uy - p * uy)
+                ex = -2.0 * ux - a[0, 0] + support * p
+                ey = -2.0 * uy - a[0, 1] + support * q
+                starts = limit_x * limit_x + limit_y * limit_y < ex * ex + ey * ey
+            else:
+                ex, ey = vx, vy
+            if resting and not starts:
+                a[0, 0] = a[0, 1] = 0.0
+            else:  # (4.3)
+                size = np.sqrt(ex * ex + ey * ey)
+                ex, ey = ex / size, ey / size
+                a[0, 0] -= support * p + friction * ((support - p * ux) * ex - q * ux * ey)
+                a[0, 1] -= support * q + friction * ((support - q * uy) * ey - p * uy * ex)
+            spikes[run] += starts
+            swing[run] = max(swing[run], x[0, 0] ** 2 + x[0, 1] ** 2)
+            for i in range(n):
+                if spike or not starts:
+                    square[run, i] = max(square[run, i], (a[i, 0] + ux) ** 2 + (a[i, 1] + uy) ** 2)
+                apart[run, i] = max(apart[run, i], abs(x[i, 0] - x[i, 1]))
+                reach[run, i] = max(reach[run, i], abs(x[i, 0]), abs(x[i, 1]))
+                for axis in range(2):
+                    v[i, axis] += h * a[i, axis]
+            if not resting and vx * v[0, 0] + vy * v[0, 1] <= 0.0:  # it reversed: v = 0 within the step
+                v[0, 0] = v[0, 1] = 0.0
+            for i in range(n):
+                for axis in range(2):
+                    x[i, axis] += h * v[i, axis]
+            z1, z2 = z1 * growth[0], z2 * growth[1]
+    return square, apart, reach, swing, spikes

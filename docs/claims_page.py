@@ -1,0 +1,124 @@
+"""
+Write docs/claims.md and its pictures: what the paper's figures are and are not consistent with.
+
+    python docs/claims_page.py [--search N] [--jobs N] [--out DIR]
+
+computes what `python -m comparison.claims --settle --search N` computes, and takes what is in DIR.tiles from there.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from rich.console import Console
+
+from comparison.analysis.claims.cases import CASES
+from comparison.analysis.claims.evidence import without_value
+from comparison.analysis.claims.readings import LIGHT_BODY, LITERAL, OWN_PERIOD, READINGS, Reading
+from comparison.analysis.claims.search import RANGES, SEARCH_GRID, Selection, best_readings, searched_readings
+from comparison.analysis.claims.settled import GRIDS, Settled, Settling
+from comparison.analysis.claims.spike import PHASES, no_spike, spike_over_the_step
+from comparison.analysis.claims.table import GRID, SIGNS, Claims, ClaimTable
+from comparison.analysis.forced_ratio import forced_ratios
+from comparison.execution.cache import Cache, store_beside
+from comparison.execution.executors import cores
+from comparison.execution.processes import process_pool
+from comparison.execution.runner import Runner
+from comparison.execution.task import Task
+from comparison.execution.task_results import TaskResults
+from comparison.report.figures.claims import draw_reading, draw_spike
+from comparison.study.study import Study
+from reference.problem import builtin_scenes, load_scene
+
+FOLDER = Path(__file__).parent
+DRAWN = 32  # phases per axis of the pictures
+PRINTED = Reading(1.0)
+AMPLITUDES = (0.6, 1.0, 1.5)  # m/s^2, of the literal reading
+SEARCHED = 96
+PICTURES = (
+    ("print", PRINTED, "The parameters as printed, amplitudes in m/s²"),
+    ("light-body", LIGHT_BODY, "The reading that reproduces most, a light, soft second body"),
+    ("own-period", OWN_PERIOD, "The loading around the short natural periods of the chain"),
+    ("literal", LITERAL, "(4.6) taken to the letter"),
+)
+
+Compute = Callable[[Sequence[Task]], TaskResults]
+
+
+def main() -> None:
+    """Compute, draw and write."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--search", type=int, default=SEARCHED, metavar="N")
+    parser.add_argument("--jobs", type=int, default=cores(), metavar="N")
+    parser.add_argument("--out", type=Path, default=Path("report"), metavar="DIR")
+    options = parser.parse_args()
+    study = Study(tuple(map(load_scene, builtin_scenes())), GRID, 1e-3)
+    results = TaskResults(Cache(store_beside(options.out)))
+
+    def compute(tasks: Sequence[Task]) -> TaskResults:
+        Runner(results, Console(), options.jobs, process_pool).run_tasks(tasks, compile_first=True)
+        return results
+
+    def tabled(grid: int, readings: Sequence[Reading]) -> ClaimTable:
+        claims = Claims(grid, readings)
+        table = claims.collect(study, None, compute(claims.tasks(study)))
+        assert table is not None
+        return table
+
+    settling = Settling()
+    settled = settling.collect(study, None, compute(settling.tasks(study))) or []
+    searched = tabled(SEARCH_GRID, searched_readings(options.search))
+    selection = Selection(searched, tabled(GRID, best_readings(searched)))
+    draw(compute)
+    (FOLDER / "claims.md").write_text(page(study, tabled(GRID, READINGS), settled, selection), encoding="utf-8")
+
+
+def draw(compute: Compute) -> None:
+    """The pictures of the readings and of the spike."""
+    claims = Claims(DRAWN)
+    cases = [case for case in CASES if " " not in case]  # with both bodies
+    tasks = {(name, case): claims.task(case, reading) for name, reading, _ in PICTURES for case in cases}
+    spikes = {
+        amplitude: Task(spike_over_the_step, replace(LITERAL, amplitude=amplitude), "claims", 0.5)
+        for amplitude in AMPLITUDES
+    }
+    results = compute([*tasks.values(), *spikes.values()])
+    for name, reading, words in PICTURES:
+        evidence = {case: results.value(tasks[name, case], without_value) for case in cases}
+        draw_reading(FOLDER / f"claims-{name}.png", f"{words} ({reading.name})", evidence)
+    drawn = {amplitude: results.value(task, no_spike) for amplitude, task in spikes.items()}
+    draw_spike(FOLDER / "claims-spike.png", drawn)
+
+
+def page(study: Study, table: ClaimTable, settled: Sequence[Settled], selection: Selection) -> str:
+    """The text of docs/claims.md."""
+    templates = Environment(
+        loader=FileSystemLoader(FOLDER), trim_blocks=True, undefined=StrictUndefined, keep_trailing_newline=True
+    )
+    places = {name: table.readings.index(reading) for name, reading, _ in PICTURES}
+    return templates.get_template("claims.md.j2").render(
+        table=table,
+        held=[table.held(column) for column in range(len(table.readings))],
+        printed=places["print"],
+        light=places["light-body"],
+        own=places["own-period"],
+        literal=places["literal"],
+        searched=OWN_PERIOD.searched,
+        proven=[claim for claim in table.claims if claim.proof],
+        signs=SIGNS,
+        ratios=[(scene.name, each) for scene in study.scenes for each in forced_ratios(scene)],
+        phases=PHASES,
+        grids=GRIDS,
+        settled=settled,
+        selection=selection,
+        ranges=RANGES,
+        pictures=PICTURES,
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,189 @@
+"""Readings change what they say; the literal (4.6), forced ratios, grids, proofs and the search do what they say."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from comparison.analysis.claims.cases import CASES
+from comparison.analysis.claims.checks import Finding, Verdict
+from comparison.analysis.claims.claims import CLAIMS
+from comparison.analysis.claims.evidence import Evidence, Question, gathered
+from comparison.analysis.claims.literal import literal_peaks
+from comparison.analysis.claims.peaks_and_valleys import Counts, profiled
+from comparison.analysis.claims.readings import LIGHT_BODY, LITERAL, OWN_PERIOD, READINGS, Reading
+from comparison.analysis.claims.search import BEST, RANGES, Selection, best_readings, searched_readings
+from comparison.analysis.claims.settled import Settled, describe
+from comparison.analysis.claims.spike import Spike, spike_over_the_step
+from comparison.analysis.claims.table import ClaimTable
+from comparison.analysis.forced_ratio import forced_ratios
+from comparison.report.figures.claims import PANELS, draw_reading, draw_spike
+from reference import amplification, load_scene, modes
+from reference.problem import ground_peak, phase_grid
+
+PHASES = np.array([(0.3, 1.1), (2.0, 0.7)])
+
+
+def test_readings_change_the_keys_they_name() -> None:
+    light = CASES["fig4-dry"](LIGHT_BODY)
+    assert light.masses.tolist() == [1.0, 0.1]
+    assert light.bodies[1].period == pytest.approx([4.5, 4.5])
+    assert light.friction_coefficient == 0.01
+    assert light.largest_acceleration == pytest.approx(0.2)
+    own = CASES["fig3-I"](OWN_PERIOD)
+    assert own.excitation.periods == pytest.approx([0.54, 0.66])
+    assert own.excitation.decay == pytest.approx([0.3 / 0.54, 0.3 / 0.66])
+    assert np.abs(modes(own).period[:, 1] / 0.6 - 1.0).max() < 0.06, "the short natural periods"
+    wet = CASES["fig4-viscous"](OWN_PERIOD)
+    assert wet.lubricated
+    assert wet.friction_coefficient == Reading.lubrication
+
+
+def test_every_reading_says_why_and_whether_it_was_picked_for_its_verdicts() -> None:
+    assert all(reading.reason for reading in READINGS)
+    assert [reading.searched > 0 for reading in READINGS] == [
+        reading in (OWN_PERIOD, LIGHT_BODY) for reading in READINGS
+    ]
+    assert "2353 motions" in OWN_PERIOD.origin
+
+
+def test_the_platform_alone_is_loaded_close_to_its_own_period() -> None:
+    alone = CASES["fig3-I alone"](OWN_PERIOD)
+    natural = float(modes(alone).period[0, 0])
+    gaps = np.array(alone.excitation.periods) / natural - 1.0
+    assert gaps == pytest.approx([-0.1, 0.1])
+
+
+def test_the_literal_reading_tends_to_the_printed_condition_of_rest_but_for_one_instant() -> None:
+    scene = CASES["fig3-I"](LITERAL)
+    limit = amplification(scene, PHASES, "small", cutoff=1e-3, tolerance=1e-4, rest_condition="printed").mu
+    steps = 1e-3, 5e-4, 2.5e-4
+    gaps = [np.abs(literal_peaks(scene, PHASES, step, spike=False).mu / limit - 1.0).max() for step in steps]
+    assert gaps[0] > gaps[1] > gaps[2]
+    assert gaps[2] < 5e-3
+    spikes = [literal_peaks(scene, PHASES, step).mu[:, 0] for step in (1e-3, 1.25e-4)]
+    assert np.abs(spikes[0] / spikes[1] - 1.0).max() < 5e-3, "its height does not fade with its length"
+    assert (spikes[1] > 1.8 * limit[:, 0]).all()
+
+
+def test_the_literal_reading_rests_where_the_platform_never_slides() -> None:
+    scene = CASES["fig3-I"](replace(LITERAL, amplitude=0.2))
+    peaks = literal_peaks(scene, PHASES, 5e-4)
+    expected = amplification(scene, PHASES, "small", tolerance=1e-6).mu
+    assert peaks.spikes.tolist() == [0, 0]
+    assert np.abs(peaks.mu / expected - 1.0).max() < 1e-3
+
+
+def test_the_spike_is_counted_once_for_every_beginning_of_slip() -> None:
+    spike = spike_over_the_step(Reading(1.0, duration=3.0, peak="literal (4.6)"))
+    counted, left_out, starts = map(np.array, (spike.counted, spike.left_out, spike.starts))
+    assert counted.shape == left_out.shape == starts.shape == (len(spike.steps), 3)
+    assert (counted >= left_out).all()
+    assert (starts > 0).all()
+
+
+def test_forced_ratios_are_those_of_one_oscillator_and_of_a_chain() -> None:
+    scene = load_scene("fig3-II")
+    for each in forced_ratios(scene):
+        soft = {"x": 1.5, "y": 1.2}[each.axis]
+        s = complex(-0.3 / each.period, 2.0 * np.pi / each.period)
+        assert each.steady == pytest.approx(1.0 / abs(1.0 - (soft / each.period) ** 2))
+        assert each.ratio == pytest.approx(1.0 / abs(1.0 + (s * soft / (2.0 * np.pi)) ** 2))
+    assert [round(each.steady, 2) for each in forced_ratios(scene) if each.axis == "y"] == [1.29, 5.26]
+    body = scene.bodies[1].model_dump(exclude_none=True)
+    light = scene.with_values({"bodies": [scene.bodies[0].model_dump(exclude_none=True), body, {**body, "mass": 1e-9}]})
+    two = [each.ratio for each in forced_ratios(scene)]
+    three = [each.ratio for each in forced_ratios(light)]
+    assert three[::2] == pytest.approx(two, rel=1e-6)
+    assert three[1::2] == pytest.approx([each**2 for each in two], rel=1e-6), "each body drives the next alike"
+    assert forced_ratios(scene.with_values({"bodies": [scene.bodies[0].model_dump(exclude_none=True)]})) == []
+
+
+def test_counts_settle_on_the_coarsest_grid_from_which_on_they_stay() -> None:
+    views = "periodic", "drawn", "profile"
+    counts = [dict.fromkeys(views, Counts(*each)) for each in ((4, 3), (2, 1), (4, 3), (4, 3))]
+    settled = Settled(Reading(), "fig3-I", 1, (8, 16, 24, 32), counts)
+    assert settled.grid("drawn") == 24
+    assert Settled(Reading(), "fig3-I", 1, (8, 16), counts[:2]).grid("drawn") is None
+    assert describe(settled).startswith("periodic 4 and 3 (from 24 on)")
+    assert "without an answer" in describe(Settled(Reading(), "fig3-I", 1, (8, 16), [{}, counts[0]]))
+
+
+def test_ridges_are_counted_on_the_profile_and_only_along_their_own_diagonal() -> None:
+    first, second = np.meshgrid(*[2.0 * np.pi * np.arange(16) / 16] * 2, indexing="ij")
+    rough = 0.3 * np.cos(3.0 * first + 3.0 * second)
+    assert profiled(rough - np.cos(2.0 * (first - second))) == Counts(4, 3)
+    assert profiled(rough - np.cos(first - second)) == Counts(2, 1)
+    assert profiled(np.cos(first + second)) == Counts(0, 0)
+
+
+def test_a_longer_search_contains_a_shorter_one_and_stays_within_its_ranges() -> None:
+    readings = searched_readings(40)
+    assert readings[:7] == searched_readings(7)
+    assert len(set(readings)) == 40
+    for reading in readings:
+        mass = dict(reading.values)["bodies.1.mass"]
+        assert RANGES[3].low <= mass <= RANGES[3].high
+    assert {reading.peak for reading in readings} == {"resolved", "supremum", "literal (4.6)"}
+
+
+def test_a_search_reports_how_many_it_tried_and_what_its_best_do_elsewhere() -> None:
+    readings = searched_readings(5)
+    yes, no = Verdict(Finding.REPRODUCED, ""), Verdict(Finding.NOT, "")
+    claims = [claim for claim in CLAIMS if not claim.weaker]
+    table = ClaimTable(claims, readings, 8, [[yes if row < column else no for column in range(5)] for row in range(16)])
+    best = best_readings(table)
+    assert best == [readings[4], readings[3], readings[2]]
+    again = ClaimTable(claims, best, 16, [[no] * BEST for _ in range(16)])
+    lines = Selection(table, again).lines
+    assert lines[0] == "5 readings were searched on 8 x 8 phases; at most 14 of the 16 claims can hold."
+    assert lines[1].startswith("Reproduced: median 2, best 4; 0 claims by 1")
+    assert lines[2].endswith("4 on the grid that chose it, 0 on 16 x 16 phases")
+    assert "no evidence" in lines[-1]
+
+
+def test_a_peak_in_a_corner_has_its_twin_in_the_center() -> None:
+    """The proof that peaks cannot stand in corners alone, computed without any use of symmetry."""
+    scene = CASES["fig3-II"](LIGHT_BODY).with_values({"duration": 6.0})
+    phases = np.array([(0.1, 0.2), (5.9, 0.3)])
+    pairs = [amplification(scene, phases + shift, "small", tolerance=1e-6, full=True).mu for shift in (0.0, np.pi)]
+    assert np.abs(pairs[0] / pairs[1] - 1.0).max() < 1e-6
+
+
+def test_the_fold_of_the_denominator_is_in_every_surface_with_viscous_friction() -> None:
+    """The proof that viscous friction cannot smooth them: second differences across it fall like the step alone."""
+    evidence = gathered(Question("fig4-viscous", Reading(), 8))
+    assert evidence.ground is not None
+    assert evidence.ground.kind == "fold"
+    scene, way = CASES["fig4-viscous"](Reading()), np.array([1.0, -1.0])
+    near = np.array(evidence.ground.phases) + np.linspace(-0.1, 0.1, 4001)[:, None] * way
+    center = near[1 + int(np.abs(np.diff(ground_peak(scene, near), 2)).argmax())]
+    sizes = []
+    for h in (0.02, 0.01, 0.005):
+        line = center + np.array([-h, 0.0, h])[:, None] * way
+        mu = amplification(scene, line, "small", tolerance=1e-8).mu
+        ground = ground_peak(scene, line)[:, None]
+        sizes.append([np.abs(np.diff(f, 2, axis=0)).max() for f in (ground, mu[:, :1], mu[:, 1:])])
+    exponents = np.log2(np.array(sizes[:-1]) / np.array(sizes[1:]))
+    assert (exponents[-1] < 1.5).all()
+
+
+def test_grids_of_phases_are_those_of_the_surfaces() -> None:
+    evidence = gathered(Question("fig3-I", LITERAL, 4))
+    expected = literal_peaks(CASES["fig3-I"](LITERAL), phase_grid(4)).mu.reshape(4, 4, 2)
+    assert np.array_equal(evidence.mu, expected)
+
+
+def test_pictures_show_a_reading_and_its_gaps_and_the_spike(tmp_path: Path) -> None:
+    mu = np.random.default_rng(1).uniform(size=(4, 4, 2))
+    evidence = {case: Evidence(mu, 0.0, ("ok",)) for case, *_ in PANELS} | {"fig4-dry": Evidence()}
+    draw_reading(tmp_path / "reading.png", "a reading", evidence)
+    row, count = (1.0, 2.0, 3.0), (1, 2, 4)
+    draw_spike(tmp_path / "spike.png", {1.0: Spike((2e-3, 1e-3), (row, row), (row, row), (count, count), row)})
+    for name in ("reading", "spike"):
+        with Image.open(tmp_path / f"{name}.png") as picture:
+            assert np.ptp(np.asarray(picture.convert("L"))) > 200

@@ -1,0 +1,144 @@
+"""The verdicts of the claims follow from a second, independent integration of the same readings, too."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.linalg import eigh
+from second_integration import LITERAL as LITERAL_LAW
+from second_integration import SET_VALUED, by_scipy, fast, ground_tops, stepped
+
+from comparison.analysis.claims.cases import CASES
+from comparison.analysis.claims.claims import CLAIMS
+from comparison.analysis.claims.evidence import MOTIONS, Evidence, gathered
+from comparison.analysis.claims.literal import literal_peaks
+from comparison.analysis.claims.readings import (
+    LIGHT_BODY,
+    LITERAL,
+    OWN_PERIOD,
+    SPEED,
+    Reading,
+    has_stops,
+    settings,
+    without_effect,
+)
+from comparison.analysis.claims.smoothness import bends
+from comparison.analysis.claims.table import Claims
+from reference import amplification
+from reference.problem import GRAVITY, Scene
+
+Array = NDArray[np.float64]
+
+GRID = 16
+STEP, LITERAL_STEP, FINE = 2e-4, 1e-3, 1e-4  # s
+CONFIRMED = (
+    Reading(0.6),
+    Reading(1.0),
+    Reading(2.0),
+    Reading(1.0, peak="regularised"),
+    OWN_PERIOD,
+    LIGHT_BODY,
+    Reading(0.6, peak="literal (4.6)"),
+    LITERAL,
+)
+ALL_CASES = sorted({case for claim in CLAIMS for case in claim.cases})
+
+
+def _solved(scene: Scene, reading: Reading, phases: Array, fine: bool, runner: Any) -> tuple[Array, Array]:
+    if not has_stops(scene):
+        return by_scipy(scene, phases, None)
+    if reading.peak == "regularised":
+        return by_scipy(scene, phases, SPEED)
+    if reading.peak == "literal (4.6)":
+        return stepped(scene, phases, LITERAL_LAW, LITERAL_STEP, runner=runner)
+    return stepped(scene, phases, SET_VALUED, FINE if fine else STEP, SPEED, runner)
+
+
+def _natural(scene: Scene) -> Array:
+    """Natural periods of (4.8), s, by a general eigensolver."""
+    periods = []
+    for axis in range(2):
+        stiffness = np.diag([scene.total_mass * GRAVITY / scene.radius, *np.zeros(len(scene.bodies) - 1)])
+        for i, k in enumerate(scene.stiffness[:, axis]):
+            stiffness[i : i + 2, i : i + 2] += k * np.array([[1.0, -1.0], [-1.0, 1.0]])
+        periods += list(2.0 * np.pi / np.sqrt(eigh(stiffness, np.diag(scene.masses), eigvals_only=True)))
+    return np.array(periods)
+
+
+@cache
+def _second(case: str, reading: Reading) -> Evidence:
+    """Evidence as `gathered` finds it, by the second integration alone."""
+    scene = CASES[case](reading)
+    bodies = len(scene.bodies)
+    grid = GRID // 2 if bodies == 1 else GRID
+    axis = 2.0 * np.pi * np.arange(grid) / grid
+    phases = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1)
+    half = _solved(scene, reading, phases[: grid // 2].reshape(-1, 2), False, fast())
+    mu = half[0].reshape(grid // 2, grid, bodies)
+    mu = np.concatenate([mu, np.roll(mu, grid // 2, axis=1)])  # that this is so is measured below
+    swings = half[1][:, 0] / scene.radius**2
+    if swings.max() >= 1.0:
+        return Evidence(np.full_like(mu, np.nan), statuses=("rim reached",))
+    if bodies == 1:
+        return Evidence(mu, 1e-3, ("ok",))
+
+    def factors(phases: Array) -> Array:
+        return _solved(scene, reading, phases, True, fast())[0]
+
+    facts = _solved(scene, reading, np.array(MOTIONS), False, fast())[1].max(axis=0)
+    probes = np.array([(0.3, 1.1), (2.0, 0.7)])
+    twins = np.abs(factors(probes + np.pi) / factors(probes) - 1.0).max() < 1e-6
+    natural = _natural(scene)
+    tops = ground_tops(scene, phases.reshape(-1, 2)).reshape(grid, grid, 1)
+    numerators = bends(mu * tops, lambda at: factors(at) * ground_tops(scene, at)[:, None]) if scene.lubricated else []
+    return Evidence(
+        mu,
+        1e-3,
+        ("ok",),
+        tuple(bends(mu, factors)),
+        tuple(facts[1 : 1 + bodies] / facts[1 + bodies :]),
+        float(facts[0] / scene.radius**2),
+        tuple((T, float(natural[np.abs(T / natural - 1.0).argmin()])) for T in scene.excitation.periods),
+        bool(twins),
+        bends(tops, lambda at: ground_tops(scene, at)[:, None])[0],
+        tuple(numerators),
+    )
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("reading", CONFIRMED, ids=lambda reading: reading.name)
+def test_a_second_integration_gives_every_claim_the_same_verdict(reading: Reading) -> None:
+    first, second = {}, {}
+    for case in ALL_CASES:
+        asked = without_effect(reading, CASES[case](reading))
+        first[case], second[case] = gathered(Claims(GRID).task(case, reading).argument), _second(case, asked)
+    verdicts = {(c.figure, c.says): (c.verdict(first), c.verdict(second)) for c in CLAIMS}
+    lines = [f"{key}: {a.finding} {a.found} | {b.found}" for key, (a, b) in verdicts.items()]
+    print("", reading.name, *lines, sep="\n")
+    differing = {key: pair for key, pair in verdicts.items() if pair[0].finding is not pair[1].finding}
+    assert not differing
+
+
+PROBES = np.array([(0.3, 1.1), (4.0, 5.5)])
+
+
+@pytest.mark.parametrize("reading", [Reading(), OWN_PERIOD, LIGHT_BODY], ids=lambda reading: reading.name)
+def test_readings_have_the_factors_of_time_stepping(reading: Reading) -> None:
+    scene = CASES["fig3-I"](reading).with_values({"duration": 2.0})
+    law = settings(scene, reading)
+    first = amplification(scene, PROBES, equations="small", tolerance=1e-4, **law).mu
+    second, _ = stepped(scene, PROBES, SET_VALUED, 1e-3, SPEED)
+    assert np.abs(first / second - 1.0).max() < 5e-3
+
+
+def test_the_literal_reading_has_the_factors_of_a_midpoint_rule() -> None:
+    """Two explicit methods and codes: the same spike of one step, and body 2 alike."""
+    scene = CASES["fig3-I"](LITERAL).with_values({"duration": 2.0})
+    first = literal_peaks(scene, PROBES, 1e-3).mu
+    second, _ = stepped(scene, PROBES, LITERAL_LAW, 1e-3)
+    assert np.abs(first / second - 1.0).max() < 1e-2
+    assert (first[:, 0] > 1.5 * first[:, 1]).all()
