@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
-import exudyn
-import exudyn.itemInterface as items
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
+from multibody.models.engine import exudyn, items
 from reference.problem import GRAVITY
 
 Array = NDArray[np.float64]
@@ -75,7 +75,7 @@ def tower_of_beams(tower: Tower, elements: int = 8) -> tuple[exudyn.SystemContai
             mbs.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[place, height, 0.0, 1.0]))
             for height in np.linspace(0.0, tower.length, elements + 1)
         ]
-        for pair in zip(nodes, nodes[1:]):
+        for pair in pairwise(nodes):
             mbs.AddObject(
                 items.ObjectANCFCable2D(
                     length=tower.length / elements,
@@ -89,9 +89,7 @@ def tower_of_beams(tower: Tower, elements: int = 8) -> tuple[exudyn.SystemContai
         top = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localHT=_clamp(place, -tower.center)))
         for fixed, node in ((held, nodes[0]), (top, nodes[-1])):
             end = mbs.AddMarker(items.MarkerNodeRigid(nodeNumber=node))
-            mbs.AddObject(
-                items.ObjectJointGeneric(markerNumbers=[fixed, end], constrainedAxes=[1, 1, 0, 0, 0, 1])
-            )
+            mbs.AddObject(items.ObjectJointGeneric(markerNumbers=[fixed, end], constrainedAxes=[1, 1, 0, 0, 0, 1]))
     mbs.Assemble()
     return container, mbs, body_node
 

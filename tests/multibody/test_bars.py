@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-import exudyn
-import exudyn.itemInterface as items
 import numpy as np
 import pytest
 from beam_columns import Tower, tower_of_beams
 
+from multibody.models.engine import exudyn, items
 from multibody.models.links import add_links
 from multibody.models.units import units_of
-from reference.problem import GRAVITY, Scene, load_scene
+from reference.problem import Scene, load_scene
 
 SIZE = [2.0, 1.6, 0.2]
 GAP = 0.3  # m, from the upper ends of the bars to the center of mass
