@@ -53,7 +53,7 @@ from comparison.execution.workers import workers
 from comparison.registry import chosen_analyses, first_tasks
 from comparison.report.assemble import assemble
 from comparison.report.findings import Fault, collect_findings
-from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work
+from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work, with_softened_bars
 from comparison.study.planning import StudyPlan, StudyRequest, plan_study
 from comparison.study.refinement import Step
 from comparison.study.study import Study
@@ -107,6 +107,7 @@ def main(
 
 def _chosen(options: Options, hierarchy: Sequence[Model]) -> StudyPlan:
     """What is computed; under a budget, of what as much is computed as fits."""
+    hierarchy = with_softened_bars(hierarchy, options.scenes)
     if options.max_work is not None:
         hierarchy = with_max_work(hierarchy, options.max_work)
     hierarchy = (*hierarchy, *options.models)

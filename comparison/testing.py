@@ -11,7 +11,7 @@ import xarray as xr
 from comparison.analysis.differences import pair_step
 from comparison.analysis.surfaces import labeled_surfaces
 from comparison.study.batches import execute_batch
-from comparison.study.models import MODEL_HIERARCHY, SPATIAL, Model, Pair
+from comparison.study.models import MODEL_HIERARCHY, SPATIAL, Model, Pair, with_softened_bars
 from comparison.study.study import Study
 from reference.problem import Scene, load_scene
 from reference.problem.ranges import Range, checked_number
@@ -76,6 +76,8 @@ def assert_consistent(
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
     with_total = any(name.startswith("total") for name in stated)
     hierarchy = [model for model in MODEL_HIERARCHY if with_total or model is not SPATIAL]
+    if with_total:
+        hierarchy = [*with_softened_bars(hierarchy, (scene,))]
     study = Study((scene,), grid, tolerance, hierarchy)
     batches = study.batches()
     surfaces = labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])

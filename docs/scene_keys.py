@@ -36,7 +36,11 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         "bodies.bars",
         "`bars = {count = 4, bending_stiffness = 120.0, length = 1.0}` in place of `period` or `stiffness`: the link of"
         " (2.3), k = 12 n E J / l^3. `period` and `stiffness` state a link as it is under the weight that it carries;"
-        " `bars` state it without load, and the models leave out that the weight makes bars softer.",
+        " `bars` state it without load. Where a study has such a scene, its last model softens them by the weight above"
+        " them at rest, `Scene.softened()`: P / (l (tan x / x - 1)) of each bar under the load P,"
+        " x = (l / 2) sqrt(P / EJ). `load_effect` softens them in every model. Bars that would buckle, at"
+        " P = pi^2 EJ / l^2, are refused then. In the spatial model `axial_stiffness` makes the link a clamped beam in every"
+        " direction; bars that could not hold the bodies upright are refused.",
     ),
     ("`[excitation]`, two frequencies", "Excitation", "excitation", "Ground acceleration (5.2)-(5.4)."),
     ("`[excitation]`, recorded motion", "Record", "excitation", "A record in place of the two frequencies."),
@@ -69,8 +73,8 @@ cases and `reference/problem/examples` two recorded motions. An unknown key is a
 keys; a wrong value is an error in one line with file, key, value and rule.
 
 Every optional key is off by default. "All" models are the paper's equations and the two engine models, translational
-and spatial; the spatial model needs every key of its own but `support_stiffness`, `restitution`, `offset` and `yaw`,
-and no `ring` with positions of supports.
+and spatial; the spatial model needs every key of its own but `support_stiffness`, `restitution`, `offset`, `yaw` and
+those of `bars`, and no `ring` with positions of supports.
 
 One number of a scene may run over a range, which makes one scene of every value:
 `friction = {{range = [0.02, 0.2], steps = 10}}` or `friction = {{values = [0.05, 0.1]}}`. Several keys may run where
@@ -117,6 +121,8 @@ def _limits(key: str, field: dict[str, Any]) -> str:
         table = ", or table" if any(part.startswith(f"{key}.") for part in SCENE) else ""
         return f"{allowed.lowest:g} to {allowed.highest:g}{', or inf' if allowed.or_infinite else ''}{table}"
     kinds = [kind for kind in field.get("anyOf", [field]) if kind.get("type") != "null"]
+    if "enum" in kinds[0]:
+        return " or ".join(f'"{choice}"' for choice in kinds[0]["enum"])
     if any("$ref" in kind for kind in kinds):
         return "table"
     if kinds[0]["type"] == "array":

@@ -31,13 +31,14 @@ def trajectory(
     initial: State | None = None,
     loading: str = "inertial",
     max_work: float = MAX_WORK,
+    softened: bool = False,
 ) -> Trajectory:
     """
     Compute one motion in the plate's frame with the engine, to a tolerance.
 
     Parameters
     ----------
-    scene, model, regularization, loading, max_work
+    scene, model, regularization, loading, max_work, softened
         As in `amplification`.
     phase : array_like, shape (2,)
         Initial phases of the two harmonics, rad.
@@ -75,6 +76,7 @@ def trajectory(
     >>> multibody.trajectory(scene, (2.0, 0.7)).status == "ok"
     True
     """
+    scene = scene.softened() if softened else scene
     pair = checked_phase(phase)
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
     max_work = checked_number("max_work", max_work, WORK)

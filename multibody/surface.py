@@ -39,6 +39,7 @@ def amplification(
     full: bool = False,
     levels: Sequence[Level] | None = None,
     max_work: float = MAX_WORK,
+    softened: bool = False,
 ) -> Amplification:
     """
     Compute the dynamic amplification factors mu_i of (5.1) with the engine.
@@ -64,6 +65,8 @@ def amplification(
         Levels of accuracy to go through, the coarsest first, in place of those of `multibody.levels`.
     max_work : float
         Steps of the engine that a point may take. A scene that needs more is refused before any step (`refusal`).
+    softened : bool
+        Take links given by `bars` as soft as the weight that they carry makes them (`Scene.softened`).
 
     Returns
     -------
@@ -77,7 +80,7 @@ def amplification(
     Raises
     ------
     ValueError
-        For wrong arguments.
+        For wrong arguments, and for softened bars that buckle.
 
     Notes
     -----
@@ -94,6 +97,7 @@ def amplification(
     >>> multibody.amplification(scene, [(0.3, 1.1)]).status.tolist()
     ['ok']
     """
+    scene = scene.softened() if softened else scene
     pairs, leading = flat_phases(phases)
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
     max_work = checked_number("max_work", max_work, WORK)

@@ -35,10 +35,14 @@ def at_samples(scene: Scene) -> float:
 
 
 def is_recorded(model: Model) -> bool:
-    """Whether the model is the one of the record, whatever work it may take, and not another under its name."""
-    settings = {key: value for key, value in model.settings.items() if key != "max_work"}
+    """
+    Whether the model is one of the record, and not another under its name.
+
+    Whatever work it may take, and whether its bars are softened.
+    """
+    settings = {key: value for key, value in model.settings.items() if key not in ("max_work", "softened")}
     return any(
-        (entry.key, entry.amplification, entry.settings) == (model.key, model.amplification, settings)
+        (entry.key, entry.amplification, entry.settings) == (model.recorded_key, model.amplification, settings)
         for entry in MODEL_HIERARCHY
     )
 
@@ -61,9 +65,10 @@ def seconds_per_point(scene: Scene, model: Model, full: bool = False) -> float:
         As recorded, or guessed: in proportion to the duration and the number of bodies.
     """
     in_scene = recorded().seconds.get(scene.digest(), {})
-    if model.key in in_scene and not full:
-        return in_scene[model.key]
-    alike = [seconds[model.key] for seconds in recorded().seconds.values() if model.key in seconds]
+    key = model.recorded_key
+    if key in in_scene and not full:
+        return in_scene[key]
+    alike = [seconds[key] for seconds in recorded().seconds.values() if key in seconds]
     saved = speedup(load_scene(TYPICAL), model) / (1.0 if full else speedup(scene, model))
     size = scene.duration / DURATION * len(scene.bodies) / BODIES
     return float(np.mean(alike or [1.0])) * saved * size * at_samples(scene)

@@ -44,6 +44,14 @@ def has_spatial_data(scene: Scene) -> bool:
     return all(body.height is not None and body.size is not None for body in scene.bodies)
 
 
+def with_unloaded_bars(scene: Scene) -> bool:
+    return scene.has_unloaded_bars and not has_spatial_data(scene)
+
+
+def with_unloaded_bars_in_space(scene: Scene) -> bool:
+    return scene.has_unloaded_bars and has_spatial_data(scene)
+
+
 @dataclass(frozen=True)
 class Model:
     """
@@ -75,6 +83,11 @@ class Model:
     effect: str = ""
     like: str | None = None
     timeout: float | None = None
+
+    @property
+    def recorded_key(self) -> str:
+        """Key in the record of costs: bars that are softer cost as much."""
+        return self.key.removeprefix("softened-")
 
     def tolerance(self, asked: float) -> float:
         """Relative error this model asks of its own numbers when the study asks for `asked`."""
@@ -171,6 +184,7 @@ SMALL = Model(
         "friction": "set-valued Coulomb, mu constant or of the slip velocity, or mu = f_c |v| in a lubricated scene",
         "normal contact": "rigid, m_sum (g + zeta'') to the kept order",
         "unknowns": "2 N horizontal displacements; the vertical one follows from the sphere (2.1)",
+        "links": "springs of the stiffness that the scene states; bars as they are without load",
         "mu_i": "supremum of (5.1) with one-sided limits at stops, in closed form",
     },
     batch=64,
@@ -252,3 +266,46 @@ SPATIAL = _next(
 )
 
 MODEL_HIERARCHY: tuple[Model, ...] = (SMALL, EXACT, RESOLVED, REGULARIZED, TRANSLATIONAL, SPATIAL)
+
+_SOFTENED = {"links": "bars as soft as the weight that they carry makes them"}
+_SOFTENS = "Bars under the weight that they carry: it makes them softer in sway, and they would buckle under more."
+SOFTENED_TRANSLATIONAL = _next(
+    TRANSLATIONAL,
+    _SOFTENED,
+    key="softened-translational",
+    title="translational engine, softened bars",
+    effect="softening of the bars",
+    adds=_SOFTENS,
+    settings={**TRANSLATIONAL.settings, "softened": True},
+    applies=with_unloaded_bars,
+)
+SOFTENED_SPATIAL = _next(
+    SPATIAL,
+    _SOFTENED,
+    key="softened-spatial",
+    title="spatial engine, softened bars",
+    effect="softening of the bars",
+    adds=_SOFTENS,
+    settings={**SPATIAL.settings, "softened": True},
+    applies=with_unloaded_bars_in_space,
+)
+
+
+def with_softened_bars(hierarchy: Sequence[Model], scenes: Sequence[Scene]) -> tuple[Model, ...]:
+    """
+    The hierarchy with the step that softens bars, where a scene has bars without it.
+
+    Parameters
+    ----------
+    hierarchy : sequence of Model
+    scenes : sequence of Scene
+
+    Returns
+    -------
+    tuple of Model
+        The step comes last: like for like and all models before it have the stiffness without load.
+    """
+    functions = {model.amplification for model in hierarchy}
+    steps = (SOFTENED_TRANSLATIONAL, SOFTENED_SPATIAL)
+    added = (model for model in steps if model.amplification in functions and any(map(model.applies, scenes)))
+    return (*hierarchy, *added)

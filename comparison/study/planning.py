@@ -72,7 +72,7 @@ def plan_study(request: StudyRequest) -> StudyPlan:
     grid = request.grid or (FINEST[EQUATIONS] if request.budgeted else DEFAULT_GRID)
     models, omitted = [], []
     for model in request.hierarchy:
-        accuracy = recorded().accuracy[model.key] if is_recorded(model) else None
+        accuracy = recorded().accuracy[model.recorded_key] if is_recorded(model) else None
         if accuracy is not None and tolerance < accuracy.tightest:
             known = f"the tightest it is known to meet is {accuracy.tightest:.0e}"
             omitted.append(f"{model.title}: cannot meet {tolerance:.0e}, {known}")
@@ -87,7 +87,7 @@ def plan_study(request: StudyRequest) -> StudyPlan:
 
 def _most(model: Model, grid: int, finest: bool) -> int | None:
     """The finest of the nested grids that a model may have."""
-    most = FINEST.get(model.key, model.most) if finest else model.most
+    most = FINEST.get(model.recorded_key, model.most) if finest else model.most
     chain = nested_grids(grid)
     return most and max([allowed for allowed in chain if allowed <= most], default=chain[0])
 
@@ -107,7 +107,7 @@ def setting(model: Model, tolerance: float) -> float:
     float
         The cheapest tolerance that was recorded to meet it, or a tighter one that costs hardly more.
     """
-    accuracy = recorded().accuracy[model.key]
+    accuracy = recorded().accuracy[model.recorded_key]
     able = [tolerance] + [asked for asked, met in zip(accuracy.tolerances, accuracy.met) if met and asked < tolerance]
     cheapest = min(accuracy.cost(asked) for asked in able)
     return min(asked for asked in able if accuracy.cost(asked) <= HARDLY_MORE * cheapest)

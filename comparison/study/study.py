@@ -190,7 +190,7 @@ class Study:
         """Predicted processor time of a phase pair, s."""
         tried = (self.costs or {}).get((scene.name, model.key))
         usual = seconds_per_point(scene, model, self.full) if tried is None else tried
-        accuracy = recorded().accuracy.get(model.key)
+        accuracy = recorded().accuracy.get(model.recorded_key)
         return usual * (accuracy.cost(model.tolerance(self.tolerance)) if accuracy else 1.0)
 
     def seconds_of(self, scene: Scene, model: Model) -> float:

@@ -49,5 +49,7 @@ def _returned(model: EngineModel, start: EngineState, settled: EngineState) -> E
     rise = 0.0 if model.rim == math.inf else 0.5 * float((coordinates[bodies[0, :2]] ** 2).sum())
     coordinates[bodies[:, :2]] = start.coordinates[bodies[:, :2]]
     coordinates[bodies[:, 2]] -= rise
+    if model.undeformed is not None:  # bars that give way are no part of what settles
+        coordinates = model.undeformed(coordinates, start.coordinates)
     contact[1::4] = start.contact[1::4]
     return EngineState(coordinates, start.velocities, contact)

@@ -11,7 +11,7 @@ from multibody.integration.level import STEPS_PER_PERIOD, levels_of
 from multibody.integration.look_ahead import longest_steps
 from multibody.integration.refine import MAX_WORK, MAX_WORK_GROWTH
 from multibody.models.assembly import assemble, required_model
-from reference.problem import Scene
+from reference.problem import Scene, SceneError
 
 # work of two levels and of the compliance of the second over a first level in its largest steps: stops take as many
 WHOLE_POINT = 2.0 * (1.0 + 2.0 * MAX_WORK_GROWTH)
@@ -24,19 +24,21 @@ def refusal(
     tolerance: float = 1e-3,
     full: bool = False,
     max_work: float = MAX_WORK,
+    softened: bool = False,
 ) -> str:
     """
-    Predict whether `amplification` refuses every phase pair of a scene because of its work.
+    Predict whether `amplification` refuses every phase pair of a scene, because of its work or of bars that buckle.
 
     Parameters
     ----------
-    scene, model, regularization, tolerance, full, max_work
+    scene, model, regularization, tolerance, full, max_work, softened
         As in `amplification`.
 
     Returns
     -------
     str
-        One line with the work that is needed, what makes it, and the duration that is expected to have values.
+        One line with the work that is needed, what makes it, and the duration that is expected to have values; or
+        with the load of bars that buckle.
         Empty if the model is tried. A model that is tried may still run out of work on the way.
 
     Raises
@@ -50,6 +52,11 @@ def refusal(
     >>> multibody.refusal(reference.load_scene("fig3-I"))
     ''
     """
+    if softened:
+        try:
+            scene = scene.softened()
+        except SceneError as error:
+            return f"refused before any step: {error}"
     with silence():
         built = assemble(scene, required_model(scene, model, full), regularization)
     first = levels_of(scene, built, tolerance)[0]

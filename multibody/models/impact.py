@@ -4,7 +4,8 @@ Velocities after an impact of the platform on spheres that had left it.
 An impact takes no time: positions stay, velocities jump. The impulses obey Newton's law of restitution along the
 normals and Coulomb's law across them, both stated with the velocities after the impact (Moreau). Spheres that carry
 load may push, too, and not pull. Bars are rigid in tension and bending, as they are beside the contacts' stiffness,
-and give way in shear and twist. The result does not depend on the stiffness of the contacts.
+and give way in shear and twist. Bars with an axial stiffness of their own give way in every direction. The result does
+not depend on the stiffness of the contacts.
 """
 
 from __future__ import annotations
@@ -37,6 +38,7 @@ class ImpactLaw:
     restitution: float
     friction: DryFriction  # of the slip speed before the impact, in units of the model
     corner: float  # slip speed under which the coefficient is reduced linearly
+    rigid: Mask  # (N - 1,), links that are rigid in tension and bending
 
     def after(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
         """
@@ -142,7 +144,7 @@ class ImpactLaw:
         return response
 
     def _bars(self, coordinates: Array, turned: Array) -> Array:
-        """Rates of stretching and bending of each link over the velocities of the bodies, (3 (N - 1), 6 N)."""
+        """Rates of stretching and bending of the rigid links over the velocities of the bodies, three rows of each."""
         count = len(self.masses)
         rows = np.zeros((3 * (count - 1), PER_BODY * count))
         places = coordinates[: PER_BODY * count].reshape(-1, PER_BODY)[:, :3].copy()
@@ -160,7 +162,7 @@ class ImpactLaw:
             stretch[above + 3 : above + 6] = np.cross(levers[1], along) + turn
             rows[3 * link + 1 : 3 * link + 3, below + 3 : below + 6] = -across
             rows[3 * link + 1 : 3 * link + 3, above + 3 : above + 6] = across
-        return rows
+        return rows[np.repeat(self.rigid, 3)]
 
     def _levers(self, link: int, turned: Array) -> tuple[Array, Array]:
         """From the centers of two neighbors, turned by (N, 3, 3), to the ends (3,) of the link between them."""

@@ -21,6 +21,7 @@ More than three supports share the load as elastic bearings do (`supports`), or 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from itertools import compress
 from typing import Any
 
@@ -38,6 +39,7 @@ from multibody.models.contact import (
 from multibody.models.depressions import Depressions, FlatUnderside, rotation
 from multibody.models.engine import exudyn, items
 from multibody.models.impact import ImpactLaw
+from multibody.models.links import PER_BODY, Link, add_links, fastest_of_bars, undeformed
 from multibody.models.loading import Ground, ground_of, symbolic_load
 from multibody.models.plane import farthest, plane_contact, platform_on_plane, set_extent
 from multibody.models.plate import plate_for
@@ -57,9 +59,6 @@ from reference.problem import DryFriction, Scene, State
 from reference.problem.supports import ring_places
 
 Array = NDArray[np.float64]
-
-PER_BODY = 6  # coordinates: x, y, z of the center of mass and three rotations
-LINK_COMPLIANCE_RATIO = 10.0  # of a bar in tension (and, times rho^2, in bending) over the contact, under one force
 
 
 def spatial(
@@ -83,7 +82,8 @@ def spatial(
         along @ (values[:, :, None] * along.swapaxes(1, 2))
         for values in (link_stiffness(scene, units), link_damping(scene, units))
     )
-    links = _links(mbs, bodies, masses, centers, shear, damping, float((distances**2).mean()))
+    square_distance = float((distances**2).mean())
+    links = add_links(mbs, scene, units, bodies, masses, centers, shear, damping, square_distance)
     ground = ground_of(mbs, scene, units)
     bearings = scene.isolator.support_stiffness
     bearing_penetration = 0.0 if bearings is None else units.force / (len(ring) * bearings * units.length)
@@ -110,7 +110,9 @@ def spatial(
     restitution = scene.isolator.restitution or 0.0
     constant = DryFriction(friction, friction, 0.0)
     law = constant if varying is None else varying.law
-    impact_law = ImpactLaw(under_platform, masses, inertias, axes, centers, restitution, law, threshold)
+    rigid = np.array([link.bars is None for link in links], dtype=bool)
+    impact_law = ImpactLaw(under_platform, masses, inertias, axes, centers, restitution, law, threshold, rigid)
+    tensors = (axes * inertias[:, None, :]) @ axes.swapaxes(1, 2)
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     return EngineModel(
         mbs=mbs,
@@ -139,12 +141,9 @@ def spatial(
         set_open=parts.set_open,
         friction=varying,
         rim=np.inf if scene.flat else 1.0,
+        fastest_of_bars=fastest_of_bars(links, masses, tensors, centers),
+        undeformed=None if rigid.all() else partial(undeformed, links, centers),
     )
-
-
-# connector; mass above it and that mass times its place (3,); stiffness and damping in shear, (2, 2) each; stiffness
-# against twist
-Link = tuple[Any, Array, Array, Array, float]
 
 
 @dataclass(frozen=True)
@@ -173,13 +172,11 @@ class _Parts:
         self._press(penetration)
         self.supports.set_stiffness(penetration, warping_compliance)
         for link in self.links:
-            set_link_stiffness(self.mbs, *link, 1.0 / (LINK_COMPLIANCE_RATIO * penetration))
+            link.set_stiffness(self.mbs, penetration)
 
     def bar_lags(self, penetration: float) -> Array:
         """See `EngineModel`."""
-        carried = np.array([carried[0] for _, carried, *_ in self.links])
-        lags: Array = 2.0 * np.sqrt(carried * LINK_COMPLIANCE_RATIO * penetration)
-        return lags
+        return np.array([link.lag(penetration) for link in self.links])
 
     def set_open(self, is_open: NDArray[np.bool_], penetration: float) -> None:
         """See `EngineModel`."""
@@ -256,25 +253,6 @@ def _critical_tilt(ring: Array, radius: float, masses: Array, centers: Array) ->
     return float(np.arctan2(inside, center[2] - (1.0 + radius)))
 
 
-def _links(
-    mbs: Any,
-    bodies: list[Any],
-    masses: Array,
-    centers: Array,
-    stiffness: Array,
-    damping: Array,
-    square_distance: float,
-) -> list[Link]:
-    """Links between neighbors, with what `set_link_stiffness` needs of them; bars so far from the axis, squared."""
-    links = []
-    for link, (shear, damper) in enumerate(zip(stiffness, damping)):
-        above = masses[link + 1 :]
-        carried = np.array([above.sum(), *(above @ centers[link + 1 :, :2])])
-        bars = add_link(mbs, bodies[link : link + 2], centers[link : link + 2])
-        links.append((bars, carried, shear, damper, square_distance * np.diag(shear).mean()))
-    return links
-
-
 def _contacts(
     mbs: Any,
     supports: list[Any],
@@ -344,43 +322,6 @@ def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:
     if scene.flat:
         centers[:, 2] += 1.0 + radius  # the plane is as high above the middle as the tops of the spheres
     return ring, radius, centers, sizes
-
-
-def add_link(mbs: Any, bodies: list[Any], centers: Array) -> Any:
-    """
-    The link between two neighbors with centers of mass (2, 3), half-way up between them and on the vertical axis.
-
-    `set_link_stiffness` completes it.
-    """
-    middle = 0.5 * (centers[1, 2] - centers[0, 2])
-    markers = [
-        mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[-center[0], -center[1], sign * middle]))
-        for body, center, sign in zip(bodies, centers, (1.0, -1.0))
-    ]
-    return mbs.AddObject(
-        items.ObjectConnectorRigidBodySpringDamper(markerNumbers=markers, useIntrinsicFormulation=True)
-    )
-
-
-def set_link_stiffness(
-    mbs: Any, bars: Any, carried: Array, shear: Array, damping: Array, twist: float, stiff: float
-) -> None:
-    """
-    Give bars the scene's stiffness and damping in shear, (2, 2) each, stiffness in twist, and `stiff` otherwise.
-
-    carried: (3,), mass above them, and that mass times the place x, y of its center.
-    """
-    mass, along_x, along_y = carried
-    stiffness = np.array([0.0, 0.0, stiff, stiff, stiff, 0.0])
-    matrix = np.diag([0.0, 0.0, *stiffness[2:5], twist])
-    matrix[:2, :2] = shear
-    mbs.SetObjectParameter(bars, "stiffness", matrix)
-    # the stiff directions are damped critically, twist not at all
-    dampers = np.diag(2.0 * np.sqrt(stiffness * mass))
-    dampers[:2, :2] = damping
-    mbs.SetObjectParameter(bars, "damping", dampers)
-    # at rest the bars carry what stands on them without giving way
-    mbs.SetObjectParameter(bars, "offset", [0.0, 0.0, mass / stiff, along_y / stiff, -along_x / stiff, 0.0])
 
 
 def _inertial(ground: Ground, mass: float) -> Any:

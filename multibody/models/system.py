@@ -81,6 +81,9 @@ class EngineModel:
     bearing_penetration: float = 0.0  # by the weight, as the scene's bearings state it, or 0
     friction: SpeedFriction | None = None  # of contacts whose friction depends on the slip speed
     rim: float = 1.0  # displacement of the platform at which it reaches the rim; inf on a plane
+    fastest_of_bars: float = 0.0  # largest angular frequency that bars make which give way; 0 without such bars
+    # coordinates (n,) with such bars as they were in the coordinates `start` (n,); None without
+    undeformed: Callable[[Array, Array], Array] | None = None
 
     @property
     def container(self) -> Any:

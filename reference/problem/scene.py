@@ -14,6 +14,8 @@ from pydantic import Discriminator, Field, Tag, ValidationError, model_validator
 
 from reference.problem.acceptance import Acceptance, Limits
 from reference.problem.analyses import Analyses
+from reference.problem.bar_links import stands_upright
+from reference.problem.beam_column import buckling_load
 from reference.problem.changed_values import put_value
 from reference.problem.constants import GRAVITY
 from reference.problem.friction import DryFriction
@@ -122,12 +124,27 @@ class Scene(Table):
                 exactly_one(body, *LINKS)
             except ValueError as error:
                 raise MisfitError(f"bodies.{number}", body.model_dump(exclude_none=True), str(error)) from None
+        self._check_bars()
         self._check_derived()
         self._check_supports()
         self._check_measured()
+        self._check_upright()
         if not np.isfinite(self.record if isinstance(self.excitation, Record) else self.amplitudes).all():
             raise MisfitError("excitation.scale", self.excitation.scale, "must leave every acceleration finite")
         return self
+
+    def _check_bars(self) -> None:
+        """Bars that the weight makes softer must not buckle under it."""
+        for number, (body, load) in enumerate(zip(self.bodies[1:], self.loads_above), start=1):
+            if body.bars is None or body.bars.load_effect is None:
+                continue
+            each, limit = load / body.bars.count, buckling_load(body.bars.bending_stiffness, body.bars.length)
+            if not (each < limit and body.bars.factors(load).sway > 0.0):
+                rule = (
+                    f"must be below pi^2 E J / l^2 = {limit:.6g} N, at which clamped bars buckle sideways: "
+                    "take more, stiffer or shorter bars"
+                )
+                raise MisfitError(f"bodies.{number}.bars: weight on each bar in N", each, rule)
 
     def _check_derived(self) -> None:
         """What follows from several values must be within its range as well."""
@@ -197,6 +214,14 @@ class Scene(Table):
                 )
                 raise MisfitError(f"measured.{number}.phases", peak.phases, rule)
 
+    def _check_upright(self) -> None:
+        """Bars that give way must hold the bodies upright."""
+        giving = [n for n, body in enumerate(self.bodies) if body.bars is not None and body.bars.axial_stiffness]
+        if giving and all(body.height is not None for body in self.bodies) and not stands_upright(self):
+            stated = self.bodies[giving[0]].bars
+            rule = "the bodies topple under their weight: take stiffer bars, a larger spread or lower bodies"
+            raise MisfitError(f"bodies.{giving[0]}.bars", stated and stated.model_dump(exclude_none=True), rule)
+
     def with_values(self, values: Mapping[str, Any]) -> Scene:
         """
         The same scene with other values, validated like a scene file.
@@ -265,7 +290,14 @@ class Scene(Table):
     @cached_property
     def stiffness(self) -> NDArray[np.float64]:
         """Link stiffness k_{i+1,i} in x and y, (N-1, 2), N/m; row i links body i and body i + 1."""
-        return np.array([_link_stiffness(body) for body in self.bodies[1:]], dtype=float).reshape(-1, 2)
+        rows = [_link_stiffness(body, load) for body, load in zip(self.bodies[1:], self.loads_above)]
+        return np.array(rows, dtype=float).reshape(-1, 2)
+
+    @property
+    def loads_above(self) -> list[float]:
+        """Weight that each link carries at rest, (N-1,), N."""
+        above = np.cumsum(self.masses[:0:-1])[::-1]
+        return [GRAVITY * float(mass) for mass in above]
 
     @cached_property
     def damping(self) -> NDArray[np.float64]:
@@ -397,6 +429,36 @@ class Scene(Table):
             return self.with_values({"excitation.scale": self.excitation.scale * (amplitude / largest)})
         return self.with_values({"excitation.amplitudes": (self.amplitudes / largest) * amplitude})
 
+    @property
+    def has_unloaded_bars(self) -> bool:
+        """Whether a link is given by bars whose softening by the weight is left out."""
+        return any(body.bars is not None and body.bars.load_effect is None for body in self.bodies)
+
+    def softened(self) -> Scene:
+        """
+        The same scene with every link of bars as soft as the weight that it carries makes it.
+
+        `stiffness` and `period` state a link under load: such links stay.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        SceneError
+            If bars buckle under the weight.
+
+        Examples
+        --------
+        >>> bars = {"count": 4, "bending_stiffness": 2.0, "length": 1.0}
+        >>> scene = load_scene("fig3-I").with_values({"bodies.1.period": None, "bodies.1.bars": bars})
+        >>> scene.stiffness[0].tolist(), scene.softened().stiffness[0].round(2).tolist()
+        ([96.0, 96.0], [84.17, 84.17])
+        """
+        unloaded = [n for n, body in enumerate(self.bodies) if body.bars is not None and body.bars.load_effect is None]
+        return self.with_values({f"bodies.{number}.bars.load_effect": "softening" for number in unloaded})
+
     def digest(self) -> str:
         """Hash of everything that enters a result, for stores of results and for provenance."""
         return self._digest
@@ -411,12 +473,12 @@ class Scene(Table):
         return hashlib.sha256(content.encode()).hexdigest()[:16]
 
 
-def _link_stiffness(body: Body) -> list[float]:
-    """Stiffness in x and y, N/m, of the link below a body, by whichever key states it."""
+def _link_stiffness(body: Body, load: float) -> list[float]:
+    """Stiffness in x and y, N/m, of the link below a body that carries `load`, N, by whichever key states it."""
     if body.stiffness is not None:
         return body.stiffness
     if body.bars is not None:
-        return [body.bars.stiffness] * 2
+        return [body.bars.stiffness * body.bars.factors(load).sway] * 2
     return [body.mass * (2.0 * math.pi / period) * (2.0 * math.pi / period) for period in body.period or ()]
 
 

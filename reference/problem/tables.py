@@ -6,7 +6,7 @@ import math
 import unicodedata
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,7 @@ from pydantic import (
     model_validator,
 )
 
+from reference.problem.beam_column import LoadFactors, load_factors
 from reference.problem.plain_values import hashable, plain
 from reference.problem.ranges import DAMPING_COEFFICIENT, SCENE, SUPPORT_POSITION, Range
 from reference.problem.record_files import checked_samples
@@ -247,6 +248,9 @@ class Isolator(Table):
         return len(self.supports) if isinstance(self.supports, list) else self.supports
 
 
+MIN_SPREAD_BARS = 3  # fewer bars around the axis bend more easily about one direction than about another
+
+
 class Bars(Table):
     """Upright bars clamped at both ends, of the same stiffness in every horizontal direction: the link of (2.3)."""
 
@@ -263,10 +267,58 @@ class Bars(Table):
         about("length l of the bars between their clamped ends", "m", ALL),
     ]
 
+    axial_stiffness: Annotated[
+        Annotated[Positive, within("bodies.bars.axial_stiffness")] | None,
+        about(
+            "axial stiffness E A of one bar: with it the link gives way in tension and in bending as its bars do; "
+            "rigid in both without",
+            "N",
+            SPATIAL,
+        ),
+    ] = None
+    torsional_stiffness: Annotated[
+        Annotated[NonNegative, within("bodies.bars.torsional_stiffness")] | None,
+        about("torsional stiffness G J_t of one bar, 0 without", "N m^2", SPATIAL),
+    ] = None
+    spread: Annotated[
+        Annotated[NonNegative, within("bodies.bars.spread")] | None,
+        about(
+            "distance of the bars from the vertical axis of the links, root mean square, alike along x and y; that of "
+            "the supports without",
+            "m",
+            SPATIAL,
+        ),
+    ] = None
+    load_effect: Annotated[
+        Literal["softening", "shortening"] | None,
+        about(
+            '"softening": the weight above makes the bars softer; "shortening": in the spatial model they also '
+            "shorten as they sway, which needs `axial_stiffness`; without it neither",
+            "",
+            ALL,
+        ),
+    ] = None
+
+    @model_validator(mode="after")
+    def _arrangement(self) -> Bars:
+        if self.load_effect == "shortening" and self.axial_stiffness is None:
+            raise ValueError("load_effect 'shortening' needs axial_stiffness: state it, or take 'softening'")
+        if self.axial_stiffness is not None and self.count < MIN_SPREAD_BARS and self.spread != 0.0:
+            raise ValueError(
+                f"axial_stiffness needs {MIN_SPREAD_BARS} bars or more around the axis: state more, or spread = 0"
+            )
+        return self
+
     @property
     def stiffness(self) -> float:
         """k = 12 n E J / l^3, N/m: (2.3) with the factor 12 where it belongs; without load."""
         return 12.0 * self.count * self.bending_stiffness / self.length / self.length / self.length
+
+    def factors(self, load: float) -> LoadFactors:
+        """What a load on all bars together, N, leaves of their stiffness; nothing is lost without `load_effect`."""
+        if self.load_effect is None:
+            return load_factors(0.0)
+        return load_factors(load / self.count * self.length / (4.0 * self.bending_stiffness) * self.length)
 
 
 LINKS = ("period", "stiffness", "bars")

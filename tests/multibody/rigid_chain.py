@@ -5,8 +5,10 @@ Rigid bodies with six degrees of freedom each. The platform's depressions stay o
 elastic supports demand: the normal forces are N_k = c0 + c1 x_k + c2 y_k, and the constraints are the three moments of
 the gaps that these forces work on. With three supports that is every gap by itself. A link keeps the distance of its
 two ends along the bars and the tilt between its bodies; shear and twist are elastic. All its forces act at the middle
-between the two ends, on both bodies. Dry friction is linear in the slip velocity below v_reg. Supports and centers of
-mass are anywhere in the plane; the links stand on the axis through its origin. Boxes and links may be at an angle.
+between the two ends, on both bodies. Bars with an axial stiffness are elastic in tension and bending, too; where they
+shorten the bodies are held apart by a leaning rod. Dry friction is linear in the slip velocity below v_reg. Supports
+and centers of mass are anywhere in the plane; the links stand on the axis through its origin. Boxes and links may be
+at an angle.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import Radau
 
 from reference.problem import GRAVITY, Scene, ground_acceleration, ground_peak
+from reference.problem.tables import Bars
 
 Array = NDArray[np.float64]
 
@@ -100,7 +103,7 @@ def _link_rates(place, turn, velocity, omega, centers, i):
 
 
 @njit(cache=True)
-def accelerations(state, ground, masses, inertia, centers, shear, twist, ring, radius, sphere, friction, corner):
+def accelerations(state, ground, masses, inertia, centers, shear, twist, bars, ring, radius, sphere, friction, corner):
     """
     Accelerations (N, 6) of the bodies against the plate, and normal forces (K,).
 
@@ -109,7 +112,7 @@ def accelerations(state, ground, masses, inertia, centers, shear, twist, ring, r
     closed = np.ones(len(ring))
     while True:
         accelerated, normals = _solved(
-            state, ground, masses, inertia, centers, shear, twist, ring, radius, sphere, friction, corner, closed
+            state, ground, masses, inertia, centers, shear, twist, bars, ring, radius, sphere, friction, corner, closed
         )
         if normals.min() >= 0.0 or closed.sum() <= 3.0:
             return accelerated, normals
@@ -117,7 +120,9 @@ def accelerations(state, ground, masses, inertia, centers, shear, twist, ring, r
 
 
 @njit(cache=True)
-def _solved(state, ground, masses, inertia, centers, shear, twist, ring, radius, sphere, friction, corner, closed):
+def _solved(
+    state, ground, masses, inertia, centers, shear, twist, bars, ring, radius, sphere, friction, corner, closed
+):
     bodies, supports = len(masses), len(ring)
     place, turn = state[0], state[1]
     velocity, omega = state[2], state[3]
@@ -164,10 +169,30 @@ def _solved(state, ground, masses, inertia, centers, shear, twist, ring, radius,
         pull = _turned(axes, np.array([-sheared[0], -sheared[1], 0.0]))
         wring = -twist[i] * relative[2] * axes[:, 2]
         row = first + 3 + 3 * i
+        tension, bending, rod, load = bars[i, 0], bars[i, 1], bars[i, 2], bars[i, 3]
+        if tension > 0.0:
+            for k in range(row, row + 3):
+                matrix[k, k] = 1.0
+            wring = wring - bending * (relative[0] * axes[:, 0] + relative[1] * axes[:, 1])
+            if rod == 0.0:
+                pull = pull + axes[:, 2] * (load - tension * ends[2])
+            else:
+                half = 0.5 * (centers[i + 1, 2] - centers[i, 2] - rod)
+                below = _turned(_rotation(turn[i]), np.array([-centers[i, 0], -centers[i, 1], half]))
+                above = _turned(_rotation(turn[i + 1]), np.array([-centers[i + 1, 0], -centers[i + 1, 1], -half]))
+                span = place[i + 1] + above - place[i] - below
+                length = math.sqrt(_dot(span, span))
+                thrust = span / length * (load - tension * (length - rod))
+                right[6 * i : 6 * i + 3] -= thrust
+                right[6 * i + 3 : 6 * i + 6] -= np.cross(below, thrust)
+                right[6 * i + 6 : 6 * i + 9] += thrust
+                right[6 * i + 9 : 6 * i + 12] += np.cross(above, thrust)
         for sign, body in ((1.0, i + 1), (-1.0, i)):
             arm = middle - place[body]
             right[6 * body : 6 * body + 3] += sign * pull
             right[6 * body + 3 : 6 * body + 6] += sign * (np.cross(arm, pull) + wring)
+            if tension > 0.0:
+                continue
             along = np.cross(arm, axes[:, 2])
             matrix[row, 6 * body : 6 * body + 3] += sign * axes[:, 2]
             matrix[row, 6 * body + 3 : 6 * body + 6] += sign * along
@@ -176,6 +201,8 @@ def _solved(state, ground, masses, inertia, centers, shear, twist, ring, radius,
             for tilt in range(2):
                 matrix[row + 1 + tilt, 6 * body + 3 : 6 * body + 6] += sign * axes[:, tilt]
                 matrix[6 * body + 3 : 6 * body + 6, row + 1 + tilt] -= sign * axes[:, tilt]
+        if tension > 0.0:
+            continue
         turn_rate = np.empty_like(turn)
         for body in range(bodies):
             turn_rate[body] = _rate(turn[body], omega[body])
@@ -214,6 +241,28 @@ class SpatialMotion:
     drift: float  # m, largest distance of a mean gap from zero
 
 
+def _beams(scene: Scene, link: int, bars: Bars) -> tuple[Array, float, tuple[float, float, float, float]]:
+    """Shear (2, 2) and twist of clamped beams; tension, bending, length of the rod or 0, and load, in SI units."""
+    load = GRAVITY * scene.masses[link + 1 :].sum()
+    each, beam, length = load / bars.count, bars.bending_stiffness, bars.length
+    k, bent, slope = 12.0 * beam / length**3, beam / length, 1.2 / length
+    if bars.load_effect is not None:
+
+        def sway(axial: float) -> float:
+            x = 0.5 * length * math.sqrt(axial / beam)
+            return axial / (length * (math.tan(x) / x - 1.0))
+
+        x = 0.5 * length * math.sqrt(each / beam)
+        k, bent = sway(each), beam / length * x / math.tan(x)
+        slope = (sway(0.999 * each) - sway(1.001 * each)) / (0.002 * each)
+    rod = 1.0 / slope if bars.load_effect == "shortening" else 0.0
+    tension = bars.count * bars.axial_stiffness / length
+    bending = bars.count * bent + 0.5 * tension * bars.spread**2 + 0.25 * load * (length - rod)
+    shear = bars.count * k + (load / rod if rod else 0.0)
+    twist = bars.count * (k * bars.spread**2 + (bars.torsional_stiffness or 0.0) / length)
+    return shear * np.eye(2), twist, (tension, bending, rod, load)
+
+
 def spatial_motion(scene: Scene, phase: ArrayLike, regularization: float, tolerance: float = 1e-8) -> SpatialMotion:
     """The motion from rest for one phase pair; the supports must stay loaded (RuntimeError otherwise)."""
     isolator, bodies = scene.isolator, len(scene.bodies)
@@ -228,13 +277,20 @@ def spatial_motion(scene: Scene, phase: ArrayLike, regularization: float, tolera
     angled = np.array([_rotation(np.array([0.0, 0.0, body.yaw or 0.0])) for body in scene.bodies])
     tensors = np.array([r @ np.diag(moments) @ r.T for r, moments in zip(angled, inertia)])
     shear = [r[:2, :2] @ np.diag(k) @ r[:2, :2].T for r, k in zip(angled[1:], scene.stiffness)]
+    shear = np.array(shear).reshape(-1, 2, 2)
+    twist = (ring**2).sum(axis=1).mean() * scene.stiffness.mean(axis=1)
+    bars = np.zeros((bodies - 1, 4))
+    for link, body in enumerate(scene.bodies[1:]):
+        if body.bars is not None and body.bars.axial_stiffness is not None:
+            shear[link], twist[link], bars[link] = _beams(scene, link, body.bars)
     lubricated = scene.lubricated
     model = (
         scene.masses,
         tensors,
         centers,
-        np.array(shear).reshape(-1, 2, 2),
-        (ring**2).sum(axis=1).mean() * scene.stiffness.mean(axis=1),
+        shear,
+        twist,
+        bars,
         ring,
         scene.radius,
         isolator.sphere_radius,

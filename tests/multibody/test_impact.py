@@ -19,6 +19,7 @@ from multibody.models.depressions import Depressions, rotation
 from multibody.models.impact import ImpactLaw
 from reference.problem import GRAVITY, DryFriction, Scene, SceneError
 
+NO_LINKS = np.ones(0, dtype=bool)
 HALF_WIDTH, HEIGHT, RADIUS = 0.5, 3.0, 0.2  # of the square of supports, of the center of mass, of the spheres
 CENTER, AXES = np.array([0.0, 0.0, HEIGHT]), np.eye(3)[None]  # of mass, of inertia
 INERTIA = 0.9  # of the block about horizontal axes
@@ -33,7 +34,7 @@ def block(restitution: float = 0.0, friction: float | DryFriction = 0.0, corner:
     depressions = Depressions(CORNERS, CENTER, RADIUS, np.empty(0, np.int_))
     inertias = np.array([[INERTIA, INERTIA, 0.7]])
     law = DryFriction(friction, friction, 0.0) if isinstance(friction, float) else friction
-    return ImpactLaw(depressions, np.ones(1), inertias, AXES, CENTER[None], restitution, law, corner)
+    return ImpactLaw(depressions, np.ones(1), inertias, AXES, CENTER[None], restitution, law, corner, NO_LINKS)
 
 
 def rocking_about_the_left_edge(pace: float) -> np.ndarray[Any, Any]:
@@ -65,7 +66,7 @@ def test_a_rocking_block_on_smooth_supports_slows_down_by_its_inertia() -> None:
 def test_a_wide_block_comes_to_rest_on_all_its_supports() -> None:
     depressions = Depressions(4.0 * CORNERS, CENTER, RADIUS, np.empty(0, np.int_))
     friction = DryFriction(0.0, 0.0, 0.0)
-    law = ImpactLaw(depressions, np.ones(1), np.full((1, 3), INERTIA), AXES, CENTER[None], 0.0, friction, 1.0)
+    law = ImpactLaw(depressions, np.ones(1), np.full((1, 3), INERTIA), AXES, CENTER[None], 0.0, friction, 1.0, NO_LINKS)
     before = np.array([0.0, 0.0, -0.3 * 4.0 * HALF_WIDTH, 0.0, 0.3, 0.0])
     after, is_open = law.after(np.zeros(6), before, LEFT, RIGHT)
     np.testing.assert_allclose(after, 0.0, atol=1e-11)

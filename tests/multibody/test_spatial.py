@@ -12,7 +12,7 @@ from scenes_at_hand import CONSTANT, changed, one_body
 import multibody
 from multibody.models.depressions import rotation
 from multibody.models.engine import exudyn, items
-from multibody.models.spatial import add_link, set_link_stiffness
+from multibody.models.links import add_link, set_link_stiffness
 from reference.problem import GRAVITY, Outcome, Scene, ground_acceleration, load_scene
 
 SIZE = [1.0, 1.0, 0.2]

@@ -170,7 +170,8 @@ def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> 
     """
     asked: list[Arguments] = []
     for scene in study.phased:
-        engines = [model for model in models_of(scene, study.hierarchy) if model.side == "engine"]
+        models = models_of(scene, study.hierarchy)
+        engines = [model for model in models if model.side == "engine" and "softened" not in model.settings]
         if len(engines) == 2:
             plain, spatial = engines
             asked.append((scene, plain, None, plain.tolerance(study.tolerance)))

@@ -1,0 +1,121 @@
+"""
+Links of bars that give way in every direction: their stiffness half-way up, under the weight that they carry.
+
+Half-way up the clamped bars of a link have no bending moment from sway: there shear and bending do not act on each
+other. A model puts the stiffness between the two points half-way up, one fixed to either body. Where the bodies rotate
+against each other by phi while these points stay together, the ends of the bars come closer by l phi^2 / 8. That lets
+the weight N sink, which no bar does to first order: N l / 4 is added to the bending stiffness to make up for it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from reference.problem.scene import Scene
+
+
+@dataclass(frozen=True)
+class BarLink:
+    """
+    All bars of one link together, half-way up.
+
+    shear: N/m, beside the weight that sinks where bars shorten. bending: N m, about either horizontal axis. tension:
+    N/m. torsion: N m. pendulum: m, length of the upright rod on which the body above sinks as much as the bars shorten;
+    0 where they do not. load: N, the weight above.
+    """
+
+    shear: float
+    bending: float
+    tension: float
+    torsion: float
+    pendulum: float
+    load: float
+
+
+def bar_links(scene: Scene) -> list[BarLink | None]:
+    """
+    The links of a scene, from below; None for one that is rigid in tension and bending.
+
+    Parameters
+    ----------
+    scene : Scene
+        With supports, or a `spread` of the bars.
+
+    Returns
+    -------
+    list of BarLink or None
+    """
+    links: list[BarLink | None] = []
+    for body, load in zip(scene.bodies[1:], scene.loads_above):
+        bars = body.bars
+        if bars is None or bars.axial_stiffness is None:
+            links.append(None)
+            continue
+        spread = bars.spread if bars.spread is not None else scene.support_radius or 0.0
+        factors, sway = bars.factors(load), bars.stiffness * bars.factors(load).sway
+        pendulum = -bars.length / (3.0 * factors.sway_slope) if bars.load_effect == "shortening" else 0.0
+        tension = bars.count * bars.axial_stiffness / bars.length
+        bent = bars.count * bars.bending_stiffness / bars.length * factors.bending
+        links.append(
+            BarLink(
+                shear=sway + (load / pendulum if pendulum else 0.0),
+                bending=bent + 0.5 * tension * spread**2 + 0.25 * load * (bars.length - pendulum),
+                tension=tension,
+                torsion=bars.count * (bars.torsional_stiffness or 0.0) / bars.length + sway * spread**2,
+                pendulum=pendulum,
+                load=load,
+            )
+        )
+    return links
+
+
+def stands_upright(scene: Scene) -> bool:
+    """
+    Whether the links hold the bodies upright against their weight, on a platform that does not move.
+
+    Parameters
+    ----------
+    scene : Scene
+        With the heights of all bodies.
+
+    Returns
+    -------
+    bool
+
+    Notes
+    -----
+    Between two bodies that are D apart, displaced by u and rotated by theta along one axis, the points half-way up are
+    apart by d = u_2 - u_1 - (theta_1 + theta_2) D / 2. The weight N above sinks by
+    D (theta_1^2 + theta_2^2) / 4 + d (theta_1 + theta_2) / 2. Rigid links have one rotation on both sides.
+    """
+    links, heights = bar_links(scene), [body.height or 0.0 for body in scene.bodies]
+    loads = scene.loads_above
+    rotation = np.cumsum([0] + [link is not None for link in links])  # number of the rotation of each body, 0: none
+    count = len(links)
+    size = count + int(rotation[-1])
+    unit = np.eye(size + 1)[:, :size]  # the last row stands for the platform, which does not move
+    moved = [unit[-1], *unit[:count]]
+    rotated = [unit[-1] if number == 0 else unit[count + number - 1] for number in rotation]
+    for axis in range(2):
+        stiffness = np.zeros((size, size))
+        for i, link in enumerate(links):
+            apart, lower, upper = heights[i + 1] - heights[i], rotated[i], rotated[i + 1]
+            mean, bent = 0.5 * (lower + upper), upper - lower
+            sheared = moved[i + 1] - moved[i] - apart * mean
+            stiffness += scene.stiffness[i, axis] * np.outer(sheared, sheared)
+            stiffness += (0.0 if link is None else _upright_bending(link)) * np.outer(bent, bent)
+            sunk = 0.5 * apart * (np.outer(lower, lower) + np.outer(upper, upper))
+            stiffness -= loads[i] * (sunk + np.outer(sheared, mean) + np.outer(mean, sheared))
+        scale = np.sqrt(np.abs(np.diag(stiffness)))
+        if not scale.all() or np.linalg.eigvalsh(stiffness / np.outer(scale, scale))[0] <= 0.0:
+            return False
+    return True
+
+
+def _upright_bending(link: BarLink) -> float:
+    """Bending stiffness of a link that does not let its body sink otherwise than by shear."""
+    return link.bending + 0.25 * link.load * link.pendulum

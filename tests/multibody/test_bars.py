@@ -1,0 +1,112 @@
+"""Links of bars in the spatial model: the clamped beam in every direction, under the weight that it carries."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from beam_columns import Tower, tower_of_beams
+
+from multibody.models.engine import exudyn, items
+from multibody.models.links import add_links
+from multibody.models.units import units_of
+from reference.problem import Scene, load_scene
+
+SIZE = [2.0, 1.6, 0.2]
+GAP = 0.3  # m, from the upper ends of the bars to the center of mass
+TOWERS = {  # bars, mass above: from nearly no load to nearly buckling
+    "a hundredth of the buckling load": ({"count": 4, "bending_stiffness": 60.0, "length": 1.0}, 2.5),
+    "a tenth": ({"count": 4, "bending_stiffness": 6.0, "length": 1.0}, 2.5),
+    "half": ({"count": 6, "bending_stiffness": 3.0, "length": 1.3}, 5.4),
+    "nine tenths": ({"count": 3, "bending_stiffness": 1.0, "length": 0.8}, 4.25),
+    "long bars": ({"count": 8, "bending_stiffness": 900.0, "length": 4.0}, 230.0),
+    "heavy": ({"count": 4, "bending_stiffness": 2e6, "length": 3.0}, 4e5),
+}
+
+
+def scene_of(name: str, load_effect: str | None = "softening", slenderness: float = 60.0, **bars: Any) -> Scene:
+    stated, mass = TOWERS[name]
+    own = {
+        "axial_stiffness": stated["bending_stiffness"] * (slenderness / stated["length"]) ** 2,
+        "spread": 0.8,
+        **stated,
+        **bars,
+    }
+    if load_effect is not None:
+        own["load_effect"] = load_effect
+    return load_scene("fig3-I").with_values(
+        {
+            "duration": 1.0,
+            "bodies.0.mass": mass,
+            "bodies.1": {"mass": mass, "height": 0.2 + stated["length"] + 2.0 * GAP, "size": SIZE, "bars": own},
+        }
+    )
+
+
+def tower_of(scene: Scene) -> Tower:
+    body, bars = scene.bodies[1], scene.bodies[1].bars
+    assert bars is not None
+    assert bars.axial_stiffness is not None
+    assert bars.spread is not None
+    inertia = body.mass / 12.0 * (SIZE[0] ** 2 + SIZE[2] ** 2)
+    ends = bars.count, bars.bending_stiffness, bars.length, bars.axial_stiffness, bars.spread
+    return Tower(*ends, body.mass, inertia, GAP)
+
+
+def on_the_ground(scene: Scene, force: float = 0.0) -> tuple[Any, Any, int]:
+    """The body above on its link, whose lower end is fixed, in units of the model; a force along x in weights."""
+    units = units_of(scene)
+    container = exudyn.SystemContainer()
+    mbs = container.AddSystem()
+    heights = np.array([body.height for body in scene.bodies]) / units.length
+    centers = np.column_stack([np.zeros((2, 2)), heights])
+    masses = scene.masses / units.mass
+    sides = np.array(SIZE) / units.length
+    inertia = masses[1] / 12.0 * (np.square(sides).sum() - np.square(sides))
+    ground = mbs.AddObject(items.ObjectGround(referencePosition=centers[0]))
+    node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[*centers[1], 0.0, 0.0, 0.0]))
+    body = mbs.AddObject(items.ObjectRigidBody(nodeNumber=node, mass=masses[1], inertia=[*inertia, 0.0, 0.0, 0.0]))
+    marker = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body))
+    mbs.AddLoad(items.LoadForceVector(markerNumber=marker, loadVector=[force * masses[1], 0.0, -masses[1]]))
+    shear = scene.stiffness[:, :, None] * np.eye(2) * (units.time**2 / units.mass)
+    add_links(mbs, scene, units, [ground, body], masses, centers, shear, 0.0 * shear, 1.0)
+    mbs.Assemble()
+    return container, mbs, node
+
+
+def static_settings() -> Any:
+    settings = exudyn.SimulationSettings()
+    settings.solution.file.write = False
+    settings.staticSolver.verboseMode = 0
+    settings.staticSolver.newton.relativeTolerance = 1e-9
+    settings.staticSolver.numberOfLoadSteps = 4
+    return settings
+
+
+@pytest.mark.parametrize("load_effect", ["softening", "shortening"])
+@pytest.mark.parametrize("name", TOWERS)
+def test_a_body_on_bars_has_the_frequencies_of_beams_under_load(name: str, load_effect: str) -> None:
+    scene = scene_of(name, load_effect, torsional_stiffness=0.7)
+    tower, units = tower_of(scene), units_of(scene)
+    bars = scene.bodies[1].bars
+    assert bars is not None
+    _, mbs, _ = on_the_ground(scene)
+    values, _ = mbs.ComputeODE2Eigenvalues(static_settings())
+    frequencies = np.sqrt(values) / units.time
+    print(frequencies, tower.frequencies())
+    for expected in tower.frequencies():
+        assert np.abs(frequencies / expected - 1.0).min() < 1e-5
+
+
+@pytest.mark.parametrize("name", TOWERS)
+def test_beam_elements_have_the_frequencies_of_beams_under_load(name: str) -> None:
+    tower = tower_of(scene_of(name, slenderness=150.0))
+    _, mbs, _ = tower_of_beams(tower)
+    settings = static_settings()
+    mbs.SolveStatic(settings, updateInitialValues=True)
+    values, _ = mbs.ComputeODE2Eigenvalues(settings)
+    frequencies = np.sqrt(values[:3])
+    print(frequencies, tower.frequencies())
+    for expected in tower.frequencies():
+        assert np.abs(frequencies / expected - 1.0).min() < 3e-3
