@@ -46,8 +46,11 @@ def main() -> NoReturn:
     """Run the console script: its first word is the command, the others are for the command."""
     name = sys.argv[1] if len(sys.argv) > 1 else "--help"
     if name in ("-h", "--help"):
-        print(f"usage: {SCRIPT} COMMAND [options]; {SCRIPT} COMMAND --help lists the options\n")
+        print(f"usage: {SCRIPT} COMMAND [options]; {SCRIPT} COMMAND --help lists the options; {SCRIPT} --version\n")
         print("\n".join(f"  {command:12s} {purpose}" for command, (_, purpose) in COMMANDS.items()))
+        raise SystemExit(0)
+    if name == "--version":
+        print(f"{SCRIPT} {import_module('reference').__version__}")
         raise SystemExit(0)
     if name not in COMMANDS:
         nearest = get_close_matches(name, COMMANDS, n=1)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+import reference
 from comparison.cli.start import COMMANDS
 
 ROOT = Path(__file__).parents[2]
@@ -71,6 +72,19 @@ def test_without_a_command_the_script_lists_them(script: Path) -> None:
     run = called(script)
     assert run.returncode == 0
     assert all(f"  {name} " in run.stdout for name in COMMANDS)
+
+
+def test_the_script_states_its_version(script: Path) -> None:
+    run = called(script, "--version")
+    assert (run.returncode, run.stdout, run.stderr) == (0, f"phase-resonance {reference.__version__}\n", "")
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_states_the_version(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        import_module(COMMANDS[name][0]).main(["--version"])
+    assert end.value.code == 0
+    assert capsys.readouterr().out == f"phase-resonance {reference.__version__}\n"
 
 
 @pytest.mark.parametrize("name", COMMANDS)
