@@ -22,6 +22,7 @@ COMMANDS = {  # module whose `main` is the command, and what it does
     "extremes": ("comparison.cli.extremes", "every model at the extremes of every quantity"),
     "tradeoff": ("comparison.cli.tradeoff", "error against compute time"),
     "ensemble": ("comparison.cli.ensemble", "demands under a suite of motions at many intensities"),
+    "init": ("comparison.cli.init", "a directory with a study to start from"),
     "animate": ("multibody.animate", "a film of the motion"),
 }
 
