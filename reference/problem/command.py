@@ -56,6 +56,7 @@ class OneLineParser(argparse.ArgumentParser):
         self.add_argument("--version", action="version", version=f"phase-resonance {__version__}")
 
     def error(self, message: str) -> NoReturn:
+        """Raise UsageError, one line."""
         raise UsageError(f"command line: {message} (--help lists the options)")
 
 

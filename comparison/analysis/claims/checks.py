@@ -26,6 +26,8 @@ CLOSE = 0.1  # relative distance of two periods that are close: the paper's epsi
 
 
 class Finding(StrEnum):
+    """What a check says about a claim."""
+
     REPRODUCED = "reproduced"
     AS_DRAWN = "as drawn"  # only when counted on the square as drawn, cut open at its edges
     NOT = "not reproduced"
@@ -33,6 +35,7 @@ class Finding(StrEnum):
 
     @property
     def holds(self) -> bool:
+        """Whether the claim is reproduced, at least as it is drawn."""
         return self in (Finding.REPRODUCED, Finding.AS_DRAWN)
 
 
@@ -48,6 +51,7 @@ Check = Callable[[Mapping[str, Evidence]], Verdict]
 
 
 def judged(holds: bool, words: str) -> Verdict:
+    """A verdict with its reason."""
     return Verdict(Finding.REPRODUCED if holds else Finding.NOT, words)
 
 
@@ -93,6 +97,8 @@ def more_intense(case: str) -> Check:
 
 
 def more_complex(case: str) -> Check:
+    """Check that mu_2 has several peaks and valleys, and more of them than mu_1."""
+
     def check(evidence: Mapping[str, Evidence]) -> Verdict:
         first, second = (periodic(evidence[case].mu[..., body], evidence[case].error, LEAST_SHARE) for body in (0, 1))
         several = second.peaks > 1 and second.valleys > 1
@@ -179,6 +185,8 @@ def _bend(mu: Array) -> float:
 
 
 def unequal(case: str, body: int) -> Check:
+    """Check that a body moves differently along x and y."""
+
     def check(evidence: Mapping[str, Evidence]) -> Verdict:
         apart = evidence[case].apart[body - 1]
         return judged(apart > APART, f"|x_{body} - y_{body}| up to {apart:.2g} of the largest")
@@ -187,6 +195,8 @@ def unequal(case: str, body: int) -> Check:
 
 
 def plane(case: str) -> Check:
+    """Check that every body moves alike along x and y."""
+
     def check(evidence: Mapping[str, Evidence]) -> Verdict:
         apart = max(evidence[case].apart)
         return judged(apart < PLANE, f"|x_i - y_i| up to {apart:.1g} of the largest")
@@ -195,6 +205,8 @@ def plane(case: str) -> Check:
 
 
 def small(*cases: str) -> Check:
+    """Check that displacements are small against rho."""
+
     def check(evidence: Mapping[str, Evidence]) -> Verdict:
         swing = max(evidence[case].swing for case in cases)
         return judged(swing <= SMALL, f"up to {swing:.2g} rho^2")

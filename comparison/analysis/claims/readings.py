@@ -35,6 +35,7 @@ class Reading:
 
     @property
     def name(self) -> str:
+        """The values of the reading in words."""
         words = [f"{self.amplitude:g} m/s²"]
         words += [f"{self.duration:g} s"] if self.duration != Reading.duration else []
         words += [f"f_c {self.lubrication:g} s/m"] if self.lubrication != Reading.lubrication else []
