@@ -54,17 +54,8 @@ def long(session: nox.Session) -> None:
 def bench(session: nox.Session) -> None:
     """The benchmarks, one after the other."""
     session.install(".[test]")
-    session.run(
-        "python",
-        "-m",
-        "pytest",
-        "tests/benchmarks",
-        "-m",
-        "long or not long",
-        "-s",
-        "--benchmark-enable",
-        *session.posargs,
-    )
+    options = ["-m", "long or not long", "-s", "--benchmark-enable"]
+    session.run("python", "-m", "pytest", "tests/benchmarks", *options, *session.posargs)
 
 
 @nox.session(python=PYTHONS, venv_backend="uv")
