@@ -19,6 +19,7 @@ LETTERS = re.compile(rf"(?<![a-zA-Z^])(d?)({'|'.join(GREEK)})(?![a-zA-Z])")
 
 
 def percent(value: float) -> str:
+    """A share in percent with two digits."""
     if not math.isfinite(value):
         return "none"
     if 0.0 < abs(value) < 1e-6:
@@ -34,6 +35,7 @@ def signed(value: float) -> str:
 
 
 def scientific(value: float) -> str:
+    """A number with its exponent and two digits."""
     return "none" if not math.isfinite(value) else f"{value:.1e}"
 
 
@@ -43,6 +45,7 @@ def significant(value: float) -> str:
 
 
 def degrees(phase: float) -> str:
+    """A phase in degrees."""
     return "none" if not math.isfinite(phase) else f"{math.degrees(phase):.0f}°"
 
 

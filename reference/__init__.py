@@ -71,6 +71,7 @@ from reference.problem import (
     phase_distribution,
     phase_grid,
 )
+from reference.problem.version import __version__ as __version__
 
 if TYPE_CHECKING:
     from reference.demand_surface import peak_demands

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import doctest
 import inspect
+from collections.abc import Iterator
 from enum import Enum
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -14,6 +17,7 @@ import multibody
 import reference
 import reference.problem
 
+ROOT = Path(__file__).parents[1]
 PACKAGES = (reference, reference.problem, multibody)
 CONSTANTS = {"ADVICE", "GRAVITY", "MAX_WORK"}  # explained in the docstring of their package
 NAMES = [
@@ -65,3 +69,24 @@ def test_the_examples_of_a_public_name_run(package: ModuleType, name: str) -> No
 def test_the_examples_of_a_package_run(package: ModuleType) -> None:
     for test in doctest.DocTestFinder(recurse=False).find(package, package.__name__):
         assert doctest.DocTestRunner().run(test).failed == 0
+
+
+def undocumented(node: ast.Module | ast.ClassDef | ast.FunctionDef, name: str) -> Iterator[str]:
+    """The public names in a node, itself included, that have no docstring."""
+    if not ast.get_docstring(node):
+        yield name
+    for child in () if isinstance(node, ast.FunctionDef) else node.body:
+        if isinstance(child, ast.ClassDef | ast.FunctionDef) and not child.name.startswith("_"):
+            yield from undocumented(child, f"{name}: {child.name}")
+
+
+@pytest.mark.parametrize("package", ["reference", "multibody", "comparison"])
+def test_every_public_module_class_function_and_method_has_a_docstring(package: str) -> None:
+    files = sorted((ROOT / package).rglob("*.py"))
+    assert len(files) > 20
+    missing = [
+        name
+        for file in files
+        for name in undocumented(ast.parse(file.read_text(encoding="utf-8")), str(file.relative_to(ROOT)))
+    ]
+    assert missing == []

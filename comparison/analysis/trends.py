@@ -57,6 +57,7 @@ class Trend:
 
     @property
     def slope(self) -> Slope:
+        """Exponent of the sizes over the parameter."""
         return fitted(self.parameter, np.array(self.sizes), np.array(self.errors))
 
     @property

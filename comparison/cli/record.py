@@ -2,13 +2,16 @@
 Records the one table of costs, which `--plan` and `--tolerance` of `comparison.run` read, in one run.
 
 For every model of the hierarchy and every tolerance: what a point costs beside one at the usual tolerance, and at which
-share of the points the accuracy was met, on the paper's scenes. Writes comparison/study/accuracy_record.json.
+share of the points the accuracy was met, on the paper's scenes. The file goes into the user's cache, where the commands
+of this machine read it in place of that of the package.
 """
 
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,9 +19,9 @@ from numpy.typing import NDArray
 
 from comparison.analysis.tradeoff.measure import Measured, Measurement, measure, sample
 from comparison.analysis.tradeoff.settings import SPATIAL_TIGHT, TIGHT
-from comparison.cli.arguments import CommandParser, command
+from comparison.cli.arguments import CommandParser, command, writing
 from comparison.execution.provenance import provenance
-from comparison.study.accuracy_record import FILE, recorded
+from comparison.study.accuracy_record import RecordedModels, load_record, machine_file, recorded
 from comparison.study.batches import imported
 from comparison.study.models import (
     EXACT,
@@ -29,8 +32,8 @@ from comparison.study.models import (
     TRANSLATIONAL,
     Model,
 )
-from comparison.study.planning import DEFAULT_GRID, setting
-from reference.problem import Scene, builtin_scenes, load_scene
+from comparison.study.planning import DEFAULT_GRID
+from reference.problem import Scene, SceneError, builtin_scenes, load_scene
 from reference.problem.files import write_atomically
 
 Array = NDArray[np.float64]
@@ -43,7 +46,9 @@ POINTS = {"reference": 64, "translational": 8, "spatial": 4}
 @command
 def main(argv: Sequence[str]) -> int:
     """Record, print a line for every model, and write the file; the exit code."""
-    CommandParser("tradeoff.record", "Cost and accuracy of every model, recorded on this machine.").parse_args(argv)
+    parser = CommandParser("tradeoff.record", "Cost and accuracy of every model, recorded on this machine.")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="where to (default: the user's cache)")
+    file = _place(parser.parse_args(argv).out)
     scenes = [load_scene(name) for name in builtin_scenes()]
     record: dict[str, Any] = {"machine": provenance()["processor"], "models": {}}
     seconds: dict[str, dict[str, float]] = {scene.digest(): {} for scene in scenes}
@@ -55,24 +60,36 @@ def main(argv: Sequence[str]) -> int:
             seconds[scene.digest()][model.key] = float(f"{cost:.4g}")
         print(model.key, *(f"{row['tolerance']:.0e}: {row['cost']:.2f}, {row['met']:.3f}" for row in rows), sep="  ")
     record["seconds"] = seconds
-    write_atomically(FILE, (json.dumps(record, indent=1) + "\n").encode())
+    with writing(file):
+        write_atomically(file, (json.dumps(record, indent=1) + "\n").encode())
     recorded.cache_clear()
-    print(*surface_costs(), FILE, sep="\n")
+    print(*surface_costs(load_record(file)), file, sep="\n")
     return 0
 
 
-def surface_costs() -> list[str]:
+def _place(out: Path | None) -> Path:
+    """Where the record goes. Raises SceneError, one line, before anything is measured."""
+    file = machine_file() if out is None else out
+    if file is None:
+        raise SceneError("command line", "--out", "absent", "the user's cache cannot be written: give a file")
+    if file.is_dir() or not os.access(file if file.exists() else file.parent, os.W_OK):
+        raise SceneError("command line", "--out", str(file), "cannot be written: give another file")
+    return file
+
+
+def surface_costs(record: RecordedModels) -> list[str]:
     """What a surface of the default study costs, s, by the accuracy asked: the rows of the table in the README."""
     rows = []
     for power in range(2, 9):
         tolerance, cells = 10.0**-power, []
         for model in (EXACT, REGULARIZED, TRANSLATIONAL, SPATIAL):
-            if tolerance < recorded().accuracy[model.key].tightest:
+            accuracy = record.accuracy[model.key]
+            if tolerance < accuracy.tightest:
                 cells += ["cannot", ""] if model is TRANSLATIONAL else [""]
                 continue
-            asks = setting(model, model.tolerance(tolerance))
-            each = np.mean([seconds[model.key] for seconds in recorded().seconds.values() if model.key in seconds])
-            seconds = each * recorded().accuracy[model.key].cost(asks) * (model.most or DEFAULT_GRID) ** 2
+            asks = accuracy.setting(model.tolerance(tolerance))
+            each = np.mean([seconds[model.key] for seconds in record.seconds.values() if model.key in seconds])
+            seconds = each * accuracy.cost(asks) * (model.most or DEFAULT_GRID) ** 2
             exponent = f"{asks:.0e}".replace("e-0", "e-")
             cells += [*([exponent] if model in (EXACT, TRANSLATIONAL) else []), f"{float(f'{seconds:.2g}'):g}"]
         rows.append(f"| 1e-{power} | {' | '.join(cells)} |".replace("|  |", "| |").replace("|  |", "| |"))

@@ -23,6 +23,7 @@ COMMANDS = {  # module whose `main` is the command, and what it does
     "extremes": ("comparison.cli.extremes", "every model at the extremes of every quantity"),
     "tradeoff": ("comparison.cli.tradeoff", "error against compute time"),
     "ensemble": ("comparison.cli.ensemble", "demands under a suite of motions at many intensities"),
+    "init": ("comparison.cli.init", "a directory with a study to start from"),
     "animate": ("multibody.animate", "a film of the motion"),
 }
 
@@ -47,8 +48,11 @@ def main() -> NoReturn:
     """Run the console script: its first word is the command, the others are for the command."""
     name = sys.argv[1] if len(sys.argv) > 1 else "--help"
     if name in ("-h", "--help"):
-        print(f"usage: {SCRIPT} COMMAND [options]; {SCRIPT} COMMAND --help lists the options\n")
+        print(f"usage: {SCRIPT} COMMAND [options]; {SCRIPT} COMMAND --help lists the options; {SCRIPT} --version\n")
         print("\n".join(f"  {command:12s} {purpose}" for command, (_, purpose) in COMMANDS.items()))
+        raise SystemExit(0)
+    if name == "--version":
+        print(f"{SCRIPT} {import_module('reference').__version__}")
         raise SystemExit(0)
     if name not in COMMANDS:
         nearest = get_close_matches(name, COMMANDS, n=1)

@@ -17,7 +17,7 @@ from comparison.execution.task_results import TaskResults
 from comparison.registry import chosen_analyses, first_tasks, predicted_costs
 from comparison.study.accuracy_record import recorded
 from comparison.study.batches import refusal_of
-from comparison.study.models import RECORDED_ON, models_of
+from comparison.study.models import models_of
 from comparison.study.overhead import COMPILED_ONCE, LOADING, START_UP, WRITING
 from comparison.study.planning import StudyPlan
 from comparison.study.reductions import reductions
@@ -46,7 +46,7 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
         console.print(
             f"{stored} of {len(batches)} batches are in {store.folder} already, {others}: they are not computed again."
         )
-    console.print(f"Costs were recorded on {RECORDED_ON}; another machine scales them all alike.")
+    console.print(f"Costs were recorded on one core of {recorded().machine}; another machine scales them all alike.")
     if tried := [scene.name for scene in study.scenes if scene.digest() not in recorded().seconds]:
         console.print(f"Not recorded, so tried here at a few phase pairs: {', '.join(tried)}.", soft_wrap=True)
     console.print(COMPILED_ONCE)

@@ -91,6 +91,7 @@ class ClusterExecutor(Executor):
         return max(self._count, 1)
 
     def submit(self, solve: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Compute a task on a worker of the cluster."""
         return self._submit(_one_at_a_time, solve, args, kwargs)
 
     def submit_within(self, seconds: float, solve: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:

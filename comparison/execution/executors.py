@@ -114,6 +114,7 @@ class Lent(Executor):
         self._executor = executor
 
     def submit(self, solve: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Compute a task on the executor that was lent. Raises ExecutorLostError if it is broken."""
         try:
             return self._executor.submit(solve, *args, **kwargs)
         except BrokenExecutor as error:  # nobody here can make another one

@@ -185,7 +185,7 @@ def atomic_replace(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
         Its `folder` is to be written into; `place` says after the block where the report is.
     """
     place = out.resolve()
-    made = _make_parents(place.parent)
+    made = make_parents(place.parent)
     try:
         with staging(place) as staging_folder:
             report = Report(staging_folder / NEW, place)
@@ -448,8 +448,8 @@ def _is_mount_point(place: Path) -> bool:
     return False
 
 
-def _make_parents(folder: Path) -> list[Path]:
-    """Create what is missing of `folder`; the directories made, deepest first."""
+def make_parents(folder: Path) -> list[Path]:
+    """Create what is missing of `folder`; the directories made, deepest first. Raises OSError."""
     missing = [parent for parent in (folder, *folder.parents) if not parent.exists()]
     for parent in reversed(missing):
         parent.mkdir(exist_ok=True)

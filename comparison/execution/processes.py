@@ -73,6 +73,7 @@ class Workers(Executor):
         self._abandoned = False
 
     def submit(self, solve: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Compute a task in a worker process, without a limit of time."""
         return self._threads.submit(self._run, partial(solve, *args, **kwargs), None)
 
     def submit_within(self, seconds: float, solve: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:

@@ -46,7 +46,8 @@ class Stage:
 class Display(Protocol):
     """Told of every finished piece of work and its predicted compute time, s."""
 
-    def advance(self, stage: str, points: int, seconds: float) -> None: ...
+    def advance(self, stage: str, points: int, seconds: float) -> None:
+        """Show that points of a stage are done, which were predicted to take so many s."""
 
 
 @contextmanager
@@ -99,6 +100,7 @@ class Bars:
         self._whole = bars.add_task("all".ljust(width), total=min(most, _seconds(stages)), count="")
 
     def advance(self, stage: str, points: int, seconds: float) -> None:
+        """Move the bars of the stage and of the whole."""
         task, whole = self._tasks[stage], self._stages[stage]
         if self._done[stage] == whole.before:
             self._bars.start_task(task)
@@ -120,6 +122,7 @@ class Lines:
         self._begin = self._last = time.monotonic()
 
     def advance(self, stage: str, points: int, seconds: float) -> None:
+        """Print a line if the last one is old enough."""
         self._done[stage] += points
         self._spent += seconds
         now = time.monotonic()

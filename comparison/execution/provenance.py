@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 import platform
 import subprocess
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import version
 from pathlib import Path
+
+from reference.problem.version import __version__
 
 PACKAGES = ("exudyn", "numba", "numpy", "scipy", "xarray", "h5netcdf", "matplotlib")
 
@@ -14,7 +16,7 @@ PACKAGES = ("exudyn", "numba", "numpy", "scipy", "xarray", "h5netcdf", "matplotl
 def provenance() -> dict[str, str]:
     """Versions, machine and commit, in the order a report shows them."""
     return {
-        "phase-resonance": _own_version(),
+        "phase-resonance": __version__,
         "commit": _commit(),
         "python": platform.python_version(),
         **{name: version(name) for name in PACKAGES},
@@ -22,13 +24,6 @@ def provenance() -> dict[str, str]:
         "processor": _processor(),
         "processors": str(os.cpu_count()),
     }
-
-
-def _own_version() -> str:
-    try:
-        return version("phase-resonance")
-    except PackageNotFoundError:
-        return "run from source, not installed"
 
 
 def _commit() -> str:

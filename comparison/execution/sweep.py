@@ -33,14 +33,17 @@ LOOK = 1.0  # s: how often an executor is asked for its width while no result ar
 
 
 def at_once(task: object) -> bool:
+    """Every task may begin at once."""
     return True
 
 
 def whole(task: object) -> Sequence[object]:
+    """No task is split."""
     return ()
 
 
 def unlimited(task: object) -> float:
+    """No task has a limit of time, s."""
     return math.inf
 
 

@@ -67,6 +67,7 @@ def packed(content: bytes) -> str:
 
 
 def places(findings: Findings, scene: Scene, starts: Starts) -> Iterator[dict[str, Any]]:
+    """The phase pairs of a scene that have motions, each with its motions by every model."""
     of_scene = [motion for motion in findings.motions or [] if motion.place.scene == scene.name]
     alpha1, alpha2 = (np.asarray(findings.surfaces[name]) for name in ("alpha1", "alpha2"))
     for place, motions in groupby(of_scene, key=lambda motion: motion.place):

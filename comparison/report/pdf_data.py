@@ -30,6 +30,7 @@ def size_of(headline: Headline) -> float:
 
 
 def pdf_data(results: Results, shown: Sequence[Headline], maps: Sequence[dict[str, str]]) -> dict[str, Any]:
+    """What the template of the PDF prints."""
     every = sum(len(scene.headlines) for scene in results.scenes)
     alerts = [alert for alert in results.alerts if alert.kind != "limit"]  # broken limits have a section of their own
     more = len(alerts) - MAX_ALERTS
@@ -72,6 +73,7 @@ def _more(every: int, shown: int) -> str:
 
 
 def short_title(scene: SceneResult) -> str:
+    """The title of a scene, or as much of it as fits."""
     title = scene.title or scene.name
     return title if len(title) <= MAX_TITLE else title[: MAX_TITLE - 1] + "…"
 

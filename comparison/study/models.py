@@ -26,14 +26,17 @@ def dry(scene: Scene) -> bool:
 
 
 def any_scene(scene: Scene) -> bool:
+    """Whether a model applies that applies to every scene."""
     return True
 
 
 def never(scene: Scene) -> bool:
+    """Whether mirrored phases give mirrored motions, for a model of which that is not known."""
     return False
 
 
 def with_mirrored_supports(scene: Scene) -> bool:
+    """Whether mirrored phases give mirrored motions by a model with supports."""
     return mirror_symmetric(scene).allowed
 
 

@@ -20,7 +20,6 @@ from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.study import Study
 from reference.problem import Scene
 
-HARDLY_MORE = 1.05  # times the cheapest cost: a setting that tightens the tolerance for so little is taken
 DEFAULT_TOLERANCE = 1e-3
 DEFAULT_GRID = 48  # phases per axis of the equations; the engine's models have a `most` of their own
 
@@ -79,7 +78,7 @@ def plan_study(request: StudyRequest) -> StudyPlan:
             continue
         if request.budgeted:
             model = replace(model, most=_most(model, grid, finest=request.grid is None))
-        models.append(model if accuracy is None else replace(model, asks=setting(model, model.tolerance(tolerance))))
+        models.append(model if accuracy is None else replace(model, asks=accuracy.setting(model.tolerance(tolerance))))
     tried = tried_costs(request.scenes, models, request.full) if request.tries else {}
     study = Study(request.scenes, grid, tolerance, models, request.full, tried, selection=request.selection)
     return StudyPlan(study, tuple(omitted))
@@ -90,27 +89,6 @@ def _most(model: Model, grid: int, finest: bool) -> int | None:
     most = FINEST.get(model.recorded_key, model.most) if finest else model.most
     chain = nested_grids(grid)
     return most and max([allowed for allowed in chain if allowed <= most], default=chain[0])
-
-
-def setting(model: Model, tolerance: float) -> float:
-    """
-    What to ask of a model so that a tolerance is met.
-
-    Parameters
-    ----------
-    model : Model
-    tolerance : float
-        Relative error that 99 % of the points are to meet.
-
-    Returns
-    -------
-    float
-        The cheapest tolerance that was recorded to meet it, or a tighter one that costs hardly more.
-    """
-    accuracy = recorded().accuracy[model.recorded_key]
-    able = [tolerance] + [asked for asked, met in zip(accuracy.tolerances, accuracy.met) if met and asked < tolerance]
-    cheapest = min(accuracy.cost(asked) for asked in able)
-    return min(asked for asked in able if accuracy.cost(asked) <= HARDLY_MORE * cheapest)
 
 
 def tightest() -> float:

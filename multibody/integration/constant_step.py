@@ -68,6 +68,7 @@ class Motion:
         return Motion(np.empty(0), *(np.empty((0, *width)) for width in widths))
 
     def state(self, row: int) -> EngineState:
+        """State of the engine at an instant, with the rate of slip since the instant before."""
         state = EngineState(self.coordinates[row], self.velocities[row], self.contact[row], self.plate[row])
         row = range(len(self.time))[row]
         if row == 0:

@@ -27,14 +27,17 @@ class Units:
 
     @property
     def velocity(self) -> float:
+        """Unit of velocity, m/s."""
         return self.length / self.time
 
     @property
     def acceleration(self) -> float:
+        """Unit of acceleration, m/s^2."""
         return self.length / self.time**2
 
     @property
     def force(self) -> float:
+        """Unit of force, N."""
         return self.mass * self.acceleration
 
 

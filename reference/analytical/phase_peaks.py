@@ -13,8 +13,9 @@ from dataclasses import dataclass
 from math import factorial, sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from reference.problem.build_cache import cached_on_disk
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -71,7 +72,7 @@ def _turns(phases: Array) -> Array:
     return np.stack([np.cos(phases), -np.sin(phases)], axis=-1).reshape(-1, 4)
 
 
-@njit(cache=True)
+@cached_on_disk(__file__)
 def _bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array, most: Array) -> None:
     """Fills |v|^2 in the middle of each interval, and what it cannot exceed on it, (T,) each."""
     a, b, c, d = turn
@@ -87,7 +88,7 @@ def _bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array, mos
             most[n] += size * size
 
 
-@njit(cache=True, nogil=True)
+@cached_on_disk(__file__, nogil=True)
 def _largest(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Array) -> None:
     orders, bodies, axes, _, intervals = terms.shape
     least, most = np.empty(intervals), np.empty(intervals)
@@ -110,7 +111,7 @@ def _largest(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Arra
             errors[m, body] = sqrt(max(best, possible)) - sqrt(best)
 
 
-@njit(cache=True)
+@cached_on_disk(__file__)
 def _searched(series: Array) -> tuple[float, float]:
     """Largest |v|^2 on an interval with these coefficients (axes, P), and what Newton's method leaves."""
     best, place = -1.0, 0.0
@@ -132,7 +133,7 @@ def _searched(series: Array) -> tuple[float, float]:
     return best, left
 
 
-@njit(cache=True)
+@cached_on_disk(__file__)
 def _squares(series: Array, x: float) -> tuple[float, float, float]:
     """|v|^2 at x and its first two derivatives."""
     total = first = second = 0.0

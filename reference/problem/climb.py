@@ -61,6 +61,7 @@ class Points:
         return np.where(np.isfinite(self.numerator), self.numerator / self.denominator, -np.inf)
 
     def part(self, places: slice) -> Points:
+        """The points at some places."""
         return Points(self.phases[places], self.numerator[places], self.denominator[places], self.error[places])
 
 

@@ -22,6 +22,7 @@ from types import FrameType
 from typing import Any, NoReturn, TextIO, cast
 
 from reference.problem.scene_error import SceneError
+from reference.problem.version import __version__
 
 UNEXPECTED, CLOSED = 3, 141
 SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
@@ -52,8 +53,10 @@ class OneLineParser(argparse.ArgumentParser):
 
     def __init__(self, prog: str, description: str) -> None:
         super().__init__(prog=prog, description=description, allow_abbrev=False)
+        self.add_argument("--version", action="version", version=f"phase-resonance {__version__}")
 
     def error(self, message: str) -> NoReturn:
+        """Raise UsageError, one line."""
         raise UsageError(f"command line: {message} (--help lists the options)")
 
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from reference.problem.build_cache import cached_on_disk
 from reference.problem.excitation import exponents, ground_acceleration, loading_period
 from reference.problem.phases import checked_phases
 from reference.problem.scene import Scene
@@ -63,7 +63,7 @@ def _record_peak(scene: Scene) -> float:
         return float(np.sqrt((ground_acceleration(scene, (0.0, 0.0), instants) ** 2).sum(axis=1)).max())
 
 
-@njit(cache=True)
+@cached_on_disk(__file__)
 def _square_and_slopes(
     t: float, phase: Array, amplitudes: Array, s: NDArray[np.complex128]
 ) -> tuple[float, float, float]:
@@ -83,7 +83,7 @@ def _square_and_slopes(
     return value, slope, curvature
 
 
-@njit(cache=True)
+@cached_on_disk(__file__)
 def _refined(left: float, right: float, phase: Array, amplitudes: Array, s: NDArray[np.complex128]) -> float:
     """Maximum of |u|^2 on [left, right], which holds one sample higher than both ends: Newton, bisection as a guard."""
     t = 0.5 * (left + right)
@@ -104,7 +104,7 @@ def _refined(left: float, right: float, phase: Array, amplitudes: Array, s: NDAr
     return best
 
 
-@njit(cache=True, nogil=True)
+@cached_on_disk(__file__, nogil=True)
 def _ground_peaks(phases: Array, amplitudes: Array, s: NDArray[np.complex128], duration: float, step: float) -> Array:
     count = math.ceil(duration / step)
     weight0 = np.sqrt((amplitudes[:, 0] ** 2).sum())

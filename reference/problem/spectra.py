@@ -12,9 +12,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from reference.problem.build_cache import cached_on_disk
 from reference.problem.demands import ANSWERED
 from reference.problem.ranges import Range, checked_array, checked_number
 from reference.problem.result import Trajectory
@@ -118,7 +118,7 @@ def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damp
     return FloorSpectra(period, damping, value, error)
 
 
-@njit(cache=True, nogil=True)
+@cached_on_disk(__file__, nogil=True)
 def _largest_displacements(time: Array, floor: Array, period: Array, damping: float) -> Array:
     """Largest displacement (C, P), m, of oscillators on floors (T, C), m/s^2, relative to these."""
     count = floor.shape[1]
@@ -150,7 +150,7 @@ def _largest_displacements(time: Array, floor: Array, period: Array, damping: fl
     return largest
 
 
-@njit(cache=True, nogil=True)
+@cached_on_disk(__file__, nogil=True)
 def _transition(angle: float, damping: float) -> tuple[float, float, float, float, float, float, float, float]:
     """
     One step of x'' + 2 damping x' + x = -(start + change s / angle), over the angle s: power series of what is added.

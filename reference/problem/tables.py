@@ -134,6 +134,7 @@ class Table(BaseModel):
 
 
 def exactly_one(table: BaseModel, *keys: str) -> None:
+    """Raise ValueError, one line, unless exactly one of the keys of a table has a value."""
     present = [key for key in keys if getattr(table, key) is not None]
     if len(present) != 1:
         listed = f"{', '.join(keys[:-1])} and {keys[-1]}"

@@ -16,6 +16,8 @@ FEWEST_PLACES, MOST_PLACES = 4, 48  # in a step, at which `step_instants` looks 
 
 
 class Samples(NamedTuple):
+    """A motion of N bodies at T instants, as the equations give it."""
+
     x: Array  # (T, N, 2)
     v: Array  # (T, N, 2)
     total: Array  # (T, N, 3) absolute acceleration; its vertical part of all bodies alike

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+import reference
 from comparison.cli.start import COMMANDS
 
 ROOT = Path(__file__).parents[2]
@@ -73,6 +74,19 @@ def test_without_a_command_the_script_lists_them(script: Path) -> None:
     assert all(f"  {name} " in run.stdout for name in COMMANDS)
 
 
+def test_the_script_states_its_version(script: Path) -> None:
+    run = called(script, "--version")
+    assert (run.returncode, run.stdout, run.stderr) == (0, f"phase-resonance {reference.__version__}\n", "")
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_states_the_version(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        import_module(COMMANDS[name][0]).main(["--version"])
+    assert end.value.code == 0
+    assert capsys.readouterr().out == f"phase-resonance {reference.__version__}\n"
+
+
 @pytest.mark.parametrize("name", COMMANDS)
 @pytest.mark.parametrize("words", [("--no-such-option",), ("--jobs", "0"), ("--out",)])
 def test_a_wrong_option_of_every_command_is_one_line_and_exit_code_2(
@@ -85,7 +99,7 @@ def test_a_wrong_option_of_every_command_is_one_line_and_exit_code_2(
     assert err.startswith("command line: ")
 
 
-COMPUTING = tuple(name for name in COMMANDS if name != "animate")
+COMPUTING = tuple(name for name in COMMANDS if name not in ("init", "animate"))
 
 
 def test_the_shared_options_are_the_same_in_every_command_that_computes(capsys: pytest.CaptureFixture[str]) -> None:

@@ -13,19 +13,15 @@ from conftest import Run
 
 from comparison.study import costs as cost_of
 from comparison.study import planning as planning
-from comparison.study.accuracy_record import FILE, SHARE, AccuracyRecord, RecordedModels, recorded
+from comparison.study.accuracy_record import HARDLY_MORE, SHARE, SHIPPED, AccuracyRecord, recorded
 from comparison.study.batches import imported
 from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, SPATIAL, TRANSLATIONAL, Model
-from comparison.study.planning import StudyRequest, plan_study, setting, tightest
+from comparison.study.planning import StudyRequest, plan_study, tightest
 from reference.problem import Scene, load_scene
 
 SCENE = load_scene("fig3-I")
 NEW = SCENE.with_values({"duration": 5.0})  # not in the record
 TOLERANCES = (1e-2, 5e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
-
-
-def accuracy(tolerances: tuple[float, ...], costs: tuple[float, ...], met: tuple[bool, ...]) -> RecordedModels:
-    return RecordedModels("here", {"exact": AccuracyRecord(tolerances, costs, met)}, {})
 
 
 @pytest.mark.parametrize("tolerance", TOLERANCES)
@@ -36,25 +32,22 @@ def test_no_recorded_setting_that_meets_the_tolerance_is_cheaper(model: object, 
     if tolerance < record.tightest:
         assert not able
         return
-    chosen = setting(model, tolerance)
+    chosen = record.setting(tolerance)
     assert chosen <= tolerance
-    assert record.cost(chosen) <= planning.HARDLY_MORE * min(able, default=record.cost(tolerance))
+    assert record.cost(chosen) <= HARDLY_MORE * min(able, default=record.cost(tolerance))
 
 
-def test_the_cheapest_wins_and_a_tighter_one_for_nearly_the_same_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
-    met = (True, True, True)
-    monkeypatch.setattr(planning, "recorded", lambda: accuracy((1e-2, 1e-3, 1e-4), (1.0, 1.04, 2.0), met))
-    assert setting(EXACT, 1e-2) == 1e-3
-    assert setting(EXACT, 5e-4) == 5e-4, "between two, at a cost between theirs"
-    monkeypatch.setattr(planning, "recorded", lambda: accuracy((1e-2, 1e-3, 1e-4), (3.0, 1.0, 2.0), met))
-    assert setting(EXACT, 1e-2) == 1e-3, "looser may be dearer"
+def test_the_cheapest_wins_and_a_tighter_one_for_nearly_the_same_is_taken() -> None:
+    record = AccuracyRecord((1e-2, 1e-3, 1e-4), (1.0, 1.04, 2.0), (True, True, True))
+    assert record.setting(1e-2) == 1e-3
+    assert record.setting(5e-4) == 5e-4, "between two, at a cost between theirs"
+    looser_is_dearer = AccuracyRecord((1e-2, 1e-3, 1e-4), (3.0, 1.0, 2.0), (True, True, True))
+    assert looser_is_dearer.setting(1e-2) == 1e-3
 
 
-def test_a_setting_that_missed_its_tolerance_in_the_record_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(
-        planning, "recorded", lambda: accuracy((1e-2, 1e-3, 1e-4), (1.5, 1.0, 2.0), (True, False, True))
-    )
-    assert setting(EXACT, 1e-2) == 1e-2
+def test_a_setting_that_missed_its_tolerance_in_the_record_is_not_taken() -> None:
+    record = AccuracyRecord((1e-2, 1e-3, 1e-4), (1.5, 1.0, 2.0), (True, False, True))
+    assert record.setting(1e-2) == 1e-2
 
 
 def test_between_recorded_tolerances_the_cost_lies_between_theirs() -> None:
@@ -64,7 +57,7 @@ def test_between_recorded_tolerances_the_cost_lies_between_theirs() -> None:
 
 
 def test_what_is_recorded_as_met_was_met_at_99_percent_in_truth_and_by_the_estimates() -> None:
-    models = json.loads(FILE.read_text(encoding="utf-8"))["models"]
+    models = json.loads(SHIPPED.read_text(encoding="utf-8"))["models"]
     assert set(models) == {model.key for model in MODEL_HIERARCHY}
     for key, model in models.items():
         assert any(recorded().accuracy[key].met)

@@ -12,7 +12,7 @@ import pytest
 
 import reference
 from reference.problem import load_scene, phase_grid
-from reference.solver.compiled import CACHE_FOLDER
+from reference.problem.build_cache import build_folder
 
 ROOT = Path(__file__).parents[2]
 SCENES = ("fig3-I", "fig4-dry", "fig4-viscous")
@@ -72,12 +72,17 @@ def test_no_part_of_the_solver_is_compiled_with_the_freedom_to_reorder_sums() ->
     assert not runs.targetoptions.get("fastmath")
 
 
+def folder_of_builds(**environment: str) -> Path:
+    """Where another process keeps what it compiles of the solver."""
+    ask = "from reference.solver.run import runs; print(runs.stats.cache_path)"
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), **environment}
+    run = subprocess.run([sys.executable, "-c", ask], cwd=ROOT, env=environment, check=True, capture_output=True)
+    return Path(os.fsdecode(run.stdout.strip())).parent
+
+
 def test_a_cache_folder_of_the_user_s_choice_holds_a_build_per_version_of_the_source(tmp_path: Path) -> None:
-    ask = "from reference.solver.compiled import CACHE_FOLDER; print(CACHE_FOLDER)"
-    words = [sys.executable, "-c", ask]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(tmp_path)}
-    found = Path(
-        subprocess.run(words, cwd=ROOT, env=environment, check=True, capture_output=True, text=True).stdout.strip()
-    )
-    assert found.parent == tmp_path
-    assert found.name == Path(CACHE_FOLDER).name
+    chosen = folder_of_builds(NUMBA_CACHE_DIR=str(tmp_path))
+    assert chosen.parent == tmp_path
+    build = build_folder(ROOT / "reference" / "solver")
+    assert build is not None
+    assert chosen.name == build.name

@@ -54,6 +54,7 @@ class Variation:
         return self.supports is None and not self.is_uneven
 
     def of(self, scene: Scene) -> Scene:
+        """The scene with this variation."""
         radius, stated = scene.support_radius, scene.isolator.supports
         assert radius is not None
         values: dict[str, Any] = {"isolator.supports": self.supports or stated, "isolator.ring": radius * self.ring}

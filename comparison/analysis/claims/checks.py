@@ -27,6 +27,8 @@ ROUNDING = 1e-9  # of epsilon: T_c (1 -+ epsilon) itself is close to T_c
 
 
 class Finding(StrEnum):
+    """What a check says about a claim."""
+
     REPRODUCED = "reproduced"
     AS_DRAWN = "as drawn"  # only when counted on the square as drawn, cut open at its edges
     NOT = "not reproduced"
@@ -35,6 +37,7 @@ class Finding(StrEnum):
 
     @property
     def holds(self) -> bool:
+        """Whether the claim is reproduced, at least as it is drawn."""
         return self in (Finding.REPRODUCED, Finding.AS_DRAWN)
 
 
@@ -50,6 +53,7 @@ Check = Callable[[Mapping[str, Evidence]], Verdict]
 
 
 def judged(holds: bool, words: str) -> Verdict:
+    """A verdict with its reason."""
     return Verdict(Finding.REPRODUCED if holds else Finding.NOT, words)
 
 
@@ -156,6 +160,8 @@ def _bend(mu: Array) -> float:
 
 
 def unequal(case: str, body: int) -> Check:
+    """Check that a body moves differently along x and y."""
+
     def check(evidence: Mapping[str, Evidence]) -> Verdict:
         apart = evidence[case].apart[body - 1]
         return judged(apart > APART, f"|x_{body} - y_{body}| up to {apart:.2g} of the largest")
@@ -164,6 +170,8 @@ def unequal(case: str, body: int) -> Check:
 
 
 def plane(case: str) -> Check:
+    """Check that every body moves alike along x and y."""
+
     def check(evidence: Mapping[str, Evidence]) -> Verdict:
         apart = max(evidence[case].apart)
         return judged(apart < PLANE, f"|x_i - y_i| up to {apart:.1g} of the largest")
@@ -172,6 +180,8 @@ def plane(case: str) -> Check:
 
 
 def small(*cases: str) -> Check:
+    """Check that displacements are small against rho."""
+
     def check(evidence: Mapping[str, Evidence]) -> Verdict:
         swing = max(evidence[case].swing for case in cases)
         return judged(swing <= SMALL, f"up to {swing:.2g} rho^2")

@@ -72,6 +72,7 @@ class Question:
 
     @property
     def scene(self) -> Scene:
+        """The case under the reading."""
         return CASES[self.case](self.reading)
 
     @property

@@ -35,10 +35,12 @@ class Bend:
 
     @property
     def smooth(self) -> bool:
+        """Whether the surface is smooth there."""
         return self.exponent > FOLD
 
     @property
     def kind(self) -> str:
+        """ "smooth", "fold", "jump" or "no answer"."""
         if not np.isfinite(self.exponent):
             return "no answer"
         return "smooth" if self.smooth else "fold" if self.exponent > JUMP else "jump"

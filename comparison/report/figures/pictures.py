@@ -38,6 +38,7 @@ class Picture:
 
     @property
     def scene(self) -> Scene:
+        """The scene that is drawn."""
         return self.study.scenes[0]
 
 

@@ -121,7 +121,7 @@ def test_keys_of_bars_that_do_not_fit_are_refused_in_one_line(bars: dict[str, An
 
 
 def test_bars_that_cannot_hold_the_bodies_upright_are_refused() -> None:
-    """Level bars on the axis have the moment EJ / l; a body h above their middle topples where its weight exceeds it."""
+    """Bars on the axis have the moment EJ / l; a body h above their middle topples where its weight exceeds it."""
     scene = load_scene("fig3-I")
     bars = {"count": 4, "bending_stiffness": 500.0, "length": 0.5, "axial_stiffness": 1e9, "spread": 0.0}
     tall = {"bodies.1.period": None, "bodies.1.bars": bars, "bodies.1.mass": 100.0, "bodies.1.height": 6.0}

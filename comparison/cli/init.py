@@ -1,0 +1,130 @@
+"""
+`phase-resonance init DIRECTORY` writes a study to start from: scene, script, gate, continuous integration.
+
+The directory appears whole or not at all, and never in the place of what somebody else wrote.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from importlib.resources import files
+from pathlib import Path
+
+from comparison.cli.arguments import command, writing
+from comparison.execution.output import destination, make_parents, refuse_unwritable
+from reference.problem import SceneError
+from reference.problem.command import OneLineParser
+from reference.problem.files import NEW, staging
+from reference.problem.version import __version__
+
+PLACE = "DIRECTORY"
+TEMPLATE = {  # file of the study: file of the template
+    ".github/workflows/study.yml": "github.yml",
+    ".gitignore": "gitignore",
+    ".gitlab-ci.yml": "gitlab.yml",
+    "README.md": "README.md",
+    "building.toml": "building.toml",
+    "requirements.txt": "requirements.txt",
+    "study.py": "study.py",
+    "test_building.py": "test_building.py",
+}
+
+
+@command
+def main(argv: Sequence[str]) -> int:
+    """Write the study; the exit code: 0, 2 for a directory that cannot be taken, 3 if it could not be written."""
+    parser = OneLineParser("phase-resonance init", "A directory with a study to start from.")
+    parser.add_argument("directory", metavar=PLACE, type=Path, help="a new one, or one that holds nothing but .git")
+    place = _free(parser.parse_args(argv).directory)
+    with writing(place, PLACE):
+        write_directory(place, study_files(place.resolve().name))
+    print(f"{place}: a study to start from; README.md in it says how: change building.toml, then python study.py")
+    return 0
+
+
+def study_files(name: str) -> dict[str, bytes]:
+    """
+    The files of a new study.
+
+    Parameters
+    ----------
+    name : str
+        Of the study.
+
+    Returns
+    -------
+    dict of str to bytes
+        Contents by the path below the directory of the study.
+    """
+    folder = files("comparison.cli") / "study_template"
+    texts = {file: (folder / source).read_text(encoding="utf-8") for file, source in TEMPLATE.items()}
+    return {
+        file: text.replace("@NAME@", name).replace("@VERSION@", __version__).encode() for file, text in texts.items()
+    }
+
+
+def write_directory(place: Path, contents: Mapping[str, bytes]) -> None:
+    """
+    Write files into a directory that is not there, or empty: all of them or none.
+
+    Parameters
+    ----------
+    place : Path
+    contents : mapping of str to bytes
+        By the path below the directory.
+
+    Raises
+    ------
+    OSError
+        Everything is as it was then.
+    """
+    inside = place.is_dir()  # it stays the same directory: it may be the one in which the command was typed
+    made = make_parents(place.parent)
+    try:
+        with staging(place / NEW if inside else place) as staging_folder:
+            new = staging_folder / NEW
+            for name, content in contents.items():
+                (new / name).parent.mkdir(parents=True, exist_ok=True)
+                (new / name).write_bytes(content)
+            if inside:
+                _move_entries(new, place)
+            else:
+                os.rename(new, place)
+    except BaseException:
+        for parent in made:
+            with suppress(OSError):
+                parent.rmdir()
+        raise
+
+
+def _move_entries(source: Path, target: Path) -> None:
+    """Move all that is in a directory into another one on the same disk, or nothing. Raises OSError."""
+    moved: list[Path] = []
+    try:
+        for entry in sorted(source.iterdir()):
+            if os.path.lexists(target / entry.name):
+                raise FileExistsError(f"{entry.name} appeared meanwhile")
+            os.rename(entry, target / entry.name)
+            moved.append(entry)
+    except BaseException:
+        for entry in moved:
+            os.rename(target / entry.name, entry)
+        raise
+
+
+def _free(path: Path) -> Path:
+    """The directory that is meant. Raises SceneError, one line, if it cannot be made or has something in it."""
+    if not str(path).isprintable():
+        raise SceneError("command line", PLACE, str(path), "must be a name of printable characters")
+    place = destination(path, PLACE)
+    try:
+        taken = sorted({*os.listdir(place)} - {".git"}) if place.exists() else []
+    except OSError as error:
+        raise SceneError("command line", PLACE, str(path), f"cannot be read: {error.strerror}") from None
+    if taken:
+        rule = f"holds {taken[0]!r}: give a new directory, or one that is empty"
+        raise SceneError("command line", PLACE, str(path), rule)
+    refuse_unwritable(place, place, PLACE)
+    return place

@@ -1,0 +1,47 @@
+"""Ask the equations and the engine about the building, and print what they answer: `python study.py --help`."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+import multibody
+import reference
+
+SCENE = Path(__file__).with_name("building.toml")
+
+
+def main() -> None:
+    """Print amplification, both sides at the worst phases, and demands there."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--grid", type=int, default=12, help="phases per axis (default %(default)s)")
+    grid = parser.parse_args().grid
+
+    scene = reference.load_scene(SCENE)
+    phases = reference.phase_grid(grid)  # rad, one pair per row
+    answer = reference.amplification(scene, phases, tolerance=1e-6)  # mu: a row per pair, a column per body
+    worst = int(np.nanargmax(answer.mu[:, -1]))
+    print(f"{scene.title}: {len(phases)} phase pairs, status {', '.join(sorted(set(answer.status)))}")
+    for body, (low, high) in enumerate(zip(np.nanmin(answer.mu, axis=0), np.nanmax(answer.mu, axis=0)), start=1):
+        print(f"  body {body}: mu from {low:.3f} to {high:.3f}")
+
+    # the same law of friction on both sides, where the top moves most
+    law, pair = 1e-3, phases[worst : worst + 1]  # m/s
+    equations = reference.amplification(scene, pair, regularization=law)
+    engine = multibody.amplification(scene, pair, regularization=law)
+    print(f"phases {pair[0].round(3).tolist()} rad, like for like:")
+    for body in range(len(scene.bodies)):
+        print(
+            f"  body {body + 1}: equations {equations.mu[0, body]:.4f} ± {equations.error[0, body]:.1g}, "
+            f"engine {engine.mu[0, body]:.4f} ± {engine.error[0, body]:.1g}"
+        )
+
+    demands = reference.demands(reference.trajectory(scene, pair[0]))
+    print(f"  displacement {demands.displacement.value:.4f} m, base shear {demands.base_shear.value / 1e3:.1f} kN")
+    print("  drifts " + ", ".join(f"{drift.value * 1e3:.2f}" for drift in demands.drift) + " mm")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,109 @@
+"""What this machine made goes into the user's cache, never into the installed package or to where others may write."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from importlib import import_module
+from pathlib import Path
+from pkgutil import walk_packages
+
+import numba.core.registry
+import pytest
+
+import reference
+from reference.problem import user_cache as module
+from reference.problem.user_cache import user_cache
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def fresh(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """A place for temporary files and a home of its own."""
+    monkeypatch.setattr(module, "user_cache", user_cache.__wrapped__)
+    monkeypatch.setattr(module.tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
+    return tmp_path
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the place depends on the system")
+def test_on_linux_the_cache_is_below_xdg_cache_home(fresh: Path) -> None:
+    assert module.user_cache() == fresh / "xdg" / "phase-resonance"
+    assert (fresh / "xdg" / "phase-resonance").is_dir()
+
+
+def nowhere(monkeypatch: pytest.MonkeyPatch, fresh: Path) -> None:
+    """The user's cache cannot be made: a file is in its place."""
+    (fresh / "file").touch()
+    monkeypatch.setattr(module.platformdirs, "user_cache_path", lambda *name, **rest: fresh / "file" / "below")
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="no owners of files")
+def test_without_a_home_a_private_temporary_directory_takes_its_place(
+    monkeypatch: pytest.MonkeyPatch, fresh: Path
+) -> None:
+    nowhere(monkeypatch, fresh)
+    folder = module.user_cache()
+    assert folder == fresh / f"phase-resonance-{os.getuid()}"
+    assert folder.stat().st_mode & 0o777 == 0o700
+    assert module.user_cache() == folder, "the same in every process"
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="no owners of files")
+@pytest.mark.parametrize("planted", ["writable by others", "link", "file", "of another user"])
+def test_a_temporary_directory_that_others_may_have_filled_is_not_used(
+    monkeypatch: pytest.MonkeyPatch, fresh: Path, planted: str
+) -> None:
+    nowhere(monkeypatch, fresh)
+    place = fresh / f"phase-resonance-{os.getuid()}"
+    if planted == "link":
+        (fresh / "elsewhere").mkdir(mode=0o700)
+        place.symlink_to(fresh / "elsewhere")
+    elif planted == "file":
+        place.touch(mode=0o600)
+    else:
+        place.mkdir(mode=0o700)
+        if planted == "writable by others":
+            place.chmod(0o777)
+        else:
+            other = os.getuid() + 1
+            monkeypatch.setattr(module.os, "getuid", lambda: other)
+            place.rename(fresh / f"phase-resonance-{other}")
+    assert module.user_cache() is None
+
+
+def test_every_function_that_is_kept_on_disk_is_kept_in_the_user_s_cache() -> None:
+    for found in walk_packages(reference.__path__, "reference."):
+        import_module(found.name)
+    dispatchers = [
+        value
+        for name, loaded in sorted(sys.modules.items())
+        if name.startswith("reference.")
+        for value in vars(loaded).values()
+        if isinstance(value, numba.core.registry.CPUDispatcher) and value.__module__ == name
+    ]
+    places = {dispatcher.__name__: dispatcher.stats.cache_path for dispatcher in dispatchers}
+    kept = {name: Path(place) for name, place in places.items() if place is not None}
+    assert {"runs", "_largest", "_ground_peaks", "_largest_displacements"} <= set(kept)
+    parent = Path(os.environ["NUMBA_CACHE_DIR"]) if "NUMBA_CACHE_DIR" in os.environ else user_cache()
+    assert parent is not None
+    assert [name for name, place in kept.items() if parent not in place.parents] == []
+
+
+def test_a_first_call_leaves_the_package_as_it_was(tmp_path: Path) -> None:
+    package = tmp_path / "site" / "reference"
+    for file in sorted((ROOT / "reference").rglob("*")):
+        if file.is_file() and "__pycache__" not in file.parts:
+            copy = package / file.relative_to(ROOT / "reference")
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            copy.write_bytes(file.read_bytes())
+    before = sorted(package.rglob("*"))
+    call = "from reference.problem import ground_peak, load_scene; ground_peak(load_scene('fig3-I'), [(0.1, 0.2)])"
+    environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
+    environment |= {"PYTHONPATH": str(tmp_path / "site"), "PYTHONDONTWRITEBYTECODE": "1", "PYTHONSAFEPATH": "1"}
+    environment["XDG_CACHE_HOME"] = str(tmp_path / "cache")
+    subprocess.run([sys.executable, "-c", call], cwd=tmp_path, env=environment, check=True)
+    assert sorted(package.rglob("*")) == before
+    assert sys.platform != "linux" or list((tmp_path / "cache" / "phase-resonance").rglob("*.nbc"))
