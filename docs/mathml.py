@@ -1,7 +1,8 @@
 """
 Sphinx extension: formulas become MathML while the pages are built, so that they are read without a network or scripts.
 
-docutils translates LaTeX to MathML, which browsers draw. A formula with a label has its number beside it.
+docutils translates LaTeX to MathML, which browsers draw. A formula has its label beside it, the paper's number:
+`$$ ... $$ (5.1)`.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ from typing import Any
 from docutils import nodes
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
-from sphinx.util.math import get_node_equation_number
 from sphinx.writers.html5 import HTML5Translator
 
 
@@ -22,12 +22,11 @@ def inline(writer: HTML5Translator, node: nodes.math) -> None:
 
 
 def block(writer: HTML5Translator, node: nodes.math_block) -> None:
-    """Write a formula on lines of its own, with its number."""
+    """Write a formula on lines of its own, with its label."""
     writer.body.append(writer.starttag(node, "div", CLASS="math"))
     writer.body.append(tex2mathml(node.astext(), as_block=True))
-    if node["number"]:
-        number = get_node_equation_number(writer, node)
-        writer.body.append(f'<span class="eqno">({number})')
+    if node["label"]:
+        writer.body.append(f'<span class="eqno">({node["label"]})')
         writer.add_permalink_ref(node, "Link to this equation")
         writer.body.append("</span>")
     writer.body.append("</div>\n")

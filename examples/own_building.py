@@ -20,8 +20,8 @@ scene = reference.Scene.model_validate(
 print("natural periods [s]:", (2 * np.pi / reference.modes(scene).frequency[0]).round(2))
 
 phases = reference.phase_grid(4)
-equations = reference.peak_demands(scene, phases)
-engine = multibody.peak_demands(scene, phases[:3])  # the engine takes longer: a check at three phase pairs
+equations = reference.peak_demands(scene, phases, regularization=1e-3)  # m/s, the law of friction that the engine has
+engine = multibody.peak_demands(scene, phases[:3], regularization=1e-3)  # takes longer: a check at three phase pairs
 for name in ("displacement", "base_shear"):
     demand = equations[name]
     worst = demand.value.argmax()

@@ -62,7 +62,7 @@ def main(argv: Sequence[str]) -> int:
 
 
 def surface_costs() -> list[str]:
-    """What a surface of the default study costs, s, by the accuracy asked: the rows of the table in docs/guide/accuracy.md."""
+    """What a surface of the default study costs, s, by the accuracy asked: the rows in docs/guide/accuracy.md."""
     rows = []
     for power in range(2, 9):
         tolerance, cells = 10.0**-power, []
