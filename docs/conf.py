@@ -7,6 +7,7 @@ the pages are built, and formulas become MathML (mathml.py). Neither the build n
 
 from __future__ import annotations
 
+import re
 import sys
 from importlib.metadata import version as installed_version
 from pathlib import Path
@@ -42,15 +43,21 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # numpydoc has them
 numpydoc_show_class_members = False
 numpydoc_xref_param_type = False
-suppress_warnings = ["toc.empty_glob"]  # evidence.md: pages of measurements that this copy may lack
+suppress_warnings = ["toc.not_readable"]  # evidence.md names pages of measurements that a copy may lack
 
 
-def without_lists_of_names(app: Any, what: str, name: str, item: Any, options: Any, lines: list[str]) -> None:
-    """Leave out the lists of functions and classes in a package's docstring: each of them follows on its page."""
+def fit_for_pages(app: Any, what: str, name: str, item: Any, options: Any, lines: list[str]) -> None:
+    """
+    Change a docstring for its page.
+
+    The lists of functions and classes of a package are left out, since each of them follows. |v| is no substitution of
+    reStructuredText.
+    """
     if what == "module" and "Functions" in lines:
         lines[lines.index("Functions") :] = []
+    lines[:] = [line if ">>>" in line else re.sub(r"\|(?=\S)([^|]*)\|", r"\\|\1\\|", line) for line in lines]
 
 
 def setup(app: Any) -> None:
     """Connect before numpydoc reads the docstrings."""
-    app.connect("autodoc-process-docstring", without_lists_of_names, priority=400)
+    app.connect("autodoc-process-docstring", fit_for_pages, priority=400)
