@@ -78,7 +78,7 @@ def _place(out: Path | None) -> Path:
 
 
 def surface_costs(record: RecordedModels) -> list[str]:
-    """What a surface of the default study costs, s, by the accuracy asked: the rows of the table in the README."""
+    """What a surface of the default study costs, s, by the accuracy asked: the rows in docs/guide/accuracy.md."""
     rows = []
     for power in range(2, 9):
         tolerance, cells = 10.0**-power, []

@@ -1,0 +1,57 @@
+"""Every example runs as a user would run it, is short, and has its picture in the gallery."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import json
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from pages import ROOT
+from PIL import Image
+
+EXAMPLES = sorted([*(ROOT / "examples").glob("*.py"), *(ROOT / "examples").glob("*.ipynb")])
+MAX_LINES = 60
+
+
+@pytest.fixture(scope="module")
+def gallery() -> ModuleType:
+    place = importlib.util.spec_from_file_location("gallery_pictures", ROOT / "docs" / "gallery_pictures.py")
+    assert place is not None
+    assert place.loader is not None
+    module = importlib.util.module_from_spec(place)
+    place.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.name)
+def test_an_example_runs_and_draws_its_picture(example: Path, gallery: ModuleType, tmp_path: Path) -> None:
+    with Image.open(gallery.run(example, tmp_path)) as drawn:
+        assert len(set(drawn.convert("RGB").resize((64, 64)).getdata())) > 20  # not an empty page
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.name)
+def test_an_example_is_short_and_has_its_picture_and_its_text_in_the_gallery(
+    example: Path, gallery: ModuleType
+) -> None:
+    script = gallery.script_of(example)
+    ast.parse(script)
+    assert len(script.splitlines()) < MAX_LINES
+    page = (ROOT / "docs" / "gallery.md").read_text(encoding="utf-8")
+    assert f"(gallery/{example.stem}.png)" in page
+    assert f"../examples/{example.name}" in page
+    assert (ROOT / "docs" / "gallery" / f"{example.stem}.png").stat().st_size > 5000
+
+
+def test_the_notebook_among_the_examples_is_valid() -> None:
+    nbformat = pytest.importorskip("nbformat")
+    notebook = ROOT / "examples" / "study.ipynb"
+    nbformat.validate(nbformat.read(notebook, as_version=4))
+    assert all(not cell.get("outputs") for cell in json.loads(notebook.read_text(encoding="utf-8"))["cells"])
+
+
+def test_there_are_five_examples() -> None:
+    assert len(EXAMPLES) >= 5
