@@ -28,7 +28,7 @@ from comparison.analysis.benchmarks.analysis import (
 )
 from comparison.analysis.benchmarks.cases import Case, Published, Reading, cases, shipped
 from comparison.analysis.benchmarks.mastodon import mastodon
-from comparison.analysis.benchmarks.page import page
+from comparison.analysis.benchmarks.page import HEAD, page
 from comparison.analysis.benchmarks.table import Benchmarks, Verdict, as_json, load
 from comparison.cli.benchmarks import main
 from reference.analytical import den_hartog
@@ -225,3 +225,12 @@ def test_the_scenes_weigh_what_the_sources_say():
     case = BY_NAME["sdnd104-15"]
     assert case.scene.friction_coefficient * GRAVITY == pytest.approx(0.1 * 10.0)
     assert case.scene.amplitudes[0, 0] == 15.0
+
+
+def test_the_page_in_docs_has_every_benchmark():
+    text = (Path(__file__).parents[2] / "docs" / "benchmarks.md").read_text(encoding="utf-8")
+    assert text.startswith(HEAD)
+    for case in CASES:
+        assert f"\n## {case.title}\n" in text
+        assert case.source in text
+    assert "(0): beyond both errors, and not explained" in text

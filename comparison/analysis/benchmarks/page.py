@@ -10,8 +10,8 @@ MOST_DIGITS = 7  # of a value
 SHORT = (("sdnd104-1.5", 0), ("sdnd100", 2), ("frame", 0), ("den-hartog", 0), ("newmark", 0))  # name, and row
 HEAD = """# Checked against outside
 
-Numbers published elsewhere, each solved by the paper's exact equations and by the translational engine model. This page
-is `benchmarks.md` as `python -m comparison.benchmarks` writes it.
+Numbers published elsewhere, each solved by the paper's exact equations and by the translational engine model. A source
+that publishes a formula is evaluated. This page is `benchmarks.md` as `python -m comparison.benchmarks` writes it.
 
 None of the numbers is a measurement: they verify the two codes. What would validate the models is in
 docs/validation.md of the project.
