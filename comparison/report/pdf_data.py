@@ -63,6 +63,7 @@ def pdf_data(results: Results, shown: Sequence[Headline], maps: Sequence[dict[st
         "models": [_model(results, model) for model in results.models if _outcomes(results, model)],
         "assumptions": [[a.number, a.statement, a.engine, a.relaxed] for a in ASSUMPTIONS],
         **_limits(results),
+        "measurements": results.measurements,
         "provenance": _provenance(results),
     }
 

@@ -1144,6 +1144,19 @@ class Results(Part):
         return [alert for alert in self.alerts if alert.kind == "limit"]
 
     @property
+    def measurements(self) -> str:
+        """What measurements say of the models, in a clause."""
+        if self.measured is None:
+            return "no measurement is involved"
+        verdicts = [computed.exceeds for peak in self.measured for computed in peak.computed]
+        single = len(self.measured) == 1
+        count = "1 measured peak stands" if single else f"{len(self.measured)} measured peaks stand"
+        beyond = (
+            f"{sum(verdict is True for verdict in verdicts)} of {len(verdicts)} differences exceed the uncertainties"
+        )
+        return f"{count} beside the models, and {beyond}"
+
+    @property
     def phased(self) -> list[SceneResult]:
         """The scenes that have phases."""
         return [scene for scene in self.scenes if not scene.recorded]

@@ -31,7 +31,7 @@ def summary_text(results: Results) -> str:
         f"{name} {run.provenance[name]}" for name in ("commit", "exudyn", "numba") if name in run.provenance
     )
     parts.append(
-        "The two codes are cross-verified, not validated: no measurement is involved.  \n"
+        f"The two codes are cross-verified, not validated: {results.measurements}.  \n"
         f"{_code(run.command)}: {run.seconds} s with {run.jobs} workers, began {run.began}; {made}. "
         f"{listed}: `index.html` of the report."
     )

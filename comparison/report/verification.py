@@ -24,6 +24,7 @@ class Check:
 
 _MOTIONS = "reference/test_closed_form_motions.py"
 _CONTACT = "multibody/test_contact.py"
+_BENCHMARKS = "comparison/test_benchmarks.py"
 
 CHECKS: tuple[Check, ...] = (
     Check(
@@ -90,6 +91,13 @@ CHECKS: tuple[Check, ...] = (
         "test_the_matrices_with_every_slip_mended_are_the_exact_equations",
     ),
     Check(
+        REFERENCE,
+        "numbers published elsewhere: code_aster, ANSYS, Chopra, Den Hartog, Newmark",
+        "the error of both",
+        _BENCHMARKS,
+        "test_the_equations_meet_every_published_number",
+    ),
+    Check(
         ENGINE,
         "static penetration N/k_c",
         "1e-6, Newton's tolerance",
@@ -137,5 +145,12 @@ CHECKS: tuple[Check, ...] = (
         "the error each value states",
         "multibody/test_like_for_like.py",
         "test_a_smaller_tolerance_is_met_by_refinement",
+    ),
+    Check(
+        ENGINE,
+        "numbers published elsewhere, where friction sticks against the equations with its friction",
+        "the error of both",
+        _BENCHMARKS,
+        "test_the_engine_meets_all_published_numbers_or_its_friction_explains_them",
     ),
 )

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from heated_pendulum import ranges
 from known_analyses import collected
 
 import reference
@@ -27,7 +28,7 @@ from comparison.analysis.benchmarks.analysis import (
 )
 from comparison.analysis.benchmarks.cases import Case, Published, Reading, cases, shipped
 from comparison.analysis.benchmarks.mastodon import mastodon
-from comparison.analysis.benchmarks.page import page
+from comparison.analysis.benchmarks.page import HEAD, page
 from comparison.analysis.benchmarks.table import Benchmarks, Verdict, as_json, load
 from comparison.cli.benchmarks import main
 from reference.analytical import den_hartog
@@ -82,6 +83,26 @@ def test_the_difference_from_mastodon_is_one_of_models():
         assert equations.verdict == engine.verdict == Verdict.MODEL
         assert 0.5 < equations.value / row.published < 1.0, "heated friction is lower, so theirs slides farther"
         assert abs(engine.value - smoothed.value) <= engine.error + smoothed.error, "both sides agree"
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not INPUT.exists(), reason="the input motion of MASTODON's test is not shipped")
+def test_heating_is_what_mastodon_adds_to_the_planar_equations():
+    """A planar integration of the published law: without heating ours, with heating theirs."""
+    case = mastodon(INPUT)
+    record = case.scene.record
+    times = np.arange(0.0, case.scene.duration, 1e-3)
+    ground = np.stack([np.interp(times, record[:, 0], record[:, axis]) for axis in (1, 2, 3)], axis=1)
+    motion = reference.trajectory(case.scene, (0.0, 0.0), "small")
+    ours = 1e3 * np.array(readings.ranges(motion))
+    rigid, _ = ranges(ground, 1e-3, 20, 1e-5, False)
+    plain, _ = ranges(ground, 1e-3, 20, 1e-3, False)
+    heated, temperature = ranges(ground, 1e-3, 20, 1e-3, True)
+    theirs = np.array([each.value for each in case.published])
+    assert np.abs(rigid - ours).max() < 2.0, "mm: the same model"
+    assert np.abs(heated - theirs).max() < 6.0, "mm: read to 3 mm"
+    assert 190.0 < temperature < 205.0
+    assert (np.abs(heated - plain) > 3.0 * np.abs(heated - theirs)).all()
 
 
 # the numbers themselves ----------------------------------------------------------------------------------------------
@@ -204,3 +225,12 @@ def test_the_scenes_weigh_what_the_sources_say():
     case = BY_NAME["sdnd104-15"]
     assert case.scene.friction_coefficient * GRAVITY == pytest.approx(0.1 * 10.0)
     assert case.scene.amplitudes[0, 0] == 15.0
+
+
+def test_the_page_in_docs_has_every_benchmark():
+    text = (Path(__file__).parents[2] / "docs" / "benchmarks.md").read_text(encoding="utf-8")
+    assert text.startswith(HEAD)
+    for case in CASES:
+        assert f"\n## {case.title}\n" in text
+        assert case.source in text
+    assert "(0): beyond both errors, and not explained" in text

@@ -16,6 +16,7 @@ COMMANDS = (
     "comparison.run",
     "comparison.claims",
     "comparison.assumptions",
+    "comparison.benchmarks",
     "comparison.extremes",
     "comparison.tradeoff",
     "comparison.ensemble",

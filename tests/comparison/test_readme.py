@@ -64,3 +64,10 @@ def test_the_keys_that_the_guide_shows_make_a_scene() -> None:
     )
     assert scene.stiffness[0, 0] == pytest.approx(12 * 4 * 2e6 / 3.0**3)
     assert scene.isolator.travel == 0.3
+
+
+def test_the_numbers_from_outside_are_those_of_their_page() -> None:
+    page = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
+    rows = [line for line in page.split("\n## ")[0].splitlines() if line.startswith("|")]
+    assert len(rows) == 2 + 5
+    assert "\n".join(rows) in README

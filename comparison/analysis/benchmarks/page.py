@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 
-from comparison.analysis.benchmarks.table import MEANING, Benchmark, Benchmarks, Number, Row
+from comparison.analysis.benchmarks.table import MEANING, Benchmark, Benchmarks, Number, Row, Verdict
 
 MOST_DIGITS = 7  # of a value
+SHORT = (("sdnd104-1.5", 0), ("sdnd100", 2), ("frame", 0), ("den-hartog", 0), ("newmark", 0))  # name, and row
 HEAD = """# Checked against outside
 
-Numbers published elsewhere, each solved by the paper's exact equations and by the translational engine model. This page
-is `benchmarks.md` as `python -m comparison.benchmarks` writes it.
+Numbers published elsewhere, each solved by the paper's exact equations and by the translational engine model. A source
+that publishes a formula is evaluated. This page is `benchmarks.md` as `python -m comparison.benchmarks` writes it.
 
-None of the numbers is a measurement: they verify the two codes and validate neither.
+None of the numbers is a measurement: they verify the two codes. What would validate the models is in
+docs/validation.md of the project.
 """
 
 
@@ -30,8 +32,32 @@ def page(table: Benchmarks) -> str:
         Markdown.
     """
     counts = [f"- **{verdict}** ({table.counts()[verdict.value]}): {text}" for verdict, text in MEANING.items()]
-    parts = [HEAD, "\n".join(counts), *map(_section, table.benchmarks)]
+    parts = [HEAD, short_table(table), "\n".join(counts), *map(_section, table.benchmarks)]
     return "\n\n".join(part.strip("\n") for part in parts) + "\n"
+
+
+def short_table(table: Benchmarks) -> str:
+    """
+    Five numbers, one of each kind, with the verdict where it is not "met".
+
+    Parameters
+    ----------
+    table : Benchmarks
+
+    Returns
+    -------
+    str
+        A table in Markdown; without the lines that are not in `table`.
+    """
+    by_name = {each.name: each for each in table.benchmarks}
+    lines = ["| benchmark | published | equations | engine |", "|---|---|---|---|"]
+    for name, place in SHORT:
+        if name in by_name:
+            row = by_name[name].rows[place]
+            sides = [row.numbers[side] for side in ("equations", "engine")]
+            cells = [with_error(side) + ("" if side.verdict == Verdict.MET else f" ({side.verdict})") for side in sides]
+            lines.append(f"| {by_name[name].title}, {row.quantity} | {stated(row)} | {' | '.join(cells)} |")
+    return "\n".join(lines)
 
 
 def with_error(number: Number, digits: int = MOST_DIGITS) -> str:
@@ -45,8 +71,8 @@ def with_error(number: Number, digits: int = MOST_DIGITS) -> str:
 
 
 def stated(row: Row) -> str:
-    """The published number with its unit."""
-    return f"{row.published:.7g} {row.unit}".rstrip()
+    """The published number with its unit and uncertainty."""
+    return f"{row.published:.7g} {row.unit}".rstrip() + (f" ± {row.uncertainty:g}" if row.uncertainty else "")
 
 
 def _section(each: Benchmark) -> str:
@@ -69,7 +95,7 @@ def _line(row: Row) -> str:
     equations, smoothed, engine = (row.numbers[side] for side in ("equations", "smoothed", "engine"))
     cells = [
         row.quantity,
-        stated(row) + (f" ± {row.uncertainty:g}" if row.uncertainty else ""),
+        stated(row),
         with_error(equations),
         equations.verdict,
         with_error(smoothed),

@@ -79,3 +79,8 @@ def test_a_record_has_no_phases():
 def test_no_measured_peaks_is_no_empty_list():
     with pytest.raises(SceneError, match="measured"):
         load_scene("fig3-I").with_values({"measured": []})
+
+
+def test_scenes_with_measured_peaks_may_be_keys_of_a_dict():
+    assert {measured(): 1}[measured()] == 1
+    assert measured() != measured(value=2.4)
