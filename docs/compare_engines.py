@@ -99,6 +99,23 @@ ENGINES = (
 )
 
 
+HEAD = """# What engines cost for which error
+
+Made by `python docs/compare_engines.py`, which measures what is installed. How an engine joins a study:
+[other engines](other-engines.md).
+
+64 phase pairs of `fig3-I` and `fig3-II`, each engine in a process of its own on one processor of a busy machine. Phase
+pairs whose motion mirrors another's are computed once, and the time is scaled to all of them. Errors are relative,
+against the equations at a tolerance of 1e-9: median / largest over the phase pairs. “Own law” is the solution with the
+law that the engine solves: set-valued (supremum); the same, read at rest or faster than 1 mm/s (resolved); or linear
+below 1 mm/s (regularized). The supremum of μ₁ includes the one-sided limits at stops, which no step shows: against it
+every engine but the equations has the error of its model, whatever it costs.
+
+![Error over processor time, by quantity and scene](engines.png)
+
+Solid: median; dotted: largest."""
+
+
 def main(names: list[str]) -> None:
     """Measure, store, and write the page."""
     store = DOCS / "engines.json"
@@ -134,7 +151,8 @@ def _measured(engine: Engine) -> Iterator[dict[str, Any]]:
             row["lost"] = int((~np.isfinite(mu).all(axis=1)).sum())
             for title, body, solution in MEASURES:
                 error = np.abs(mu[:, body] / solutions[solution or engine.law][:, body] - 1.0)
-                row[title] = [float(f"{np.quantile(error, share):.2g}") for share in (0.5, 1.0)]
+                known = error[np.isfinite(error)]
+                row[title] = [float(f"{np.quantile(known, share):.2g}") if len(known) else None for share in (0.5, 1.0)]
             print(row, file=sys.stderr)
             yield row
 
@@ -177,7 +195,7 @@ def _draw(rows: list[dict[str, Any]]) -> None:
             axes.grid(alpha=0.3)
             for number, engine in enumerate(ENGINES):
                 chosen = [row for row in rows if (row["scene"], row["engine"]) == (scene, engine.name)]
-                errors = np.array([row[title] for row in chosen]).reshape(-1, 2).clip(1e-10, 10.0)
+                errors = np.array([row[title] for row in chosen], dtype=float).reshape(-1, 2).clip(1e-10, 10.0)
                 seconds = [row["seconds"] for row in chosen]
                 axes.plot(seconds, errors[:, 0], marker="osD^v<>P"[number], color=f"C{number}", label=engine.name)
                 axes.plot(seconds, errors[:, 1], ":", color=f"C{number}")
@@ -191,30 +209,16 @@ def _draw(rows: list[dict[str, Any]]) -> None:
 
 
 def _page(rows: list[dict[str, Any]]) -> str:
-    text = [
-        "# What engines cost for which error",
-        "",
-        "Made by `python docs/compare_engines.py`, which measures what is installed; how an engine joins a study:",
-        "[other engines](other-engines.md).",
-        "",
-        f"{GRID * GRID} phase pairs of `fig3-I` and `fig3-II`, each engine in a process of its own on one processor of a "
-        "busy machine;",
-        "phase pairs whose motion mirrors another's are computed once, and the time is scaled to all of them. Errors are",
-        "relative, against the equations at a tolerance of 1e-9: median and largest over the phase pairs. “Own law” is the",
-        "solution with the law that the engine solves: set-valued, the same read at rest or faster than 1 mm/s (resolved),",
-        "or linear below 1 mm/s (regularized). The supremum of μ₁ includes the one-sided limits at stops, which no step",
-        "shows: against it every engine but the equations has the error of its model, whatever it costs.",
-        "",
-        "![Error over processor time, by quantity and scene](engines.png)",
-        "",
-        "Solid: median; dotted: largest.",
-    ]
+    text = [HEAD]
     for scene in SCENES:
         heads = ["engine", "setting", "64 phase pairs, s", *(title for title, _, _ in MEASURES), "lost"]
         text += ["", f"## {scene}", "", f"| {' | '.join(heads)} |", f"|{'---|' * len(heads)}"]
         for row in rows:
             if row["scene"] == scene:
-                sizes = [" / ".join(f"{error:.0e}" for error in row[title]) for title, _, _ in MEASURES]
+                sizes = [
+                    " / ".join("none" if error is None else f"{error:.0e}" for error in row[title])
+                    for title, _, _ in MEASURES
+                ]
                 cells = [row["engine"], row["setting"], f"{row['seconds']:.2g}", *sizes, str(row["lost"])]
                 text.append(f"| {' | '.join(cells)} |")
     text += ["", "## What each solves", "", "| engine | version | law | cannot express |", "|---|---|---|---|"]

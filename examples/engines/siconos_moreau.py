@@ -3,8 +3,8 @@ Siconos: Moreau's time stepping with its solver for Coulomb's law. Needs Debian'
 
     python -m comparison.run fig3-I --grid 4 --model Siconos=examples.engines.siconos_moreau:amplification@resolved
 
-Siconos belongs to the Python of Debian: this file starts that one with itself and hands it the ground motion. The law is
-set-valued and truly sticks. What it cannot express: the one-sided limits at stops, since a step has one mean
+Siconos belongs to the Python of Debian: this file starts that one with itself and hands it the ground motion. The law
+is set-valued and truly sticks. What it cannot express: the one-sided limits at stops, since a step has one mean
 acceleration. Its error in the direction of slip is of first order in the step.
 """
 
