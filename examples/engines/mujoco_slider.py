@@ -4,8 +4,8 @@ MuJoCo: a sphere that slides on a plane under a chain, held back by springs. Nee
     python -m comparison.run fig3-I --grid 4 --model MuJoCo=examples.engines.mujoco_slider:amplification@resolved
 
 What it cannot express: a sphere inside a sphere (the restoring force is that of springs, m_sum g x/R), and friction
-linear in the velocity. Its contacts are soft constraints with a friction cone of their own smoothing: what happens
-within a few ms of a stop, and with it mu_1, is that of its solver.
+linear in the velocity. Its contacts are soft constraints, whose own smoothing decides what happens within a few ms of a
+stop, and with it mu_1.
 """
 
 from __future__ import annotations
@@ -17,6 +17,9 @@ import numpy as np
 
 from reference.problem import GRAVITY, ground_acceleration, ground_peak
 
+# stiffness, 1/s^2, and damping, 1/s, of a contact, and how hard it is. A harder one, or one that is damped more, lifts
+# off as it slides: friction in a cone that is solved as a convex one also pushes upward, in proportion to the velocity
+CONTACT = 'solref="-1e5 -300" solimp="0.3 0.3 1e-3"'
 SETTLING = 1000  # steps at rest, in which the sphere sinks into the plane
 MODEL = """
 <mujoco>
@@ -24,13 +27,12 @@ MODEL = """
   <flag energy="disable"/>
  </option>
  <worldbody>
-  <geom type="plane" size="0 0 1" friction="{friction} 0 0" condim="3" solref="{contact} 1" solimp="0.99 0.9999 1e-4"/>
+  <geom type="plane" size="0 0 1" friction="{friction} 0 0" condim="3" {contact}/>
   <body pos="0 0 1">
    <joint type="slide" axis="1 0 0" stiffness="{restoring}"/>
    <joint type="slide" axis="0 1 0" stiffness="{restoring}"/>
    <joint type="slide" axis="0 0 1"/>
-   <geom type="sphere" size="1" mass="{mass}" friction="{friction} 0 0" condim="3" solref="{contact} 1"
-    solimp="0.99 0.9999 1e-4"/>
+   <geom type="sphere" size="1" mass="{mass}" friction="{friction} 0 0" condim="3" {contact}/>
    {upper}
   </body>
  </worldbody>
@@ -49,7 +51,7 @@ def amplification(scene, phases, step=1e-3):
     for stiffness, damping, mass in reversed(list(zip(scene.stiffness, scene.damping, scene.masses[1:]))):
         upper = LINK.format(stiffness, damping, mass, upper)
     restoring = 0.0 if scene.flat else scene.total_mass * GRAVITY / scene.radius
-    parts = {"step": step, "contact": 2.0 * step, "friction": scene.friction_coefficient, "restoring": restoring}
+    parts = {"step": step, "contact": CONTACT, "friction": scene.friction_coefficient, "restoring": restoring}
     model = mujoco.MjModel.from_xml_string(MODEL.format(**parts, mass=scene.masses[0], upper=upper))
     mu = np.array([_peaks(model, scene, phase, step) for phase in phases])
     return mu / ground_peak(scene, phases)[:, None]
