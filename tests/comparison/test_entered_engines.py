@@ -26,7 +26,7 @@ from comparison.analysis.extremes.rows import entered_column, rows
 from comparison.analysis.extremes.verdicts import Reply, judged
 from comparison.analysis.surfaces import labeled_surfaces
 from comparison.analysis.tradeoff.analysis import TradeOff
-from comparison.analysis.tradeoff.settings import settings
+from comparison.analysis.tradeoff.settings import entered_settings
 from comparison.analysis.unanswered import unanswered, with_silent_models
 from comparison.cli.entered import as_words, entered_models, look_at
 from comparison.execution.environment import engine_fingerprint, source_digest
@@ -329,10 +329,7 @@ def test_every_extreme_of_its_law_concerns_an_entered_engine_but_none_of_the_num
 def test_the_curve_of_an_entered_engine_runs_over_the_tolerance_that_it_takes() -> None:
     def curve(names: str, like: str = "regularised") -> list[tuple[str, float, bool]]:
         model = entered_model("mine", {"function": "entered_engines:plain", "names": names}, like)
-        listed = settings(SCENE, quick=True, entered=[model])
-        assert [one for one in listed if one.method != "entered: mine"] == settings(SCENE, quick=True)
-        mine = [one for one in listed if one.method == "entered: mine"]
-        return [(one.question, one.value, one.against is None) for one in mine]
+        return [(one.question, one.value, one.against is None) for one in entered_settings([model])]
 
     assert curve("tolerance") == [("regularised", value, True) for value in (1e-2, 1e-3, 1e-4, 1e-5)]
     assert curve("") == [("regularised", 1e-3, True)]

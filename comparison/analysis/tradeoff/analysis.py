@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from comparison.analysis.protocol import Analysis
 from comparison.analysis.stored import finite_or_none
 from comparison.analysis.tradeoff.measure import Function, Measured, Measurement, joined, measure, sample, without_value
-from comparison.analysis.tradeoff.settings import Question, Setting, asked, settings
+from comparison.analysis.tradeoff.settings import Question, Setting, asked, entered_settings, settings
 from comparison.analysis.tradeoff.trade import Answered, Entry, Trade, labeled, quantile, with_pareto_fronts
 from comparison.execution.task import Task
 from comparison.execution.task_results import TaskResults
@@ -67,7 +67,7 @@ class TradeOff(Analysis[list[MeasuredTrade]]):
         """The tasks of a scene by the key of their function."""
         tasks: dict[str, list[Task]] = {}
         limits = {engine_of(model.settings)["function"]: model.timeout for model in self.entered}
-        for name, (function, count, seconds) in functions(scene, self.quick, self.entered).items():
+        for name, (function, count, seconds) in functions(scene, self.quick, entered_settings(self.entered)).items():
             each = seconds * scene.duration / 20.0
             size = int(np.clip(CHUNK / each, 1, count))
             phases = sample(count)
@@ -94,7 +94,7 @@ class TradeOff(Analysis[list[MeasuredTrade]]):
         }
         questions = {question.key: question for question in asked(scene)}
         entries, answers, reference_solutions = [], [], []
-        for setting in settings(scene, self.quick, self.entered):
+        for setting in [*settings(scene, self.quick), *entered_settings(self.entered)]:
             question = questions[setting.question]
             count = question.quick if self.quick else question.points
             reference_solution = measured[key(setting.against or question.reference_solution)].upto(count)
@@ -119,7 +119,7 @@ def key(function: Function) -> str:
     return f"{function[0]} {sorted(function[1].items())}"
 
 
-def functions(scene: Scene, quick: bool, entered: Sequence[Model] = ()) -> dict[str, tuple[Function, int, float]]:
+def functions(scene: Scene, quick: bool, others: Sequence[Setting] = ()) -> dict[str, tuple[Function, int, float]]:
     """
     Every function that is called for a scene, once each.
 
@@ -129,8 +129,8 @@ def functions(scene: Scene, quick: bool, entered: Sequence[Model] = ()) -> dict[
         Scene with phases.
     quick : bool
         Fewer points and values.
-    entered : sequence of Model
-        Engines of the user.
+    others : sequence of Setting
+        Measured besides those of the scene.
 
     Returns
     -------
@@ -138,7 +138,7 @@ def functions(scene: Scene, quick: bool, entered: Sequence[Model] = ()) -> dict[
         By its key: function, number of phase pairs, about how many s each takes.
     """
     points = {question.key: question.quick if quick else question.points for question in asked(scene)}
-    measured = settings(scene, quick, entered)
+    measured = [*settings(scene, quick), *others]
     calls = [(question.reference_solution, points[question.key], question.seconds) for question in asked(scene)]
     calls += [(setting.against, points[setting.question], CHEAP) for setting in measured if setting.against]
     calls += [((setting.function, setting.settings), points[setting.question], setting.seconds) for setting in measured]

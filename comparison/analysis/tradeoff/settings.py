@@ -118,7 +118,7 @@ def asked(scene: Scene) -> list[Question]:
     return [question for question in QUESTIONS if question.key != "spatial" or has_spatial_data(scene)]
 
 
-def settings(scene: Scene, quick: bool = False, entered: Sequence[Model] = ()) -> list[Setting]:
+def settings(scene: Scene, quick: bool = False) -> list[Setting]:
     """
     Every setting that is measured for a scene.
 
@@ -127,15 +127,13 @@ def settings(scene: Scene, quick: bool = False, entered: Sequence[Model] = ()) -
     scene : Scene
     quick : bool
         Every other one of the expensive ones.
-    entered : sequence of Model
-        Engines of the user.
 
     Returns
     -------
     list of Setting
     """
     keys = {question.key for question in asked(scene)}
-    every = [*_reference(scene), *_scipy(quick), *_engine(quick), *_entered(entered)]
+    every = [*_reference(scene), *_scipy(quick), *_engine(quick)]
     return [setting for setting in every if setting.question in keys]
 
 
@@ -228,8 +226,19 @@ def _constant(quick: bool) -> list[Setting]:
     ]  # fmt: skip
 
 
-def _entered(models: Sequence[Model]) -> list[Setting]:
-    """Engines of the user at the tolerances that they take, or as they are."""
+def entered_settings(models: Sequence[Model]) -> list[Setting]:
+    """
+    Engines of the user at the tolerances that they take, or as they are.
+
+    Parameters
+    ----------
+    models : sequence of Model
+        As `study.entered.entered_model` makes them.
+
+    Returns
+    -------
+    list of Setting
+    """
     keys = {question.key for question in QUESTIONS}
     measured = []
     for model in models:
