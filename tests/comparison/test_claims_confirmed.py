@@ -45,6 +45,7 @@ CONFIRMED = (
     Reading(0.6, peak="literal (4.6)"),
     LITERAL,
 )
+TINY = np.finfo(float).tiny  # a platform that never slides has no displacement to compare with
 ALL_CASES = sorted({case for claim in CLAIMS for case in claim.cases})
 
 
@@ -100,7 +101,7 @@ def _second(case: str, reading: Reading) -> Evidence:
         1e-3,
         ("ok",),
         tuple(bends(mu, factors)),
-        tuple(facts[1 : 1 + bodies] / facts[1 + bodies :]),
+        tuple(facts[1 : 1 + bodies] / np.maximum(facts[1 + bodies :], TINY)),
         float(facts[0] / scene.radius**2),
         tuple((T, float(natural[np.abs(T / natural - 1.0).argmin()])) for T in scene.excitation.periods),
         bool(twins),
