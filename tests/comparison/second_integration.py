@@ -200,48 +200,53 @@ def ground_tops(scene: Scene, phases: Array, samples: int = 1000) -> Array:
 
 
 def by_scipy(
-    scene: Scene, phases: Array, corner: float | None, tolerance: float = 1e-6, substeps: int = 4
+    scene: Scene,
+    phases: Array,
+    corner: float | None,
+    tolerance: float = 1e-6,
+    most: float = 0.04,
+    spacing: float = 2e-3,
 ) -> tuple[Array, Array]:
     """
-    mu (M, N) and facts (M, 1 + 2 N) by DOP853. corner: v_reg, m/s; None for lubricated and frictionless contacts.
+    mu (M, N) and facts (M, 1 + 2 N) by DOP853. corner: v_reg, m/s; None for lubricated and frictionless contacts. most:
+    s, of a step; spacing: s, of the instants that are looked at.
     """
     amplitudes, decay, frequency, below, above, support, mu, curvature = system(scene)
     phases = np.asarray(phases)
     runs, n = len(phases), len(below)
 
-    def loading(t: float) -> Array:
-        waves = np.exp(-decay * t) * np.cos(frequency * t + phases)
+    def loading(t: Array) -> Array:
+        waves = np.exp(-decay * t[:, None, None]) * np.cos(frequency * t[:, None, None] + phases)
         return waves @ amplitudes.T
 
-    def accelerations(t: float, x: Array, v: Array) -> Array:
-        u = loading(t)
-        a = np.repeat(-u[:, None], n, axis=1)
-        stretch = x[:, 1:] - x[:, :-1]
-        a[:, 1:] -= below[1:] * stretch
-        a[:, :-1] += above[:-1] * stretch
+    def accelerations(u: Array, x: Array, v: Array) -> Array:
+        a = np.repeat(-u[:, :, None], n, axis=2)
+        stretch = x[:, :, 1:] - x[:, :, :-1]
+        a[:, :, 1:] -= below[1:] * stretch
+        a[:, :, :-1] += above[:-1] * stretch
         if corner is None:
-            w = v[:, 0] if scene.lubricated else np.zeros_like(v[:, 0])
+            w = v[:, :, 0] if scene.lubricated else np.zeros_like(u)
         else:
-            w = v[:, 0] / np.maximum(np.hypot(v[:, 0, 0], v[:, 0, 1]), corner)[:, None]
-        along = curvature * (x[:, 0] * w).sum(axis=1, keepdims=True)
-        a[:, 0] -= support * curvature * x[:, 0] + mu * (support * w - u * along)
+            w = v[:, :, 0] / np.maximum(np.hypot(v[:, :, 0, 0], v[:, :, 0, 1]), corner)[..., None]
+        along = curvature * (x[:, :, 0] * w).sum(axis=-1, keepdims=True)
+        a[:, :, 0] -= support * curvature * x[:, :, 0] + mu * (support * w - u * along)
         return a
 
     def slope(t: float, y: Array) -> Array:
-        x, v = y.reshape(2, runs, n, 2)
-        return np.concatenate([v.ravel(), accelerations(t, x, v).ravel()])
+        x, v = y.reshape(2, 1, runs, n, 2)
+        return np.concatenate([v.ravel(), accelerations(loading(np.array([t])), x, v).ravel()])
 
-    solver = DOP853(slope, 0.0, np.zeros(4 * runs * n), scene.duration, 0.01, tolerance, 1e-3 * tolerance)
+    solver = DOP853(slope, 0.0, np.zeros(4 * runs * n), scene.duration, most, tolerance, 1e-3 * tolerance)
     top, facts = np.zeros((runs, n)), np.zeros((runs, 1 + 2 * n))
     while solver.status == "running":
         solver.step()
-        curve = solver.dense_output()
-        for t in np.linspace(solver.t_old, solver.t, substeps, endpoint=False):
-            x, v = curve(t).reshape(2, runs, n, 2)
-            total = accelerations(t, x, v) + loading(t)[:, None]
-            top = np.maximum(top, (total**2).sum(axis=-1))
-            facts[:, 0] = np.maximum(facts[:, 0], (x[:, 0] ** 2).sum(axis=-1))
-            facts[:, 1 : 1 + n] = np.maximum(facts[:, 1 : 1 + n], np.abs(x[..., 0] - x[..., 1]))
-            facts[:, 1 + n :] = np.maximum(facts[:, 1 + n :], np.abs(x).max(axis=-1))
+        parts = max(4, math.ceil((solver.t - solver.t_old) / spacing))
+        times = np.linspace(solver.t_old, solver.t, parts, endpoint=False)
+        x, v = np.moveaxis(solver.dense_output()(times).reshape(2, runs, n, 2, parts), -1, 1)
+        u = loading(times)
+        top = np.maximum(top, ((accelerations(u, x, v) + u[:, :, None]) ** 2).sum(axis=-1).max(axis=0))
+        facts[:, 0] = np.maximum(facts[:, 0], (x[:, :, 0] ** 2).sum(axis=-1).max(axis=0))
+        facts[:, 1 : 1 + n] = np.maximum(facts[:, 1 : 1 + n], np.abs(x[..., 0] - x[..., 1]).max(axis=0))
+        facts[:, 1 + n :] = np.maximum(facts[:, 1 + n :], np.abs(x).max(axis=(0, 3)))
     assert solver.status == "finished", "DOP853 reached the end"
     return np.sqrt(top) / ground_tops(scene, phases)[:, None], facts

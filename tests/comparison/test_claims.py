@@ -223,6 +223,30 @@ def test_the_command_prints_the_table(
     assert message.count("\n") == 1
 
 
+def test_the_command_settles_counts_and_searches_a_bounded_number_of_readings(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    asked: set[Reading] = set()
+
+    def gathered(question: Question) -> Evidence:
+        asked.add(question.reading)
+        return PAPER[question.case]
+
+    monkeypatch.setattr(table_module, "gathered", gathered)
+    monkeypatch.setattr(runner, "compiling_task", lambda stage: Task(len, (), stage, 0.0, None, False))
+    words = ["--jobs", "2", "--grid", "16", "--out", str(tmp_path / "report")]
+    assert main([*words, "--search", "4", "--settle"], ThreadPoolExecutor) == 0
+    printed = capsys.readouterr().out
+    assert "Counts on 48 phases per axis" in printed
+    assert "fig3-I mu_1: periodic 2 and 2 (from 8 on); drawn 4 and 3 (from 8 on); profile 4 and 3" in " ".join(
+        printed.split()
+    )
+    assert "4 readings were searched on 8 x 8 phases; at most 14 of the 16 claims can hold." in printed
+    assert {0.447, 0.211, 0.946, 0.145} <= {reading.amplitude for reading in asked}, "the first of the sequence"
+    assert main([*words, "--search", "0"], ThreadPoolExecutor) == 2
+    assert "--search" in capsys.readouterr().err
+
+
 def test_the_command_goes_on_where_it_stopped(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from typing import Any
 
 from comparison.analysis.claims.readings import Reading, loading_around
 from reference.problem import Scene, load_scene
 
+KEPT = 1024  # scenes of each kind: every reading asks for its own several times
 
+
+@lru_cache(KEPT)
 def _read(name: str, reading: Reading) -> Scene:
     scene = load_scene(name, reading.amplitude)
     values: dict[str, Any] = {"name": name, "duration": reading.duration}
@@ -31,6 +35,7 @@ def _times(value: Any, factor: float) -> Any:
     return factor * value if isinstance(value, int | float) else [factor * number for number in value]
 
 
+@lru_cache(KEPT)
 def _alone(name: str, reading: Reading) -> Scene:
     """The platform without what stands on it, under the loading as printed: close to its own resonance T_c."""
     scene = _read(name, reading)
@@ -40,6 +45,7 @@ def _alone(name: str, reading: Reading) -> Scene:
     return scene.with_values({"name": f"{name} alone", "bodies": platform, **dict(loading_around(natural))})
 
 
+@lru_cache(KEPT)
 def _oscillator(name: str, reading: Reading) -> Scene:
     """One body without friction, of the period T_3x of the second body on its springs: far from both harmonics."""
     scene = _read(name, reading)
