@@ -39,8 +39,8 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         " `bars` state it without load. Where a study has such a scene, its last model softens them by the weight above"
         " them at rest, `Scene.softened()`: P / (l (tan x / x - 1)) of each bar under the load P,"
         " x = (l / 2) sqrt(P / EJ). `load_effect` softens them in every model. Bars that would buckle, at"
-        " P = pi^2 EJ / l^2, are refused then. In the spatial model `axial_stiffness` makes the link a clamped beam in every"
-        " direction; bars that could not hold the bodies upright are refused.",
+        " P = pi^2 EJ / l^2, are refused then. In the spatial model `axial_stiffness` makes the link a clamped beam in"
+        " every direction; bars that could not hold the bodies upright are refused.",
     ),
     ("`[excitation]`, two frequencies", "Excitation", "excitation", "Ground acceleration (5.2)-(5.4)."),
     ("`[excitation]`, recorded motion", "Record", "excitation", "A record in place of the two frequencies."),

@@ -37,7 +37,11 @@ class Tower:
         return self.mass * GRAVITY
 
     def frequencies(self) -> Array:
-        """Angular frequencies of sway and rocking in a vertical plane, by the stability functions of a beam."""
+        """Angular frequencies of sway and rocking in a vertical plane."""
+        return np.sqrt(self.squares())
+
+    def squares(self) -> Array:
+        """Their squares, by the stability functions of a beam; negative where the body topples."""
         flexibility, length = self.count * self.bending_stiffness, self.length
         # w = a + b z + c cos(p z) + d sin(p z) under the axial load P, p^2 = P / EJ
         p = math.sqrt(self.weight / flexibility)
@@ -53,7 +57,8 @@ class Tower:
         moved = np.array([[1.0, -self.center], [0.0, 1.0]])
         stiffness = moved.T @ top @ moved
         stiffness[1, 1] -= self.weight * self.center
-        return np.sqrt(eigh(stiffness, np.diag([self.mass, self.inertia]), eigvals_only=True))
+        squares: Array = eigh(stiffness, np.diag([self.mass, self.inertia]), eigvals_only=True)
+        return squares
 
 
 def tower_of_beams(tower: Tower, elements: int = 8) -> tuple[exudyn.SystemContainer, exudyn.MainSystem, int]:

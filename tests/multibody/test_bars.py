@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 from beam_columns import Tower, tower_of_beams
+from scipy.optimize import brentq
 
 from multibody.models.engine import exudyn, items
 from multibody.models.links import add_links
 from multibody.models.units import units_of
-from reference.problem import Scene, load_scene
+from reference.problem import Scene, SceneError, load_scene
 
 SIZE = [2.0, 1.6, 0.2]
 GAP = 0.3  # m, from the upper ends of the bars to the center of mass
@@ -52,6 +54,26 @@ def tower_of(scene: Scene) -> Tower:
     inertia = body.mass / 12.0 * (SIZE[0] ** 2 + SIZE[2] ** 2)
     ends = bars.count, bars.bending_stiffness, bars.length, bars.axial_stiffness, bars.spread
     return Tower(*ends, body.mass, inertia, GAP)
+
+
+@pytest.mark.parametrize("name", TOWERS)
+def test_a_body_is_said_to_topple_where_its_slowest_frequency_vanishes(name: str) -> None:
+    """By the axial stiffness of bars on which it is 20 times as high as they are long."""
+    scene = scene_of(name)
+    high = 20.0 * TOWERS[name][0]["length"]
+
+    def square(spread: float) -> float:
+        return float(replace(tower_of(scene), center=high, spread=spread).squares()[0])
+
+    edge = brentq(square, 0.0, 100.0)
+    height = 0.2 + TOWERS[name][0]["length"] + 2.0 * high
+    for spread, stands in ((0.9999 * edge, False), (1.0001 * edge, True)):
+        raised = {"bodies.1.height": height, "bodies.1.bars.spread": spread}
+        if stands:
+            scene.with_values(raised)
+        else:
+            with pytest.raises(SceneError, match="topple"):
+                scene.with_values(raised)
 
 
 def on_the_ground(scene: Scene, force: float = 0.0) -> tuple[Any, Any, int]:
