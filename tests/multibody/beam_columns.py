@@ -61,11 +61,13 @@ class Tower:
         return squares
 
 
-def tower_of_beams(tower: Tower, elements: int = 8) -> tuple[exudyn.SystemContainer, exudyn.MainSystem, int]:
+def tower_of_beams(
+    tower: Tower, elements: int = 8, force: float = 0.0
+) -> tuple[exudyn.SystemContainer, exudyn.MainSystem, int]:
     """
     The same in a vertical plane with the engine's cable elements: container, system and number of the body's node.
 
-    Every bar stands at its place along x; the body is tied to their upper ends.
+    Every bar stands at its place along x; the body is tied to their upper ends. force: along x, in weights of the body.
     """
     container = exudyn.SystemContainer()
     mbs = container.AddSystem()
@@ -73,7 +75,7 @@ def tower_of_beams(tower: Tower, elements: int = 8) -> tuple[exudyn.SystemContai
     body_node = mbs.AddNode(items.NodeRigidBody2D(referenceCoordinates=[0.0, tower.length + tower.center, 0.0]))
     body = mbs.AddObject(items.ObjectRigidBody2D(mass=tower.mass, inertia=tower.inertia, nodeNumber=body_node))
     center = mbs.AddMarker(items.MarkerBodyPosition(bodyNumber=body))
-    mbs.AddLoad(items.LoadForceVector(markerNumber=center, loadVector=[0.0, -tower.weight, 0.0]))
+    mbs.AddLoad(items.LoadForceVector(markerNumber=center, loadVector=[force * tower.weight, -tower.weight, 0.0]))
     # two groups of bars stand as far from the axis as they all do in the mean along one axis
     for place in (-tower.spread / math.sqrt(2.0), tower.spread / math.sqrt(2.0)):
         nodes = [
