@@ -15,6 +15,7 @@ from reference.problem import GRAVITY
 
 Array = NDArray[np.float64]
 
+ELEMENTS = 8  # of a bar
 BARS_MASS = 1e-4  # of a group of bars over that of the body: none would leave the elements without inertia
 ALONG_THE_BAR = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # x of an element points up
 
@@ -61,9 +62,7 @@ class Tower:
         return squares
 
 
-def tower_of_beams(
-    tower: Tower, elements: int = 8, force: float = 0.0
-) -> tuple[exudyn.SystemContainer, exudyn.MainSystem, int]:
+def tower_of_beams(tower: Tower, force: float = 0.0) -> tuple[exudyn.SystemContainer, exudyn.MainSystem, int]:
     """
     The same in a vertical plane with the engine's cable elements: container, system and number of the body's node.
 
@@ -80,12 +79,12 @@ def tower_of_beams(
     for place in (-tower.spread / math.sqrt(2.0), tower.spread / math.sqrt(2.0)):
         nodes = [
             mbs.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[place, height, 0.0, 1.0]))
-            for height in np.linspace(0.0, tower.length, elements + 1)
+            for height in np.linspace(0.0, tower.length, ELEMENTS + 1)
         ]
         for pair in pairwise(nodes):
             mbs.AddObject(
                 items.ObjectANCFCable2D(
-                    length=tower.length / elements,
+                    length=tower.length / ELEMENTS,
                     massPerLength=BARS_MASS * tower.mass / tower.length,
                     bendingStiffness=0.5 * tower.count * tower.bending_stiffness,
                     axialStiffness=0.5 * tower.count * tower.axial_stiffness,
