@@ -45,7 +45,8 @@ class Effective:
     contact force at t = 0. mass: kg, total, the contact force at t = 0 over the apparent gravity. acceleration: m/s^2,
     absolute, of the platform at t = 0: that of the ground where friction holds it, 0 where friction begins with
     the speed. damping: N s/m, of the top link along x, fitted with its stiffness to the force on the top body; NaN
-    without dampers and where bodies turn. error_message: why there are none, or "".
+    without dampers and where bodies turn. stiffness: N/m, of the top link along x where it is given by bars, fitted
+    likewise; half-way up, where bodies turn. error_message: why there are none, or "".
     """
 
     scene: str
@@ -56,6 +57,7 @@ class Effective:
     mass: float = float("nan")
     acceleration: float = float("nan")
     damping: float = float("nan")
+    stiffness: float = float("nan")
     error_message: str = ""
 
 
@@ -71,6 +73,7 @@ def stated(scene: Scene) -> Effective:
         mass=scene.total_mass,
         acceleration=float(np.linalg.norm(ground)),
         damping=float(scene.damping[-1, 0]) if scene.damping.any() else float("nan"),
+        stiffness=float(scene.stiffness[-1, 0]) if scene.bodies[-1].bars is not None else float("nan"),
     )
 
 
@@ -134,6 +137,7 @@ def _measured(scene: Scene, motion: Trajectory) -> dict[str, Any]:
         "mass": float(motion.contact_force[0] / (GRAVITY + ground[0, 2])),
         "acceleration": float(np.linalg.norm(motion.absolute_acceleration[0, 0])),
         "damping": _damping(scene, motion),
+        "stiffness": _stiffness(scene, motion),
     }
 
 
@@ -145,6 +149,29 @@ def _damping(scene: Scene, motion: Trajectory) -> float:
     force = -scene.masses[-1] * motion.absolute_acceleration[:, -1, 0]
     fitted = np.linalg.lstsq(np.column_stack([stretch, rate]), force)
     return float(fitted[0][1]) if fitted[2] == 2 else float("nan")
+
+
+def _stiffness(scene: Scene, motion: Trajectory) -> float:
+    """
+    The force on the top body as a spring and a damper of the bars below it, by least squares.
+
+    Where bodies turn, the force acts half-way up and leans with the bars, by which the weight has a part along x.
+    """
+    if scene.bodies[-1].bars is None or scene.offsets.any() or scene.yaws.any():
+        return float("nan")
+    stretch, rate = (part[:, -1, 0] - part[:, -2, 0] for part in (motion.position, motion.velocity))
+    force = -scene.masses[-1] * motion.absolute_acceleration[:, -1, 0]
+    if "turns" in motion.extra:
+        lower, upper = scene.bodies[-2].height, scene.bodies[-1].height
+        assert lower is not None
+        assert upper is not None
+        lean = motion.extra["turns"][:, -2:, 1].mean(axis=1)
+        stretch = stretch - (upper - lower) * lean
+        force = force + scene.masses[-1] * (GRAVITY + motion.absolute_acceleration[:, -1, 2]) * lean
+        rate = np.gradient(stretch, motion.time)
+    columns = [stretch, rate] if scene.damping.any() else [stretch]
+    fitted = np.linalg.lstsq(np.column_stack(columns), force)
+    return float(fitted[0][0]) if fitted[2] == len(columns) else float("nan")
 
 
 def _friction(scene: Scene, motion: Trajectory, radius: float) -> float:

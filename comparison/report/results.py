@@ -606,6 +606,8 @@ class Effective(Part):
     """absolute acceleration of the platform at t = 0, m/s^2"""
     damping: Number
     """coefficient of the damper of the top link along x, N s/m; null without dampers, and where bodies turn"""
+    stiffness: Number
+    """stiffness of the top link along x, N/m; null where it is not given by bars"""
     error_message: Text
     """why there are no values, or empty"""
 
@@ -791,7 +793,7 @@ class Assumption(Part):
 
 
 class Variation(Part):
-    """The scene with another ring of supports and other heights, or uneven."""
+    """The scene with another ring of supports and other heights, uneven, or on loaded bars."""
 
     ring: float
     """radius of the ring, as a multiple of the stated one"""
@@ -803,6 +805,8 @@ class Variation(Part):
     """by which centers of mass above the platform are moved along x and along y, over the radius of the ring"""
     yaw: float
     """by which bodies above the platform and their links are turned about the vertical, rad"""
+    bars: str | None
+    """what the weight above does to bars that give way: softening or shortening; null as stated"""
 
 
 class AssumptionCell(Part):

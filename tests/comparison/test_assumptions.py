@@ -14,7 +14,16 @@ from known_analyses import collected
 from matplotlib.image import imread
 
 from comparison.analysis.assumptions.validity import ASSUMPTIONS, Assumptions, ValidityRanges, describe
-from comparison.analysis.assumptions.variations import FEW, MANY, PHASES, Cell, Variation, ranges
+from comparison.analysis.assumptions.variations import (
+    FEW,
+    MANY,
+    PHASES,
+    UNDER_LOAD,
+    Cell,
+    Variation,
+    ranges,
+    variation_arguments,
+)
 from comparison.cli.assumptions import main
 from comparison.report.figures.assumptions import assumption_figure_name, draw_assumptions
 from comparison.study.models import MODEL_HIERARCHY
@@ -186,3 +195,38 @@ def test_real_bodies_off_the_axis_turn_about_it() -> None:
     assert np.array(moved.torsion).shape == (len(PHASES), 2)
     assert np.array(moved.torsion)[:, 1].min() > 1e-3
     assert moved.largest(2) > 2.0 * even.largest(2)
+
+
+BARS = {"count": 4, "bending_stiffness": 0.8, "length": 1.0, "axial_stiffness": 2900.0, "spread": 0.8}
+
+
+def test_bars_under_load_are_varied_only_where_they_give_way() -> None:
+    rigid = {key: value for key, value in BARS.items() if key != "axial_stiffness"}
+    for bars, expected in ((BARS, UNDER_LOAD), (rigid, ())):
+        scene = STATED.with_values({"bodies.1.period": None, "bodies.1.bars": bars})
+        study = Study((scene,), 1, 1e-3, MODEL_HIERARCHY)
+        varied = [variation for _, _, variation, _ in variation_arguments(study, ())]
+        assert varied == [None, *expected]
+    softening, shortening = (
+        variation.of(STATED.with_values({"bodies.1.period": None, "bodies.1.bars": BARS})) for variation in UNDER_LOAD
+    )
+    assert softening.bodies[1].bars.load_effect == "softening"
+    assert shortening.bodies[1].bars.load_effect == "shortening"
+
+
+def test_what_shortening_changes_is_said_beside_softening_alone() -> None:
+    cells = [_cell(variation, size, size, 1e-3) for variation, size in zip(UNDER_LOAD, (-0.1, -0.082))]
+    even = _cell(Variation(), 0.0, 0.0)
+    lines = ValidityRanges([STATED], [even, *cells]).lines(STATED)
+    assert lines[-1].endswith("change mu_1 by up to 2 ± 0.1 %, mu_2 by up to 0 ± 0 %")
+    nothing = [even, cells[0], _cell(UNDER_LOAD[1], float("nan"), 0.0)]
+    assert ValidityRanges([STATED], nothing).lines(STATED)[-1].startswith("no value says")
+
+
+def test_real_bars_that_shorten_change_what_softening_alone_does_not() -> None:
+    scene = STATED.with_values({"bodies.1.period": None, "bodies.1.bars": BARS, "name": "bars"}).with_amplitude(1.5)
+    softened, shortened = _turning(scene, [])
+    for cell in (softened, shortened):
+        assert set(cell.status) == {"ok"}
+    gap = np.abs(np.array(shortened.change) - np.array(softened.change))[:, 1]
+    assert (gap > 3.0 * shortened.error_estimate(2)).any()

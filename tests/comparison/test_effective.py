@@ -13,7 +13,7 @@ from fake_models import fake_hierarchy
 from known_analyses import collected
 
 from comparison.analysis.effective import PHASES, EffectiveValues, read_back, stated
-from comparison.study.models import MODEL_HIERARCHY, Model
+from comparison.study.models import MODEL_HIERARCHY, SOFTENED_SPATIAL, SOFTENED_TRANSLATIONAL, Model
 from comparison.study.study import Study
 from reference.problem import ground_acceleration, load_scene
 
@@ -100,3 +100,13 @@ def test_the_dampers_of_both_sides_are_those_of_the_scene() -> None:
     for key in ("small", "exact", "regularised", "translational"):
         assert read_back((scene, models[key])).damping == pytest.approx(0.7, rel=1e-3), key
     assert np.isnan(read_back((load_scene("fig3-I").with_values({"duration": 2.0}), models["exact"])).damping)
+
+
+def test_the_bars_of_every_model_are_as_stiff_as_the_scene_states_them_or_as_the_weight_leaves_them() -> None:
+    bars = {"count": 4, "bending_stiffness": 0.8, "length": 1.0, "axial_stiffness": 2900.0, "spread": 0.8}
+    scene = load_scene("fig3-I").with_values({"duration": 2.0, "bodies.1.period": None, "bodies.1.bars": bars})
+    assert stated(scene).stiffness == pytest.approx(12.0 * 4 * 0.8)
+    for model in (*MODEL_HIERARCHY[-2:], SOFTENED_TRANSLATIONAL, SOFTENED_SPATIAL):
+        own = scene.softened() if "softened" in model.settings else scene
+        assert read_back((scene, model)).stiffness == pytest.approx(own.stiffness[0, 0], rel=1e-5), model.key
+    assert np.isnan(stated(load_scene("fig3-I")).stiffness)

@@ -15,6 +15,7 @@ from reference.problem import GRAVITY
 
 Array = NDArray[np.float64]
 
+ELEMENTS = 8  # of a bar
 BARS_MASS = 1e-4  # of a group of bars over that of the body: none would leave the elements without inertia
 ALONG_THE_BAR = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # x of an element points up
 
@@ -37,7 +38,11 @@ class Tower:
         return self.mass * GRAVITY
 
     def frequencies(self) -> Array:
-        """Angular frequencies of sway and rocking in a vertical plane, by the stability functions of a beam."""
+        """Angular frequencies of sway and rocking in a vertical plane."""
+        return np.sqrt(self.squares())
+
+    def squares(self) -> Array:
+        """Their squares, by the stability functions of a beam; negative where the body topples."""
         flexibility, length = self.count * self.bending_stiffness, self.length
         # w = a + b z + c cos(p z) + d sin(p z) under the axial load P, p^2 = P / EJ
         p = math.sqrt(self.weight / flexibility)
@@ -53,14 +58,15 @@ class Tower:
         moved = np.array([[1.0, -self.center], [0.0, 1.0]])
         stiffness = moved.T @ top @ moved
         stiffness[1, 1] -= self.weight * self.center
-        return np.sqrt(eigh(stiffness, np.diag([self.mass, self.inertia]), eigvals_only=True))
+        squares: Array = eigh(stiffness, np.diag([self.mass, self.inertia]), eigvals_only=True)
+        return squares
 
 
-def tower_of_beams(tower: Tower, elements: int = 8) -> tuple[exudyn.SystemContainer, exudyn.MainSystem, int]:
+def tower_of_beams(tower: Tower, force: float = 0.0) -> tuple[exudyn.SystemContainer, exudyn.MainSystem, int]:
     """
     The same in a vertical plane with the engine's cable elements: container, system and number of the body's node.
 
-    Every bar stands at its place along x; the body is tied to their upper ends.
+    Every bar stands at its place along x; the body is tied to their upper ends. force: along x, in weights of the body.
     """
     container = exudyn.SystemContainer()
     mbs = container.AddSystem()
@@ -68,17 +74,17 @@ def tower_of_beams(tower: Tower, elements: int = 8) -> tuple[exudyn.SystemContai
     body_node = mbs.AddNode(items.NodeRigidBody2D(referenceCoordinates=[0.0, tower.length + tower.center, 0.0]))
     body = mbs.AddObject(items.ObjectRigidBody2D(mass=tower.mass, inertia=tower.inertia, nodeNumber=body_node))
     center = mbs.AddMarker(items.MarkerBodyPosition(bodyNumber=body))
-    mbs.AddLoad(items.LoadForceVector(markerNumber=center, loadVector=[0.0, -tower.weight, 0.0]))
+    mbs.AddLoad(items.LoadForceVector(markerNumber=center, loadVector=[force * tower.weight, -tower.weight, 0.0]))
     # two groups of bars stand as far from the axis as they all do in the mean along one axis
     for place in (-tower.spread / math.sqrt(2.0), tower.spread / math.sqrt(2.0)):
         nodes = [
             mbs.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[place, height, 0.0, 1.0]))
-            for height in np.linspace(0.0, tower.length, elements + 1)
+            for height in np.linspace(0.0, tower.length, ELEMENTS + 1)
         ]
         for pair in pairwise(nodes):
             mbs.AddObject(
                 items.ObjectANCFCable2D(
-                    length=tower.length / elements,
+                    length=tower.length / ELEMENTS,
                     massPerLength=BARS_MASS * tower.mass / tower.length,
                     bendingStiffness=0.5 * tower.count * tower.bending_stiffness,
                     axialStiffness=0.5 * tower.count * tower.axial_stiffness,

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 from beam_columns import Tower, tower_of_beams
+from rigid_chain import spatial_motion
+from scipy.optimize import brentq
 
+import multibody
 from multibody.models.engine import exudyn, items
 from multibody.models.links import add_links
 from multibody.models.units import units_of
-from reference.problem import Scene, load_scene
+from reference.problem import Outcome, Scene, SceneError, load_scene
 
 SIZE = [2.0, 1.6, 0.2]
 GAP = 0.3  # m, from the upper ends of the bars to the center of mass
@@ -54,6 +58,26 @@ def tower_of(scene: Scene) -> Tower:
     return Tower(*ends, body.mass, inertia, GAP)
 
 
+@pytest.mark.parametrize("name", TOWERS)
+def test_a_body_is_said_to_topple_where_its_slowest_frequency_vanishes(name: str) -> None:
+    """By the axial stiffness of bars on which it is 20 times as high as they are long."""
+    scene = scene_of(name)
+    high = 20.0 * TOWERS[name][0]["length"]
+
+    def square(spread: float) -> float:
+        return float(replace(tower_of(scene), center=high, spread=spread).squares()[0])
+
+    edge = brentq(square, 0.0, 100.0)
+    height = 0.2 + TOWERS[name][0]["length"] + 2.0 * high
+    for spread, stands in ((0.9999 * edge, False), (1.0001 * edge, True)):
+        raised = {"bodies.1.height": height, "bodies.1.bars.spread": spread}
+        if stands:
+            scene.with_values(raised)
+        else:
+            with pytest.raises(SceneError, match="topple"):
+                scene.with_values(raised)
+
+
 def on_the_ground(scene: Scene, force: float = 0.0) -> tuple[Any, Any, int]:
     """The body above on its link, whose lower end is fixed, in units of the model; a force along x in weights."""
     units = units_of(scene)
@@ -94,7 +118,6 @@ def test_a_body_on_bars_has_the_frequencies_of_beams_under_load(name: str, load_
     _, mbs, _ = on_the_ground(scene)
     values, _ = mbs.ComputeODE2Eigenvalues(static_settings())
     frequencies = np.sqrt(values) / units.time
-    print(frequencies, tower.frequencies())
     for expected in tower.frequencies():
         assert np.abs(frequencies / expected - 1.0).min() < 1e-5
 
@@ -107,6 +130,109 @@ def test_beam_elements_have_the_frequencies_of_beams_under_load(name: str) -> No
     mbs.SolveStatic(settings, updateInitialValues=True)
     values, _ = mbs.ComputeODE2Eigenvalues(settings)
     frequencies = np.sqrt(values[:3])
-    print(frequencies, tower.frequencies())
     for expected in tower.frequencies():
         assert np.abs(frequencies / expected - 1.0).min() < 3e-3
+
+
+BUILDINGS: dict[str, dict[str, Any]] = {
+    "without load": {},
+    "softened": {"load_effect": "softening"},
+    "shortening": {"load_effect": "shortening"},
+    "slack bars": {"load_effect": "shortening", "axial_stiffness": 200.0},
+    "torsion": {"load_effect": "softening", "spread": 0.3, "torsional_stiffness": 2.0, "axial_stiffness": 2e4},
+    "one bar": {"count": 1, "spread": 0.0, "bending_stiffness": 8.0, "length": 1.2, "axial_stiffness": 1e4},
+    "nearly buckling": {"load_effect": "shortening", "bending_stiffness": 0.3},
+}
+BARS = {"count": 4, "bending_stiffness": 0.8, "length": 1.0, "axial_stiffness": 2900.0, "spread": 0.8}
+
+
+def building(name: str, **values: Any) -> Scene:
+    bars = {"bodies.1.period": None, "bodies.1.bars": {**BARS, **BUILDINGS[name]}}
+    return load_scene("fig3-I").with_values({"duration": 2.0, **bars, **values}).with_amplitude(1.5)
+
+
+SHORT = ("softened", "shortening")  # of the buildings: a few seconds
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[] if name in SHORT else pytest.mark.long) for name in BUILDINGS]
+)
+def test_factors_agree_with_newton_euler_equations(name: str) -> None:
+    scene = building(name)
+    engine = multibody.amplification(scene, [(2.0, 0.7)], model="spatial")
+    independent = spatial_motion(scene, (2.0, 0.7), 1e-3, tolerance=1e-6)
+    assert engine.status[0] == Outcome.OK
+    assert (np.abs(engine.mu[0] - independent.mu) <= engine.error[0]).all(), (engine.mu, independent.mu, engine.error)
+
+
+@pytest.mark.long
+def test_three_storeys_on_bars_and_a_stiff_link_agree_with_newton_euler_equations() -> None:
+    platform, first = building("shortening").bodies
+    second = {"mass": 0.5, "height": 2.2, "size": SIZE, "stiffness": [30.0, 20.0]}
+    third = {"mass": 0.3, "height": 3.1, "size": SIZE, "bars": {**BARS, "bending_stiffness": 0.3}}
+    scene = building("softened", bodies=[platform, first, second, third])
+    engine = multibody.amplification(scene, [(2.0, 0.7)], model="spatial")
+    independent = spatial_motion(scene, (2.0, 0.7), 1e-3, tolerance=1e-6)
+    assert (np.abs(engine.mu[0] - independent.mu) <= engine.error[0]).all(), (engine.mu, independent.mu, engine.error)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["softened", "shortening"])
+def test_a_whole_surface_agrees_with_newton_euler_equations(name: str) -> None:
+    scene = building(name)
+    values = np.arange(8) * np.pi / 4.0
+    phases = [(a, b) for a in values for b in values]
+    engine = multibody.amplification(scene, phases, model="spatial")
+    assert (engine.status == Outcome.OK).all()
+    independent = np.array([spatial_motion(scene, phase, 1e-3, tolerance=1e-6).mu for phase in phases])
+    assert (np.abs(engine.mu - independent) <= engine.error).all()
+
+
+@pytest.mark.long
+def test_stiffer_and_stiffer_bars_tend_to_rigid_ones_in_proportion_to_their_compliance() -> None:
+    rigid = building("softened", **{"bodies.1.bars.axial_stiffness": None})
+    phase, settings = [(2.0, 0.7)], {"model": "spatial", "tolerance": 1e-4}
+    limit = multibody.amplification(rigid, phase, **settings)
+    gaps = []
+    for factor in (1.0, 2.0, 4.0):
+        scene = building("softened", **{"bodies.1.bars.axial_stiffness": factor * 2900.0})
+        gaps.append(multibody.amplification(scene, phase, **settings).mu[0, 1] - limit.mu[0, 1])
+    assert gaps[0] / gaps[1] == pytest.approx(2.0, rel=0.2)
+    assert gaps[1] / gaps[2] == pytest.approx(2.0, rel=0.2)
+
+
+def test_a_body_on_shortening_bars_sinks_by_three_fifths_of_the_square_of_its_sway_over_their_length() -> None:
+    """At a small load, of bars in tension so stiff that nothing else lets it sink."""
+    scene = scene_of("a hundredth of the buckling load", "shortening", spread=3.0, axial_stiffness=1e9)
+    length, units = 1.0, units_of(scene)
+    _, mbs, node = on_the_ground(scene, force=0.5)
+    mbs.SolveStatic(static_settings())
+    sway, _, sunk, *_ = units.length * mbs.GetNodeOutput(node, exudyn.OutputVariableType.Displacement)
+    assert sunk == pytest.approx(-0.6 * sway**2 / length, rel=0.01)
+
+
+@pytest.mark.parametrize("load_effect", ["softening", "shortening"])
+def test_a_body_pushed_aside_sways_as_far_as_on_beam_elements(load_effect: str) -> None:
+    scene = scene_of("half", load_effect, slenderness=150.0, spread=5.0)
+    force, units = 0.02, units_of(scene)
+    _, mbs, node = on_the_ground(scene, force)
+    mbs.SolveStatic(static_settings())
+    sway, _, sunk = units.length * mbs.GetNodeOutput(node, exudyn.OutputVariableType.Displacement)
+    places = []
+    for pushed in (0.0, force):
+        _, beams, body = tower_of_beams(tower_of(scene), pushed)
+        beams.SolveStatic(static_settings())
+        places.append(beams.GetNodeOutput(body, exudyn.OutputVariableType.Position))
+    swayed, sank, _ = places[1] - places[0]
+    assert sway == pytest.approx(swayed, rel=5e-3)
+    if load_effect == "shortening":
+        assert sunk == pytest.approx(sank, rel=1e-2)
+
+
+@pytest.mark.parametrize("load_effect", [None, "softening", "shortening"])
+def test_a_building_on_bars_that_give_way_stays_at_rest_without_loading(load_effect: str | None) -> None:
+    own = {} if load_effect is None else {"bodies.1.bars.load_effect": load_effect}
+    scene = building("without load", **own, **{"bodies.1.offset": [0.1, -0.05]}).with_amplitude(1e-4)
+    motion = multibody.single_run(scene.with_values({"duration": 1.0}), (0.3, 1.1), "spatial", step=1e-3)
+    assert np.abs(motion.position[:, 1, 2]).max() < 1e-6
+    assert np.abs(motion.extra["turns"][:, 1]).max() < 1e-5

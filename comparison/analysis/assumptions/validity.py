@@ -15,6 +15,7 @@ from comparison.analysis.assumptions.variations import (
     DURATION,
     FEW,
     PHASES,
+    UNDER_LOAD,
     Cell,
     Range,
     Variation,
@@ -70,7 +71,8 @@ ASSUMPTIONS = (
         "flexible bars that neither stretch nor move vertically",
         "Bars stretch by 1e-5 rho under the weight of all bodies and bend likewise, so that every body has its own "
         "vertical motion. Real clamped bars shorten by 0.6 u^2/l when they sway by u, ten times the rise of the "
-        "pendulum. No model has that: it is the weakest assumption of the study.",
+        "pendulum, and become softer by the weight. The spatial model has both where a scene states the "
+        "axial_stiffness of its bars; else it is the weakest assumption of the study.",
         "partly",
     ),
     Assumption(
@@ -105,7 +107,8 @@ class ValidityRanges:
         """One line per body, share and direction, and one per uneven variation."""
         uneven = [cell for cell in self.cells if cell.scene == scene.name and cell.variation.is_uneven]
         within = [describe(validity) for validity in ranges([scene], self.cells)]
-        return within + [describe_torsion(scene, cell) for cell in uneven]
+        loaded = [cell for cell in self.cells if cell.scene == scene.name and cell.variation in UNDER_LOAD]
+        return within + [describe_torsion(scene, cell) for cell in uneven] + describe_shortening(scene, loaded)
 
     def listed(self) -> dict[str, Any]:
         """For summary.json: assumptions, phase pairs, duration, every cell and every range."""
@@ -168,6 +171,35 @@ def describe(validity: Range) -> str:
         return f"{what} at no heights tried"
     fails = "the largest tried" if validity.fails is None else f"no longer at {validity.fails:g} times"
     return f"{what} with heights up to {validity.holds:g} times the stated ones, {fails}"
+
+
+def describe_shortening(scene: Scene, loaded: Sequence[Cell]) -> list[str]:
+    """
+    One line for people on assumption (iv): what it changes that bars shorten as they sway.
+
+    Parameters
+    ----------
+    scene : Scene
+    loaded : sequence of Cell
+        Of UNDER_LOAD, in that order; or none.
+
+    Returns
+    -------
+    list of str
+        Empty without cells.
+    """
+    if len(loaded) != len(UNDER_LOAD):
+        return []
+    softened, shortened = (1.0 + np.array(cell.change) for cell in loaded)
+    change = np.abs(shortened / softened - 1.0).max(axis=0)
+    error = np.hypot(*(np.array(cell.uncertainty) for cell in loaded)).max(axis=0)
+    if not np.isfinite(change).all():
+        return ["no value says what it changes that bars shorten as they sway"]
+    pairs = enumerate(zip(change, error), start=1)
+    changes = ", ".join(
+        f"mu_{body} by up to {100.0 * size:.2g} ± {100.0 * about:.1g} %" for body, (size, about) in pairs
+    )
+    return [f"bars that shorten as they sway, and not only soften under the weight, change {changes}"]
 
 
 def describe_torsion(scene: Scene, cell: Cell) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from comparison.study.batches import imported
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from reference.problem import Scene, demands, untilted
+from reference.problem.bar_links import bar_links
 
 Array = NDArray[np.float64]
 
@@ -31,10 +32,11 @@ WITHIN = (0.01, 0.05)  # of mu_i
 @dataclass(frozen=True)
 class Variation:
     """
-    The scene with another ring and other heights, as multiples of its own, on other supports, or uneven.
+    The scene with another ring and other heights, as multiples of its own, other supports, uneven, or with loaded bars.
 
     supports: how many on a ring, None: its own. offset: by which the centers of mass above the platform are moved along
-    x and along y, over the radius of the ring. yaw: by which the bodies above it and their links are turned, rad.
+    x and along y, over the radius of the ring. yaw: by which the bodies above it and their links are turned, rad. bars:
+    what the weight above does to all bars that give way; other bars only soften.
     """
 
     ring: float = 1.0
@@ -42,6 +44,7 @@ class Variation:
     supports: int | None = None
     offset: float = 0.0
     yaw: float = 0.0
+    bars: Literal["softening", "shortening"] | None = None
 
     @property
     def is_uneven(self) -> bool:
@@ -51,7 +54,7 @@ class Variation:
     @property
     def is_usual(self) -> bool:
         """Whether it only varies the ring and the heights."""
-        return self.supports is None and not self.is_uneven
+        return self.supports is None and not self.is_uneven and self.bars is None
 
     def of(self, scene: Scene) -> Scene:
         """The scene with this variation."""
@@ -67,6 +70,9 @@ class Variation:
                 values[f"bodies.{number}.offset"] = scene.offsets[number] + self.offset * radius
             if number and self.yaw:
                 values[f"bodies.{number}.yaw"] = float(scene.yaws[number] + self.yaw)
+            if self.bars and body.bars is not None:
+                gives_way = body.bars.axial_stiffness is not None
+                values[f"bodies.{number}.bars.load_effect"] = self.bars if gives_way else "softening"
         return scene.with_values(values)
 
 
@@ -84,6 +90,8 @@ MANY = (
     *(Variation(offset=offset) for offset in (0.025, 0.05, 0.1, 0.2)),
     *(Variation(yaw=yaw) for yaw in (0.05, 0.1, 0.2, 0.4)),
 )
+
+UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # of scenes whose bars give way
 
 
 @dataclass(frozen=True)
@@ -163,6 +171,7 @@ def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> 
     study : Study
         Every scene with phases to which both models of the engine apply.
     variations : sequence of Variation
+        UNDER_LOAD is added where bars give way.
 
     Returns
     -------
@@ -177,7 +186,8 @@ def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> 
             plain, spatial = engines
             asked.append((scene, plain, None, plain.tolerance(study.tolerance)))
             tolerance = spatial.tolerance(study.tolerance)
-            asked += [(scene, spatial, variation, tolerance) for variation in variations]
+            loaded = UNDER_LOAD if any(link is not None for link in bar_links(scene)) else ()
+            asked += [(scene, spatial, variation, tolerance) for variation in (*variations, *loaded)]
     return asked
 
 
