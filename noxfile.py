@@ -69,18 +69,19 @@ def lowest(session: nox.Session) -> None:
 def package(session: nox.Session) -> None:
     """Source archive and wheel, and a study by the wheel alone."""
     session.install("build", "twine")
-    output = Path(session.create_tmp()) / "dist"
+    place = Path(session.create_tmp()).resolve()
+    output = place / "dist"
     shutil.rmtree(output, ignore_errors=True)
     session.run("python", "-m", "build", "--outdir", str(output))
     session.run("twine", "check", "--strict", *map(str, sorted(output.iterdir())))
-    empty = Path(session.create_tmp()) / "empty"
+    empty = place / "empty"
     shutil.rmtree(empty, ignore_errors=True)
     session.run("python", "-m", "venv", str(empty))
     scripts = empty / ("Scripts" if (empty / "Scripts").is_dir() else "bin")
     (wheel,) = output.glob("*.whl")
     session.run(str(scripts / "python"), "-m", "pip", "install", "--quiet", str(wheel), external=True)
     script = str(scripts / "phase-resonance")
-    with session.chdir(session.create_tmp()):
+    with session.chdir(place):
         session.run(script, "--version", external=True)
         session.run(script, "run", "fig4-viscous", "--grid", "2", "--only", "surfaces,budget", external=True)
 

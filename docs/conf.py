@@ -9,17 +9,18 @@ from __future__ import annotations
 
 import re
 import sys
-from importlib.metadata import version as installed_version
 from pathlib import Path
 from typing import Any
 
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE.parent), str(HERE)]  # the packages as they stand in this copy, and mathml.py
 
+import reference  # noqa: E402
+
 project = "phase-resonance"
 author = "phase-resonance"
 copyright = "phase-resonance, MIT license"
-version = release = installed_version("phase-resonance")
+version = release = reference.__version__
 
 extensions = ["sphinx.ext.autodoc", "sphinx.ext.viewcode", "numpydoc", "myst_nb", "mathml"]
 exclude_patterns = ["_build", "**.ipynb_checkpoints"]

@@ -48,10 +48,12 @@ def has_spatial_data(scene: Scene) -> bool:
 
 
 def with_unloaded_bars(scene: Scene) -> bool:
+    """Whether bars are stated without load in a scene that the spatial model cannot take."""
     return scene.has_unloaded_bars and not has_spatial_data(scene)
 
 
 def with_unloaded_bars_in_space(scene: Scene) -> bool:
+    """Whether bars are stated without load in a scene that the spatial model can take."""
     return scene.has_unloaded_bars and has_spatial_data(scene)
 
 

@@ -80,6 +80,8 @@ def _span(counts: list[int]) -> str:
 
 
 def more_complex(case: str) -> Check:
+    """Check that mu_2 has several peaks and valleys, and more of them than mu_1."""
+
     def check(evidence: Mapping[str, Evidence]) -> Verdict:
         first, second = (periodic(evidence[case].mu[..., body], evidence[case].error, LEAST_SHARE) for body in (0, 1))
         several = second.peaks > 1 and second.valleys > 1
