@@ -7,6 +7,7 @@ the pages are built, and formulas become MathML (mathml.py). Neither the build n
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 from pathlib import Path
@@ -36,7 +37,8 @@ myst_enable_extensions = ["dollarmath", "amsmath", "deflist"]
 myst_heading_anchors = 3
 myst_dmath_double_inline = True
 
-nb_execution_mode = "cache"  # of the notebooks, in the build directory; an error ends the build
+nb_execution_mode = "force"  # the notebooks run at every build; an error ends it
+os.environ["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"  # the plots of notebooks are on their pages
 nb_execution_timeout = 300
 nb_execution_raise_on_error = True
 

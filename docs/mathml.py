@@ -24,7 +24,7 @@ def inline(writer: HTML5Translator, node: nodes.math) -> None:
 def block(writer: HTML5Translator, node: nodes.math_block) -> None:
     """Write a formula on lines of its own, with its label."""
     writer.body.append(writer.starttag(node, "div", CLASS="math"))
-    writer.body.append(tex2mathml(node.astext(), as_block=True))
+    writer.body.append(f'<div class="formula">{tex2mathml(node.astext(), as_block=True)}</div>')
     if node["label"]:
         writer.body.append(f'<span class="eqno">({node["label"]})')
         writer.add_permalink_ref(node, "Link to this equation")

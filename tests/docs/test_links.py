@@ -43,7 +43,8 @@ def test_every_page_is_reached_from_the_first_one() -> None:
     while waiting:
         page = waiting.pop()
         for table in tables.finditer(page.read_text(encoding="utf-8")):
-            for entry in table["entries"].split():
+            for line in table["entries"].splitlines():
+                entry = line.rpartition("<")[2].rstrip(">").strip()  # name, or title <name>
                 for found in page.parent.glob(f"{entry}.md"):
                     if found not in reached:
                         reached.add(found)
