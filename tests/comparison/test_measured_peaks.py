@@ -120,4 +120,5 @@ def test_the_report_shows_measured_peaks(command: Callable[..., Run], tmp_path: 
     assert "run &lt;7&gt;" in page
     line = "1 measured peak stands beside the models, and"
     assert line in page
+    assert line in done.out
     assert line in (done.report / "summary.md").read_text(encoding="utf-8")
