@@ -45,6 +45,10 @@ def put(scene: Scene, key: str, value: float) -> Scene:
     if key.startswith("bodies.bars."):
         bars = {"count": 4, "bending_stiffness": 1.0, "length": 1.0, key.removeprefix("bodies.bars."): value}
         values = {"bodies.1.period": None, "bodies.1.bars": bars}
+    if key.startswith("measured."):
+        peak = {"quantity": "mu", "body": 1, "value": 2.0, "uncertainty": 0.1, "phases": [0.0, 0.0]}
+        name = key.removeprefix("measured.")
+        values = {"measured": [{**peak, name: [value, 0.0] if name == "phases" else value}]}
     if key == "bodies.stiffness":
         values = {"bodies.1.period": None, "bodies.1.stiffness": [value, 1.0]}
     return scene.with_values(values)
@@ -55,8 +59,10 @@ def test_every_number_of_a_scene_has_a_range():
     tables = {"isolator": "isolator", "bodies": "bodies", "excitation": "excitation.two frequencies"}
     tables["isolator.friction"] = "isolator.friction"
     tables["bodies.bars"] = "bodies.bars"
+    tables["measured"] = "measured"
     numbers = plain | {f"{name}.{key}" for name, table in tables.items() for key in KEYS[table]}
-    bounded = numbers - {"excitation.scale", "bodies.bars", "bodies.bars.load_effect"}
+    unbounded = {"excitation.scale", "bodies.bars", "bodies.bars.load_effect", "measured.quantity", "measured.source"}
+    bounded = numbers - unbounded
     assert bounded == set(SCENE), "a scale is bounded by the accelerations that it makes"
 
 
@@ -64,9 +70,10 @@ def test_every_number_of_a_scene_has_a_range():
 @pytest.mark.parametrize("side", ["lowest", "highest"])
 def test_a_quantity_beyond_its_range_is_refused_with_the_range(key, side):
     edge = getattr(SCENE[key], side)
-    outside = edge + (1 if side == "highest" else -1) if key.endswith(("supports", "count")) else math.nextafter(
-        edge, math.inf if side == "highest" else -math.inf
-    )  # fmt: skip
+    if key.endswith(("supports", "count", "measured.body")):
+        outside = edge + (1 if side == "highest" else -1)
+    else:
+        outside = math.nextafter(edge, math.inf if side == "highest" else -math.inf)
     with pytest.raises(SceneError) as caught:
         put(load_scene("fig3-I"), key, outside)
     assert "\n" not in str(caught.value)
