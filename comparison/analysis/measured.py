@@ -105,7 +105,8 @@ def phases_of(peak: Measured) -> tuple[float, float]:
 
 
 def _models(study: Study, scene: Scene) -> list[Model]:
-    return models_of(scene, study.hierarchy)
+    """Those that have motions: an entered engine gives mu alone."""
+    return [model for model in models_of(scene, study.hierarchy) if model.trajectory]
 
 
 def _points(study: Study) -> Iterator[tuple[Scene, tuple[float, float], Model]]:

@@ -16,6 +16,7 @@ from known_analyses import collected
 
 import reference
 from comparison.analysis.measured import MeasuredPeaks
+from comparison.study.entered import entered_model
 from comparison.study.models import EXACT, MODEL_HIERARCHY, RESOLVED, SMALL, TRANSLATIONAL
 from comparison.study.study import Study
 from reference.problem import Scene, load_scene
@@ -92,6 +93,11 @@ def test_a_record_is_compared_without_phases():
     (only,) = compared(scene.with_values({"measured": [stated]}), EXACT)
     assert math.isnan(only.phases[0])
     assert math.isfinite(only.computed[0].value)
+
+
+def test_an_entered_engine_which_has_no_motions_is_not_asked():
+    study = Study((synthetic(0.0),), 1, 1e-3, (EXACT, entered_model("mine", {"function": "nowhere:mu"})))
+    assert {task.argument[1].key for task in MeasuredPeaks().tasks(study)} == {"exact"}
 
 
 def test_without_measured_peaks_nothing_is_computed():
