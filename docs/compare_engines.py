@@ -133,20 +133,20 @@ def main(names: list[str]) -> None:
     for engine in ENGINES:
         if names and engine.name not in names:
             continue
-        measured = list(_measured(engine))
-        if measured:
-            rows = [row for row in rows if row["engine"] != engine.name] + measured
+        for measured in _measured(engine):
+            rows = [row for row in rows if any(row[key] != measured[key] for key in ("scene", "engine", "setting"))]
+            rows.append(measured)
             store.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     order = [engine.name for engine in ENGINES]
-    rows.sort(key=lambda row: (SCENES.index(row["scene"]), order.index(row["engine"])))
+    rows.sort(key=lambda row: (SCENES.index(row["scene"]), order.index(row["engine"]), row["seconds"]))
     _draw(rows)
     (DOCS / "engines.md").write_text(_page(rows), encoding="utf-8")
 
 
 def _measured(engine: Engine) -> Iterator[dict[str, Any]]:
     """A row for every scene and setting; none where the engine is not installed."""
-    for name in SCENES:
-        for settings in engine.varied:
+    for settings in engine.varied:
+        for name in SCENES:
             workers = Workers(1)  # a fresh process: no setting finds another's work done
             try:
                 task = workers.submit_within(LIMIT, _asked, engine.function, name, settings)

@@ -23,7 +23,7 @@ from reference.problem import SceneError
 
 OPTION, LIMIT_OPTION = "--model", "--model-limit"
 FORM = "NAME=module:function[@KEY]"
-NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,29}")
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")
 DOTTED = r"[^\W\d]\w*(?:\.[^\W\d]\w*)*"
 SPEC = re.compile(rf"(?P<name>[^=]*)=(?P<function>{DOTTED}:{DOTTED})(?:@(?P<like>.*))?")
 LAWS = [model.key for model in MODEL_HIERARCHY if model.side == "reference"]
@@ -129,7 +129,7 @@ def _parts(spec: str) -> tuple[str, str, str]:
         raise SceneError("command line", OPTION, spec, f"must be {FORM}, as mine=my_engine:amplification")
     name, function, like = match["name"], match["function"], match["like"] or LIKE
     if not NAME.fullmatch(name):
-        rule = "NAME must begin with a letter and have at most 30 letters, digits, _ and -"
+        rule = "NAME must begin with a letter and have at most 30 letters, digits and -"
         raise SceneError("command line", OPTION, spec, rule)
     if like not in LAWS:
         raise SceneError("command line", OPTION, spec, f"KEY must be one of {', '.join(LAWS)}")

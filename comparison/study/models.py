@@ -162,7 +162,7 @@ def pairs_of(scene: Scene, hierarchy: Sequence[Model], silent: Collection[str] =
         if entered.side == "entered" and entered.key not in silent:
             like = next((model for model in equations if model.key == entered.like), reference)
             if like in models:
-                sentence = f"the {like.title} against an engine that the user entered, which solves the same"
+                sentence = f"the {like.title} against an engine that the user entered: what it solves is not known here"
                 pairs.append(Pair(entered.key, f"{entered.title}, like for like", sentence, like, entered))
     return pairs
 

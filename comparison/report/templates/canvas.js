@@ -111,7 +111,7 @@ function draw3d(canvas, panel, camera) {
       pen.lineWidth = 1.4;
       [[up, down], [[up[0] - 3, up[1]], [up[0] + 3, up[1]]], [[down[0] - 3, down[1]], [down[0] + 3, down[1]]]].forEach(line => strokeLine(pen, line));
     }
-    dot(pen, x, y, 4, panel.color(share(panel, point.z)), ink);
+    dot(pen, x, y, 4, panel.color(share(panel, point.z)), ink, point.error === null);
   });
   drawMarks(pen, panel, ([a, b]) => lift([a, b]) ?? at(a, b, base));
   canvas.inverse = (x, y) => nearestVertex(panel, at, x, y);
@@ -138,7 +138,7 @@ function drawMap(canvas, panel) {
   pen.strokeStyle = soft;
   pen.lineWidth = 1;
   pen.strokeRect(left, top, side, side);
-  panel.points.forEach(({ a, b, z }) => panel.sheet ? dot(pen, X(a), Y(b), 1.2, ink) : dot(pen, X(a), Y(b), Math.min(9, side / 2.6 / Math.sqrt(panel.points.length)), panel.color(share(panel, z)), ink));
+  panel.points.forEach(({ a, b, z, error }) => panel.sheet ? dot(pen, X(a), Y(b), 1.2, ink) : dot(pen, X(a), Y(b), Math.min(9, side / 2.6 / Math.sqrt(panel.points.length)), panel.color(share(panel, z)), ink, error === null));
   pen.fillStyle = soft;
   [["0", 0], ["π", Math.PI], ["2π", turn]].forEach(([text, value]) => {
     pen.textAlign = "center";
@@ -181,15 +181,18 @@ function drawMarks(pen, panel, at) {
     strokeLine(pen, [[x, y - 8], [x, y + 8]]);
   }
 }
-function dot(pen, x, y, radius, fill, edge = "") {
+// a dashed edge: of unknown error
+function dot(pen, x, y, radius, fill, edge = "", dashed = false) {
   pen.beginPath();
   pen.arc(x, y, radius, 0, turn);
   pen.fillStyle = fill;
   pen.fill();
   if (!edge) return;
   pen.strokeStyle = edge;
-  pen.lineWidth = 1.2;
+  pen.lineWidth = dashed ? 2 : 1.2;
+  pen.setLineDash(dashed ? [2, 2] : []);
   pen.stroke();
+  pen.setLineDash([]);
 }
 function diamond(pen, [x, y], radius, fill, edge) {
   pen.beginPath();

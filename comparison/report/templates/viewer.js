@@ -64,6 +64,7 @@ function panels() {
     if (!surface.sheet && k === 1 && surface.completed?.reason) notes.push(`points: ${surface.completed.reason}`);
     if (largest) notes.push(`${surface.completed ? "largest computed" : "largest"} ${k === 2 ? percentText(largest.z) : digits(largest.z)} at ${at([largest.a, largest.b])} ▾`);
     else notes.push("no value at any phase pair");
+    if (surface.points.some(point => point.error === null)) notes.push("dashed: of unknown error");
     const worst = k < 2 ? surface.model.worst[body - 1] : null;
     if (worst) notes.push(`over all phases ${digits(worst[2])} at ${at(worst.slice(0, 2))} ▿`);
     return { ...common, ...surface, range: k === 2 ? [-reach, reach] : range, color: k === 2 ? signs : light, largest: largest && [largest.a, largest.b], worst: worst && worst.slice(0, 2),
