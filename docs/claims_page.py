@@ -14,6 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from PIL import Image
 from rich.console import Console
 
 from comparison.analysis.claims.cases import CASES
@@ -39,6 +40,7 @@ DRAWN = 32  # phases per axis of the pictures
 PRINTED = next(reading for reading in READINGS if replace(reading, reason="") == Reading(1.0))
 AMPLITUDES = (0.6, 1.0, 1.5)  # m/s^2, of the literal reading
 SEARCHED = 96
+COLORS = 32  # of a picture: lines on white
 PICTURES = (
     ("print", PRINTED, "The parameters as printed"),
     ("light-body", LIGHT_BODY, "The reading that reproduces most"),
@@ -92,6 +94,10 @@ def draw(compute: Compute) -> None:
         draw_reading(FOLDER / f"claims-{name}.png", reading.name, evidence)
     drawn = {amplitude: results.value(task, no_spike) for amplitude, task in spikes.items()}
     draw_spike(FOLDER / "claims-spike.png", drawn)
+    for path in FOLDER.glob("claims-*.png"):
+        with Image.open(path) as picture:
+            smaller = picture.convert("RGB").quantize(COLORS, dither=Image.Dither.NONE)
+        smaller.save(path, optimize=True)
 
 
 def page(study: Study, table: ClaimTable, settled: Sequence[Settled], selection: Selection) -> str:
