@@ -14,6 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from PIL import Image
 from rich.console import Console
 
 from comparison.analysis.claims.cases import CASES
@@ -36,14 +37,15 @@ from reference.problem import builtin_scenes, load_scene
 
 FOLDER = Path(__file__).parent
 DRAWN = 32  # phases per axis of the pictures
-PRINTED = Reading(1.0)
+PRINTED = next(reading for reading in READINGS if replace(reading, reason="") == Reading(1.0))
 AMPLITUDES = (0.6, 1.0, 1.5)  # m/s^2, of the literal reading
 SEARCHED = 96
+COLORS = 32  # of a picture: lines on white
 PICTURES = (
-    ("print", PRINTED, "The parameters as printed, amplitudes in m/s²"),
-    ("light-body", LIGHT_BODY, "The reading that reproduces most, a light, soft second body"),
-    ("own-period", OWN_PERIOD, "The loading around the short natural periods of the chain"),
-    ("literal", LITERAL, "(4.6) taken to the letter"),
+    ("print", PRINTED, "The parameters as printed"),
+    ("light-body", LIGHT_BODY, "The reading that reproduces most"),
+    ("own-period", OWN_PERIOD, "The reading close to resonance"),
+    ("literal", LITERAL, "The spike counted"),
 )
 
 Compute = Callable[[Sequence[Task]], TaskResults]
@@ -87,11 +89,15 @@ def draw(compute: Compute) -> None:
         for amplitude in AMPLITUDES
     }
     results = compute([*tasks.values(), *spikes.values()])
-    for name, reading, words in PICTURES:
+    for name, reading, _ in PICTURES:
         evidence = {case: results.value(tasks[name, case], without_value) for case in cases}
-        draw_reading(FOLDER / f"claims-{name}.png", f"{words} ({reading.name})", evidence)
+        draw_reading(FOLDER / f"claims-{name}.png", reading.name, evidence)
     drawn = {amplitude: results.value(task, no_spike) for amplitude, task in spikes.items()}
     draw_spike(FOLDER / "claims-spike.png", drawn)
+    for path in FOLDER.glob("claims-*.png"):
+        with Image.open(path) as picture:
+            smaller = picture.convert("RGB").quantize(COLORS, dither=Image.Dither.NONE)
+        smaller.save(path, optimize=True)
 
 
 def page(study: Study, table: ClaimTable, settled: Sequence[Settled], selection: Selection) -> str:

@@ -141,8 +141,10 @@ def test_a_search_reports_how_many_it_tried_and_what_its_best_do_elsewhere() -> 
     again = ClaimTable(claims, best, 16, [[no] * BEST for _ in range(16)])
     lines = Selection(table, again).lines
     assert lines[0] == "5 readings were searched on 8 x 8 phases; at most 14 of the 16 claims can hold."
-    assert lines[1].startswith("Reproduced: median 2, best 4; 0 claims by 1")
-    assert lines[2].endswith("4 on the grid that chose it, 0 on 16 x 16 phases")
+    assert lines[1].startswith(
+        "Claims reproduced: median 2, best 4. Number of readings for each number of claims: 0: 1, 1: 1"
+    )
+    assert lines[2].endswith("4 on the grid that chose it, 0 on 16 x 16 phases.")
     assert "no evidence" in lines[-1]
 
 

@@ -35,7 +35,7 @@ from reference.problem import GRAVITY, Scene
 Array = NDArray[np.float64]
 
 GRID = 16
-STEP, LITERAL_STEP, FINE = 2e-4, 1e-3, 1e-4  # s
+STEP, LITERAL_STEP, FINE = 4e-4, 1e-3, 2e-4  # s
 CONFIRMED = (
     Reading(1.0),
     OWN_PERIOD,
@@ -91,7 +91,8 @@ def _second(case: str, reading: Reading) -> Evidence:
     def factors(phases: Array) -> Array:
         return _solved(scene, reading, phases, True, fast())[0]
 
-    facts = _solved(scene, reading, np.array(MOTIONS), False, fast())[1].max(axis=0)
+    facts = _solved(scene, reading, np.array(MOTIONS), False, fast())[1]
+    apart = facts[:, 1 : 1 + bodies] / np.maximum(facts[:, 1 + bodies :], TINY)
     probes = np.array([(0.3, 1.1), (2.0, 0.7)])
     twins = np.abs(factors(probes + np.pi) / factors(probes) - 1.0).max() < 1e-6
     natural = _natural(scene)
@@ -102,8 +103,8 @@ def _second(case: str, reading: Reading) -> Evidence:
         1e-3,
         ("ok",),
         tuple(bends(mu, factors)),
-        tuple(facts[1 : 1 + bodies] / np.maximum(facts[1 + bodies :], TINY)),
-        float(facts[0] / scene.radius**2),
+        tuple(apart.max(axis=0)),
+        float(facts[:, 0].max() / scene.radius**2),
         tuple((T, float(natural[np.abs(T / natural - 1.0).argmin()])) for T in scene.excitation.periods),
         bool(twins),
         bends(tops, lambda at: ground_tops(scene, at)[:, None])[0],

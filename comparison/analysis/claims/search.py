@@ -101,14 +101,16 @@ class Selection:
         lines = [
             f"{len(held)} readings were searched on {self.table.grid} x {self.table.grid} phases; at most {possible} "
             f"of the {stated} claims can hold.",
-            f"Reproduced: median {np.median(held):g}, best {held.max()}; "
-            + ", ".join(f"{count} claims by {int((held == count).sum())}" for count in sorted(set(held.tolist()))),
+            f"Claims reproduced: median {np.median(held):g}, best {held.max()}. Number of readings for each number of "
+            + "claims: "
+            + ", ".join(f"{count}: {int((held == count).sum())}" for count in sorted(set(held.tolist())))
+            + ".",
         ]
         for column, reading in enumerate(self.again.readings):
             before = self.held[self.table.readings.index(reading)]
             lines.append(
                 f"{reading.name}: {before} on the grid that chose it, {self.again.held(column)} on "
-                f"{self.again.grid} x {self.again.grid} phases"
+                f"{self.again.grid} x {self.again.grid} phases."
             )
         lines.append(
             "The best were selected by the number they reproduce: that is no evidence that the paper used them."

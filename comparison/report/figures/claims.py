@@ -9,10 +9,12 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from comparison.analysis.claims.evidence import Evidence
 from comparison.analysis.claims.spike import PHASES, Spike
 from comparison.report.figures.paper import PRINT, draw_surface
+from comparison.wording import mathtext
 
 PANELS = (("fig3-I", "3", "ab"), ("fig3-II", "3", "cd"), ("fig4-dry", "4", "ab"), ("fig4-viscous", "4", "cd"))
 RESOLUTION = 110  # dots per inch
@@ -34,11 +36,11 @@ def draw_reading(path: Path, title: str, evidence: Mapping[str, Evidence]) -> No
     with mpl.rc_context(PRINT):
         figure = Figure(figsize=(11.0, 6.2))
         FigureCanvasAgg(figure)
-        figure.suptitle(title, fontsize=10.0, y=0.985)
+        figure.suptitle(mathtext(title), fontsize=10.0, y=0.985)
         for column, (case, number, letters) in enumerate(PANELS):
             for row in range(2):
                 name = rf"$\mu_{row + 1}$"
-                place = (0.005 + 0.248 * column, 0.01 + 0.475 * (1 - row), 0.225, 0.43)
+                place = (0.018 + 0.247 * column, 0.01 + 0.475 * (1 - row), 0.225, 0.45)
                 heading = f"Fig. {number}{letters[row]}: {name}"
                 if not evidence[case].complete:
                     figure.text(place[0] + 0.06, place[1] + 0.2, f"{heading}: no answer")
@@ -64,7 +66,7 @@ def draw_spike(path: Path, spikes: Mapping[float, Spike]) -> None:
     """
     figure = Figure(figsize=(4.2 * len(spikes), 6.4), dpi=RESOLUTION, layout="constrained")
     FigureCanvasAgg(figure)
-    rows = figure.subplots(2, len(spikes), squeeze=False, sharex=True)
+    rows = figure.subplots(2, len(spikes), squeeze=False, sharex=True, sharey="row")
     for (amplitude, spike), values, numbers in zip(spikes.items(), *rows):
         for k, (phase, color) in enumerate(zip(PHASES, COLORS)):
             place = f"({phase[0]:g}, {phase[1]:g})"
@@ -74,10 +76,13 @@ def draw_spike(path: Path, spikes: Mapping[float, Spike]) -> None:
             numbers.loglog(spike.steps, [row[k] for row in spike.starts], "o-", color=color, ms=4)
         values.set_title(f"{amplitude:g} m/s²", fontsize=10)
         values.set_ylabel(r"$\mu_1$")
-        values.set_ylim(0.0)
         numbers.set_xlabel("step, s")
         numbers.set_ylabel("beginnings of slip")
         for axes in (values, numbers):
+            axes.xaxis.set_minor_formatter(NullFormatter())
+            axes.set_xlim(1e-4, 1e-2)
             axes.grid(alpha=0.25)
+    rows[0][0].set_ylim(0.0)
+    rows[1][0].set_ylim(1.0)
     rows[0][0].legend(title=r"$(\alpha_1, \alpha_2)$, rad", fontsize=8, title_fontsize=8, frameon=False)
     figure.savefig(path)
