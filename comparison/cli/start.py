@@ -39,7 +39,11 @@ def start(module: str) -> NoReturn:
     """
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
-    main = import_module(module).main
+    try:
+        main = import_module(module).main
+    except ImportError as error:
+        print(f"{SCRIPT} cannot start: {' '.join(str(error).split())}", file=sys.stderr)
+        raise SystemExit(3) from None
     import_module("reference.problem.command").run_command(main)
     raise AssertionError("run_command ends the process")
 

@@ -8,7 +8,13 @@ from typing import Any
 
 MAX_DENSE_COORDINATES = 40  # beyond them a sparse solver takes less time a step (measured: a third at 360)
 
-exudyn: Any = import_module("exudyn")
+try:
+    exudyn: Any = import_module("exudyn")
+except ImportError as error:
+    reason = " ".join(str(error).split())
+    raise ImportError(
+        f"the engine Exudyn cannot be loaded (on Debian and Ubuntu it needs the package libgl1): {reason}"
+    ) from error
 items: Any = import_module("exudyn.itemInterface")
 symbolic_function: Any = import_module("exudyn.advancedUtilities").CreateSymbolicUserFunction
 
