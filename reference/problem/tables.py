@@ -332,15 +332,15 @@ class Body(Table):
     period: Annotated[
         LinkPeriods | None,
         about(
-            "2 pi sqrt(m_i / k) along x and y of the link to the body below, under load; give this, stiffness or "
-            "bars, for the platform none",
+            "`[Tx, Ty]`, 2 pi sqrt(m_i / k) along x and y of the link to the body below, under load; give this, "
+            "stiffness or bars, for the platform none",
             "s",
             ALL,
         ),
     ] = None
     stiffness: Annotated[
         LinkStiffness | None,
-        about("stiffness k of that link along x and y, under load; in place of period", "N/m", ALL),
+        about("`[kx, ky]`, stiffness of that link along x and y, under load; in place of period", "N/m", ALL),
     ] = None
     bars: Annotated[
         Bars | None,

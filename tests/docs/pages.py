@@ -20,7 +20,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("reference", "multibody", "comparison")
-PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / name / "README.md" for name in PACKAGES)])
+PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / name / "README.md" for name in PACKAGES)])
 FENCE = re.compile(r"(?:^<!-- test: ([^>]*?) -->\n)?^```([a-z]*)\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
 DIRECTIVE = re.compile(r"^(`{3,})\{.*?^\1$", flags=re.MULTILINE | re.DOTALL)  # of sphinx, such as a table of contents
 FILE = re.compile(r"# ([\w./-]+\.[a-z]+)\n")
