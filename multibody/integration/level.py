@@ -28,6 +28,7 @@ from reference.problem.ranges import TOLERANCE, checked_number
 MAX_LEVELS = 8
 STEPS_PER_PERIOD = 150  # of the fastest motion that matters, at level 0
 STEPS_PER_BAR_PERIOD = 40  # of the fastest motion that bars make which give way: a small part of the accelerations
+MAX_BAR_DIVISION = 20.0  # of the step for that motion: faster ones hardly move the bodies and are not resolved
 STEPS_PER_DECAY = 24  # of the time in which a harmonic falls by e, at level 0, while it lasts
 DECAY_TIMES = 28.0  # after which a harmonic has fallen by 1e12
 MIN_RELATIVE_ERROR = 6e-4  # of a peak, at level 0: closer agreement of two levels is treated as accidental
@@ -239,10 +240,11 @@ def largest_step(scene: Scene, model: EngineModel) -> float:
         scaled = stiffness / np.sqrt(np.outer(masses, masses))
         highest = float(np.linalg.eigvalsh(scaled)[-1])
         fastest = min(fastest, 2.0 * math.pi / math.sqrt(highest) if highest > 0.0 else math.inf)
+    step = min(fastest, *periods) / STEPS_PER_PERIOD
     if model.fastest_of_bars > 0.0:
-        period = 2.0 * math.pi / model.fastest_of_bars
-        fastest = min(fastest, period * STEPS_PER_PERIOD / STEPS_PER_BAR_PERIOD)
-    return min(fastest, *periods) / STEPS_PER_PERIOD
+        of_bars = 2.0 * math.pi / model.fastest_of_bars / STEPS_PER_BAR_PERIOD
+        step = min(step, max(of_bars, step / MAX_BAR_DIVISION))
+    return step
 
 
 def damped_rate(scene: Scene, units: Units) -> float:

@@ -25,6 +25,7 @@ from reference.problem.bar_links import BarLink, bar_links
 Array = NDArray[np.float64]
 
 PER_BODY = 6  # coordinates: x, y, z of the center of mass and three rotations
+MAX_BAR_STIFFNESS = 1e7  # of bars in tension, weights over rho, and in bending: as good as rigid
 LINK_COMPLIANCE_RATIO = 10.0  # of a bar in tension (and, times rho^2, in bending) over the contact, under one force
 
 
@@ -95,8 +96,8 @@ def _in_units(bars: BarLink, units: Units) -> BarLink:
     return replace(
         bars,
         shear=bars.shear / force,
-        bending=bars.bending / moment,
-        tension=bars.tension / force,
+        bending=min(bars.bending / moment, MAX_BAR_STIFFNESS),
+        tension=min(bars.tension / force, MAX_BAR_STIFFNESS),
         torsion=bars.torsion / moment,
         pendulum=bars.pendulum / units.length,
         load=bars.load / units.force,

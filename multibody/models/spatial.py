@@ -6,7 +6,7 @@ per support. Each has its own unilateral contact, so supports share the load as 
 set of upright bars clamped at both ends. It is stiff in tension and in bending about the horizontal axes. The scene's
 shear stiffness acts half-way up. Against twist it has the stiffness of bars that stand on the ring,
 ring^2 (kx + ky) / 2, or at the positions of the supports. Its forces act on both bodies at the same point, the middle
-between the two ends.
+between the two ends. Bars whose axial stiffness a scene states give way in tension and bending, too (`links`).
 
 All links stand on one vertical axis, which is also that of the ring, and of the positions of supports. A center of mass
 may be off it (`offset`). The box of a body and the directions of its link's shear stiffness may be turned (`yaw`). The

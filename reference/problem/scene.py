@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Mapping
+from copy import deepcopy
 from functools import cached_property
 from typing import Annotated, Any
 
@@ -252,7 +253,9 @@ class Scene(Table):
         """
         data = self.model_dump(exclude_none=True)
         for key, value in values.items():
-            put_value(self.name, data, str(key), value, KEYS)
+            # a key inside a table that is given, too, must not change the caller's table
+            own = deepcopy(value) if isinstance(value, dict | list) else value
+            put_value(self.name, data, str(key), own, KEYS)
         try:
             return Scene.model_validate(data)
         except ValidationError as error:

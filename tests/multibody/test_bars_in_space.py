@@ -236,3 +236,13 @@ def test_a_building_on_bars_that_give_way_stays_at_rest_without_loading(load_eff
     motion = multibody.single_run(scene.with_values({"duration": 1.0}), (0.3, 1.1), "spatial", step=1e-3)
     assert np.abs(motion.position[:, 1, 2]).max() < 1e-6
     assert np.abs(motion.extra["turns"][:, 1]).max() < 1e-5
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("axial_stiffness", [1e6, 1e10, 1e20])
+def test_bars_of_any_stiffness_up_to_rigid_ones_have_an_answer(axial_stiffness: float) -> None:
+    rigid = building("softened", **{"bodies.1.bars.axial_stiffness": None})
+    stiff = building("softened", **{"bodies.1.bars.axial_stiffness": axial_stiffness})
+    expected, result = (multibody.amplification(scene, [(2.0, 0.7)], "spatial") for scene in (rigid, stiff))
+    assert result.status[0] == Outcome.OK
+    assert (np.abs(result.mu - expected.mu) <= result.error + expected.error).all()

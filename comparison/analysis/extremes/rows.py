@@ -222,6 +222,7 @@ def rows() -> Iterator[Row]:
     yield from _numerics_of_the_engine()
     yield from _sizes()
     yield from _chains()
+    yield from _bars()
     yield from _excitations()
     yield from _directions()
     yield from _starts_and_supports()
@@ -307,6 +308,30 @@ def _chains() -> Iterator[Row]:
     yield Row(
         "damping of the links, of critical", "5, link periods 0.01 s", scene(damping=5.0, link=(0.01, 0.008)), ALL
     )
+
+
+def _bars() -> Iterator[Row]:
+    """Bars under the weight of a mass of 1 kg, whose sway buckling load is stated in weights of that mass."""
+    for share in (0.01, 0.5, 0.99, 0.999999):
+        yield Row("load over the buckling load of bars", f"{share:g}", _on_bars(share), ALL)
+    yield Row("load over the buckling load of bars", "1.000001", _on_bars(1.000001), ALL, invalid=True)
+    group = "axial stiffness of the bars, N"
+    for stiffness in (1e2, 1e4, 1e8):
+        for effect in ("softening", "shortening"):
+            giving = _on_bars(0.3, axial_stiffness=stiffness, spread=0.8, load_effect=effect)
+            yield Row(group, f"{stiffness:g}, {effect}", giving, SPATIAL, max_work=1e5)
+    topples = _on_bars(0.3, axial_stiffness=1.0, spread=0.8)
+    topples["bodies"][1]["height"] = 6.0
+    yield Row(group, "1, under a body 6 m above", topples, SPATIAL, invalid=True)
+
+
+def _on_bars(share: float, **keys: Any) -> dict[str, Any]:
+    """The plain scene on four bars of 1 m that carry a share of their buckling load."""
+    beam = GRAVITY_LIMIT / (4.0 * math.pi**2 * share)
+    stated = scene()
+    platform, body = stated["bodies"]
+    bars = {"count": 4, "bending_stiffness": beam, "length": 1.0, "load_effect": "softening", **keys}
+    return {**stated, "bodies": [platform, {**body, "period": None, "bars": bars}]}
 
 
 def _excitations() -> Iterator[Row]:

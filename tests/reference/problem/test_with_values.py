@@ -154,3 +154,10 @@ def test_keys_and_numbers_of_any_length_are_one_line(text, tmp_path):
             read(file)
         assert "\n" not in str(caught.value)
         assert len(str(caught.value)) < 700
+
+
+def test_tables_of_the_caller_stay_as_they_are() -> None:
+    bars = {"count": 4, "bending_stiffness": 1.0, "length": 1.0}
+    values = {"bodies.1.period": None, "bodies.1.bars": bars, "bodies.1.bars.length": 2.0}
+    assert load_scene("fig3-I").with_values(values).bodies[1].bars.length == 2.0
+    assert bars["length"] == 1.0
