@@ -24,10 +24,12 @@ from comparison.analysis.differences import differences, pair_step
 from comparison.analysis.extremes.cells import cells
 from comparison.analysis.extremes.rows import entered_column, rows
 from comparison.analysis.extremes.verdicts import Reply, judged
+from comparison.analysis.headline import headline
 from comparison.analysis.surfaces import labeled_surfaces
 from comparison.analysis.tradeoff.analysis import TradeOff
 from comparison.analysis.tradeoff.settings import entered_settings
 from comparison.analysis.unanswered import unanswered, with_silent_models
+from comparison.analysis.waterfall import waterfall
 from comparison.cli.entered import as_words, entered_models, look_at
 from comparison.execution.environment import engine_fingerprint, source_digest
 from comparison.execution.keys import batch_key
@@ -101,6 +103,7 @@ def test_the_engine_of_the_documentation_appears_in_the_report(command: Callable
         ("mine=my engine:f", "must be NAME=module:function"),
         ("=my_engine:f", "NAME must begin with a letter"),
         ("../a=my_engine:f", "NAME must begin with a letter"),
+        ("my_name=my_engine:f", "NAME must begin with a letter"),
         ("exact=my_engine:f", "exact names a model"),
         ("spatial=my_engine:f", "spatial names a model"),
         ("total=my_engine:f", "total names a model or a difference"),
@@ -244,6 +247,12 @@ def test_an_entered_engine_changes_no_other_number(function: str) -> None:
     assert repr(budget(study, surfaces)) == repr(budget(alone, without))  # repr: NaN is not equal to itself
     theirs = [row for row in differences(study, surfaces) if row.pair != "mine"]
     assert repr(theirs) == repr(differences(alone, without))
+    for body in (1, 2):
+        texts = [
+            headline(each, data, SCENE, waterfall(each, data, SCENE, body), differences(each, data)).sentence
+            for each, data in ((alone, without), (study, surfaces))
+        ]
+        assert texts[0] == texts[1]
     keys = [batch_key(batch) for batch in study.batches() if batch.model != "mine"]
     assert keys == [batch_key(batch) for batch in alone.batches()]
     assert {gap.model for gap in unanswered(study, surfaces)} == ({"mine"} if function == "raises" else set())
