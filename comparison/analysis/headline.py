@@ -13,7 +13,7 @@ from comparison.analysis.differences import Difference, pair_step
 from comparison.analysis.independent import independent_phases
 from comparison.analysis.steps import RESOLVED
 from comparison.analysis.waterfall import NAN, Waterfall, WaterfallBar
-from comparison.study.models import Model, models_of
+from comparison.study.models import Model, steps_of
 from comparison.study.study import Study
 from comparison.wording import degrees, percent
 from reference.problem import Scene
@@ -100,7 +100,7 @@ def causes(bars: Sequence[WaterfallBar]) -> tuple[str, ...]:
 
 def _sentence(study: Study, scene: Scene, numbers: Headline, bars: Waterfall) -> str:
     models = {model.key: model for model in study.compared(scene)}
-    asked = models_of(scene, study.hierarchy)
+    asked = steps_of(scene, study.hierarchy)
     first, second = models[numbers.first], models[numbers.second]
     paper = "the paper's equations" if first is asked[0] else f"the {first.title}"
     engine = "the engine" if second is asked[-1] and second.side == "engine" else f"the {second.title}"

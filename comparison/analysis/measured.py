@@ -19,7 +19,7 @@ from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.costs import at_samples
-from comparison.study.models import Model, models_of
+from comparison.study.models import Model, steps_of
 from comparison.study.study import Study
 from reference.problem import Estimate, Outcome, Scene, demands
 from reference.problem.measured import OF_BODIES, Measured
@@ -105,8 +105,7 @@ def phases_of(peak: Measured) -> tuple[float, float]:
 
 
 def _models(study: Study, scene: Scene) -> list[Model]:
-    """Those that have motions: an entered engine gives mu alone."""
-    return [model for model in models_of(scene, study.hierarchy) if model.trajectory]
+    return steps_of(scene, study.hierarchy)
 
 
 def _points(study: Study) -> Iterator[tuple[Scene, tuple[float, float], Model]]:

@@ -8,6 +8,7 @@ import json
 import re
 import sys
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -18,20 +19,25 @@ import pytest
 import xarray as xr
 from conftest import Run
 from fake_models import fake_hierarchy, smooth
+from known_analyses import collected
 
 from comparison.analysis.budget import budget
 from comparison.analysis.differences import differences, pair_step
 from comparison.analysis.extremes.cells import cells
 from comparison.analysis.extremes.rows import entered_column, rows
 from comparison.analysis.extremes.verdicts import Reply, judged
+from comparison.analysis.headline import headline
 from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.tradeoff import analysis
 from comparison.analysis.tradeoff.analysis import TradeOff
-from comparison.analysis.tradeoff.settings import entered_settings
+from comparison.analysis.tradeoff.settings import QUESTIONS, entered_settings
 from comparison.analysis.unanswered import unanswered, with_silent_models
+from comparison.analysis.waterfall import waterfall
 from comparison.cli.entered import as_words, entered_models, look_at
 from comparison.execution.environment import engine_fingerprint, source_digest
 from comparison.execution.keys import batch_key
 from comparison.execution.processes import process_pool
+from comparison.report.figures.tradeoff import draw_tradeoff
 from comparison.study.batches import execute_batch
 from comparison.study.entered import amplification, entered_model
 from comparison.study.models import Model, pairs_of
@@ -101,6 +107,7 @@ def test_the_engine_of_the_documentation_appears_in_the_report(command: Callable
         ("mine=my engine:f", "must be NAME=module:function"),
         ("=my_engine:f", "NAME must begin with a letter"),
         ("../a=my_engine:f", "NAME must begin with a letter"),
+        ("my_name=my_engine:f", "NAME must begin with a letter"),
         ("exact=my_engine:f", "exact names a model"),
         ("spatial=my_engine:f", "spatial names a model"),
         ("total=my_engine:f", "total names a model or a difference"),
@@ -244,6 +251,12 @@ def test_an_entered_engine_changes_no_other_number(function: str) -> None:
     assert repr(budget(study, surfaces)) == repr(budget(alone, without))  # repr: NaN is not equal to itself
     theirs = [row for row in differences(study, surfaces) if row.pair != "mine"]
     assert repr(theirs) == repr(differences(alone, without))
+    for body in (1, 2):
+        texts = [
+            headline(each, data, SCENE, waterfall(each, data, SCENE, body), differences(each, data)).sentence
+            for each, data in ((alone, without), (study, surfaces))
+        ]
+        assert texts[0] == texts[1]
     keys = [batch_key(batch) for batch in study.batches() if batch.model != "mine"]
     assert keys == [batch_key(batch) for batch in alone.batches()]
     assert {gap.model for gap in unanswered(study, surfaces)} == ({"mine"} if function == "raises" else set())
@@ -339,3 +352,22 @@ def test_the_curve_of_an_entered_engine_runs_over_the_tolerance_that_it_takes() 
     mine = [task for task in tasks if task.lane]
     assert mine
     assert all(task.timeout == 60.0 * len(task.argument.phases) for task in mine)
+
+
+def test_the_measured_trade_has_the_curve_of_an_entered_engine_and_one_that_raises_costs_no_other(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(analysis, "settings", lambda scene, quick: [])
+    monkeypatch.setattr(analysis, "asked", lambda scene: [one for one in QUESTIONS if one.key == "regularised"])
+    models = entered("as_reference", "good"), entered("raises", "bad")
+    scene = SCENE.with_values({"duration": 1.0})
+    (measured,) = collected(
+        TradeOff(True, models), Study((scene,), 1, 1e-3), executor=lambda jobs: ThreadPoolExecutor(1)
+    )
+    good, bad = measured.trade.entries
+    assert (good.answered, bad.answered) == (good.points, 0)
+    assert bad.error_message == "RuntimeError: the matrix is singular"
+    assert max(error for error in good.most if error is not None) == pytest.approx(1e-3, rel=1e-3)
+    assert good.error_estimate == [None, None], "it states none"
+    assert good.pareto_front == (True, True)
+    draw_tradeoff(tmp_path / "trade.png", measured.trade)
