@@ -8,6 +8,7 @@ import pytest
 import multibody
 from comparison.analysis.surfaces import labeled_surfaces
 from comparison.study.batches import execute_batch, refusal_of
+from comparison.study.costs import tried_costs
 from comparison.study.models import (
     MODEL_HIERARCHY,
     SOFTENED_SPATIAL,
@@ -70,6 +71,7 @@ def test_bars_that_buckle_refuse_the_step_and_cost_no_other_model() -> None:
     reason = refusal_of(scene, SOFTENED_TRANSLATIONAL, 1e-3)
     assert "buckle sideways" in reason
     assert "\n" not in reason
+    assert tried_costs((scene,), hierarchy[4:])["bars", "softened-translational"] == 0.0
     study = Study((scene,), 1, 1e-3, models_of(scene, hierarchy)[3:])
     batches = study.batches()
     surfaces = labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
