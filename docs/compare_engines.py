@@ -205,6 +205,8 @@ def _draw(rows: list[dict[str, Any]]) -> None:
             axes.grid(alpha=0.3)
             for number, engine in enumerate(ENGINES):
                 chosen = [row for row in rows if (row["scene"], row["engine"]) == (scene, engine.name)]
+                if not chosen:
+                    continue
                 errors = np.array([row[title] for row in chosen], dtype=float).reshape(-1, 2).clip(1e-10, 10.0)
                 seconds = [row["seconds"] for row in chosen]
                 axes.plot(seconds, errors[:, 0], marker="osD^v<>P"[number], color=f"C{number}", label=engine.name)

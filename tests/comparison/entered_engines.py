@@ -110,7 +110,7 @@ def spoils_its_process(scene: Scene, phases: np.ndarray) -> np.ndarray:
     mu = plain(scene, phases)
     os.chdir("/")
     os.environ.clear()
-    np.cos = np.sin = None  # type: ignore[assignment]
+    np.linspace = None  # type: ignore[assignment]
     return mu
 
 
