@@ -52,8 +52,6 @@ ALL_CASES = sorted({case for claim in CLAIMS for case in claim.cases})
 def _solved(scene: Scene, reading: Reading, phases: Array, fine: bool, runner: Any) -> tuple[Array, Array]:
     if not has_stops(scene):
         return by_scipy(scene, phases, None)
-    if reading.peak == "regularised":
-        return by_scipy(scene, phases, SPEED)
     if reading.peak == "literal (4.6)":
         return stepped(scene, phases, LITERAL_LAW, LITERAL_STEP, runner=runner)
     return stepped(scene, phases, SET_VALUED, FINE if fine else STEP, SPEED, runner)
