@@ -97,6 +97,8 @@ def run(
             starts = limit < pull
             if starts:
                 wx, wy = ex / pull, ey / pull
+        elif math.sqrt(fx * fx + fy * fy) > mu * support:  # slip begins: neither rest nor faster than the cutoff
+            counts, starts = False, True
         sticks = speed == 0.0 and not starts
         ax = 0.0 if sticks else fx - mu * (support * wx - ux * (p * wx + q * wy))
         ay = 0.0 if sticks else fy - mu * (support * wy - uy * (p * wx + q * wy))
