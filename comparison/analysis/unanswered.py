@@ -101,7 +101,7 @@ def advice(study: Study, scene: Scene, model: Model, outcome: str) -> str:
     if model.side == "entered" and outcome in (Outcome.SOLVER_FAILED, Outcome.TIME_LIMIT, Outcome.WORKER_DIED):
         return "see what the solvers reported"
     refused = ""
-    if outcome == Outcome.STEP_LIMIT:
+    if outcome in (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED):  # the latter of bars that would buckle
         refused = refusal_of(scene, model, model.tolerance(study.tolerance), study.full)
     return refused or ADVICE[Outcome(outcome)]
 

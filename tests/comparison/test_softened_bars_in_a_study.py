@@ -7,6 +7,7 @@ import pytest
 
 import multibody
 from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.unanswered import advice
 from comparison.study.batches import execute_batch, refusal_of
 from comparison.study.costs import tried_costs
 from comparison.study.models import (
@@ -19,7 +20,7 @@ from comparison.study.models import (
 )
 from comparison.study.planning import StudyRequest, plan_study
 from comparison.study.study import Study
-from reference.problem import Scene, load_scene
+from reference.problem import Outcome, Scene, load_scene
 
 PLAIN = load_scene("fig3-I")
 BARS = {"count": 4, "bending_stiffness": 0.8, "length": 1.0}
@@ -78,6 +79,7 @@ def test_bars_that_buckle_refuse_the_step_and_cost_no_other_model() -> None:
     finite = {key: bool(np.isfinite(surfaces["mu"].sel(model=key)).all()) for key in surfaces["model"].values.tolist()}
     assert finite.pop("softened-translational") is False
     assert finite == {"regularised": True, "translational": True}
+    assert "buckle sideways" in advice(study, scene, SOFTENED_TRANSLATIONAL, Outcome.SOLVER_FAILED)
 
 
 def test_the_step_gives_what_the_softened_scene_gives() -> None:
