@@ -38,6 +38,7 @@ MAX_CONTACT_LAG = 0.3  # x at level 0 where rounding allows: from there on a lev
 # time in which the contact follows over the inverse of the largest angular frequency that matters, at level 0: on the
 # slope of the sphere a slower contact takes part in the motion of stiff links, and its damper ends that at every level
 MAX_CONTACT_TIME = 0.25
+MAX_CONTACT_TIME_OF_ROCKING = 0.04  # likewise, where bodies turn: links then press the supports by their height, too
 NEWTON_TOLERANCE = 1e-5  # relative, of the forces, at level 0
 MAX_ROUNDING_SHARE = 0.25  # of the tolerance, that rounding of the forces may take at a peak of MIN_PEAK
 MIN_PEAK = 0.2  # of g
@@ -173,7 +174,8 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
     strength = 1.0 if model.allows_liftoff else weak_strength(scene)  # a tower tilts on soft contacts
     peak, most = (MIN_PEAK, MAX_PENETRATION) if strength == 1.0 else (strength, MAX_WEAK_PENETRATION)
     stiffest = min(model.rounding / (MAX_ROUNDING_SHARE * peak * tolerance), most / COMPLIANCE_RATIO)
-    slowest = min(MAX_CONTACT_LAG * model.relaxation, MAX_CONTACT_TIME * step * STEPS_PER_PERIOD / (2.0 * math.pi), 1.0)
+    share = MAX_CONTACT_TIME_OF_ROCKING if model.allows_liftoff else MAX_CONTACT_TIME
+    slowest = min(MAX_CONTACT_LAG * model.relaxation, share * step * STEPS_PER_PERIOD / (2.0 * math.pi), 1.0)
     softest = max(min(slowest**2, MAX_PENETRATION), stiffest)
     stiffenings = math.floor(math.log(softest / stiffest, COMPLIANCE_RATIO) + 1e-9)
     penetrations = [softest / COMPLIANCE_RATIO ** min(level, stiffenings) for level in range(MAX_LEVELS)]

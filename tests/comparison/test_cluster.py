@@ -66,6 +66,7 @@ def test_the_numbers_are_those_of_this_machine_even_when_a_worker_is_killed_in_t
         assert [answer.status for answer in here] == [["ok"]] * 16, "nothing is lost"
 
 
+@pytest.mark.long
 def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on_in_process(
     workers: LocalCluster, command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

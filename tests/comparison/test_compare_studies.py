@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 import xarray as xr
 
 SCRIPT = Path(__file__).parents[2] / "docs/compare_studies.py"
@@ -20,6 +21,7 @@ def compare(before: Path, after: Path) -> tuple[int, str]:
     return done.returncode, done.stdout
 
 
+@pytest.mark.long
 def test_one_changed_bit_and_one_changed_number_are_found_and_times_are_not(finished: Path, tmp_path: Path) -> None:
     other = tmp_path / "other"
     shutil.copytree(finished, other)

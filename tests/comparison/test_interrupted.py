@@ -84,6 +84,7 @@ def test_a_stopped_run_keeps_what_is_finished_and_says_how_to_go_on(tmp_path: Pa
     assert left == []
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL")
 def test_the_workers_of_a_killed_run_end_with_it(tmp_path: Path) -> None:
     script = SCRIPT.format(here=str(HERE), root=str(HERE.parents[1]))

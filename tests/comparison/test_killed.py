@@ -110,6 +110,7 @@ def _bytes(answers: list[BatchResult]) -> list[object]:
     return [(a.mu.tobytes(), a.error.tobytes(), a.instant.tobytes(), a.status) for a in answers]
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="fork")
 def test_a_run_killed_at_random_instants_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
     script = SCRIPT.format(here=str(HERE), root=str(HERE.parents[1]), instants=INSTANTS)

@@ -51,6 +51,7 @@ def flat(text: str) -> str:
     return "".join(letter for letter in text if letter.isalnum())
 
 
+@pytest.mark.long
 def test_the_papers_scenes_are_on_two_to_four_pages_with_every_sentence(tmp_path: Path) -> None:
     results, findings = studied([load_scene(name) for name in SCENES], fake_hierarchy(gap=0.01), grid=24)
     pdf.write_pdf(tmp_path / "report.pdf", results, findings)

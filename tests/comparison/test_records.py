@@ -58,6 +58,7 @@ def test_what_needs_phases_or_amplitudes_is_not_asked_of_a_record(study):
     assert (place.row, place.column) == (0, 0)
 
 
+@pytest.mark.long
 def test_a_mixed_study_is_planned_computed_and_checked(command: Callable[..., Run]) -> None:
     plan = command(*MIXED, "--grid", "4", "--plan")
     assert (plan.code, "one point per model" in plan.out) == (0, True)
@@ -80,6 +81,7 @@ def test_a_broken_limit_of_a_record_is_told(command: Callable[..., Run]) -> None
     assert "synthetic-pair" in run.err
 
 
+@pytest.mark.long
 def test_a_family_of_scales_is_drawn(command: Callable[..., Run], tmp_path: Path) -> None:
     text = (EXAMPLES / "synthetic-pair.toml").read_text(encoding="utf-8")
     file = tmp_path / "mine.toml"

@@ -49,6 +49,7 @@ def share_met(plan: StudyPlan, scene: Scene, model: Model) -> tuple[float, int]:
     return float(np.mean(met)), len(met)
 
 
+@pytest.mark.long
 def test_the_accuracy_asked_is_met_on_a_scene_that_was_never_recorded() -> None:
     scene = tower().with_values({"duration": 3.0})
     plan = chosen(scene, 1e-3, 6, 2)

@@ -110,6 +110,7 @@ def test_what_computes_nothing_any_more_is_ended_in_the_end(tmp_path: Path, monk
     assert result.reason == "time limit: no answer within 4 s"
 
 
+@pytest.mark.long
 def test_the_limit_of_a_task_does_not_reach_the_next_one_in_the_same_process(tmp_path: Path) -> None:
     short = Task(doubled, str(tmp_path / "short"), "test", 2.0, timeout=1.0)
     endless = Task(is_busy, 2.0, "test", 1.0)

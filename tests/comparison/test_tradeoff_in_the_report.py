@@ -69,6 +69,7 @@ def test_the_diagrams_beside_a_report_are_part_of_the_next_and_stay_there(
     assert summary["tradeoff"][0]["entries"][0]["pareto_front"] == [True, True]
 
 
+@pytest.mark.long
 def test_diagrams_of_another_scene_are_added_and_said_to_be_none_of_the_study(
     command: Callable[..., Run], measure: Callable[[Path, str], int], tmp_path: Path
 ) -> None:

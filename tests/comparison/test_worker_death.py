@@ -60,6 +60,7 @@ def test_a_death_costs_its_own_task_one_retry_and_no_other(tmp_path: Path) -> No
     assert _calls(tmp_path) == {"one": 1, "kills": 2, "two": 1, "kills always": 2, "three": 1, "four": 1}
 
 
+@pytest.mark.long
 def test_in_a_common_pool_of_processes_the_culprit_is_found_too(tmp_path: Path) -> None:
     tasks = [tmp_path / name for name in ("one", "kills always", "two")]
     results = sweep(tasks, counted, _lost, _done, 2, common_pool)

@@ -37,6 +37,7 @@ def test_a_record_has_no_worst_phases() -> None:
     assert WorstPhases().collect(study, None, TaskResults()) is None
 
 
+@pytest.mark.long
 def test_the_engine_confirms_the_maximum_of_the_equations_within_both_errors() -> None:
     equations, engine = worst_of((SHORT, REGULARIZED, TRANSLATIONAL, "amplification", 2, 1e-3, None))
     assert engine.model == "translational"

@@ -30,6 +30,7 @@ def test_a_refusal_tells_by_how_much_and_the_durations_that_it_names_are_true() 
     assert multibody.refusal(frame(1.001 * float(tried[1])), "spatial", max_work=WORK) != ""
 
 
+@pytest.mark.long
 def test_at_the_duration_and_with_the_work_that_a_refusal_names_there_are_values() -> None:
     said = multibody.refusal(frame(20.0), "translational", max_work=WORK)
     enough = re.search(r"duration to about (\S+) s", said)
