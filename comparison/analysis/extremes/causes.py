@@ -27,6 +27,11 @@ _QUICK_RELAXATION = (
     "larger v_reg has another answer"
 )
 
+_STIFF_LINK = (
+    "the swing of so stiff a link asks for a contact that damps none of it: the levels within the work of a cell do "
+    "not reach the tolerance"
+)
+
 # by quantity and extreme; by key of the model
 CAUSES: dict[tuple[str, str], dict[str, str]] = {
     ("v_reg, m/s", "1e-06"): {"spatial": _QUICK_RELAXATION},
@@ -57,6 +62,8 @@ CAUSES: dict[tuple[str, str], dict[str, str]] = {
     },
     ("link periods, s", "0.001"): {"spatial": _LONG_CHAIN},
     ("link periods, s", "1000"): {"spatial": _TINY},
+    ("load over the buckling load of bars", "0.0001"): {"spatial": _STIFF_LINK},
+    ("load over the buckling load of bars", "0.999999"): {"spatial": _TINY},
     ("duration, s", "0.001"): dict.fromkeys(("translational", "spatial"), _TINY),
     ("vertical loading, m/s^2", "-g exactly"): {"spatial": _RATTLING},
     ("vertical loading, m/s^2", "15"): {"spatial": _RATTLING},
