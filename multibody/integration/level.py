@@ -175,7 +175,7 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
     peak, most = (MIN_PEAK, MAX_PENETRATION) if strength == 1.0 else (strength, MAX_WEAK_PENETRATION)
     stiffest = min(model.rounding / (MAX_ROUNDING_SHARE * peak * tolerance), most / COMPLIANCE_RATIO)
     share = MAX_CONTACT_TIME_OF_ROCKING if model.allows_liftoff else MAX_CONTACT_TIME
-    slowest = min(MAX_CONTACT_LAG * model.relaxation, share * step * STEPS_PER_PERIOD / (2.0 * math.pi), 1.0)
+    slowest = min(MAX_CONTACT_LAG * model.relaxation, share * shortest_period(scene, model) / (2.0 * math.pi), 1.0)
     softest = max(min(slowest**2, MAX_PENETRATION), stiffest)
     stiffenings = math.floor(math.log(softest / stiffest, COMPLIANCE_RATIO) + 1e-9)
     penetrations = [softest / COMPLIANCE_RATIO ** min(level, stiffenings) for level in range(MAX_LEVELS)]
@@ -223,8 +223,17 @@ def weak_strength(scene: Scene) -> float:
 
 
 def largest_step(scene: Scene, model: EngineModel) -> float:
+    """Step of level 0 in units of the model, from the shortest period and from that of bars that give way."""
+    step = shortest_period(scene, model) / STEPS_PER_PERIOD
+    if model.fastest_of_bars > 0.0:
+        of_bars = 2.0 * math.pi / model.fastest_of_bars / STEPS_PER_BAR_PERIOD
+        step = min(step, max(of_bars, step / MAX_BAR_DIVISION))
+    return step
+
+
+def shortest_period(scene: Scene, model: EngineModel) -> float:
     """
-    Step of level 0 in units of the model, from the shortest period of the loading, the pendulum and the chain.
+    Shortest period of the loading, the pendulum and the chain, in units of the model.
 
     The chain's periods count however short they are: the loading begins at once and sets every mode swinging, and
     dampers leave a mode some swings.
@@ -242,11 +251,7 @@ def largest_step(scene: Scene, model: EngineModel) -> float:
         scaled = stiffness / np.sqrt(np.outer(masses, masses))
         highest = float(np.linalg.eigvalsh(scaled)[-1])
         fastest = min(fastest, 2.0 * math.pi / math.sqrt(highest) if highest > 0.0 else math.inf)
-    step = min(fastest, *periods) / STEPS_PER_PERIOD
-    if model.fastest_of_bars > 0.0:
-        of_bars = 2.0 * math.pi / model.fastest_of_bars / STEPS_PER_BAR_PERIOD
-        step = min(step, max(of_bars, step / MAX_BAR_DIVISION))
-    return step
+    return min(fastest, *periods)
 
 
 def damped_rate(scene: Scene, units: Units) -> float:

@@ -151,12 +151,8 @@ def building(name: str, **values: Any) -> Scene:
     return load_scene("fig3-I").with_values({"duration": 2.0, **bars, **values}).with_amplitude(1.5)
 
 
-SHORT = ("softened", "shortening")  # of the buildings: a few seconds
-
-
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[] if name in SHORT else pytest.mark.long) for name in BUILDINGS]
-)
+@pytest.mark.long  # the equations take more than a minute to compile
+@pytest.mark.parametrize("name", BUILDINGS)
 def test_factors_agree_with_newton_euler_equations(name: str) -> None:
     scene = building(name)
     engine = multibody.amplification(scene, [(2.0, 0.7)], model="spatial")
