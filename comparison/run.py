@@ -24,13 +24,9 @@ from typing import Any
 
 from rich.console import Console
 
-from comparison.analysis.benchmarks.table import load as stored_benchmarks
-from comparison.analysis.ensemble_file import load as stored_ensemble
-from comparison.analysis.extremes.matrix import load as stored_extremes
-from comparison.analysis.growth import load as stored_growth
 from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.taken_up import TAKEN_UP
 from comparison.analysis.targets import targets_met
-from comparison.analysis.tradeoff.trade import load as stored_trades
 from comparison.analysis.unanswered import with_silent_models
 from comparison.cli.arguments import command, writing
 from comparison.cli.budgeted import allotment, drawings_first, spend
@@ -206,11 +202,10 @@ def _run(
         _faults(study, computed),
         run,
         families=[family for family in options.families if len(family.scenes) > 1] or None,
-        benchmarks=None if "benchmarks" in study.absent else _taken_up(stored_benchmarks, options.out),
-        extremes=None if "extremes" in study.absent else _taken_up(stored_extremes, options.out),
-        tradeoff=None if "tradeoff" in study.absent else _taken_up(stored_trades, options.out),
-        growth=None if "tradeoff" in study.absent else _taken_up(stored_growth, options.out),
-        ensemble=None if "ensemble" in study.absent else _taken_up(stored_ensemble, options.out),
+        **{
+            name: None if analysis in study.absent else _taken_up(load, options.out)
+            for name, (analysis, load) in TAKEN_UP.items()
+        },
     )
     results = assemble(findings)
     drawings = drawing_tasks(results, findings)

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Any, Literal
 
 from comparison.analysis.ensemble import FRACTILES, EnsembleResult, Point, Quantity, quantities
-from comparison.analysis.stored import FILE_FORMAT, finite_or_none, json_text, load_file
+from comparison.analysis.stored import FILE_FORMAT, StoredFile, finite_or_none
 from comparison.study.models import TRANSLATIONAL
 from reference.problem import Estimate
 from reference.problem.peak_demands import unit_of
@@ -138,9 +137,8 @@ class StoredEnsemble:
     run: Mapping[str, Any]
     """command, times, provenance"""
 
-    def as_json(self) -> bytes:
-        """The content of the file, which `load` reads."""
-        return json_text(asdict(self)).encode()
+
+STORED = StoredFile(FILE, StoredEnsemble, "an ensemble", "python -m comparison.ensemble")
 
 
 def stored(result: EnsembleResult, run: Mapping[str, Any]) -> StoredEnsemble:
@@ -199,28 +197,6 @@ def stored(result: EnsembleResult, run: Mapping[str, Any]) -> StoredEnsemble:
         engine=StoredEngine(TRANSLATIONAL.key, asked, differences),
         run=run,
     )
-
-
-def load(folder: Path) -> StoredEnsemble | None:
-    """
-    The ensemble that a command left in a folder.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder that may hold FILE.
-
-    Returns
-    -------
-    StoredEnsemble or None
-        None if there is no such file.
-
-    Raises
-    ------
-    ValueError
-        One line, if the file holds no ensemble of this version.
-    """
-    return load_file(folder / FILE, StoredEnsemble, "an ensemble", "python -m comparison.ensemble")
 
 
 def _named(quantity: Quantity) -> tuple[str, int | None]:

@@ -8,15 +8,14 @@ logarithms of the larger half of the values, where fixed costs count least.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
 
 from comparison.analysis.protocol import Analysis
-from comparison.analysis.stored import FILE_FORMAT, finite_or_none, json_text, load_file
+from comparison.analysis.stored import FILE_FORMAT, StoredFile, finite_or_none
 from comparison.analysis.tradeoff.measure import Measurement, measure, sample, without_value
 from comparison.execution.task import Task
 from comparison.execution.task_results import TaskResults
@@ -124,31 +123,8 @@ class MeasuredGrowth:
     run: Mapping[str, Any]
     """command, times, provenance"""
 
-    def as_json(self) -> bytes:
-        """The content of the file, which `load` reads."""
-        return json_text(asdict(self)).encode()
 
-
-def load(folder: Path) -> MeasuredGrowth | None:
-    """
-    The growth that a command left in a folder.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder that may hold FILE.
-
-    Returns
-    -------
-    MeasuredGrowth or None
-        None if there is no such file.
-
-    Raises
-    ------
-    ValueError
-        One line, if the file holds no growth of this version.
-    """
-    return load_file(folder / FILE, MeasuredGrowth, "a measured growth", "python -m comparison.tradeoff --growth")
+STORED = StoredFile(FILE, MeasuredGrowth, "a measured growth", "python -m comparison.tradeoff --growth")
 
 
 def with_slope(quantity: str, unit: str, model: str, values: Sequence[float], seconds: Sequence[float]) -> Series:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
@@ -26,41 +27,53 @@ def json_text(content: Mapping[str, Any] | Sequence[Any]) -> str:
     return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def load_file(file: Path, kind: type[T], what: str, command: str) -> T | None:
+@dataclass(frozen=True)
+class StoredFile(Generic[T]):
     """
-    The content of a JSON file as the dataclass `kind`.
+    A JSON file of results, which one command writes and the next report beside it shows.
 
-    Parameters
-    ----------
-    file : Path
-        File to read.
-    kind : type
-        Dataclass that states its keys.
-    what : str
-        What the file should be, for the message.
-    command : str
-        Command that writes it, for the message.
-
-    Returns
-    -------
-    kind or None
-        None if there is no such file.
-
-    Raises
-    ------
-    ValueError
-        In one line, if the file is anything else.
+    name: of the file. kind: dataclass that states its keys. what: what the file is, in words. command: which writes it.
     """
-    if not file.exists():
-        return None
-    try:
-        return TypeAdapter(kind).validate_json(file.read_bytes())
-    except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        place = ".".join(map(str, first["loc"]))
-        given = "" if first["type"] in ("missing", "json_invalid") else f" = {_short(first['input'])}"
-        reason = f"{place}{given}: {first['msg']}" if place else first["msg"]
-        raise ValueError(f"{file}: not {what}: {reason}: run {command}") from None
+
+    name: str
+    kind: type[T]
+    what: str
+    command: str
+
+    def as_json(self, results: T) -> bytes:
+        """The content of the file, which `load` reads."""
+        return json_text(asdict(results)).encode()  # type: ignore[call-overload]
+
+    def load(self, folder: Path) -> T | None:
+        """
+        What the command left in a folder.
+
+        Parameters
+        ----------
+        folder : Path
+            Folder that may hold the file.
+
+        Returns
+        -------
+        kind or None
+            None if there is no such file.
+
+        Raises
+        ------
+        ValueError
+            In one line, if the file is anything else, or of another version.
+        """
+        file = folder / self.name
+        if not file.exists():
+            return None
+        try:
+            return TypeAdapter(self.kind).validate_json(file.read_bytes())
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            place = ".".join(map(str, first["loc"]))
+            given = "" if first["type"] in ("missing", "json_invalid") else f" = {_short(first['input'])}"
+            reason = f"{place}{given}: {first['msg']}" if place else first["msg"]
+            raise ValueError(f"{file}: not {self.what}: {reason}: run {self.command}") from None
 
 
 def _short(value: object, length: int = 60) -> str:

@@ -15,11 +15,11 @@ from pathlib import Path
 
 from rich.console import Console
 
-from comparison.analysis.benchmarks.analysis import ENGINE, EQUATIONS, MODELS, BenchmarkTable
+from comparison.analysis.benchmarks.analysis import MODELS, BenchmarkTable
 from comparison.analysis.benchmarks.cases import Case, cases
 from comparison.analysis.benchmarks.mastodon import mastodon
 from comparison.analysis.benchmarks.page import page, with_error
-from comparison.analysis.benchmarks.table import FILE, PAGE, Benchmarks, Verdict, as_json
+from comparison.analysis.benchmarks.table import ENGINE, EQUATIONS, PAGE, STORED, Benchmarks, Verdict
 from comparison.cli.arguments import CommandParser, command, jobs, writing
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.terminal import new_table
@@ -41,13 +41,13 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     jobs(options)  # refused before anything else is looked at
     analysis = BenchmarkTable(_chosen(options.only, options.mastodon))
     out = destination(options.out)
-    refuse_foreign_files(out, [FILE, PAGE])
+    refuse_foreign_files(out, [STORED.name, PAGE])
     console = wide_console()
     results = computed("benchmarks", options, argv, analysis.tasks(), SOLVERS, console, executor)
     solved = analysis.collect(None, None, results)
     table = replace(solved, run=run_facts("benchmarks", options, argv, begin))
     with writing(out):
-        files = publish(out, {FILE: as_json(table), PAGE: page(table).encode()}, "comparison.benchmarks")
+        files = publish(out, {STORED.name: STORED.as_json(table), PAGE: page(table).encode()}, "comparison.benchmarks")
     print_benchmarks(console, table)
     console.print(f"Tables: {', '.join(map(str, files))}", soft_wrap=True)
     console.print("A report written into the same directory by comparison.run shows them.")
@@ -84,7 +84,7 @@ def _chosen(only: str, mastodon_input: Path | None) -> list[Case]:
 
 def _parser() -> CommandParser:
     parser = CommandParser("benchmarks", "Numbers published elsewhere, each by the equations and by the engine.")
-    parser.add_out(f"where {FILE} and {PAGE} go")
+    parser.add_out(f"where {STORED.name} and {PAGE} go")
     parser.add_computing()
     parser.add_argument("--only", default="", metavar="TEXT", help="the benchmarks whose name contains this")
     parser.add_argument(

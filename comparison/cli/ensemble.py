@@ -29,7 +29,7 @@ from comparison.analysis.ensemble import (
     quantity_name,
     refuse_unfit,
 )
-from comparison.analysis.ensemble_file import FILE, PICTURE, stored
+from comparison.analysis.ensemble_file import PICTURE, STORED, stored
 from comparison.cli.arguments import CommandParser, command, jobs, number, whole_number, writing
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.terminal import new_table
@@ -45,7 +45,7 @@ from reference.problem.peak_demands import unit_of
 from reference.problem.scene_file import scene_tables, scene_text
 
 TABLE = "ensemble.csv"
-FILES = (FILE, TABLE, PICTURE, "ensemble.pdf")
+FILES = (STORED.name, TABLE, PICTURE, "ensemble.pdf")
 MODELS = {EXACT.trajectory, TRANSLATIONAL.trajectory}  # what the workers ask
 SUBSET = 2  # scenes that the engine computes, unless the command says otherwise
 MAX_SCALES = 100
@@ -76,10 +76,9 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     from comparison.report.figures.ensemble import draw_ensemble  # matplotlib: not needed to refuse a command
 
     cost = results.parts[ensemble.stage].seconds
+    run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
     files = {
-        FILE: stored(
-            result, {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
-        ).as_json(),
+        STORED.name: STORED.as_json(stored(result, run)),
         TABLE: table_text(result).encode(),
         **made_by(lambda folder: draw_ensemble(folder / PICTURE, result)),
     }
@@ -183,6 +182,6 @@ def _parser() -> CommandParser:
         "--engine", default=str(SUBSET), metavar="N", help="motions that the engine computes, too (default %(default)s)"
     )
     parser.add_argument("--plan", action="store_true", help="print what would be computed and its cost; run nothing")
-    parser.add_out(f"where {FILE}, {TABLE} and {PICTURE} go; the next report there shows them")
+    parser.add_out(f"where {STORED.name}, {TABLE} and {PICTURE} go; the next report there shows them")
     parser.add_computing()
     return parser

@@ -17,7 +17,7 @@ from rich.console import Console
 
 from comparison.analysis.extremes.analysis import LIMIT, Extremes, reduced
 from comparison.analysis.extremes.cells import cells
-from comparison.analysis.extremes.matrix import FILE, PICTURE, Matrix, as_json
+from comparison.analysis.extremes.matrix import FILE, PICTURE, STORED, Matrix
 from comparison.analysis.extremes.rows import COLUMNS, ENGINE, EQUATIONS, STATED, entered_column, rows
 from comparison.analysis.extremes.verdicts import Verdict
 from comparison.cli.arguments import CommandParser, command, jobs, number, writing
@@ -45,7 +45,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 
     picture = made_by(lambda folder: draw_extremes(folder / PICTURE, matrix))
     with writing(out):
-        files = publish(out, {FILE: as_json(matrix), **picture}, "comparison.extremes")
+        files = publish(out, {FILE: STORED.as_json(matrix), **picture}, "comparison.extremes")
     print_matrix(console, matrix)
     console.print(f"Matrix: {', '.join(map(str, files))}", soft_wrap=True)
     console.print("A report written into the same directory by comparison.run shows it.")

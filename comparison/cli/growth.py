@@ -9,7 +9,7 @@ from concurrent.futures import Executor
 
 from rich.console import Console
 
-from comparison.analysis.growth import FILE, PICTURE, SCHEMA, Growth, MeasuredGrowth, Series, with_slope
+from comparison.analysis.growth import FILE, PICTURE, SCHEMA, STORED, Growth, MeasuredGrowth, Series, with_slope
 from comparison.analysis.tradeoff.measure import Measurement, measure, sample
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.terminal import new_table
@@ -75,7 +75,7 @@ def growth_files(growth: MeasuredGrowth) -> dict[str, bytes]:
     """Table and figure."""
     from comparison.report.figures.growth import draw_growth  # plotting: not needed to refuse
 
-    return {FILE: growth.as_json(), **made_by(lambda folder: draw_growth(folder / PICTURE, growth.series))}
+    return {STORED.name: STORED.as_json(growth), **made_by(lambda folder: draw_growth(folder / PICTURE, growth.series))}
 
 
 def print_growth(console: Console, series: Sequence[Series]) -> None:

@@ -6,11 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from comparison.analysis.benchmarks.table import load as stored_benchmarks
-from comparison.analysis.ensemble_file import load as stored_ensemble
-from comparison.analysis.extremes.matrix import load as stored_extremes
-from comparison.analysis.growth import load as stored_growth
-from comparison.analysis.tradeoff.trade import load as stored_trades
+from comparison.analysis.taken_up import TAKEN_UP
 from comparison.cli.arguments import CommandParser, jobs, number, whole_number
 from comparison.cli.entered import add_models, entered_models
 from comparison.execution.cache import refuse_foreign_store
@@ -102,11 +98,8 @@ def parsed(argv: Sequence[str]) -> Options:
         raise SceneError("command line", "--budget", words.budget, rule)
     if not options.plan:
         try:
-            stored_benchmarks(options.out)
-            stored_extremes(options.out)
-            stored_trades(options.out)
-            stored_growth(options.out)
-            stored_ensemble(options.out)
+            for _, load in TAKEN_UP.values():
+                load(options.out)
         except (OSError, ValueError) as error:
             rule = f"the report cannot take up {error}"
             raise SceneError("command line", "--out", str(options.out), rule) from None

@@ -22,7 +22,7 @@ from rich.table import Table
 from comparison.analysis.growth import FILE as GROWTH
 from comparison.analysis.tradeoff.analysis import MeasuredTrade, TradeOff
 from comparison.analysis.tradeoff.settings import CONSTANT, ENGINE, LEVEL, REFERENCE, RUN, SCIPY
-from comparison.analysis.tradeoff.trade import FILE, Trade, as_json, load
+from comparison.analysis.tradeoff.trade import FILE, SCHEMA, STORED, Trade, TradeFile, load
 from comparison.cli.arguments import CommandParser, command, jobs, writing
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.entered import add_models, entered_models
@@ -65,7 +65,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     before = {trade.scene: trade for trade in _stored(out)}
     trades = {scene_trade.trade.scene: scene_trade.trade for scene_trade in measured}
     with writing(out):
-        (file,) = publish(out, {FILE: as_json(list((before | trades).values()))}, COMMAND)
+        (file,) = publish(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list((before | trades).values())))}, COMMAND)
     for trade in trades.values():
         print_trade(console, trade)
     console.print(f"Trade: {file}, and SCENE-tradeoff.png and .nc beside it.", soft_wrap=True)

@@ -17,6 +17,7 @@ V_REG = 1e-3  # m/s: below it friction grows linearly with the slip velocity, on
 REFERENCE_TOLERANCE = (
     1e-6  # the reference is cheap: asked for at least this, so that its error never blurs a difference
 )
+SOFTENED = "softened-"  # begins the key of a model whose bars are softened
 RECORDED_ON = "one core of a 2-core AMD EPYC (x86-64) virtual machine"
 
 
@@ -92,7 +93,7 @@ class Model:
     @property
     def recorded_key(self) -> str:
         """Key in the record of costs: bars that are softer cost as much."""
-        return self.key.removeprefix("softened-")
+        return self.key.removeprefix(SOFTENED)
 
     def tolerance(self, asked: float) -> float:
         """Relative error this model asks of its own numbers when the study asks for `asked`."""
@@ -272,28 +273,23 @@ SPATIAL = _next(
 
 MODEL_HIERARCHY: tuple[Model, ...] = (SMALL, EXACT, RESOLVED, REGULARIZED, TRANSLATIONAL, SPATIAL)
 
-_SOFTENED = {"links": "bars as soft as the weight that they carry makes them"}
-_SOFTENS = "Bars under the weight that they carry: it makes them softer in sway, and they would buckle under more."
-SOFTENED_TRANSLATIONAL = _next(
-    TRANSLATIONAL,
-    _SOFTENED,
-    key="softened-translational",
-    title="translational engine, softened bars",
-    effect="softening of the bars",
-    adds=_SOFTENS,
-    settings={**TRANSLATIONAL.settings, "softened": True},
-    applies=with_unloaded_bars,
-)
-SOFTENED_SPATIAL = _next(
-    SPATIAL,
-    _SOFTENED,
-    key="softened-spatial",
-    title="spatial engine, softened bars",
-    effect="softening of the bars",
-    adds=_SOFTENS,
-    settings={**SPATIAL.settings, "softened": True},
-    applies=with_unloaded_bars_in_space,
-)
+
+def _softened(model: Model, applies: Callable[[Scene], bool]) -> Model:
+    """The step after an engine model that softens its bars."""
+    return _next(
+        model,
+        {"links": "bars as soft as the weight that they carry makes them"},
+        key=f"{SOFTENED}{model.key}",
+        title=f"{model.title}, softened bars",
+        effect="softening of the bars",
+        adds="Bars under the weight that they carry: it makes them softer in sway, and they would buckle under more.",
+        settings={**model.settings, "softened": True},
+        applies=applies,
+    )
+
+
+SOFTENED_TRANSLATIONAL = _softened(TRANSLATIONAL, with_unloaded_bars)
+SOFTENED_SPATIAL = _softened(SPATIAL, with_unloaded_bars_in_space)
 
 
 def with_softened_bars(hierarchy: Sequence[Model], scenes: Sequence[Scene]) -> tuple[Model, ...]:

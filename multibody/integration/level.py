@@ -170,12 +170,13 @@ def levels(
 
 def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
     """All levels for a relative error of `tolerance`; the penetration stays where rounding would take over."""
-    step = largest_step(scene, model)
+    period = shortest_period(scene, model)
+    step = largest_step(period, model)
     strength = 1.0 if model.allows_liftoff else weak_strength(scene)  # a tower tilts on soft contacts
     peak, most = (MIN_PEAK, MAX_PENETRATION) if strength == 1.0 else (strength, MAX_WEAK_PENETRATION)
     stiffest = min(model.rounding / (MAX_ROUNDING_SHARE * peak * tolerance), most / COMPLIANCE_RATIO)
     share = MAX_CONTACT_TIME_OF_ROCKING if model.allows_liftoff else MAX_CONTACT_TIME
-    slowest = min(MAX_CONTACT_LAG * model.relaxation, share * shortest_period(scene, model) / (2.0 * math.pi), 1.0)
+    slowest = min(MAX_CONTACT_LAG * model.relaxation, share * period / (2.0 * math.pi), 1.0)
     softest = max(min(slowest**2, MAX_PENETRATION), stiffest)
     stiffenings = math.floor(math.log(softest / stiffest, COMPLIANCE_RATIO) + 1e-9)
     penetrations = [softest / COMPLIANCE_RATIO ** min(level, stiffenings) for level in range(MAX_LEVELS)]
@@ -222,9 +223,9 @@ def weak_strength(scene: Scene) -> float:
     return strength if 0.0 < strength < WEAK_LOADING else 1.0
 
 
-def largest_step(scene: Scene, model: EngineModel) -> float:
-    """Step of level 0 in units of the model, from the shortest period and from that of bars that give way."""
-    step = shortest_period(scene, model) / STEPS_PER_PERIOD
+def largest_step(period: float, model: EngineModel) -> float:
+    """Step of level 0 in units of the model, from the shortest `period` and from that of bars that give way."""
+    step = period / STEPS_PER_PERIOD
     if model.fastest_of_bars > 0.0:
         of_bars = 2.0 * math.pi / model.fastest_of_bars / STEPS_PER_BAR_PERIOD
         step = min(step, max(of_bars, step / MAX_BAR_DIVISION))

@@ -29,7 +29,7 @@ from comparison.analysis.benchmarks.analysis import (
 from comparison.analysis.benchmarks.cases import Case, Published, Reading, cases, shipped
 from comparison.analysis.benchmarks.mastodon import mastodon
 from comparison.analysis.benchmarks.page import HEAD, page
-from comparison.analysis.benchmarks.table import Benchmarks, Verdict, as_json, load
+from comparison.analysis.benchmarks.table import STORED, Benchmarks, Verdict
 from comparison.cli.benchmarks import main
 from reference.analytical import den_hartog
 from reference.problem import GRAVITY, SceneError, State
@@ -190,11 +190,11 @@ def test_the_command_writes_tables_and_goes_on_where_it_stopped(tmp_path, capsys
         seen = capsys.readouterr().out
     assert "3 of 3 tasks are in" in seen
     assert "2 numbers: 2 met, 0 friction, 0 model, 0 NOT MET, 0 no answer." in seen
-    table = load(tmp_path / "report")
+    table = STORED.load(tmp_path / "report")
     assert table is not None
-    assert as_json(table) == (tmp_path / "report" / "benchmarks.json").read_bytes()
+    assert STORED.as_json(table) == (tmp_path / "report" / "benchmarks.json").read_bytes()
     assert (tmp_path / "report" / "benchmarks.md").read_text(encoding="utf-8") == page(table)
-    assert json.loads(as_json(table))["benchmarks"][0]["name"] == "pendulum"
+    assert json.loads(STORED.as_json(table))["benchmarks"][0]["name"] == "pendulum"
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from pathlib import Path
 from conftest import Run
 from jsonschema import Draft202012Validator
 
-from comparison.analysis.benchmarks.table import FILE, PAGE, Benchmark, Benchmarks, Number, Row, Verdict, as_json
+from comparison.analysis.benchmarks.table import FILE, PAGE, STORED, Benchmark, Benchmarks, Number, Row, Verdict
 from comparison.execution.output import publish
 
 SMALL = ["fig3-I", "--grid", "2"]
@@ -39,11 +39,11 @@ FOUND = Benchmarks(
 def test_benchmarks_beside_a_report_are_part_of_the_next_and_stay_there(command: Callable[..., Run], tmp_path: Path):
     report = command(*SMALL).report
     assert "python -m comparison.benchmarks makes it" in (report / "index.html").read_text(encoding="utf-8")
-    publish(report, {FILE: as_json(FOUND), PAGE: b"a page"}, "comparison.benchmarks")
+    publish(report, {FILE: STORED.as_json(FOUND), PAGE: b"a page"}, "comparison.benchmarks")
     for _ in range(2):
         run = command(*SMALL)
         assert run.code == 0, run.err
-        assert (report / FILE).read_bytes() == as_json(FOUND)
+        assert (report / FILE).read_bytes() == STORED.as_json(FOUND)
         page = (report / "index.html").read_text(encoding="utf-8")
         assert "python -m comparison.benchmarks makes it" not in page
         for seen in (

@@ -10,8 +10,7 @@ import pytest
 from conftest import Run
 from jsonschema import Draft202012Validator
 
-from comparison.analysis import ensemble_file
-from comparison.analysis.ensemble_file import FILE, SCHEMA, StoredCurve, StoredEngine, StoredEnsemble
+from comparison.analysis.ensemble_file import FILE, SCHEMA, STORED, StoredCurve, StoredEngine, StoredEnsemble
 from comparison.analysis.ensemble_file import StoredDifference as Difference
 from comparison.analysis.ensemble_file import StoredFractile as Fractile
 from comparison.analysis.ensemble_file import StoredStripe as Stripe
@@ -45,18 +44,18 @@ def three_motions() -> StoredEnsemble:
 
 
 def test_what_is_written_is_what_is_read(tmp_path: Path) -> None:
-    assert ensemble_file.load(tmp_path) is None
+    assert STORED.load(tmp_path) is None
     written = three_motions()
-    (tmp_path / FILE).write_bytes(written.as_json())
-    read = ensemble_file.load(tmp_path)
+    (tmp_path / FILE).write_bytes(STORED.as_json(written))
+    read = STORED.load(tmp_path)
     assert read is not None
-    assert read.as_json() == written.as_json()
+    assert STORED.as_json(read) == STORED.as_json(written)
 
 
 def test_the_ensemble_beside_a_report_is_part_of_the_next(command: Callable[..., Run]) -> None:
     report = command(*SMALL).report
     assert "python -m comparison.ensemble SCENE makes it" in (report / "index.html").read_text(encoding="utf-8")
-    publish(report, {FILE: three_motions().as_json()}, "a test")
+    publish(report, {FILE: STORED.as_json(three_motions())}, "a test")
     assert command(*SMALL).code == 0
     page = (report / "index.html").read_text(encoding="utf-8")
     for seen in ('id="ensemble"', "Tower &amp; &lt;town&gt;", "5 ok, 1 rim reached", "made &lt;by a test&gt;", "none"):
@@ -83,7 +82,7 @@ def test_a_file_that_is_no_ensemble_is_refused_before_anything_is_computed(
 @pytest.mark.parametrize("stripes", [[], None])
 def test_an_ensemble_without_any_answer_is_shown(command: Callable[..., Run], stripes: list[Stripe] | None) -> None:
     report = command(*SMALL).report
-    content = json.loads(three_motions().as_json())
+    content = json.loads(STORED.as_json(three_motions()))
     content |= {"curves": [], "outcomes": {"rim reached": 6}}
     content["stripes"] = stripes if stripes is not None else content["stripes"][1:]
     publish(report, {FILE: json.dumps(content).encode()}, "a test")

@@ -18,7 +18,7 @@ from comparison.analysis.extremes.analysis import Extremes, reduced
 from comparison.analysis.extremes.causes import CAUSES
 from comparison.analysis.extremes.cells import Cell, answers, cells, read_scene, solve_cell
 from comparison.analysis.extremes.engine import amplification
-from comparison.analysis.extremes.matrix import FILE, Entry, Extreme, Matrix, as_json, load
+from comparison.analysis.extremes.matrix import FILE, STORED, Entry, Extreme, Matrix
 from comparison.analysis.extremes.rows import COLUMNS, Column, Row, rows, scene
 from comparison.analysis.extremes.verdicts import Reply, Verdict
 from comparison.cli.extremes import main
@@ -154,14 +154,14 @@ def test_the_command_writes_the_matrix_and_its_picture_and_computes_nothing_twic
     assert re.search(
         r"^3 cells in .* s of processor time: \d+ converged, \d+ refused, \d+ limit, 0 FAILED\.$", out, re.M
     )
-    matrix = load(tmp_path / "report")
+    matrix = STORED.load(tmp_path / "report")
     assert matrix is not None
     assert matrix.run["command"].startswith("python -m comparison.extremes --models small ")
     assert {row.group for row in matrix.rows} == {"amplitude, m/s^2"}
     assert (tmp_path / "report" / "extremes.png").read_bytes().startswith(b"\x89PNG")
     assert main(words, forbidden) == 0
     assert f"3 of 3 tasks are in {tmp_path / 'report'}.tiles: only the others are computed." in capsys.readouterr().out
-    again = load(tmp_path / "report")
+    again = STORED.load(tmp_path / "report")
     assert (again.rows, again.run["stored_before"]) == (matrix.rows, 3)
     with pytest.raises(AssertionError, match="computed"):
         main([*words, "--fresh"], forbidden)
@@ -199,13 +199,13 @@ def test_the_file_is_read_back_as_it_was_and_another_file_is_refused(tmp_path: P
         [_extreme("converged", 1e-7), _extreme("FAILED", None)],
         {"command": "a test", "seconds": 1.0, "cpu_seconds": 2.0},
     )
-    assert load(tmp_path) is None
-    (tmp_path / FILE).write_bytes(as_json(matrix))
-    assert load(tmp_path) == matrix
+    assert STORED.load(tmp_path) is None
+    (tmp_path / FILE).write_bytes(STORED.as_json(matrix))
+    assert STORED.load(tmp_path) == matrix
     draw_extremes(tmp_path / "picture.png", matrix)
     (tmp_path / "extremes.json").write_text(json.dumps({"rows": []}), encoding="utf-8")
     with pytest.raises(ValueError, match="not a matrix of extremes"):
-        load(tmp_path)
+        STORED.load(tmp_path)
 
 
 def test_a_field_shows_the_error_or_the_outcome_whatever_the_reason_says():
@@ -227,16 +227,16 @@ def test_a_field_shows_the_error_or_the_outcome_whatever_the_reason_says():
 def test_a_matrix_of_an_earlier_version_is_refused_in_one_line(content: str, reason: str, tmp_path: Path):
     (tmp_path / FILE).write_bytes(content.encode("latin-1"))
     with pytest.raises(ValueError, match="not a matrix of extremes") as error:
-        load(tmp_path)
+        STORED.load(tmp_path)
     assert reason in str(error.value)
     assert "\n" not in str(error.value)
 
 
 def test_a_matrix_with_a_verdict_that_is_none_is_refused(tmp_path: Path):
     matrix = Matrix({"fake": "a fake"}, [_extreme("fine", 1e-7)], {"command": "a test"})
-    (tmp_path / FILE).write_bytes(as_json(matrix))
+    (tmp_path / FILE).write_bytes(STORED.as_json(matrix))
     with pytest.raises(ValueError, match="'fine' is not a valid Verdict"):
-        load(tmp_path)
+        STORED.load(tmp_path)
 
 
 def _extreme(verdict: str, error: float | None) -> Extreme:

@@ -9,7 +9,7 @@ from pathlib import Path
 from conftest import Run
 from jsonschema import Draft202012Validator
 
-from comparison.analysis.extremes.matrix import FILE, PICTURE, Entry, Extreme, Matrix, as_json
+from comparison.analysis.extremes.matrix import FILE, PICTURE, STORED, Entry, Extreme, Matrix
 from comparison.execution.output import made_by, publish
 from comparison.report.figures.extremes import draw_extremes
 
@@ -29,7 +29,7 @@ FOUND = Matrix(
 def beside(report: Path) -> None:
     """What `python -m comparison.extremes --out` of the report's directory leaves there."""
     picture = made_by(lambda folder: draw_extremes(folder / PICTURE, FOUND))
-    publish(report, {FILE: as_json(FOUND), **picture}, "comparison.extremes")
+    publish(report, {FILE: STORED.as_json(FOUND), **picture}, "comparison.extremes")
 
 
 def test_the_matrix_beside_a_report_is_part_of_the_next_and_stays_there(command: Callable[..., Run]) -> None:

@@ -13,11 +13,11 @@ from known_analyses import collected
 from comparison.analysis.growth import (
     QUANTITIES,
     SCHEMA,
+    STORED,
     Growth,
     MeasuredGrowth,
     Series,
     fitted_slope,
-    load,
     tall,
     with_slope,
 )
@@ -73,9 +73,9 @@ def test_table_and_figure_cope_with_what_has_no_answer_and_are_read_back(tmp_pat
     )
     files = command.growth_files(growth)
     assert set(files) == set(command.FILES)
-    assert load(tmp_path) is None
+    assert STORED.load(tmp_path) is None
     (tmp_path / "growth.json").write_bytes(files["growth.json"])
-    assert load(tmp_path) == growth
+    assert STORED.load(tmp_path) == growth
     assert growth.series[0].seconds == [0.1, None]
 
 
@@ -84,7 +84,7 @@ def test_a_file_that_is_no_growth_is_refused_in_one_line(tmp_path: Path) -> None
     with pytest.raises(
         ValueError, match=r"growth.json: not a measured growth: .*: run python -m comparison.tradeoff --growth"
     ):
-        load(tmp_path)
+        STORED.load(tmp_path)
 
 
 def growth_of(*series: Series) -> MeasuredGrowth:

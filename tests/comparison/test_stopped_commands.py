@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 from test_extremes import PLAIN, fake
 
-from comparison.analysis.extremes.matrix import PICTURE, load
+from comparison.analysis.extremes.matrix import PICTURE, STORED
 from comparison.cli import extremes
 
 HERE = Path(__file__).parent
@@ -83,9 +83,9 @@ def test_extremes_killed_at_random_instants_go_on_to_the_same_matrix(
     for name in ("whole", *(f"killed{number}" for number in range(INSTANTS))):
         monkeypatch.chdir(tmp_path / name)
         assert run() == 1, "a model that lies fails"
-        matrices[name] = load(Path("report"))
+        matrices[name] = STORED.load(Path("report"))
         assert run(forbidden) == 1, "nothing is computed twice"
-        assert load(Path("report")).rows == matrices[name].rows
+        assert STORED.load(Path("report")).rows == matrices[name].rows
 
     def judged(name: str) -> list[object]:
         return [(e.verdict, e.reason, e.status, e.error) for row in matrices[name].rows for e in row.entries.values()]

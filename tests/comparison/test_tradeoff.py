@@ -20,7 +20,17 @@ from comparison.analysis.tradeoff import analysis, measure
 from comparison.analysis.tradeoff.analysis import MeasuredTrade, TradeOff, entry
 from comparison.analysis.tradeoff.measure import Measured, Measurement, sample
 from comparison.analysis.tradeoff.settings import QUESTIONS, RUN, Question, Setting, settings
-from comparison.analysis.tradeoff.trade import FILE, Trade, as_json, load, on_pareto_front, quantile, with_pareto_fronts
+from comparison.analysis.tradeoff.trade import (
+    FILE,
+    SCHEMA,
+    STORED,
+    Trade,
+    TradeFile,
+    load,
+    on_pareto_front,
+    quantile,
+    with_pareto_fronts,
+)
 from comparison.cli import tradeoff as command
 from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
@@ -165,7 +175,7 @@ def test_a_file_that_is_no_trade_is_refused_in_one_line(tmp_path: Path) -> None:
 
 
 def test_a_trade_of_an_earlier_version_is_refused_in_one_line_that_names_the_key(trade: Trade, tmp_path: Path) -> None:
-    text = as_json([trade]).decode().replace('"pareto_front"', '"front"')
+    text = STORED.as_json(TradeFile(SCHEMA, [trade])).decode().replace('"pareto_front"', '"front"')
     (tmp_path / FILE).write_text(text, encoding="utf-8")
     with pytest.raises(
         ValueError, match=r"trades\.0\.entries\.0\.front = .*: run python -m comparison.tradeoff$"

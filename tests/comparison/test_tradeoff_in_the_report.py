@@ -13,7 +13,7 @@ from conftest import Run
 from jsonschema import Draft202012Validator
 
 from comparison.analysis.growth import FILE as GROWTH
-from comparison.analysis.growth import SCHEMA, MeasuredGrowth, with_slope
+from comparison.analysis.growth import SCHEMA, STORED, MeasuredGrowth, with_slope
 from comparison.analysis.tradeoff.analysis import MeasuredTrade
 from comparison.analysis.tradeoff.trade import FILE, Answered, Entry, Trade, with_pareto_fronts
 from comparison.cli import tradeoff as tradeoff
@@ -104,7 +104,7 @@ def test_growth_beside_a_report_is_part_of_it_where_a_value_is_missing_too(
     ]
     report = tmp_path / "report"
     growth = MeasuredGrowth(SCHEMA, "fig3-I", "a scene", series, run_of_growth)
-    publish(report, {GROWTH: growth.as_json()}, tradeoff.COMMAND)
+    publish(report, {GROWTH: STORED.as_json(growth)}, tradeoff.COMMAND)
     run = command(*SMALL)
     assert run.code == 0, run.err
     page = (report / "index.html").read_text(encoding="utf-8")

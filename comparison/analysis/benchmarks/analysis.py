@@ -11,7 +11,16 @@ import numpy as np
 import xarray as xr
 
 from comparison.analysis.benchmarks.cases import Case, Published, Reading
-from comparison.analysis.benchmarks.table import Benchmark, Benchmarks, Number, Row, Verdict
+from comparison.analysis.benchmarks.table import (
+    ENGINE,
+    EQUATIONS,
+    SMOOTHED,
+    Benchmark,
+    Benchmarks,
+    Number,
+    Row,
+    Verdict,
+)
 from comparison.analysis.protocol import Analysis
 from comparison.analysis.stored import finite_or_none
 from comparison.execution.task import Task, TaskResult
@@ -22,7 +31,6 @@ from comparison.study.study import Study
 from reference.problem import Scene, State, Trajectory
 from reference.problem.demands import ANSWERED
 
-EQUATIONS, SMOOTHED, ENGINE = "equations", "smoothed", "engine"
 MODELS = {EQUATIONS: EXACT, SMOOTHED: REGULARIZED, ENGINE: TRANSLATIONAL}
 TOLERANCES = {EQUATIONS: 1e-8, SMOOTHED: 1e-8, ENGINE: 1e-3}
 SAMPLES = 100_001  # instants at which the equations are read

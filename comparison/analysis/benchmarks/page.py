@@ -4,7 +4,17 @@ from __future__ import annotations
 
 import math
 
-from comparison.analysis.benchmarks.table import MEANING, Benchmark, Benchmarks, Number, Row, Verdict
+from comparison.analysis.benchmarks.table import (
+    ENGINE,
+    EQUATIONS,
+    MEANING,
+    SMOOTHED,
+    Benchmark,
+    Benchmarks,
+    Number,
+    Row,
+    Verdict,
+)
 
 MOST_DIGITS = 7  # of a value
 SHORT = (("sdnd104-1.5", 0), ("sdnd100", 2), ("frame", 0), ("den-hartog", 0), ("newmark", 0))  # name, and row
@@ -54,7 +64,7 @@ def short_table(table: Benchmarks) -> str:
     for name, place in SHORT:
         if name in by_name:
             row = by_name[name].rows[place]
-            sides = [row.numbers[side] for side in ("equations", "engine")]
+            sides = [row.numbers[side] for side in (EQUATIONS, ENGINE)]
             cells = [with_error(side) + ("" if side.verdict == Verdict.MET else f" ({side.verdict})") for side in sides]
             lines.append(f"| {by_name[name].title}, {row.quantity} | {stated(row)} | {' | '.join(cells)} |")
     return "\n".join(lines)
@@ -92,7 +102,7 @@ def _section(each: Benchmark) -> str:
 
 
 def _line(row: Row) -> str:
-    equations, smoothed, engine = (row.numbers[side] for side in ("equations", "smoothed", "engine"))
+    equations, smoothed, engine = (row.numbers[side] for side in (EQUATIONS, SMOOTHED, ENGINE))
     cells = [
         row.quantity,
         stated(row),

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from enum import StrEnum
-from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field
 
-from comparison.analysis.stored import FILE_FORMAT, json_text, load_file
+from comparison.analysis.stored import FILE_FORMAT, StoredFile
 
 FILE, PAGE = "benchmarks.json", "benchmarks.md"
+EQUATIONS, SMOOTHED, ENGINE = "equations", "smoothed", "engine"  # sides; smoothed: with the engine's friction
 
 
 class Verdict(StrEnum):
@@ -128,36 +128,9 @@ class Benchmarks:
             From the best verdict to the worst, zeros included.
         """
         seen = Counter(
-            row.numbers[side].verdict
-            for each in self.benchmarks
-            for row in each.rows
-            for side in ("equations", "engine")
+            row.numbers[side].verdict for each in self.benchmarks for row in each.rows for side in (EQUATIONS, ENGINE)
         )
         return {verdict.value: seen[verdict.value] for verdict in Verdict}
 
 
-def as_json(table: Benchmarks) -> bytes:
-    """The content of the file, which `load` reads."""
-    return json_text(asdict(table)).encode()
-
-
-def load(folder: Path) -> Benchmarks | None:
-    """
-    The benchmarks that a command left in a folder.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder that may hold FILE.
-
-    Returns
-    -------
-    Benchmarks or None
-        None if there is no such file.
-
-    Raises
-    ------
-    ValueError
-        One line, if the file is no table of this version.
-    """
-    return load_file(folder / FILE, Benchmarks, "a table of benchmarks", "python -m comparison.benchmarks")
+STORED = StoredFile(FILE, Benchmarks, "a table of benchmarks", "python -m comparison.benchmarks")

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import groupby
-from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field
 
 from comparison.analysis.extremes.verdicts import Verdict
-from comparison.analysis.stored import FILE_FORMAT, json_text, load_file
+from comparison.analysis.stored import FILE_FORMAT, StoredFile
 
 FILE, PICTURE = "extremes.json", "extremes.png"
 
@@ -122,28 +121,4 @@ class Matrix:
         ]
 
 
-def as_json(matrix: Matrix) -> bytes:
-    """The content of the file, which `load` reads."""
-    return json_text(asdict(matrix)).encode()
-
-
-def load(folder: Path) -> Matrix | None:
-    """
-    The matrix that a command left in a folder.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder that may hold FILE.
-
-    Returns
-    -------
-    Matrix or None
-        None if there is no such file.
-
-    Raises
-    ------
-    ValueError
-        One line, if the file is no matrix of this version.
-    """
-    return load_file(folder / FILE, Matrix, "a matrix of extremes", "python -m comparison.extremes")
+STORED = StoredFile(FILE, Matrix, "a matrix of extremes", "python -m comparison.extremes")

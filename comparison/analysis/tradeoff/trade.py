@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.analysis.stored import FILE_FORMAT, json_text, load_file
+from comparison.analysis.stored import FILE_FORMAT, StoredFile
 
 Array = NDArray[np.float64]
 
@@ -206,31 +206,12 @@ class TradeFile:
     """one per scene"""
 
 
-def as_json(trades: Sequence[Trade]) -> bytes:
-    """The content of the file, which `load` reads."""
-    return json_text(asdict(TradeFile(SCHEMA, list(trades)))).encode()
+STORED = StoredFile(FILE, TradeFile, "a measured trade", "python -m comparison.tradeoff")
 
 
 def load(folder: Path) -> list[Trade] | None:
-    """
-    The trades that a command left in a folder.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder that may hold FILE.
-
-    Returns
-    -------
-    list of Trade or None
-        None if there is no such file.
-
-    Raises
-    ------
-    ValueError
-        One line, if the file holds no trades of this version.
-    """
-    content = load_file(folder / FILE, TradeFile, "a measured trade", "python -m comparison.tradeoff")
+    """The trades that a command left in a folder, as `StoredFile.load`."""
+    content = STORED.load(folder)
     return None if content is None else content.trades
 
 
