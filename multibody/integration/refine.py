@@ -29,7 +29,14 @@ from multibody.integration.estimate import (
     widened_by_impacts,
     widened_without_convergence,
 )
-from multibody.integration.level import COMPLIANCE_RATIO, MAX_WARPING_COMPLIANCE, Level, for_small_peaks, levels_of
+from multibody.integration.level import (
+    COMPLIANCE_RATIO,
+    MAX_COMPLIANCE_OF_CLOSED,
+    MAX_WARPING_COMPLIANCE,
+    Level,
+    for_small_peaks,
+    levels_of,
+)
 from multibody.integration.look_ahead import longest_steps
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import Peaks
@@ -115,10 +122,10 @@ def refine(
                 break
             continue
         candidate = None
-        too_stiff = run.warping_load * ERROR_PER_WARPING_LOAD > MAX_WARPING_ERROR_SHARE * tolerance
-        if too_stiff:
-            rest = slice(number + 1, len(remaining))
-            remaining[rest] = [_softer(later, run.warping_load, tolerance) for later in remaining[rest]]
+        softest = _softest_supports(runs, remaining)
+        remaining[number + 1 :] = [
+            _sharing(later, run.warping_load, tolerance, softest) for later in remaining[number + 1 :]
+        ]
         # a softer contact would let a platform that turns tilt
         if levels is None and run.outcome == Outcome.OK and model.depressions is None:
             smallest = float(run.peaks.value.min())
@@ -136,7 +143,7 @@ def refine(
             finished = finished[-2:]
         errors = widened_by_impacts(from_levels(finished, remaining[: number + 1], model), run, number)
         unmeasured = per_load is None and _warps(runs)
-        sharing = from_sharing(run, np.full(len(errors), ERROR_PER_WARPING_LOAD) if per_load is None else per_load)
+        sharing = from_sharing(run, per_load)
         uneven = (sharing > np.maximum(tolerance * run.peaks.value, MAX_SHARING_ERROR * errors)).all()
         errors = widened_without_convergence(errors if unmeasured else errors + sharing, run)
         before = (runs[-2], share_of_change(remaining[number - 1], model))
@@ -153,7 +160,7 @@ def refine(
             return _answer(model, candidate, Outcome.OK)
         if (level.rounding > np.maximum(tolerance * run.peaks.value, candidate.errors / COMPLIANCE_RATIO)).any():
             break  # hardly more than rounding is left, and no further level rounds less
-        if lifted and uneven and not unmeasured and level.warping_compliance == MAX_WARPING_COMPLIANCE:
+        if lifted and uneven and not unmeasured and level.warping_compliance >= softest:
             break  # hardly more than the uneven share of the load is left, and no further level shares it better
     if candidate is not None:
         return _beyond_tolerance(pair, candidate.completed(pair, budget, keep), complete)
@@ -254,10 +261,19 @@ def _unfinished(pair: PhasePair, runs: list[EngineRun]) -> Refinement:
     return _no_answer(pair.model, failed, failed.outcome, failed.instant * pair.model.units.time)
 
 
-def _softer(level: Level, load: float, tolerance: float) -> Level:
-    """A level whose supports give way enough against warping, which took `load` of the weight in a run before."""
+def _softest_supports(runs: Sequence[EngineRun], levels: Sequence[Level]) -> float:
+    """The compliance against warping that supports may have: that of real bearings, where any of those opened."""
+    opened = any(
+        run.last_open > -math.inf and (run is runs[-1] or level.warping_compliance >= MAX_WARPING_COMPLIANCE)
+        for run, level in zip(runs, levels)
+    )
+    return MAX_WARPING_COMPLIANCE if opened else MAX_COMPLIANCE_OF_CLOSED
+
+
+def _sharing(level: Level, load: float, tolerance: float, softest: float) -> Level:
+    """A level whose supports give way enough against warping, which took `load` of the weight in the run before."""
     wanted = level.warping_compliance * load * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * tolerance)
-    return replace(level, warping_compliance=min(wanted, MAX_WARPING_COMPLIANCE))
+    return replace(level, warping_compliance=min(max(wanted, level.warping_compliance), softest))
 
 
 def _answer(model: EngineModel, candidate: _Candidate, outcome: Outcome) -> Refinement:
