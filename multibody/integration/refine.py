@@ -50,6 +50,7 @@ MAX_WORK = 2e6  # steps of the engine in all runs of one point, where the caller
 WORK = Range(1.0, 1e12, "steps")
 UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
 MAX_WARPING_ERROR_SHARE = 0.2  # of the tolerance, that the load of warped supports may take as an error
+MAX_FIRST_SHARE = 0.2  # of the work of a point, that its first run may take where supports may rattle
 MAX_WORK_GROWTH = 2.0  # steps of a level over those of the level before
 STEPS_AFTER_SETTLING = 20.0  # largest steps from the last large value of a run to the end of the next
 # change between two levels over what separates later values from the largest: beyond it a run goes to the end after all
@@ -105,12 +106,16 @@ def refine(
     stop = math.inf  # of the next run, where nothing later can matter
     candidate: _Candidate | None = None
     complete: _Candidate | None = None  # the last candidate whose error lacks nothing
-    for number, level in enumerate(remaining):
+    for number in range(len(remaining)):
+        level = remaining[number]
         shared = number > 0 and level.penetration >= remaining[number - 1].penetration
         beside = shared + (per_load is None and _warps(runs))  # runs that complete the error
         if runs and budget.left < _work_of_next(runs[-1], stop, pair.end) * (1.0 + beside):
             break
-        run = pair.at_level(level, budget, stop, keep=keep)
+        if number == 0 and model.warping_displacement is not None:
+            run = _first_run(pair, remaining, budget, keep)
+        else:
+            run = pair.at_level(level, budget, stop, keep=keep)
         if stop < pair.end and not _stays_settled(run, runs[-1]):
             stop = math.inf
             run = pair.at_level(level, budget, keep=keep)
@@ -259,6 +264,19 @@ def _unfinished(pair: PhasePair, runs: list[EngineRun]) -> Refinement:
     if failed is None:  # one level has an answer, and no steps are left for another that shows its error
         return _no_answer(pair.model, runs[-1], Outcome.STEP_LIMIT, pair.scene.duration)
     return _no_answer(pair.model, failed, failed.outcome, failed.instant * pair.model.units.time)
+
+
+def _first_run(pair: PhasePair, levels: list[Level], budget: Budget, keep: bool) -> EngineRun:
+    """The run at the first level of a model whose supports share the load; levels: softer ones, where they must be."""
+    trial = Budget(MAX_FIRST_SHARE * budget.left)
+    budget.left -= trial.left
+    run = pair.at_level(levels[0], trial, keep=keep)
+    budget.left += trial.left
+    if run.outcome != Outcome.STEP_LIMIT:
+        return run
+    # springs stiffer than those of real bearings lift supports off by the misfit of the platform, and they rattle
+    levels[:] = [replace(level, warping_compliance=MAX_WARPING_COMPLIANCE) for level in levels]
+    return pair.at_level(levels[0], budget, keep=keep)
 
 
 def _softest_supports(runs: Sequence[EngineRun], levels: Sequence[Level]) -> float:
