@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.integration.adaptive import MAX_ERROR_PER_WARPING_LOAD, EngineRun
-from multibody.integration.level import Level
+from multibody.integration.level import COMPLIANCE_RATIO, Level
 from multibody.integration.peak import Peaks
 from multibody.models.system import EngineModel
 from reference.problem import Outcome
@@ -48,7 +48,21 @@ def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> 
     change = safety * change * (1.0 + lag(levels[-2], model)) / (rate - 1.0)
     level_error: Array = np.maximum(change, levels[-1].error_floor * last)
     unsolved = levels[-1].newton * levels[-1].load
-    return level_error + peaks[-1].sampling + levels[-1].rounding + unsolved + MIN_RELATIVE_ERROR * last
+    rounding = np.minimum(levels[-1].rounding, _shown_rounding(peaks, levels))
+    return level_error + peaks[-1].sampling + rounding + unsolved + MIN_RELATIVE_ERROR * last
+
+
+def _shown_rounding(peaks: list[Peaks], levels: list[Level]) -> Array:
+    """
+    What rounding of the contact forces can have done to the last of `peaks`, (N,), beside those of the level before.
+
+    It is in proportion to the stiffness of the contact, so that two levels which round by x and 4 x differ by 3 x.
+    """
+    stiffer = levels[-2].penetration / levels[-1].penetration
+    if stiffer < COMPLIANCE_RATIO * (1.0 - 1e-9):
+        return np.full_like(peaks[-1].value, np.inf)
+    change = np.abs(peaks[-1].value - peaks[-2].value)
+    return np.maximum(SAFETY_TWO_LEVELS * stiffer / (stiffer - 1.0) * change, levels[-1].error_floor * peaks[-1].value)
 
 
 def widened_by_impacts(errors: Array, run: EngineRun, number: int) -> Array:
