@@ -27,6 +27,7 @@ MIN_RATE, MAX_RATE = 2.0, 4.0  # factor by which a level reduces the error: at s
 MAX_CREDIBLE_RATE = 5.0  # a larger factor is accidental
 ERROR_PER_WARPING_LOAD = 0.05  # relative change of a peak over the largest load of a run, where it is not measured
 MIN_ERROR_PER_WARPING_LOAD = 0.005  # likewise, where the scene itself shows less
+MIN_RELIEVED_LOAD = 1e-3  # of the weight: from less of it nothing is measured
 # relative error of level 0, halved by every level, of a motion with impacts: their order among the supports is decided
 # by rounding, and two levels agree better by chance (measured: 4e-4 between levels 1 to 4)
 MIN_ERROR_WITH_IMPACTS = 4e-3
@@ -98,15 +99,15 @@ def measured_per_load(run: EngineRun, softer: EngineRun) -> Array:
 
     Nothing else may differ between the runs. The softer one is closer to elastic supports: an open support limits what
     more load does. The change is stated with a safety factor, and never below what the peaks of other scenes show.
-    Where the softer run has no answer, or no less load, the value is larger than any measured one.
+    Where the softer run has no answer, or hardly less load, the value is larger than any measured one.
     """
     if softer.outcome != Outcome.OK:
         return np.full(len(run.peaks.value), MAX_ERROR_PER_WARPING_LOAD)
     relieved = run.load_at_peaks - softer.load_at_peaks
     change = np.abs(run.peaks.value - softer.peaks.value) / run.peaks.value
-    with np.errstate(divide="ignore", invalid="ignore"):
-        measured = np.maximum(SAFETY_TWO_LEVELS * change / relieved, MIN_ERROR_PER_WARPING_LOAD)
-    return np.where(relieved > 0.0, measured, MAX_ERROR_PER_WARPING_LOAD)
+    measured = SAFETY_TWO_LEVELS * change / np.maximum(relieved, MIN_RELIEVED_LOAD)
+    measured = np.maximum(measured, MIN_ERROR_PER_WARPING_LOAD)
+    return np.where(relieved > MIN_RELIEVED_LOAD, measured, MAX_ERROR_PER_WARPING_LOAD)
 
 
 def from_compliance(stiff: Peaks, soft: EngineRun, level: Level, model: EngineModel) -> Array:
