@@ -42,6 +42,7 @@ FEEDBACK_PER_SLIP_CHANGE, MAX_FEEDBACK = 2.0, 0.3
 RIM = 1.0  # largest rise of the platform, in units of length, which is rho
 RECENT_ROWS = 8  # at the end of a chunk: they decide whether the step may grow
 SETTLED_FRACTION = 0.9  # of a largest value: later values below it do not reach it in a run of another level either
+MAX_ERROR_PER_WARPING_LOAD = 0.1  # relative change of an acceleration over such a load (measured: up to 0.064)
 WARPING_RELAXATION = 20.0  # time until warping has relaxed, in square roots of the warping compliance
 
 
@@ -75,7 +76,9 @@ class EngineRun:
     outcome: Outcome = Outcome.OK
     instant: float = math.nan  # of a termination, in units of time
     steps: int = 0
-    warping_load: float = 0.0  # largest load that warping of the supports takes, in shares of the weight
+    warping_load: float = 0.0  # largest load that warping of the supports takes so far, in shares of the weight
+    # likewise, until each body's acceleration last came so near its peak that such a load may make it the peak, (N,)
+    load_at_peaks: Array = field(default_factory=lambda: np.zeros(1))
     last_open: float = -math.inf  # the latest instant at which a support carried no load, in units of time
     max_displacement: float = 0.0  # horizontal, of the platform, in units of length
     # the last instant at which an acceleration or the displacement of the platform came within SETTLED_FRACTION of its
@@ -119,7 +122,8 @@ def run_adaptively(
 
 def begin_run(model: EngineModel, stop: float = math.inf) -> EngineRun:
     """The result of a run that has taken no step yet."""
-    return EngineRun(Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near), stop)
+    peaks = Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near)
+    return EngineRun(peaks, stop, load_at_peaks=np.zeros(len(model.bodies)))
 
 
 def go_on(
@@ -270,6 +274,8 @@ def _record(result: EngineRun, motion: Motion, size: Array, model: EngineModel, 
 
 def _record_settling(result: EngineRun, time: Array, size: Array, displacement: Array) -> None:
     """Record when something that is asked for last came near its largest value so far."""
+    below = 1.0 - MAX_ERROR_PER_WARPING_LOAD * result.warping_load
+    result.load_at_peaks[(size >= below * result.peaks.value).any(axis=0)] = result.warping_load
     near = (size >= SETTLED_FRACTION * result.peaks.value).any(axis=1)
     near |= displacement >= SETTLED_FRACTION * result.max_displacement
     if near.any():

@@ -14,7 +14,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.integration.adaptive import EngineRun
+from multibody.integration.adaptive import MAX_ERROR_PER_WARPING_LOAD, EngineRun
 from multibody.integration.level import Level
 from multibody.integration.peak import Peaks
 from multibody.models.system import EngineModel
@@ -25,9 +25,8 @@ Array = NDArray[np.float64]
 SAFETY_TWO_LEVELS, SAFETY_THREE_LEVELS = 1.5, 1.25  # on the error that so many levels, or more, show (Roache)
 MIN_RATE, MAX_RATE = 2.0, 4.0  # factor by which a level reduces the error: at stops, in smooth motion
 MAX_CREDIBLE_RATE = 5.0  # a larger factor is accidental
-ERROR_PER_WARPING_LOAD = 0.05  # relative change of a peak over the largest warping load, where it is not measured
+ERROR_PER_WARPING_LOAD = 0.05  # relative change of a peak over the largest load of a run, where it is not measured
 MIN_ERROR_PER_WARPING_LOAD = 0.005  # likewise, where the scene itself shows less
-MAX_ERROR_PER_WARPING_LOAD = 0.1  # likewise, where a measurement fails (measured: up to 0.064)
 # relative error of level 0, halved by every level, of a motion with impacts: their order among the supports is decided
 # by rounding, and two levels agree better by chance (measured: 4e-4 between levels 1 to 4)
 MIN_ERROR_WITH_IMPACTS = 4e-3
@@ -71,25 +70,29 @@ def widened_without_convergence(errors: Array, run: EngineRun) -> Array:
     return np.maximum(errors, peaks)
 
 
-def from_sharing(run: EngineRun, per_load: Array) -> Array:
+def from_sharing(run: EngineRun, per_load: Array | None) -> Array:
     """Error (N,) of a run whose supports do not quite share the load as elastic ones do; per_load: see below."""
-    error: Array = per_load * run.warping_load * run.peaks.value
+    if per_load is None:
+        return ERROR_PER_WARPING_LOAD * run.warping_load * run.peaks.value
+    error: Array = per_load * run.load_at_peaks * run.peaks.value
     return error
 
 
 def measured_per_load(run: EngineRun, softer: EngineRun) -> Array:
     """
-    Relative change of each peak over the largest warping load, (N,), from a run whose supports warp more easily.
+    Relative change of each peak over the warping load until then, (N,), from a run whose supports warp more easily.
 
     Nothing else may differ between the runs. The softer one is closer to elastic supports: an open support limits what
     more load does. The change is stated with a safety factor, and never below what the peaks of other scenes show.
-    Where the softer run has no answer, the value is larger than any measured one.
+    Where the softer run has no answer, or no less load, the value is larger than any measured one.
     """
-    relieved = run.warping_load - softer.warping_load
-    if softer.outcome != Outcome.OK or relieved <= 0.0:
+    if softer.outcome != Outcome.OK:
         return np.full(len(run.peaks.value), MAX_ERROR_PER_WARPING_LOAD)
+    relieved = run.load_at_peaks - softer.load_at_peaks
     change = np.abs(run.peaks.value - softer.peaks.value) / run.peaks.value
-    return np.maximum(SAFETY_TWO_LEVELS * change / relieved, MIN_ERROR_PER_WARPING_LOAD)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        measured = np.maximum(SAFETY_TWO_LEVELS * change / relieved, MIN_ERROR_PER_WARPING_LOAD)
+    return np.where(relieved > 0.0, measured, MAX_ERROR_PER_WARPING_LOAD)
 
 
 def from_compliance(stiff: Peaks, soft: EngineRun, level: Level, model: EngineModel) -> Array:

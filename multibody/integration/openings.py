@@ -24,6 +24,7 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 GAP_TOLERANCE = 1e-4  # of the penetration, at a located closing
+OPENING_GAP = 2.0 * GAP_TOLERANCE  # likewise, beyond which a contact is open: one that has just closed stays closed
 SIMULTANEOUS = 1e-7  # units of time: contacts that close within it are hit at once
 MIN_IMPACT_SPEED = 1e-5  # of an approach, in units of velocity: slower ones are left to the contact's damper
 MAX_QUIET_FORCE = 1e-3  # of that damper, in weights: more of it is an impact, too
@@ -75,7 +76,7 @@ class Openings:
 
     def first_event(self, motion: Motion) -> Event | None:
         """The first opening or closing in the rows of `motion` behind its first one."""
-        opens = (motion.gap[1:] >= 0.0) & ~self.is_open
+        opens = (motion.gap[1:] > OPENING_GAP * self.penetration) & ~self.is_open
         closes = np.zeros_like(opens)
         if self.is_open.any():
             gaps = self.gaps(motion.coordinates)

@@ -29,7 +29,14 @@ from multibody.integration.estimate import (
     widened_by_impacts,
     widened_without_convergence,
 )
-from multibody.integration.level import COMPLIANCE_RATIO, MAX_WARPING_COMPLIANCE, Level, for_small_peaks, levels_of
+from multibody.integration.level import (
+    COMPLIANCE_RATIO,
+    MAX_COMPLIANCE_OF_CLOSED,
+    MAX_WARPING_COMPLIANCE,
+    Level,
+    for_small_peaks,
+    levels_of,
+)
 from multibody.integration.look_ahead import longest_steps
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import Peaks
@@ -43,6 +50,7 @@ MAX_WORK = 2e6  # steps of the engine in all runs of one point, where the caller
 WORK = Range(1.0, 1e12, "steps")
 UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
 MAX_WARPING_ERROR_SHARE = 0.2  # of the tolerance, that the load of warped supports may take as an error
+MAX_FIRST_SHARE = 0.2  # of the work of a point, that its first run may take where supports may rattle
 MAX_WORK_GROWTH = 2.0  # steps of a level over those of the level before
 STEPS_AFTER_SETTLING = 20.0  # largest steps from the last large value of a run to the end of the next
 # change between two levels over what separates later values from the largest: beyond it a run goes to the end after all
@@ -98,12 +106,16 @@ def refine(
     stop = math.inf  # of the next run, where nothing later can matter
     candidate: _Candidate | None = None
     complete: _Candidate | None = None  # the last candidate whose error lacks nothing
-    for number, level in enumerate(remaining):
+    for number in range(len(remaining)):
+        level = remaining[number]
         shared = number > 0 and level.penetration >= remaining[number - 1].penetration
         beside = shared + (per_load is None and _warps(runs))  # runs that complete the error
         if runs and budget.left < _work_of_next(runs[-1], stop, pair.end) * (1.0 + beside):
             break
-        run = pair.at_level(level, budget, stop, keep=keep)
+        if number == 0 and model.warping_displacement is not None:
+            run = _first_run(pair, remaining, budget, keep)
+        else:
+            run = pair.at_level(level, budget, stop, keep=keep)
         if stop < pair.end and not _stays_settled(run, runs[-1]):
             stop = math.inf
             run = pair.at_level(level, budget, keep=keep)
@@ -115,10 +127,10 @@ def refine(
                 break
             continue
         candidate = None
-        too_stiff = run.warping_load * ERROR_PER_WARPING_LOAD > MAX_WARPING_ERROR_SHARE * tolerance
-        if too_stiff:
-            rest = slice(number + 1, len(remaining))
-            remaining[rest] = [_softer(later, run.warping_load, tolerance) for later in remaining[rest]]
+        softest = _softest_supports(runs, remaining)
+        remaining[number + 1 :] = [
+            _sharing(later, run.warping_load, tolerance, softest) for later in remaining[number + 1 :]
+        ]
         # a softer contact would let a platform that turns tilt
         if levels is None and run.outcome == Outcome.OK and model.depressions is None:
             smallest = float(run.peaks.value.min())
@@ -136,7 +148,7 @@ def refine(
             finished = finished[-2:]
         errors = widened_by_impacts(from_levels(finished, remaining[: number + 1], model), run, number)
         unmeasured = per_load is None and _warps(runs)
-        sharing = from_sharing(run, np.full(len(errors), ERROR_PER_WARPING_LOAD) if per_load is None else per_load)
+        sharing = from_sharing(run, per_load)
         uneven = (sharing > np.maximum(tolerance * run.peaks.value, MAX_SHARING_ERROR * errors)).all()
         errors = widened_without_convergence(errors if unmeasured else errors + sharing, run)
         before = (runs[-2], share_of_change(remaining[number - 1], model))
@@ -153,7 +165,7 @@ def refine(
             return _answer(model, candidate, Outcome.OK)
         if (level.rounding > np.maximum(tolerance * run.peaks.value, candidate.errors / COMPLIANCE_RATIO)).any():
             break  # hardly more than rounding is left, and no further level rounds less
-        if lifted and uneven and not unmeasured and level.warping_compliance == MAX_WARPING_COMPLIANCE:
+        if lifted and uneven and not unmeasured and level.warping_compliance >= softest:
             break  # hardly more than the uneven share of the load is left, and no further level shares it better
     if candidate is not None:
         return _beyond_tolerance(pair, candidate.completed(pair, budget, keep), complete)
@@ -254,10 +266,32 @@ def _unfinished(pair: PhasePair, runs: list[EngineRun]) -> Refinement:
     return _no_answer(pair.model, failed, failed.outcome, failed.instant * pair.model.units.time)
 
 
-def _softer(level: Level, load: float, tolerance: float) -> Level:
-    """A level whose supports give way enough against warping, which took `load` of the weight in a run before."""
+def _first_run(pair: PhasePair, levels: list[Level], budget: Budget, keep: bool) -> EngineRun:
+    """The run at the first level of a model whose supports share the load; levels: softer ones, where they must be."""
+    trial = Budget(MAX_FIRST_SHARE * budget.left)
+    budget.left -= trial.left
+    run = pair.at_level(levels[0], trial, keep=keep)
+    budget.left += trial.left
+    if run.outcome != Outcome.STEP_LIMIT:
+        return run
+    # springs stiffer than those of real bearings lift supports off by the misfit of the platform, and they rattle
+    levels[:] = [replace(level, warping_compliance=MAX_WARPING_COMPLIANCE) for level in levels]
+    return pair.at_level(levels[0], budget, keep=keep)
+
+
+def _softest_supports(runs: Sequence[EngineRun], levels: Sequence[Level]) -> float:
+    """The compliance against warping that supports may have: that of real bearings, where any of those opened."""
+    opened = any(
+        run.last_open > -math.inf and (run is runs[-1] or level.warping_compliance >= MAX_WARPING_COMPLIANCE)
+        for run, level in zip(runs, levels)
+    )
+    return MAX_WARPING_COMPLIANCE if opened else MAX_COMPLIANCE_OF_CLOSED
+
+
+def _sharing(level: Level, load: float, tolerance: float, softest: float) -> Level:
+    """A level whose supports give way enough against warping, which took `load` of the weight in the run before."""
     wanted = level.warping_compliance * load * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * tolerance)
-    return replace(level, warping_compliance=min(wanted, MAX_WARPING_COMPLIANCE))
+    return replace(level, warping_compliance=min(max(wanted, level.warping_compliance), softest))
 
 
 def _answer(model: EngineModel, candidate: _Candidate, outcome: Outcome) -> Refinement:

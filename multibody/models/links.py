@@ -46,6 +46,10 @@ class Link:
             stiff = 1.0 / (LINK_COMPLIANCE_RATIO * penetration)
             set_link_stiffness(mbs, self.connector, self.carried, self.shear, self.damping, self.twist, stiff)
 
+    def sinking(self, penetration: float) -> float:
+        """How far a stiff link gives way along its bars under the weight on it; 0 for bars that give way."""
+        return LINK_COMPLIANCE_RATIO * penetration * float(self.carried[0]) if self.bars is None else 0.0
+
     def lag(self, penetration: float) -> float:
         """Damping over stiffness along a link that is stiff; 0 for bars that give way."""
         if self.bars is not None:

@@ -209,6 +209,11 @@ class _Parts:
         place, velocity, gap, slip = on_surface(coordinates[:2], velocities[:2], plate_acceleration, pressed)
         coordinates[:3], velocities[:3] = place, velocity
         coordinates[index[1:, 2]], velocities[index[1:, 2]] = place[2], velocity[2]
+        # spheres and stiff links spring back as far as the loading takes the weight off them
+        relief = 1.0 + gap / pressed
+        coordinates[index[:, 2]] += relief * self.supports.sinking(penetration)
+        coordinates[index[1:, 2]] += relief * np.cumsum([link.sinking(penetration) for link in self.links])
+        coordinates[self.body_coordinates + self.supports.vertical] = relief * self.supports.sinking(penetration)
         return EngineState(coordinates, velocities, np.tile([gap, slip, 0.0, 0.0], len(self.contacts)))
 
     def settle(self, state: EngineState, gap_rate: Array, penetration: float) -> EngineState:

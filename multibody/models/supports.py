@@ -44,6 +44,10 @@ class Supports:
     # sets the springs under the spheres, for the contacts' penetration and the share of rho by which warping gives way
     set_stiffness: Callable[[float, float], None]
 
+    def sinking(self, penetration: float) -> float:
+        """How far the spheres sink under the weight, for the contacts' penetration; 0 for fixed ones."""
+        return penetration / SPHERE_STIFFNESS_RATIO if self.coordinates else 0.0
+
 
 def warping(ring: Array) -> Array:
     """Projection (K, K) of K forces at places (K, 2) onto the part that neither heave nor tilt contains."""

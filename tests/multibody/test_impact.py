@@ -13,11 +13,14 @@ from scipy.optimize import brentq
 
 import multibody
 from multibody.integration.adaptive import EngineRun
+from multibody.integration.constant_step import Engine, Motion
 from multibody.integration.one_run import PhasePair
+from multibody.integration.openings import GAP_TOLERANCE, Openings
 from multibody.integration.peak import Peaks
+from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation
 from multibody.models.impact import ImpactLaw
-from reference.problem import GRAVITY, DryFriction, Scene, SceneError
+from reference.problem import GRAVITY, DryFriction, Outcome, Scene, SceneError, load_scene
 
 NO_LINKS = np.ones(0, dtype=bool)
 HALF_WIDTH, HEIGHT, RADIUS = 0.5, 3.0, 0.2  # of the square of supports, of the center of mass, of the spheres
@@ -195,6 +198,37 @@ def test_a_tower_that_hits_its_supports_has_an_answer_that_a_finer_run_confirms(
     assert coarse.status.tolist() == fine.status.tolist() == ["ok"]
     assert (np.abs(coarse.mu - fine.mu) <= coarse.error + fine.error).all()
     assert (fine.error <= 1.000001e-3 * fine.mu).all()
+
+
+@pytest.mark.parametrize("phase", [(0.0, 1.1), (math.pi, 0.7)])
+def test_supports_that_carry_nothing_for_an_instant_do_not_chatter(phase: tuple[float, float]) -> None:
+    """The plate falls as fast as the bodies at a turning point of its acceleration."""
+    load = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [GRAVITY, 0.0]], "decay": [0.0, 0.0]}
+    scene = changed(load_scene("fig3-I"), excitation=load).with_values({"duration": 1.0})
+    loose, strict = (
+        multibody.amplification(scene, [phase], "spatial", tolerance=tolerance, max_work=5e4)
+        for tolerance in (1e-2, 1e-3)
+    )
+    assert [loose.status[0], strict.status[0]] == [Outcome.OK] * 2
+    assert (np.abs(loose.mu - strict.mu) <= loose.error + strict.error).all()
+
+
+def test_a_contact_that_has_just_closed_stays_closed_without_a_force() -> None:
+    scene = load_scene("fig3-I")
+    model = assemble(scene, "spatial", 1e-3)
+    level = multibody.levels(scene, "spatial")[0]
+    assert model.impact is not None
+    model.set_contact(level.penetration, level.warping_compliance)
+    openings = Openings(Engine(model, level.newton, level.residual), model.impact, level.penetration)
+    gaps = level.penetration * np.array([[-GAP_TOLERANCE, GAP_TOLERANCE, GAP_TOLERANCE, 3.0 * GAP_TOLERANCE]]).T
+    contact = np.tile(np.hstack([gaps, np.zeros((4, 3))]), 4)
+    coordinates = np.zeros((4, model.coordinates))
+    nothing = np.zeros((4, 0))
+    motion = Motion(np.arange(4.0), coordinates, coordinates, coordinates, contact, nothing, np.zeros((4, 3, 3)))
+    assert openings.first_event(motion.until(2)) is None
+    event = openings.first_event(motion)
+    assert event is not None
+    assert (event.row, event.closes, event.which.all()) == (2, False, True)
 
 
 def test_levels_that_impacts_take_elsewhere_are_given_up_with_a_wide_error(monkeypatch: pytest.MonkeyPatch) -> None:

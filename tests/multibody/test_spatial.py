@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,9 @@ from rigid_chain import spatial_motion
 from scenes_at_hand import CONSTANT, changed, one_body
 
 import multibody
+from multibody.integration.adaptive import Budget
+from multibody.integration.one_run import PhasePair
+from multibody.models.assembly import assemble
 from multibody.models.depressions import rotation
 from multibody.models.engine import exudyn, items
 from multibody.models.links import add_link, set_link_stiffness
@@ -225,6 +229,18 @@ def test_the_start_is_in_balance_with_the_loading() -> None:
     assert np.abs(ground).max() > 4.0
     # every body goes up with the plate; what is left is 7e-3 of the settling and what the sphere lifts in 10 ms
     np.testing.assert_allclose(motion.absolute_acceleration[:, :, 2] - ground, 0.0, atol=2e-2)
+
+
+@pytest.mark.parametrize("supports", [3, 4, 6])
+def test_a_start_without_weight_is_in_balance_at_every_level(supports: int) -> None:
+    """The plate falls as fast as the bodies: springs of spheres and links carry nothing."""
+    fall = {"amplitudes": [[0.0, 0.0], [0.0, 0.0], [-GRAVITY, 0.0]], "decay": [0.0, 0.0]}
+    scene = changed(load_scene("fig3-I"), isolator={"supports": supports}, excitation=fall)
+    model = assemble(scene, "spatial", 1e-3)
+    for level in multibody.levels(scene, "spatial"):
+        pair = PhasePair(scene, model, np.zeros(2))
+        run = pair.at_level(level, Budget(1e5), stop=1e-3 * math.sqrt(level.penetration), keep=True)
+        assert np.abs(run.chunks[0].accelerations[0]).max() < 1e-2
 
 
 @pytest.mark.parametrize("supports", [3, 4])
