@@ -24,7 +24,6 @@ GRID = 48  # phases per axis on which the hills are found
 GRID_TOLERANCE = 1e-4  # relative error of mu there
 MAX_CLIMBS = 12  # from the hills that may rise highest
 MAX_ROUNDS = 60
-NODES = 5  # of a square's polynomial along each axis
 MAX_SHORTFALL = 0.01  # of the maximum: climbs that end lower need not follow their jumps
 
 
@@ -134,7 +133,7 @@ def worst_phases(
         active = [climb for climb in climbs if climb.may_reach(highest)]
         if not active:
             break
-        climb_on(surface, active, NODES)
+        climb_on(surface, active)
         climbs = merged(climbs, shifts)
     least = (1.0 - MAX_SHORTFALL) * max(climb.value for climb in climbs)
     kinds = {climb: kind_of(surface, climb) for climb in climbs if climb.value >= least}

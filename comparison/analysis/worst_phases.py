@@ -3,13 +3,14 @@ The worst phases of every scene: the largest mu_i and displacement over all phas
 
 The search of `reference.worst_phases` is made for the printed and the exact equations, and for those that the engine
 answers for. Beside these the engine is searched in a square around the worst phases, so that its own maximum nearby is
-known, too. The searches begin at the hills of the surfaces, if these are as fine as the search's own grid.
+known, too: its ratio to the equations, which hardly changes there, says where that is. The searches begin at the hills
+of the surfaces, if these are as fine as the search's own grid.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -28,14 +29,14 @@ from comparison.study.study import Study
 from reference import worst_phases
 from reference.phase_maximum import GRID, hills
 from reference.problem import Scene
-from reference.problem.climb import Climb, Surface, climb_on
+from reference.problem.climb import Climb, Points, Surface, predicted, square_of
 
 Array = NDArray[np.float64]
 
 TOLERANCE = 1e-5  # relative error of mu by the equations
-POINTS = 1500  # of the equations that a search takes
+POINTS = 500  # of the equations that a search takes
 ENGINE_HALF_WIDTH = 0.02  # rad, of the square in which the engine is searched
-ENGINE_NODES = 3  # of its polynomial along each axis
+ENGINE_POINTS = 6  # of it: the middle and the corners of the square, and where it is predicted to be largest
 SOLVED_BY = "reference:amplification"  # the models that `reference.worst_phases` searches
 NOWHERE = (math.nan, math.nan)
 
@@ -104,7 +105,7 @@ class WorstPhases(Analysis[list[Worst]]):
         tasks = []
         for scene in study.phased:
             for model, engine, quantity, body in _searches(study, scene):
-                starts = _starts(study, surfaces, scene, model, body) if quantity == "amplification" else None
+                starts = _starts(study, surfaces, scene, model, quantity, body)
                 argument = (scene, model, engine, quantity, body, study.tolerance, starts)
                 tasks.append(Task(worst_of, argument, self.stage, _seconds(scene, model, engine), scene))
         return tasks
@@ -135,14 +136,18 @@ def _searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, str
 
 def _seconds(scene: Scene, model: Model, engine: Model | None) -> float:
     seconds = POINTS * seconds_per_point(scene, model)
-    return seconds if engine is None else seconds + (ENGINE_NODES**2 + 2) * seconds_per_point(scene, engine)
+    return seconds if engine is None else seconds + ENGINE_POINTS * seconds_per_point(scene, engine)
 
 
-def _starts(study: Study, surfaces: xr.Dataset | None, scene: Scene, model: Model, body: int) -> Array | None:
+def _starts(
+    study: Study, surfaces: xr.Dataset | None, scene: Scene, model: Model, quantity: str, body: int
+) -> Array | None:
     """The hills of the surface, if it is as fine as the grid of the search."""
     if surfaces is None or len(study.axis(model, scene)) < GRID:
         return None
-    starts = hills(known_mu(asked_of(surfaces, scene, model).sel(body=body), model), scene)
+    asked = asked_of(surfaces, scene, model)
+    displacement = np.asarray(asked["displacement"].sel(model=model.key), float)
+    starts = hills(displacement if quantity == "displacement" else known_mu(asked.sel(body=body), model), scene)
     return starts if len(starts) else None
 
 
@@ -152,7 +157,7 @@ def worst_of(task: Arguments) -> list[Worst]:
     settings: dict[str, Any] = dict(model.settings)
     maximum = worst_phases(scene, body, quantity, tolerance=TOLERANCE, starts=starts, **settings)
     worst = Worst(scene.name, model.key, quantity, body, **vars(maximum))
-    return [worst] if engine is None else [worst, _engine_beside(worst, scene, engine, tolerance)]
+    return [worst] if engine is None else [worst, _engine_beside(worst, scene, model, engine, tolerance)]
 
 
 def _without_value(task: Arguments, failed: TaskResult) -> list[Worst]:
@@ -161,13 +166,17 @@ def _without_value(task: Arguments, failed: TaskResult) -> list[Worst]:
     return [Worst(scene.name, each.key, quantity, body, reason=failed.reason) for each in models]
 
 
-def _engine_beside(worst: Worst, scene: Scene, model: Model, tolerance: float) -> Worst:
-    """The engine at the worst phases of the equations, and its largest value in a square around them."""
-    settings = {**model.settings, "tolerance": model.tolerance(tolerance)}
-    engine = Surface(scene, imported(model.amplification), settings, worst.body - 1)
+def _engine_beside(worst: Worst, scene: Scene, like: Model, model: Model, tolerance: float) -> Worst:
+    """The engine at the worst phases of the equations `like` it, and its largest value in a square around them."""
+    engine = _surface(scene, model, model.tolerance(tolerance), worst.body)
     start = engine.at(np.array([worst.phases]))
     climb = Climb(start.phases[0], float(start.value[0]), float(start.error[0]), ENGINE_HALF_WIDTH)
-    climb_on(engine, [climb], ENGINE_NODES)
+    (corners, _), (square, _) = square_of(2), square_of(3)
+    computed = engine.at(climb.phases + ENGINE_HALF_WIDTH * corners)
+    equations = _surface(scene, like, TOLERANCE, worst.body).at(climb.phases + ENGINE_HALF_WIDTH * square)
+    highest, _ = predicted(engine, climb, _estimated(start, computed, equations))
+    climb.take(computed)
+    climb.take(engine.at(highest[None]))
     if not math.isfinite(climb.value):
         return Worst(scene.name, model.key, worst.quantity, worst.body, reason=engine.outcome)
     alpha1, alpha2 = (climb.phases % (2.0 * np.pi)).tolist()
@@ -186,3 +195,17 @@ def _engine_beside(worst: Worst, scene: Scene, model: Model, tolerance: float) -
         at_start=float(start.numerator[0] / start.denominator[0]),
         start_error=float(start.error[0]),
     )
+
+
+def _surface(scene: Scene, model: Model, tolerance: float, body: int) -> Surface:
+    return Surface(scene, imported(model.amplification), {**model.settings, "tolerance": tolerance}, body - 1)
+
+
+def _estimated(middle: Points, corners: Points, equations: Points) -> Points:
+    """The engine at the 3 x 3 places of a square that the equations have, from its ratio to them at five of these."""
+    like = equations.numerator.reshape(3, 3)
+    ratio = np.empty((3, 3))
+    ratio[::2, ::2] = corners.numerator.reshape(2, 2) / like[::2, ::2]
+    ratio[1, ::2], ratio[::2, 1] = ratio[::2, ::2].mean(axis=0), ratio[::2, ::2].mean(axis=1)
+    ratio[1, 1] = middle.numerator[0] / like[1, 1]
+    return replace(equations, numerator=(ratio * like).ravel())

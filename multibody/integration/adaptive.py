@@ -42,7 +42,8 @@ FEEDBACK_PER_SLIP_CHANGE, MAX_FEEDBACK = 2.0, 0.3
 RIM = 1.0  # largest rise of the platform, in units of length, which is rho
 RECENT_ROWS = 8  # at the end of a chunk: they decide whether the step may grow
 SETTLED_FRACTION = 0.9  # of a largest value: later values below it do not reach it in a run of another level either
-MAX_ERROR_PER_WARPING_LOAD = 0.1  # relative change of an acceleration over such a load (measured: up to 0.064)
+# relative change of an acceleration over such a load (measured: up to 0.22, where supports come to v_reg one by one)
+MAX_ERROR_PER_WARPING_LOAD = 0.3
 WARPING_RELAXATION = 20.0  # time until warping has relaxed, in square roots of the warping compliance
 
 

@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 SAFETY_TWO_LEVELS, SAFETY_THREE_LEVELS = 1.5, 1.25  # on the error that so many levels, or more, show (Roache)
 MIN_RATE, MAX_RATE = 2.0, 4.0  # factor by which a level reduces the error: at stops, in smooth motion
 MAX_CREDIBLE_RATE = 5.0  # a larger factor is accidental
-ERROR_PER_WARPING_LOAD = 0.05  # relative change of a peak over the largest load of a run, where it is not measured
+ERROR_PER_WARPING_LOAD = 0.25  # relative change of a peak over the largest load of a run, where it is not measured
 MIN_ERROR_PER_WARPING_LOAD = 0.005  # likewise, where the scene itself shows less
 MIN_RELIEVED_LOAD = 1e-3  # of the weight: from less of it nothing is measured
 # relative error of level 0, halved by every level, of a motion with impacts: their order among the supports is decided

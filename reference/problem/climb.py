@@ -33,9 +33,12 @@ COARSE, FINE = np.linspace(-1.0, 1.0, 13), np.linspace(-1.0, 1.0, 9)
 READINGS = 5  # of the quotient, each four times finer than the one before
 MIN_HALF_WIDTH = 1e-7  # rad, of a square
 MOVED = 0.8  # of the half width: a best pair farther from the center moves the square, which keeps its size
+NODES, MANY_NODES = 3, 5  # of a square's polynomial along each axis: at first, and after a prediction that is not good
 GOOD_PREDICTION = 0.1  # largest error of a prediction over the differences in the square
 SHRINK, SHRINK_SLOWLY = 0.2, 0.6  # after a good prediction, and after another
 PROMISE = 2.0  # times the differences in its square: a climb that lies farther below the highest one ends
+# rounds, and times what they have gained: likewise. Beside a jump a square has large differences however small it is
+LATEST_ROUNDS, GAIN_PROMISE = 6, 10.0
 MAX_MERGED_WIDTH = 0.04  # rad: climbs into a common square that is smaller have found one maximum
 JUMP_HALF_WIDTH = 0.07  # rad, of the first square in which a jump is followed
 JUMP_ROUNDS, JUMP_READINGS = 2, 5
@@ -102,6 +105,7 @@ class Climb:
     error: float
     half_width: float  # rad
     differences: float = np.inf  # between values in the last square
+    nodes: int = NODES  # of the next square along each axis
     count: int = 1  # climbs that have become this one
     history: list[tuple[float, float]] = field(default_factory=list)  # half width and value after each round
 
@@ -113,7 +117,10 @@ class Climb:
 
     def may_reach(self, highest: float) -> bool:
         """Whether the climb goes on: its square is not closed yet, and can hold the highest value."""
-        return self.half_width > MIN_HALF_WIDTH and self.value + PROMISE * self.differences >= highest
+        promise = PROMISE * self.differences
+        if len(self.history) > LATEST_ROUNDS:
+            promise = min(promise, GAIN_PROMISE * (self.value - self.history[-1 - LATEST_ROUNDS][1]))
+        return self.half_width > MIN_HALF_WIDTH and self.value + promise >= highest
 
     @property
     def search_error(self) -> float:
@@ -130,29 +137,31 @@ def square_of(nodes: int) -> tuple[Array, Array]:
     return places, np.linalg.inv(chebyshev.chebvander2d(places[:, 0], places[:, 1], [nodes - 1, nodes - 1]))
 
 
-def climb_on(surface: Surface, climbs: Sequence[Climb], nodes: int) -> None:
+def climb_on(surface: Surface, climbs: Sequence[Climb]) -> None:
     """One round of all climbs at once: their squares, then the pairs predicted to be best."""
-    square_places, _ = square_of(nodes)
-    size = len(square_places)
-    computed = surface.at(np.concatenate([climb.phases + climb.half_width * square_places for climb in climbs]))
-    squares = [computed.part(slice(n * size, (n + 1) * size)) for n in range(len(climbs))]
-    predictions = [_predicted(surface, climb, square) for climb, square in zip(climbs, squares)]
+    places = [climb.phases + climb.half_width * square_of(climb.nodes)[0] for climb in climbs]
+    ends = np.cumsum([len(place) for place in places]).tolist()
+    computed = surface.at(np.concatenate(places))
+    squares = [computed.part(slice(end - len(place), end)) for place, end in zip(places, ends)]
+    predictions = [predicted(surface, climb, square) for climb, square in zip(climbs, squares)]
     best = surface.at(np.array([phases for phases, _ in predictions]))
-    for n, (climb, square, (_, predicted)) in enumerate(zip(climbs, squares, predictions)):
+    for n, (climb, square, (_, value)) in enumerate(zip(climbs, squares, predictions)):
         center = climb.phases
         climb.take(square)
         climb.take(best.part(slice(n, n + 1)))
         known = square.value[np.isfinite(square.value)]
         climb.differences = float(np.ptp(known)) if len(known) else 0.0
-        miss = abs(predicted - float(best.value[n]))
+        miss = abs(value - float(best.value[n]))
+        good = miss <= GOOD_PREDICTION * climb.differences
+        climb.nodes = NODES if good else MANY_NODES
         if np.abs(climb.phases - center).max() < MOVED * climb.half_width:
-            climb.half_width *= SHRINK if miss <= GOOD_PREDICTION * climb.differences else SHRINK_SLOWLY
+            climb.half_width *= SHRINK if good else SHRINK_SLOWLY
         climb.history.append((climb.half_width, climb.value))
         if max(miss, climb.differences) <= climb.error:
             climb.half_width = 0.0
 
 
-def _predicted(surface: Surface, climb: Climb, square: Points) -> tuple[Array, float]:
+def predicted(surface: Surface, climb: Climb, square: Points) -> tuple[Array, float]:
     """Where the interpolated numerator over the exact denominator is largest in the square, and its value there."""
     known = np.isfinite(square.numerator)
     if not known.any():

@@ -20,6 +20,7 @@ from reference.problem.scene import Scene
 Array = NDArray[np.float64]
 
 SAMPLES_PER_PERIOD = 32  # of the faster harmonic; |u|^2 has twice its frequency, so 16 samples per wave
+CLOSE = 1.0 - 1e-9  # of the largest square of the samples: those that rounding may have made smaller
 
 
 def ground_peak(scene: Scene, phases: ArrayLike) -> Array:
@@ -106,28 +107,45 @@ def _refined(left: float, right: float, phase: Array, amplitudes: Array, s: NDAr
 
 @cached_on_disk(__file__, nogil=True)
 def _ground_peaks(phases: Array, amplitudes: Array, s: NDArray[np.complex128], duration: float, step: float) -> Array:
-    count = math.ceil(duration / step)
+    count = math.ceil(duration / step) + 1
     weight0 = np.sqrt((amplitudes[:, 0] ** 2).sum())
     weight1 = np.sqrt((amplitudes[:, 1] ** 2).sum())
     peaks = np.empty(phases.shape[0])
+    grown0, grown1 = np.empty(count, np.complex128), np.empty(count, np.complex128)  # exp(s t) at the samples
+    bound = np.empty(count)  # of |u|^2 from there on
+    known = 0  # samples of these that some phase has needed
+    square = np.empty(count)  # |u|^2 of one phase, rounded otherwise than `_square_and_slopes` does
     for m in range(phases.shape[0]):
         phase = phases[m]
-        before = -1.0
-        here, _, _ = _square_and_slopes(0.0, phase, amplitudes, s)
-        best = here
-        for n in range(1, count + 1):
-            t = min(n * step, duration)
-            after, _, _ = _square_and_slopes(t, phase, amplitudes, s)
-            best = max(best, after)
-            # a wave sampled 16 times is at most 4 % above its highest sample
-            if here >= before and here >= after and 1.04 * here > best:
-                best = max(best, _refined(max(t - 2.0 * step, 0.0), t, phase, amplitudes, s))
-            envelope = weight0 * math.exp(s[0].real * t) + weight1 * math.exp(s[1].real * t)
-            if envelope * envelope < best:
+        turn0, turn1 = np.exp(1j * phase[0]), np.exp(1j * phase[1])
+        highest = 0.0
+        end = count
+        for n in range(count):
+            if n == known:
+                t = min(n * step, duration)
+                grown0[n], grown1[n] = np.exp(s[0] * t), np.exp(s[1] * t)
+                bound[n] = (weight0 * math.exp(s[0].real * t) + weight1 * math.exp(s[1].real * t)) ** 2
+                known += 1
+            x0, x1 = (turn0 * grown0[n]).real, (turn1 * grown1[n]).real
+            value = 0.0
+            for k in range(3):
+                u = amplitudes[k, 0] * x0 + amplitudes[k, 1] * x1
+                value += u * u
+            square[n] = value
+            highest = max(highest, value)
+            if bound[n] < highest:
+                end = n + 1
                 break
-            before, here = here, after
-        else:
-            if here >= before and 1.04 * here > best:
-                best = max(best, _refined(max(duration - step, 0.0), duration, phase, amplitudes, s))
+        best = 0.0
+        for n in range(end):
+            if square[n] > CLOSE * highest:
+                best = max(best, _square_and_slopes(min(n * step, duration), phase, amplitudes, s)[0])
+            # a wave sampled 16 times is at most 4 % above its highest sample
+            rises = n == 0 or square[n] >= square[n - 1]
+            falls = n == end - 1 or square[n] >= square[n + 1]
+            if rises and falls and 1.04 * square[n] > highest:
+                right = min((n + 1) * step, duration)
+                left = max(right - (2.0 if n < end - 1 else 1.0) * step, 0.0)
+                best = max(best, _refined(left, right, phase, amplitudes, s))
         peaks[m] = math.sqrt(best)
     return peaks

@@ -6,8 +6,10 @@ from reference.solver.collocation import DENSE, MONOMIALS, STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.platform import load_at_stage, rest_excess
 from reference.solver.system import Array, Load, System
-from reference.solver.work import POWERS, REACTION, Work
+from reference.solver.work import MAX_PARTS, POWERS, REACTION, SPEED2, VELOCITY, Work
 
+# What is passed: a level by the polynomial in powers[0], the friction limit at rest, a sliding speed
+LEVEL, ONSET, SPEED = range(3)
 NEVER = 2.0  # theta of an event that is not within the step
 GOLDEN_SECTIONS = 30  # of two instants: an event shorter than a millionth of the step moves nothing
 GOLDEN_SHARE = 0.382
@@ -54,14 +56,17 @@ def value_at(coefficients: Array, theta: float) -> float:
 
 
 @compiled
-def first_crossing(work: Work, values: Array, start: float, target: float) -> float:
+def first_crossing(system: System, work: Work, values: Array, start: float, target: float) -> float:
     """First theta at which the polynomial through `values` has passed `target`, seen from `start` at theta = 0."""
-    way = 1.0 if start < target else -1.0
+    expand_level(work, values, target)
+    return first_passage(system, work, LEVEL, 1.0 if start < target else -1.0, 0.0, start - target)
+
+
+@compiled
+def expand_level(work: Work, values: Array, target: float) -> None:
+    """Powers of theta of the polynomial through `values` less `target`, in powers[0]."""
     expand(values, work.powers[0])
-    for k in range(STAGES):
-        work.powers[0, k] *= way
-    work.powers[0, 0] -= way * target
-    return first_passage(None, work, way * (start - target))
+    work.powers[0, 0] -= target
 
 
 @compiled
@@ -75,7 +80,7 @@ def first_onset(system: System, work: Work) -> float:
     if most < 0.0:  # only a step that comes near the limit is looked at closely
         return NEVER
     expand_drive(work)
-    return first_passage(system, work, excess_at(system, work, 0.0))
+    return first_passage(system, work, ONSET, 1.0, 0.0, excess_at(system, work, 0.0))
 
 
 @compiled
@@ -103,35 +108,75 @@ def excess_at(system: System, work: Work, theta: float) -> float:
 
 
 @compiled
-def beyond(system: System | None, work: Work, theta: float) -> float:
-    """How far the step is past an event at theta: of the onset of slip, or without a system of powers[0] past zero."""
-    if system is None:
-        return value_at(work.powers[0], theta)
-    return excess_at(system, work, theta)
+def expand_speed(work: Work, h: float, target: float) -> None:
+    """
+    Prepare `speed_excess` over the squared sliding speed `target` in a step of length h, s.
+
+    The velocity is the integral of the polynomial through the accelerations. A polynomial through the squared speeds
+    would miss a small speed in a step whose speed becomes large.
+    """
+    for axis in range(2):
+        expand_velocity(work, h, axis)
+    for k in range(STAGES):
+        horizontal = work.stage[VELOCITY, k] ** 2 + work.stage[VELOCITY + 1, k] ** 2
+        work.levels[k] = work.stage[SPEED2, k] / horizontal if horizontal > 0.0 else 1.0
+    expand(work.levels, work.powers[2])
+    work.powers[3, 0] = target
 
 
 @compiled
-def first_passage(system: System | None, work: Work, start: float) -> float:
-    """First theta at which `beyond` is positive, which is `start` at theta = 0."""
-    top, place, change, before = -1.0e300, 0.0, 0.0, start
+def expand_velocity(work: Work, h: float, axis: int) -> None:
+    """Powers of theta of the platform's velocity: the integral of its acceleration."""
+    powers = work.powers[axis]
+    expand(work.a[0, axis], powers)
+    for k in range(STAGES - 1, -1, -1):
+        powers[k + 1] = h * powers[k] / (k + 1.0)
+    powers[0] = work.v[0, axis]
+
+
+@compiled
+def speed_excess(work: Work, theta: float) -> float:
+    """Squared sliding speed at theta less the one looked for, after `expand_speed`, m^2/s^2."""
+    powers = work.powers
+    vx = vy = 0.0
+    for k in range(STAGES, -1, -1):
+        vx = vx * theta + powers[0, k]
+        vy = vy * theta + powers[1, k]
+    return (vx * vx + vy * vy) * value_at(powers[2], theta) - powers[3, 0]
+
+
+@compiled
+def beyond(system: System, work: Work, event: int, way: float, theta: float) -> float:
+    """How far the step is past an event at theta, upward if `way` is 1, downward if it is -1."""
+    if event == ONSET:
+        return way * excess_at(system, work, theta)
+    return way * (speed_excess(work, theta) if event == SPEED else value_at(work.powers[0], theta))
+
+
+@compiled
+def first_passage(system: System, work: Work, event: int, way: float, begin: float, start: float) -> float:
+    """First theta after `begin` at which `beyond` is positive; `start` is the value that passes zero, at `begin`."""
+    top, place, change, low, before = -1.0e300, begin, 0.0, begin, way * start
     for n in range(1, DENSE.shape[0]):
-        here = beyond(system, work, DENSE[n])
+        if DENSE[n] <= begin:
+            continue
+        here = beyond(system, work, event, way, DENSE[n])
         if here > 0.0:
-            return passed(system, work, DENSE[n - 1], DENSE[n])
+            return passed(system, work, event, way, low, DENSE[n])
         change = max(change, abs(here - before))
         if here > top:
             top, place = here, DENSE[n]
-        before = here
+        before, low = here, DENSE[n]
     if top + change < 0.0:
         return NEVER
     # it may pass and return between two of these instants
-    low, high = max(0.0, place - DENSE[1]), min(1.0, place + DENSE[1])
-    begin = low
+    low, high = max(begin, place - DENSE[1]), min(1.0, place + DENSE[1])
+    first = low
     for _ in range(GOLDEN_SECTIONS):
         left, right = low + GOLDEN_SHARE * (high - low), high - GOLDEN_SHARE * (high - low)
-        at_left, at_right = beyond(system, work, left), beyond(system, work, right)
+        at_left, at_right = beyond(system, work, event, way, left), beyond(system, work, event, way, right)
         if max(at_left, at_right) > 0.0:
-            return passed(system, work, begin, left if at_left > 0.0 else right)
+            return passed(system, work, event, way, first, left if at_left > 0.0 else right)
         if at_left > at_right:
             high = right
         else:
@@ -140,11 +185,11 @@ def first_passage(system: System | None, work: Work, start: float) -> float:
 
 
 @compiled
-def passed(system: System | None, work: Work, low: float, high: float) -> float:
+def passed(system: System, work: Work, event: int, way: float, low: float, high: float) -> float:
     """Where `beyond`, not positive at low and positive at high, becomes positive."""
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
-        if beyond(system, work, middle) > 0.0:
+        if beyond(system, work, event, way, middle) > 0.0:
             high = middle
         else:
             low = middle
@@ -152,13 +197,17 @@ def passed(system: System | None, work: Work, low: float, high: float) -> float:
 
 
 @compiled
-def counted_part(work: Work, values: Array, start: float, level: float) -> tuple[float, float]:
-    """The part [low, high] of a step, in theta, in which the polynomial through `values` is above `level`."""
-    end = values[STAGES - 1]
-    if start < level and end < level:
-        return 0.0, 0.0
-    if start < level:
-        return min(1.0, first_crossing(work, values, start, level)), 1.0
-    if end < level:
-        return 0.0, min(1.0, first_crossing(work, values, start, level))
-    return 0.0, 1.0
+def parts_above(system: System, work: Work, event: int, start: float) -> int:
+    """
+    Number of parts of the step in which the value of `event`, `start` at theta = 0, is not below zero.
+
+    Their ends, in theta, are in work.edges (2 MAX_PARTS,).
+    """
+    parts, theta, above, value = 0, 0.0, start >= 0.0, start
+    while theta < 1.0 and parts < MAX_PARTS:
+        end = min(1.0, first_passage(system, work, event, -1.0 if above else 1.0, theta, value))
+        if above:
+            work.edges[2 * parts], work.edges[2 * parts + 1] = theta, end
+            parts += 1
+        theta, above, value = end, not above, 0.0
+    return parts

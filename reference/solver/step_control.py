@@ -148,11 +148,13 @@ def adapt(work: Work, h: float, factor: float) -> None:
 
 
 @compiled
-def commit(work: Work, record: Record, h: float, contact: int, low: float, high: float) -> None:
-    """Make the step's end the new state; its part [low, high] counts for the peaks."""
+def commit(work: Work, record: Record, h: float, contact: int, parts: int) -> None:
+    """Make the step's end the new state; `parts` of it count for the peaks, between pairs of work.edges."""
     if record.start.shape[0] > 0:
         record_step(work, record, h, contact)
-    large = high > low and take_peaks(work, low, high)
+    large = False
+    for part in range(parts):
+        large = take_peaks(work, work.edges[2 * part], work.edges[2 * part + 1]) or large
     work.least_reaction = min(work.least_reaction, lowest(work.stage[REACTION]))
     if contact != REST:
         large = take_reach(work, h, contact == STOPPING) or large

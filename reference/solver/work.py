@@ -22,6 +22,7 @@ BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
 (
     DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, LOG_RATIO, SPEED, COSINE, SINE, ALONG_BY_SIGMA,
 ) = range(12)  # fmt: skip
+MAX_PARTS = 3  # of a step, apart from each other, that count for the peaks
 POWERS = STAGES + 2  # coefficients of a polynomial: a position is the second integral of one through the stages
 
 
@@ -96,6 +97,7 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     velocity: Array  # (N, 2, S)
     turning: Array  # (12, S) direction, speed and time there
     levels: Array  # (S,) a quantity at the stages whose passage of a level ends the step
+    edges: Array  # (2 MAX_PARTS,) theta where the parts of the step that count for the peaks begin and end
     powers: Array  # (5, POWERS) coefficients of the powers of theta where a step is looked at closely
     scale: Array  # (N,) m/s^2, what errors are measured against
     defect: Array  # (N,) m/s^2, interpolation error of the step at its start
@@ -156,6 +158,7 @@ def workspace(bodies: int) -> Work:
         velocity=np.zeros((n, 2, s)),
         turning=np.zeros((12, s)),
         levels=np.zeros(s),
+        edges=np.zeros(2 * MAX_PARTS),
         powers=np.zeros((5, POWERS)),
         scale=np.zeros(n),
         defect=np.zeros(n),

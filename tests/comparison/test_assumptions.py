@@ -23,11 +23,13 @@ from comparison.analysis.assumptions.variations import (
     Variation,
     ranges,
     variation_arguments,
+    varied,
 )
 from comparison.cli.assumptions import main
 from comparison.report.figures.assumptions import assumption_figure_name, draw_assumptions
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
+from multibody import amplification
 from reference.problem import Scene, load_scene, parse_scene
 
 STATED = load_scene("fig3-I")
@@ -57,10 +59,10 @@ def test_there_are_the_papers_six_assumptions_in_order() -> None:
 
 
 def test_a_variation_changes_ring_heights_and_supports_and_nothing_else() -> None:
-    varied = Variation(ring=2.0, height=0.5, supports=3).of(STATED)
-    assert (varied.isolator.ring, varied.isolator.supports) == (2.0, 3)
-    assert [body.height for body in varied.bodies] == [0.1, 0.6]
-    back = Variation(ring=0.5, height=2.0, supports=4).of(varied)
+    changed = Variation(ring=2.0, height=0.5, supports=3).of(STATED)
+    assert (changed.isolator.ring, changed.isolator.supports) == (2.0, 3)
+    assert [body.height for body in changed.bodies] == [0.1, 0.6]
+    back = Variation(ring=0.5, height=2.0, supports=4).of(changed)
     assert back == STATED
     assert Variation().of(STATED) == STATED
 
@@ -143,6 +145,17 @@ def test_a_scene_without_supports_is_refused_in_one_line(tmp_path: Path, capsys:
     assert "the spatial model needs supports, ring and sphere_radius" in err
 
 
+def test_one_run_of_an_uneven_variation_gives_the_factors_of_the_model_and_its_torsion() -> None:
+    spatial = MODEL_HIERARCHY[-1]
+    short, uneven = STATED.with_values({"duration": 1.0}), Variation(offset=0.1)
+    solved = varied((short, spatial, uneven, 1e-3))
+    factors = amplification(uneven.of(short), PHASES, tolerance=1e-3, **spatial.settings)
+    assert solved.status == tuple(factors.status)
+    assert (np.abs(solved.mu - factors.mu) <= np.minimum(solved.error, factors.error)).all()
+    assert (solved.error <= 1e-3 * solved.mu).all()
+    assert np.array(solved.torsion)[:, 1].min() > 1e-3
+
+
 def _turning(scene: Scene, variations: Sequence[Variation]) -> list[Cell]:
     study = Study((scene.with_values({"duration": 2.0}),), 1, 1e-3, MODEL_HIERARCHY)
     return list(collected(Assumptions(variations), study).cells)
@@ -162,10 +175,10 @@ def test_a_wider_ring_turns_the_real_platform_less() -> None:
 
 
 def test_an_uneven_variation_moves_what_stands_on_the_platform_and_nothing_else() -> None:
-    varied = Variation(offset=0.1, yaw=0.2).of(STATED)
-    assert varied.offsets.tolist() == [[0.0, 0.0], [0.1, 0.1]]
-    assert varied.yaws.tolist() == [0.0, 0.2]
-    assert varied.with_values({"bodies.1.offset": None, "bodies.1.yaw": None}) == STATED
+    uneven = Variation(offset=0.1, yaw=0.2).of(STATED)
+    assert uneven.offsets.tolist() == [[0.0, 0.0], [0.1, 0.1]]
+    assert uneven.yaws.tolist() == [0.0, 0.2]
+    assert uneven.with_values({"bodies.1.offset": None, "bodies.1.yaw": None}) == STATED
 
 
 def test_positions_of_supports_are_varied_by_the_same_factor() -> None:
@@ -205,8 +218,8 @@ def test_bars_under_load_are_varied_only_where_they_give_way() -> None:
     for bars, expected in ((BARS, UNDER_LOAD), (rigid, ())):
         scene = STATED.with_values({"bodies.1.period": None, "bodies.1.bars": bars})
         study = Study((scene,), 1, 1e-3, MODEL_HIERARCHY)
-        varied = [variation for _, _, variation, _ in variation_arguments(study, ())]
-        assert varied == [None, *expected]
+        asked = [variation for _, _, variation, _ in variation_arguments(study, ())]
+        assert asked == [None, *expected]
     softening, shortening = (
         variation.of(STATED.with_values({"bodies.1.period": None, "bodies.1.bars": BARS})) for variation in UNDER_LOAD
     )

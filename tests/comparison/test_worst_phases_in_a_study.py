@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
+import numpy as np
 import pytest
+import xarray as xr
 
 import reference
-from comparison.analysis.worst_phases import NOWHERE, Worst, WorstPhases, _engine_beside, worst_of
+from comparison.analysis.worst_phases import ENGINE_POINTS, NOWHERE, Worst, WorstPhases, _engine_beside, worst_of
 from comparison.execution.task import unfinished
 from comparison.execution.task_results import TaskResults
 from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, TRANSLATIONAL
 from comparison.study.study import Study
-from reference.problem import Outcome, Scene
+from reference.phase_maximum import GRID
+from reference.problem import Amplification, Outcome, Scene
 
 SHORT = reference.load_scene("fig3-I").with_values({"duration": 3.0})
 
@@ -54,9 +58,57 @@ def test_an_engine_without_an_answer_there_says_why(monkeypatch: pytest.MonkeyPa
 
     monkeypatch.setattr("comparison.analysis.worst_phases.imported", lambda path: refusing)
     worst = Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
-    engine = _engine_beside(worst, SHORT, TRANSLATIONAL, 1e-3)
+    engine = _engine_beside(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
     assert math.isnan(engine.value)
     assert engine.reason == Outcome.STEP_LIMIT.value
+
+
+def test_the_engine_is_asked_where_its_ratio_to_the_equations_says_that_it_is_largest(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def equations(phases: Any) -> Any:
+        return 2.0 - ((phases - [1.004, 2.002]) ** 2).sum(axis=1)
+
+    def engine(phases: Any) -> Any:
+        return equations(phases) * (1.0 + 1e-3 * (phases[:, 0] - 1.0))
+
+    def answering(numerator: Any) -> Any:
+        def amplification(scene, phases, **settings):  # type: ignore[no-untyped-def]
+            mu = np.repeat(numerator(phases)[:, None], 2, axis=1)
+            none = np.full(len(phases), math.nan)
+            return Amplification(mu, 1e-9 * mu, np.full(len(phases), "ok"), none, 0.0)
+
+        return amplification
+
+    sides = {TRANSLATIONAL.amplification: answering(engine), REGULARIZED.amplification: answering(equations)}
+    monkeypatch.setattr("comparison.analysis.worst_phases.imported", sides.__getitem__)
+    monkeypatch.setattr("reference.problem.climb.ground_peak", lambda scene, phases: np.ones(len(phases)))
+    worst = Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
+    beside = _engine_beside(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
+    assert beside.evaluations == ENGINE_POINTS
+    assert beside.phases == pytest.approx((1.005, 2.002), abs=1e-4)  # 1e-3 of slope over 2 of curvature
+
+
+def test_searches_begin_at_the_hills_of_what_they_search() -> None:
+    study = Study((SHORT,), GRID, 1e-3, MODEL_HIERARCHY)
+    alpha = 2.0 * np.pi * np.arange(GRID) / GRID
+    hill = 2.0 + np.cos(alpha - alpha[5])[:, None] + np.cos(alpha - alpha[9])[None, :]
+    models, scenes = [model.key for model in MODEL_HIERARCHY], [SHORT.name]
+    plane, body = ("scene", "model", "alpha1", "alpha2"), ("scene", "model", "body", "alpha1", "alpha2")
+    shape = (1, len(models), GRID, GRID)
+    surfaces = xr.Dataset(
+        {
+            "mu": (body, np.broadcast_to(np.roll(hill, 3, axis=1), (1, len(models), 2, GRID, GRID))),
+            "error": (body, np.zeros((1, len(models), 2, GRID, GRID))),
+            "displacement": (plane, np.broadcast_to(hill, shape)),
+            "stride": (("scene", "model"), [[study.stride(model) for model in MODEL_HIERARCHY]]),
+        },
+        coords={"scene": scenes, "model": models, "body": [1, 2]},
+    )
+    tasks = WorstPhases().tasks(study, surfaces)
+    for task in tasks:
+        shift = 0 if task.argument[3] == "displacement" else 3
+        assert task.argument[6].tolist() == [[alpha[5], alpha[9 + shift]]]
 
 
 def test_a_search_that_failed_leaves_a_row_with_the_reason() -> None:

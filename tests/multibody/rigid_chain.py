@@ -2,8 +2,9 @@
 An independent calculation of the spatial model: Newton-Euler with constraints, integrated by SciPy's Radau.
 
 Rigid bodies with six degrees of freedom each. The platform's depressions stay on the fixed spheres in the mean that
-elastic supports demand: the normal forces are N_k = c0 + c1 x_k + c2 y_k, and the constraints are the three moments of
-the gaps that these forces work on. With three supports that is every gap by itself. A link keeps the distance of its
+elastic supports demand. Bearings give way vertically, so their vertical forces are c0 + c1 x_k + c2 y_k, of which the
+normal forces follow. Constraints are the three moments of the vertical gaps that these forces work on. With three
+supports that is every gap by itself. A link keeps the distance of its
 two ends along the bars and the tilt between its bodies; shear and twist are elastic. All its forces act at the middle
 between the two ends, on both bodies. Bars with an axial stiffness are elastic in tension and bending, too; where they
 shorten the bodies are held apart by a leaning rod. Dry friction is linear in the slip velocity below v_reg. Supports
@@ -137,6 +138,7 @@ def _solved(
         right[6 * i + 3 : 6 * i + 6] = -np.cross(omega[i], _turned(tensor, omega[i]))
     platform = _rotation(turn[0])
     first = 6 * bodies
+    upward = np.ones(supports)  # vertical force of each support over its normal force
     for k in range(supports):
         if closed[k] == 0.0:
             continue
@@ -152,17 +154,18 @@ def _solved(
         speed = math.sqrt(_dot(slip, slip))
         force = normal - friction * slip / max(speed, corner)
         moment = np.cross(arm, normal) + np.cross(touching, force - normal)
+        upward[k] = force[2]
         along = np.cross(arm, normal)
         gap, rate = length - radius, -_dot(normal, center)
         bend = _dot(center, center) - rate**2
         turning = np.cross(omega[0], np.cross(omega[0], arm))
         for j in range(3):
-            matrix[0:3, first + j] -= shape[j] * force
-            matrix[3:6, first + j] -= shape[j] * moment
-            matrix[first + j, 0:3] += shape[j] * normal
-            matrix[first + j, 3:6] += shape[j] * along
+            matrix[0:3, first + j] -= shape[j] * force / force[2]
+            matrix[3:6, first + j] -= shape[j] * moment / force[2]
+            matrix[first + j, 0:3] += shape[j] * normal / normal[2]
+            matrix[first + j, 3:6] += shape[j] * along / normal[2]
             wanted = 2.0 * STABILIZATION * rate + STABILIZATION**2 * gap
-            right[first + j] += shape[j] * (bend / length - _dot(normal, turning) + wanted)
+            right[first + j] += shape[j] / normal[2] * (bend / length - _dot(normal, turning) + wanted)
     for i in range(bodies - 1):
         middle, axes, ends, relative = _link(place, turn, centers, i)
         sheared = _turned(shear[i], ends[:2])
@@ -214,7 +217,7 @@ def _solved(
             -(later - before) / (2.0 * STEP) - 2.0 * STABILIZATION * now - STABILIZATION**2 * violated
         )
     solved = np.linalg.solve(matrix, right)
-    normals = closed * (solved[first] + _turned(ring, solved[first + 1 : first + 3]))
+    normals = closed * (solved[first] + _turned(ring, solved[first + 1 : first + 3])) / upward
     return solved[:first].reshape(bodies, 6), normals
 
 

@@ -6,7 +6,9 @@ The translational model, which no such variation changes, is what they are held 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -18,8 +20,9 @@ from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
-from reference.problem import Scene, demands, untilted
+from reference.problem import Scene, Trajectory, demands, ground_peak, untilted
 from reference.problem.bar_links import bar_links
+from reference.problem.demands import ANSWERED
 
 Array = NDArray[np.float64]
 
@@ -149,13 +152,14 @@ Rows = tuple[tuple[float, ...], ...]  # by phase pair and body
 
 @dataclass(frozen=True)
 class Solved:
-    """mu (M, N) at PHASES, its errors, the statuses, what went wrong, or "", and the cost, s."""
+    """mu (M, N) at PHASES, its errors, statuses, what went wrong, or "", the cost, s, and torsion as `Cell` has it."""
 
     mu: Array
     error: Array
     status: tuple[str, ...]
     error_message: str
     cost: float
+    torsion: Rows = ()
 
     def __post_init__(self) -> None:
         if self.mu.ndim != 2 or self.error.shape != self.mu.shape or len(self.status) != len(self.mu):
@@ -193,7 +197,7 @@ def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> 
 
 def variation_tasks(study: Study, stage: str, variations: Sequence[Variation] = FEW) -> list[Task]:
     """
-    `variation_arguments` as tasks, then the torsion of the uneven ones.
+    `variation_arguments` as tasks.
 
     Parameters
     ----------
@@ -206,19 +210,16 @@ def variation_tasks(study: Study, stage: str, variations: Sequence[Variation] = 
     -------
     list of Task
     """
-    arguments = variation_arguments(study, variations)
-    uneven = [argument for argument in arguments if argument[2] is not None and argument[2].is_uneven]
     return [
         Task(
-            function,
+            varied,
             argument,
             stage,
             SECONDS["translational" if argument[2] is None else "spatial"],
             argument[0],
             needs_compiled_reference=False,
         )
-        for function, asked in ((varied, arguments), (torsion, uneven))
-        for argument in asked
+        for argument in variation_arguments(study, variations)
     ]
 
 
@@ -237,15 +238,10 @@ def assumption_cells(tasks: Sequence[Task], results: TaskResults) -> list[Cell]:
     -------
     list of Cell
     """
-    answers = [(task.argument, results.value(task, _without_value)) for task in tasks if task.function is varied]
-    turns = {
-        (task.argument[0].name, task.argument[2]): results.value(task, lambda *failed: ())
-        for task in tasks
-        if task.function is torsion
-    }
+    answers = [(task.argument, results.value(task, _without_value)) for task in tasks]
     held_against = {scene.name: answer for (scene, _, variation, _), answer in answers if variation is None}
     return [
-        _cell(scene, variation, answer, held_against[scene.name], turns.get((scene.name, variation), ()))
+        _cell(scene, variation, answer, held_against[scene.name])
         for (scene, _, variation, _), answer in answers
         if variation is not None
     ]
@@ -267,30 +263,29 @@ def varied(task: Arguments) -> Solved:
     scene, model, variation, tolerance = task
     short = scene.with_values({"duration": min(scene.duration, DURATION)})
     changed = short if variation is None else variation.of(short)
+    if variation is not None and variation.is_uneven and model.trajectory is not None:
+        with suppress(Exception):  # without motions their torsion alone is not known
+            return _moved(changed, model, tolerance)
     whole = {"full": True} if untilted(changed) else {}  # a check of assumption (vi) must not make use of it
     result = imported(model.amplification)(changed, PHASES, **model.settings, tolerance=tolerance, **whole)
     return Solved(result.mu, result.error, tuple(map(str, result.status)), "", float(result.cost))
 
 
-def torsion(task: Arguments) -> Rows:
-    """
-    Largest rotation of every body about the vertical at PHASES, rad, in an uneven variation. Runs inside a worker.
-
-    Parameters
-    ----------
-    task : tuple
-        As in `variation_arguments`.
-
-    Returns
-    -------
-    tuple of tuple of float
-        By phase pair and body; NaN where a motion ends early.
-    """
-    scene, model, variation, tolerance = task
-    assert variation is not None
-    changed = variation.of(scene.with_values({"duration": min(scene.duration, DURATION)}))
-    motions = (imported(model.trajectory)(changed, phase, **model.settings, tolerance=tolerance) for phase in PHASES)
-    return tuple(tuple(turn.value for turn in demands(motion).torsion or ()) for motion in motions)
+def _moved(scene: Scene, model: Model, tolerance: float) -> Solved:
+    """The same from whole motions, which show how far the bodies turn; NaN where one ends early."""
+    clock = time.process_time()
+    trajectory: Callable[..., Trajectory] = imported(str(model.trajectory))
+    motions = [trajectory(scene, phase, **model.settings, tolerance=tolerance) for phase in PHASES]
+    nothing = np.full(len(scene.bodies), np.nan)
+    known = [motion.status in ANSWERED and motion.accuracy is not None for motion in motions]
+    peaks = [motion.peak if whole else nothing for motion, whole in zip(motions, known)]
+    errors = [
+        motion.accuracy.peak_error if motion.accuracy and whole else nothing for motion, whole in zip(motions, known)
+    ]
+    ground = ground_peak(scene, PHASES)[:, None]
+    turns = tuple(tuple(turn.value for turn in demands(motion).torsion or ()) for motion in motions)
+    status, cost = tuple(str(motion.status) for motion in motions), time.process_time() - clock
+    return Solved(np.array(peaks) / ground, np.array(errors) / ground, status, "", cost, turns)
 
 
 def _without_value(task: Arguments, failed: TaskResult) -> Solved:
@@ -298,12 +293,12 @@ def _without_value(task: Arguments, failed: TaskResult) -> Solved:
     return Solved(nothing, nothing, (failed.outcome.value,) * len(PHASES), failed.error_message, 0.0)
 
 
-def _cell(scene: Scene, variation: Variation, spatial: Solved, plain: Solved, turns: Rows) -> Cell:
+def _cell(scene: Scene, variation: Variation, spatial: Solved, plain: Solved) -> Cell:
     change = spatial.mu / plain.mu - 1.0
     uncertainty = np.hypot(spatial.error, plain.error) / plain.mu
     error_message = spatial.error_message or plain.error_message
     rows = _rows(change), _rows(uncertainty)
-    return Cell(scene.name, variation, *rows, spatial.status, error_message, spatial.cost, turns)
+    return Cell(scene.name, variation, *rows, spatial.status, error_message, spatial.cost, spatial.torsion)
 
 
 def _rows(array: Array) -> Rows:

@@ -6,7 +6,7 @@ from math import inf, log, sqrt
 
 from reference.solver.compiled import compiled, inlined
 from reference.solver.contact.friction import rising_rate
-from reference.solver.events import counted_part, lowest
+from reference.solver.events import LEVEL, SPEED, expand_level, expand_speed, lowest, parts_above
 from reference.solver.near_stop import near_stop_step
 from reference.solver.phases.rest import begin_rest, onset_within, set_reaction
 from reference.solver.phases.sliding import (
@@ -57,7 +57,7 @@ from reference.solver.system import (
     System,
 )
 from reference.solver.travel import travel_reached
-from reference.solver.work import REACTION, SPEED2, Work
+from reference.solver.work import REACTION, Work
 
 FRICTION_ROUNDING = 1e-14  # of the friction limit: no acceleration is closer, a difference of such forces
 VARYING_NEWTON_FRACTION = 1e-3  # of that change otherwise, where friction depends on the speed
@@ -99,9 +99,9 @@ def follow(system: System, work: Work, contact: int, demand: Demand, record: Rec
             set_length(work, contact, end)
             following = contact
             continue
-        low, high = counted(work, contact, demand)
+        parts = counted(system, work, contact, demand, h)
         reached = travel_reached(system, work, contact, end)
-        commit(work, record, end, contact, low, high)
+        commit(work, record, end, contact, parts)
         if reached < inf:
             work.time = reached
             return TRAVEL, contact
@@ -180,15 +180,22 @@ def event_within(system: System, work: Work, contact: int, demand: Demand, h: fl
 
 
 @compiled
-def counted(work: Work, contact: int, demand: Demand) -> tuple[float, float]:
-    """The part of the step, in theta, that counts for the peaks: rest, and sliding faster than the cutoff."""
-    if demand.cutoff == 0.0:
-        return 0.0, 1.0
-    if contact == SLIDING:
-        return counted_part(work, work.stage[SPEED2], work.start2, demand.cutoff * demand.cutoff)
-    if contact == STOPPING:
-        return counted_part(work, work.levels, work.log_speed + work.log_ratio, log(demand.cutoff))
-    return 0.0, 1.0
+def counted(system: System, work: Work, contact: int, demand: Demand, h: float) -> int:
+    """
+    Number of parts of the step that count for the peaks, with their ends in work.edges.
+
+    These are rest, and sliding faster than the cutoff.
+    """
+    if demand.cutoff > 0.0 and contact == SLIDING:
+        level = demand.cutoff * demand.cutoff
+        expand_speed(work, h, level)
+        return parts_above(system, work, SPEED, work.start2 - level)
+    if demand.cutoff > 0.0 and contact == STOPPING:
+        level = log(demand.cutoff)
+        expand_level(work, work.levels, level)
+        return parts_above(system, work, LEVEL, work.log_speed + work.log_ratio - level)
+    work.edges[0], work.edges[1] = 0.0, 1.0
+    return 1
 
 
 @inlined

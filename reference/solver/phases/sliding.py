@@ -172,7 +172,7 @@ def slowing_within(system: System, work: Work, h: float) -> tuple[float, int]:
     floor2 = (system.v_reg * (1.0 - LEVEL_TOLERANCE)) ** 2
     if lowest(work.stage[SPEED2]) < NEAR_LEVEL_FACTOR * floor2:
         start = max(work.start2, floor2 * (1.0 + LEVEL_TOLERANCE))
-        slowed = first_crossing(work, work.stage[SPEED2], start, floor2)
+        slowed = first_crossing(system, work, work.stage[SPEED2], start, floor2)
         if slowed < NEGLIGIBLE_STEP:
             return 0.0, CREEPING
         if slowed < 1.0 - NEGLIGIBLE_STEP:

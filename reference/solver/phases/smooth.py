@@ -41,7 +41,7 @@ def speeding_within(system: System, work: Work, contact: int, h: float) -> tuple
         return h, contact
     if highest(work.stage[SPEED2]) > NEAR_LEVEL_FRACTION * level:
         start = min(speed2(system, work), level * (1.0 - LEVEL_TOLERANCE))
-        crossing = first_crossing(work, work.stage[SPEED2], start, level)
+        crossing = first_crossing(system, work, work.stage[SPEED2], start, level)
         if crossing < EARLY_CROSSING and work.held == 0.0:
             return 0.0, SLIDING
         if EARLY_CROSSING <= crossing < 1.0 - EARLY_CROSSING:

@@ -78,7 +78,7 @@ def break_within(system: System, work: Work, demand: Demand, h: float) -> tuple[
     """
     limit = next_break(system, work, demand)
     if work.turning[CLOCK, STAGES - 1] > limit + MIN_STEP * demand.period:
-        portion = first_crossing(work, work.turning[CLOCK], work.time, limit)
+        portion = first_crossing(system, work, work.turning[CLOCK], work.time, limit)
         if portion < 1.0 - EARLY_CROSSING:
             return h * portion, STOPPING
     if system.law != REGULARIZED:
@@ -86,7 +86,7 @@ def break_within(system: System, work: Work, demand: Demand, h: float) -> tuple[
     level = log(system.v_reg)
     if lowest(work.levels) < level - LEVEL_TOLERANCE:
         start = max(work.log_speed + work.log_ratio, level)
-        portion = first_crossing(work, work.levels, start, level - 0.5 * LEVEL_TOLERANCE)
+        portion = first_crossing(system, work, work.levels, start, level - 0.5 * LEVEL_TOLERANCE)
         if portion < EARLY_CROSSING:
             return 0.0, CREEPING
         if portion < 1.0 - EARLY_CROSSING:

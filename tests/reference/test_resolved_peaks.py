@@ -1,0 +1,40 @@
+"""Resolved peaks: only rest and slides faster than the cutoff count, however short such a part of a step is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import reference
+from reference.problem import load_scene
+
+CUTOFF = 1e-3  # m/s
+INSTANTS = 300_001
+CREEP = {"slow": 0.0430860971356464, "fast": 0.14661134550366858, "rate": 519.697000477915}
+CASES = {
+    # a slide begins slowly, within a step at whose end it is fast
+    "slow onset": (0.10910562657543134, (3.5046219150036997, 3.352310473684884)),
+    "slow onset, light friction": (0.036390330570276505, (2.008068456080429, 4.11840469120612)),
+    # creep is faster than the cutoff only between the ends of a step
+    "brief creep": (CREEP, (2.6638527317708944, 3.9343328551500085)),
+}
+
+
+def largest(motion, cutoff: float) -> float:
+    """Largest absolute acceleration of body 2, m/s^2, over the instants of a motion that count."""
+    speed = np.linalg.norm(motion.velocity[:, 0, :2], axis=-1)
+    counts = (speed == 0.0) | (speed >= cutoff)
+    return float(np.linalg.norm(motion.absolute_acceleration[:, 1], axis=-1)[counts].max())
+
+
+@pytest.mark.parametrize(("friction", "phase"), CASES.values(), ids=CASES.keys())
+def test_a_resolved_peak_is_the_largest_of_the_instants_that_count(friction, phase):
+    scene = load_scene("fig4-dry").with_values({"isolator.friction": friction, "duration": 3.0})
+    instants = np.linspace(0.0, scene.duration, INSTANTS)
+    motion = reference.trajectory(scene, phase, "small", tolerance=1e-10, times=instants)
+    supremum = reference.amplification(scene, [phase], equations="small").mu[0, 1]
+    expected = supremum * largest(motion, CUTOFF) / largest(motion, 0.0)
+    for tolerance in (1e-5, 1e-6, 1e-7, 1e-8):
+        answer = reference.amplification(scene, [phase], equations="small", cutoff=CUTOFF, tolerance=tolerance)
+        assert answer.status[0] == "ok"
+        assert answer.mu[0, 1] == pytest.approx(expected, rel=4e-6)
