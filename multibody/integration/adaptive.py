@@ -215,7 +215,8 @@ def _pass(
     if motion is not None:
         size = absolute_accelerations(model, motion, ground)
         motion = openings.touching(motion, event.which) if event.closes else openings.with_gaps(motion)
-        if not _record(result, motion, size, model, level, keep):
+        # so short a step tells nothing about a peak that may lie in it: forces have not settled at its end
+        if not _record(result, motion, size, model, level, keep, read=False):
             return None
         state, time = motion.state(-1), float(motion.time[-1])
     if not event.closes:
@@ -247,8 +248,14 @@ def _length(vectors: Array) -> Array:
     return length
 
 
-def _record(result: EngineRun, motion: Motion, size: Array, model: EngineModel, level: Level, keep: bool) -> bool:
-    """Add an accepted chunk to the result, up to where the model's validity ends; whether it goes on."""
+def _record(
+    result: EngineRun, motion: Motion, size: Array, model: EngineModel, level: Level, keep: bool, read: bool = True
+) -> bool:
+    """
+    Add an accepted chunk to the result, up to where the model's validity ends; whether it goes on.
+
+    read: whether its accelerations may be peaks.
+    """
     outcome, row, instant = termination(motion, model)
     if keep:
         result.chunks.append(motion.until(row))
@@ -263,7 +270,7 @@ def _record(result: EngineRun, motion: Motion, size: Array, model: EngineModel, 
         displacement = largest_displacement(motion.time, place, motion.velocities[:, axes])
         result.max_displacement = max(result.max_displacement, displacement)
     first = int(np.searchsorted(motion.time, result.undisturbed))
-    if first < len(motion.time):
+    if read and first < len(motion.time):
         result.peaks.add(motion.time[first:], size[first:], motion.slip[first:])
         _record_settling(result, motion.time[first:], size[first:], distance[first:])
     gap = float(motion.gap.max())

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.integration.adaptive import MAX_ERROR_PER_WARPING_LOAD, EngineRun
-from multibody.integration.level import Level
+from multibody.integration.level import COMPLIANCE_RATIO, Level
 from multibody.integration.peak import Peaks
 from multibody.models.system import EngineModel
 from reference.problem import Outcome
@@ -27,6 +27,7 @@ MIN_RATE, MAX_RATE = 2.0, 4.0  # factor by which a level reduces the error: at s
 MAX_CREDIBLE_RATE = 5.0  # a larger factor is accidental
 ERROR_PER_WARPING_LOAD = 0.25  # relative change of a peak over the largest load of a run, where it is not measured
 MIN_ERROR_PER_WARPING_LOAD = 0.005  # likewise, where the scene itself shows less
+MIN_RELIEVED_LOAD = 1e-3  # of the weight: from less of it nothing is measured
 # relative error of level 0, halved by every level, of a motion with impacts: their order among the supports is decided
 # by rounding, and two levels agree better by chance (measured: 4e-4 between levels 1 to 4)
 MIN_ERROR_WITH_IMPACTS = 4e-3
@@ -48,7 +49,21 @@ def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> 
     change = safety * change * (1.0 + lag(levels[-2], model)) / (rate - 1.0)
     level_error: Array = np.maximum(change, levels[-1].error_floor * last)
     unsolved = levels[-1].newton * levels[-1].load
-    return level_error + peaks[-1].sampling + levels[-1].rounding + unsolved + MIN_RELATIVE_ERROR * last
+    rounding = np.minimum(levels[-1].rounding, _shown_rounding(peaks, levels))
+    return level_error + peaks[-1].sampling + rounding + unsolved + MIN_RELATIVE_ERROR * last
+
+
+def _shown_rounding(peaks: list[Peaks], levels: list[Level]) -> Array:
+    """
+    What rounding of the contact forces can have done to the last of `peaks`, (N,), beside those of the level before.
+
+    It is in proportion to the stiffness of the contact, so that two levels which round by x and 4 x differ by 3 x.
+    """
+    stiffer = levels[-2].penetration / levels[-1].penetration
+    if stiffer < COMPLIANCE_RATIO * (1.0 - 1e-9):
+        return np.full_like(peaks[-1].value, np.inf)
+    change = np.abs(peaks[-1].value - peaks[-2].value)
+    return np.maximum(SAFETY_TWO_LEVELS * stiffer / (stiffer - 1.0) * change, levels[-1].error_floor * peaks[-1].value)
 
 
 def widened_by_impacts(errors: Array, run: EngineRun, number: int) -> Array:
@@ -84,15 +99,15 @@ def measured_per_load(run: EngineRun, softer: EngineRun) -> Array:
 
     Nothing else may differ between the runs. The softer one is closer to elastic supports: an open support limits what
     more load does. The change is stated with a safety factor, and never below what the peaks of other scenes show.
-    Where the softer run has no answer, or no less load, the value is larger than any measured one.
+    Where the softer run has no answer, or hardly less load, the value is larger than any measured one.
     """
     if softer.outcome != Outcome.OK:
         return np.full(len(run.peaks.value), MAX_ERROR_PER_WARPING_LOAD)
     relieved = run.load_at_peaks - softer.load_at_peaks
     change = np.abs(run.peaks.value - softer.peaks.value) / run.peaks.value
-    with np.errstate(divide="ignore", invalid="ignore"):
-        measured = np.maximum(SAFETY_TWO_LEVELS * change / relieved, MIN_ERROR_PER_WARPING_LOAD)
-    return np.where(relieved > 0.0, measured, MAX_ERROR_PER_WARPING_LOAD)
+    measured = SAFETY_TWO_LEVELS * change / np.maximum(relieved, MIN_RELIEVED_LOAD)
+    measured = np.maximum(measured, MIN_ERROR_PER_WARPING_LOAD)
+    return np.where(relieved > MIN_RELIEVED_LOAD, measured, MAX_ERROR_PER_WARPING_LOAD)
 
 
 def from_compliance(stiff: Peaks, soft: EngineRun, level: Level, model: EngineModel) -> Array:

@@ -106,6 +106,7 @@ def refine(
     stop = math.inf  # of the next run, where nothing later can matter
     candidate: _Candidate | None = None
     complete: _Candidate | None = None  # the last candidate whose error lacks nothing
+    best: _Candidate | None = None  # the last candidate before rounding takes over
     for number in range(len(remaining)):
         level = remaining[number]
         shared = number > 0 and level.penetration >= remaining[number - 1].penetration
@@ -163,8 +164,10 @@ def refine(
         complete = candidate if candidate.is_complete else complete
         if candidate.meets(tolerance):
             return _answer(model, candidate, Outcome.OK)
-        if (level.rounding > np.maximum(tolerance * run.peaks.value, candidate.errors / COMPLIANCE_RATIO)).any():
-            break  # hardly more than rounding is left, and no further level rounds less
+        rounded = level.rounding > np.maximum(tolerance * run.peaks.value, candidate.errors / COMPLIANCE_RATIO)
+        if rounded.any() and best is not None and best.relative_error <= candidate.relative_error:
+            return _answer(model, best, Outcome.TOLERANCE_NOT_MET)  # rounding takes over at this level
+        best = candidate if candidate.is_complete else None
         if lifted and uneven and not unmeasured and level.warping_compliance >= softest:
             break  # hardly more than the uneven share of the load is left, and no further level shares it better
     if candidate is not None:
@@ -217,6 +220,10 @@ class _Candidate:
     def is_complete(self) -> bool:
         """Whether the error lacks nothing."""
         return not (self.without_compliance or self.without_sharing) and bool(np.isfinite(self.errors).all())
+
+    @property
+    def relative_error(self) -> float:
+        return float((self.errors / self.run.peaks.value).max())
 
     def meets(self, tolerance: float) -> bool:
         return bool((self.errors <= tolerance * self.run.peaks.value).all())

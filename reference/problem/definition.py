@@ -132,13 +132,13 @@ def _ground_peaks(phases: Array, amplitudes: Array, s: NDArray[np.complex128], d
                 u = amplitudes[k, 0] * x0 + amplitudes[k, 1] * x1
                 value += u * u
             square[n] = value
-            highest = max(highest, value)
+            highest = max(highest, value) if math.isfinite(value) else math.inf
             if bound[n] < highest:
                 end = n + 1
                 break
-        best = 0.0
+        best = 0.0 if math.isfinite(highest) else math.inf
         for n in range(end):
-            if square[n] > CLOSE * highest:
+            if square[n] >= CLOSE * highest:
                 best = max(best, _square_and_slopes(min(n * step, duration), phase, amplitudes, s)[0])
             # a wave sampled 16 times is at most 4 % above its highest sample
             rises = n == 0 or square[n] >= square[n - 1]

@@ -128,10 +128,12 @@ def test_without_a_run_about_the_compliance_the_level_before_answers(monkeypatch
     assert (np.abs(result.mu - equations.mu) <= result.error + equations.error).all()
 
 
-def test_a_loading_of_a_millionth_has_the_factors_of_the_equations() -> None:
+@pytest.mark.parametrize("model", ["translational", "spatial"])
+def test_a_loading_of_a_millionth_has_the_factors_of_the_equations(model: str) -> None:
+    """A tower turns by as much less as it sways."""
     scene = load_scene("fig3-I").with_values({"duration": 3.0}).with_amplitude(1e-6)
     phases = [(0.3, 1.1), (2.0, 0.7)]
-    engine = multibody.amplification(scene, phases, tolerance=1e-3)
+    engine = multibody.amplification(scene, phases, model, tolerance=1e-3)
     equations = reference.amplification(scene, phases, equations="exact", regularization=1e-3, tolerance=1e-6)
     assert engine.status.tolist() == ["ok", "ok"]
     assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
@@ -171,6 +173,24 @@ def test_what_warped_supports_do_is_in_proportion_to_the_load_that_a_softer_run_
     assert measured_per_load(other, run).tolist() == [MAX_ERROR_PER_WARPING_LOAD] * 2, "no load is taken off"
     failed = EngineRun(softer, np.inf, Outcome.SOLVER_FAILED, load_at_peaks=np.array([0.1, 0.2]))
     assert (measured_per_load(run, failed) == MAX_ERROR_PER_WARPING_LOAD).all()
+
+
+@pytest.mark.long
+def test_loads_of_warped_supports_behind_a_peak_do_not_act_on_it() -> None:
+    """Without friction the tower turns more and more, and supports open again and again behind the largest peaks."""
+    scene = strong(duration=3.0, isolator={"friction": 0.0})
+    loose, strict = (multibody.amplification(scene, PHASE, "spatial", tolerance=t) for t in (1e-2, 3e-3))
+    assert [loose.status[0], strict.status[0]] == [Outcome.OK] * 2
+    assert (np.abs(loose.mu - strict.mu) <= loose.error + strict.error).all()
+
+
+@pytest.mark.long
+def test_nine_supports_that_rattle_on_stiff_springs_have_an_answer_on_softer_ones() -> None:
+    places = [[x, y] for x in (-1.0, 0.0, 1.0) for y in (-1.0, 0.0, 1.0)]
+    scene = strong(duration=3.0).with_values({"isolator.supports": places, "isolator.ring": None})
+    loose, strict = (multibody.amplification(scene, PHASE, "spatial", tolerance=t, max_work=5e4) for t in (1e-2, 1e-3))
+    assert [loose.status[0], strict.status[0]] == [Outcome.OK] * 2
+    assert (np.abs(loose.mu - strict.mu) <= loose.error + strict.error).all()
 
 
 @pytest.mark.long

@@ -18,6 +18,7 @@ Phases = tuple[tuple[float, float], ...]
 
 PHASES: Phases = ((0.3, 1.1), (2.0, 0.7))  # rad
 SYMMETRIC: Phases = ((0.0, 0.0), (0.0, math.pi), (math.pi / 2, math.pi / 2), (math.pi, math.pi / 2))
+PLAIN_RADIUS = 0.25  # m, of the plain scene, whose period is 1 s
 GRAVITY_LIMIT = 9.81  # m/s^2: downward acceleration of the plate at which the contact carries nothing
 
 
@@ -271,13 +272,19 @@ def _sizes() -> Iterator[Row]:
     near_rim = scene(amplitudes=_along(12.0), friction=0.02, duration=20.0)
     yield Row("amplitude, m/s^2", "12, friction 0.02, along the rim", near_rim, PLANAR, phases=PHASES[:1])
     for radius in (1e-3, 3e-2, 30.0, 1e3):
-        yield Row("rho, m", f"{radius:g}", scene(radius=radius), ALL)
+        yield Row("rho, m", f"{radius:g}", _above_its_contacts(scene(radius=radius)), ALL)
     yield Row("rho, m", "inf", scene(radius=math.inf), ALL)
     yield Row("rho, m", "inf, upward 5 m/s^2", scene(radius=math.inf, amplitudes=_upward(5.0)), ALL)
     for amplitude, models in ((1e-6, ALL), (1e3, PLANAR)):  # the stronger one takes the platform far off its supports
         yield Row("rho, m", f"inf, {amplitude:g} m/s^2", scene(radius=math.inf, amplitudes=_along(amplitude)), models)
     for travel in (1e-6, 0.02, 0.24):
         yield Row("travel, m", f"{travel:g}", scene(travel=travel), ALL)
+
+
+def _above_its_contacts(stated: dict[str, Any]) -> dict[str, Any]:
+    """The bodies no lower beside the contacts than in the plain scene: heights count from a radius below them."""
+    rise = max(stated["isolator"]["radius"] - PLAIN_RADIUS, 0.0)
+    return {**stated, "bodies": [{**body, "height": body["height"] + rise} for body in stated["bodies"]]}
 
 
 def _chains() -> Iterator[Row]:
