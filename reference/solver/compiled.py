@@ -14,6 +14,7 @@ from typing import Any
 import numba
 
 from reference.problem.build_cache import cached_on_disk
+from reference.problem.compiled_parts import compiled_part
 
 njit: Any = numba.njit
 
@@ -22,8 +23,8 @@ OPTIONS = {"error_model": "numpy", "nogil": True}
 
 
 def compiled(function: Callable[..., Any]) -> Any:
-    """A part of the solver, called by compiled code alone: it is built into its caller and not wrapped for Python."""
-    return njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)(function)
+    """A part of the solver, called by compiled code alone."""
+    return compiled_part(**OPTIONS)(function)
 
 
 def inlined(function: Callable[..., Any]) -> Any:
