@@ -4,6 +4,9 @@ Functions that exist only as a part of the compiled function that calls them.
 Numba optimizes a function together with all that it calls, and translates it to machine code, before it looks at the
 next caller. A part of a large function goes through that once per level of callers, and only the last build ever runs.
 A part compiled here is linked into its callers without that: it is optimized and translated once, with the entry point.
+
+Numba counts the references to an array wherever one is named, also while a caller holds it anyway. A part counts none:
+it makes no arrays, and keeps or returns none.
 """
 
 from __future__ import annotations
@@ -15,6 +18,7 @@ import numba
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import LoweringPass, register_pass
+from numba.core.runtime.context import NRTContext
 from numba.core.typed_passes import AnnotateTypes
 
 njit: Any = numba.njit
@@ -48,7 +52,7 @@ class _Part(JITCodeLibrary):  # type: ignore[misc]
 
 @register_pass(mutates_CFG=False, analysis_only=False)
 class _AsPart(LoweringPass):  # type: ignore[misc]
-    """Just before the lowering: the code goes into a `_Part`."""
+    """Just before the lowering: the code goes into a `_Part` and counts no references."""
 
     _name = "as_part"
 
@@ -56,7 +60,10 @@ class _AsPart(LoweringPass):  # type: ignore[misc]
         super().__init__()
 
     def run_pass(self, state: Any) -> bool:
-        state.library = _Part(state.targetctx.codegen(), state.func_id.func_qualname)
+        context = state.targetctx  # of this function alone
+        state.library = _Part(context.codegen(), state.func_id.func_qualname)
+        context.nrt = NRTContext(context, True)  # fields of structures are still read through it
+        context.enable_nrt = False
         return False
 
 
@@ -72,7 +79,7 @@ class _PartCompiler(CompilerBase):  # type: ignore[misc]
 
 def compiled_part(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     """
-    Decorate a function that only compiled functions call.
+    Decorate a function that only compiled functions call, and that makes, keeps and returns no arrays.
 
     Parameters
     ----------

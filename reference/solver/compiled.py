@@ -22,14 +22,14 @@ njit: Any = numba.njit
 OPTIONS = {"error_model": "numpy", "nogil": True}
 
 
+def allocating(function: Callable[..., Any]) -> Any:
+    """A part of the solver that makes arrays."""
+    return njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)(function)
+
+
 def compiled(function: Callable[..., Any]) -> Any:
     """A part of the solver, called by compiled code alone."""
     return compiled_part(**OPTIONS)(function)
-
-
-def inlined(function: Callable[..., Any]) -> Any:
-    """A part called in one place: its body becomes part of the caller, which shortens compilation."""
-    return njit(inline="always", **OPTIONS)(function)
 
 
 def cached_entry_point(function: Callable[..., Any]) -> Any:
