@@ -19,6 +19,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 from datetime import UTC, datetime
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -54,6 +55,8 @@ from comparison.study.planning import StudyPlan, StudyRequest, plan_study
 from comparison.study.refinement import Step
 from comparison.study.study import Study
 from reference.problem.command import stoppable
+
+import_module("multibody.models.engine")  # workers load it again: where that fails, the command ends here in one line
 
 
 @command
