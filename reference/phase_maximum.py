@@ -11,18 +11,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.problem import Scene, checked_phases, phase_grid
+from reference.problem import Scene, checked_phases
 from reference.problem.climb import Climb, Surface, climb_on, follow_jump, kind_of, merged
+from reference.problem.hills import GRID, hills
 from reference.problem.ranges import checked_choice
-from reference.problem.symmetry import distinct, half_turns, sources
+from reference.problem.symmetry import distinct, half_turns
 from reference.surface import amplification
 
 Array = NDArray[np.float64]
 
 QUANTITIES = ("amplification", "displacement")
-GRID = 48  # phases per axis on which the hills are found
 GRID_TOLERANCE = 1e-4  # relative error of mu there
-MAX_CLIMBS = 12  # from the hills that may rise highest
 MAX_ROUNDS = 60
 MAX_SHORTFALL = 0.01  # of the maximum: climbs that end lower need not follow their jumps
 
@@ -154,38 +153,3 @@ def worst_phases(
         reached=best.count,
         evaluations=surface.evaluations,
     )
-
-
-def hills(surface: Array, scene: Scene) -> Array:
-    """
-    Phase pairs of a surface that are as high as their eight neighbors, those first that may rise highest between them.
-
-    Parameters
-    ----------
-    surface : ndarray, (n, n)
-        On `phase_grid(n)`; NaN without an answer.
-    scene : Scene
-        Of pairs that a symmetry of the motion makes alike only one is listed.
-
-    Returns
-    -------
-    ndarray, (K, 2), rad
-        At most MAX_CLIMBS of them.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from reference.problem import load_scene
-    >>> alpha = 2.0 * np.pi * np.arange(8) / 8
-    >>> hills(np.cos(2.0 * alpha)[:, None] + np.cos(2.0 * alpha)[None, :], load_scene("fig3-I")).tolist()
-    [[0.0, 0.0]]
-    """
-    points = len(surface)
-    height = np.where(np.isfinite(surface), surface, -np.inf)
-    around = [np.roll(height, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
-    lowest = np.min([np.where(np.isfinite(each), each, height) for each in around], axis=0)
-    places = np.flatnonzero(np.isfinite(height) & (height >= np.max(around, axis=0)))
-    places = places[sources(scene, points)[places] == places]
-    high, low = height.ravel()[places], lowest.ravel()[places]
-    may_reach = high + 0.5 * (high - low)
-    return phase_grid(points)[places[np.argsort(-may_reach, kind="stable")][:MAX_CLIMBS]]

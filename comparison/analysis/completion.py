@@ -10,13 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from scipy.interpolate import RBFInterpolator
-from scipy.spatial.distance import cdist
-from scipy.special import xlogy
 
 from comparison.analysis.steps import RESOLVED, known_mu
 from comparison.analysis.surfaces import common_phases
@@ -116,8 +114,7 @@ def _completion(
     if known.sum() < MIN_PER_AXIS**2:
         return refused(f"{known.sum()} values are too few for a surface", int(known.sum()))
     phase = 2.0 * np.pi * study.axis(model) / study.grid
-    points, every = torus(phase)[known.ravel()], torus(2.0 * np.pi * np.arange(study.grid) / study.grid)
-    surface = fine + RBFInterpolator(points, gap[known])(every).reshape(fine.shape)
+    surface = fine + interpolated(gap, phase, 2.0 * np.pi * np.arange(study.grid) / study.grid)
     missed = np.abs(leave_one_out(gap, phase) - gap)
     error, relative = float(np.nanmax(missed)), float(np.nanmax(missed / coarse))
     relief = float(np.nanmax(surface) - np.nanmin(surface))
@@ -145,6 +142,28 @@ def torus(phase: Array) -> Array:
     return np.stack([np.cos(alpha1), np.sin(alpha1), np.cos(alpha2), np.sin(alpha2)], axis=1)
 
 
+def interpolated(values: Array, phase: Array, every: Array) -> Array:
+    """
+    A function of both phases that is known at some phase pairs, by thin plates.
+
+    Parameters
+    ----------
+    values : (K, K) array
+        At `phase`; NaN where it is not known.
+    phase : (K,) array
+        The phases of either axis, rad.
+    every : (L,) array
+        Those at which the values are wanted, rad.
+
+    Returns
+    -------
+    (L, L) array
+    """
+    known = np.isfinite(values.ravel())
+    wanted = _interpolation(phase.tobytes(), known.tobytes(), every.tobytes()) @ values.ravel()[known]
+    return wanted.reshape(len(every), len(every))
+
+
 def leave_one_out(values: Array, phase: Array) -> Array:
     """
     What the interpolation of all other phase pairs gives at each one.
@@ -167,12 +186,33 @@ def leave_one_out(values: Array, phase: Array) -> Array:
     left out (Rippa, 1999): one matrix serves all points.
     """
     known = np.isfinite(values.ravel())
-    places, count = torus(phase)[known], int(known.sum())
-    distance = cdist(places, places)
-    kernel = xlogy(distance**2, distance)  # thin plates, as RBFInterpolator has them, with a linear part
-    linear = np.hstack([np.ones((count, 1)), places])
-    matrix = np.block([[kernel, linear], [linear.T, np.zeros((linear.shape[1],) * 2)]])
-    inverse = np.linalg.inv(matrix)[:count, :count]
+    inverse = _weights(phase.tobytes(), known.tobytes())[: known.sum()]
     predicted = np.full(values.size, np.nan)
     predicted[known] = values.ravel()[known] - inverse @ values.ravel()[known] / np.diag(inverse)
     return predicted.reshape(values.shape)
+
+
+@lru_cache(maxsize=4)  # of bodies and scenes with values at the same phase pairs
+def _weights(phase: bytes, known: bytes) -> Array:
+    """What makes the P + 5 weights of an interpolation, (P + 5, P), from its values at the P known phase pairs."""
+    basis = _basis(*[torus(np.frombuffer(phase))[np.frombuffer(known, bool)]] * 2)
+    count = len(basis)
+    linear = basis[:, count:]
+    matrix = np.block([[basis], [linear.T, np.zeros((linear.shape[1],) * 2)]])
+    weights: Array = np.linalg.inv(matrix)[:, :count]
+    return weights
+
+
+@lru_cache(maxsize=4)  # likewise
+def _interpolation(phase: bytes, known: bytes, every: bytes) -> Array:
+    """What makes the values at all pairs of L phases, (L^2, P), from those at the P known phase pairs."""
+    centers = torus(np.frombuffer(phase))[np.frombuffer(known, bool)]
+    matrix: Array = _basis(torus(np.frombuffer(every)), centers) @ _weights(phase, known)
+    return matrix
+
+
+def _basis(places: Array, centers: Array) -> Array:
+    """Thin plates about P centers and a linear part, (M, P + 5), at M places on the torus."""
+    squares = np.maximum(4.0 - 2.0 * places @ centers.T, 0.0)  # of the distances: both have the length sqrt(2)
+    plates = 0.5 * squares * np.log(np.where(squares > 0.0, squares, 1.0))
+    return np.hstack([plates, np.ones((len(places), 1)), places])

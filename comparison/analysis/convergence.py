@@ -22,15 +22,14 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+import multibody
+import reference
 from comparison.analysis.protocol import Analysis
 from comparison.analysis.trends import Trend, trend
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.models import has_spatial_data
 from comparison.study.study import Study
-from multibody import amplification as engine_amplification
-from multibody import single_run
-from reference import amplification
 from reference.problem import Outcome, Scene, exponents, ground_peak, loading_period
 
 Array = NDArray[np.float64]
@@ -64,7 +63,7 @@ def _to_supremum(scene: Scene) -> Values:
 
 def _by_engine(scene: Scene) -> Values:
     def solved(scene: Scene, phases: Array, v: float) -> Values:
-        answer = engine_amplification(scene, phases, regularization=v, tolerance=ENGINE_TOLERANCE)
+        answer = multibody.amplification(scene, phases, regularization=v, tolerance=ENGINE_TOLERANCE)
         return answer.mu, answer.error
 
     return _against(_short(scene, FEW_PERIODS), FEW, ENGINE_REGULARIZATIONS, solved, lambda v: v)
@@ -74,7 +73,7 @@ def _with_turning(scene: Scene) -> Values:
     """The spatial model at v_reg against itself at the smallest one."""
     short = _short(scene, FEW_PERIODS)
     limit, *answers = (
-        engine_amplification(short, FEW, model="spatial", regularization=v, tolerance=ENGINE_TOLERANCE)
+        multibody.amplification(short, FEW, model="spatial", regularization=v, tolerance=ENGINE_TOLERANCE)
         for v in (SMALLEST, *ENGINE_REGULARIZATIONS)
     )
     sizes = np.stack([answer.mu / limit.mu - 1.0 for answer in answers], axis=1)
@@ -82,7 +81,7 @@ def _with_turning(scene: Scene) -> Values:
 
 
 def _by_equations(scene: Scene, phases: Array, v: float) -> Values:
-    answer = amplification(scene, phases, tolerance=REFERENCE_TOLERANCE, regularization=v)
+    answer = reference.amplification(scene, phases, tolerance=REFERENCE_TOLERANCE, regularization=v)
     return answer.mu, answer.error
 
 
@@ -98,7 +97,7 @@ def _against(
     sizes, errors = [], []
     for v in speeds:
         mu, error = solved(short, phases, v)
-        exact = amplification(short, phases, tolerance=REFERENCE_TOLERANCE, cutoff=cutoff(v))
+        exact = reference.amplification(short, phases, tolerance=REFERENCE_TOLERANCE, cutoff=cutoff(v))
         sizes.append(mu / exact.mu - 1.0)
         errors.append(np.hypot(error, exact.error) / exact.mu)
     return np.stack(sizes, axis=1), np.stack(errors, axis=1)
@@ -113,7 +112,7 @@ def _stiffened(scene: Scene) -> Values:
     """The engine with ever stiffer contacts against the rigid contact of the exact equations."""
     short = _short(scene, FEWEST_PERIODS)
     v_reg = None if scene.lubricated else V_REG
-    exact = amplification(short, FEW, tolerance=REFERENCE_TOLERANCE, regularization=v_reg)
+    exact = reference.amplification(short, FEW, tolerance=REFERENCE_TOLERANCE, regularization=v_reg)
     coarse, fine = (
         np.stack([_at_constant_step(short, v_reg, penetration, factor) for penetration in PENETRATIONS], axis=1)
         for factor in (1, 2)
@@ -129,7 +128,7 @@ def _at_constant_step(scene: Scene, v_reg: float | None, penetration: float, fac
     count = factor * min(MOST_STEPS, math.ceil(scene.duration / loading_period(scene) * STEPS_PER_PERIOD))
     step = scene.duration / count
     for row, phase in enumerate(FEW):
-        run = single_run(
+        run = multibody.single_run(
             scene, phase, regularization=v_reg, step=step, penetration=penetration, newton=NEWTON, residual=RESIDUAL
         )
         if run.status == Outcome.OK:

@@ -15,12 +15,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+import reference
 from comparison.analysis.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
 from comparison.analysis.protocol import Analysis
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.study import Study
-from reference import amplification
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
@@ -38,7 +38,9 @@ def _softened(scene: Scene) -> Array | None:
     for number, link in enumerate(scene.stiffness, start=1):
         softer |= {f"bodies.{number}.{key}": None for key in ("period", "bars")}
         softer |= {f"bodies.{number}.stiffness": link / 144.0}
-    return _change(amplification(scene.with_values(softer), PHASES).mu, amplification(scene, PHASES).mu)
+    return _change(
+        reference.amplification(scene.with_values(softer), PHASES).mu, reference.amplification(scene, PHASES).mu
+    )
 
 
 def _without_coefficient(scene: Scene) -> Array | None:
@@ -46,14 +48,15 @@ def _without_coefficient(scene: Scene) -> Array | None:
     if scene.lubricated:
         return None
     rough = scene.with_values({"isolator.friction": 1.0})
-    return _change(amplification(rough, PHASES).mu, amplification(scene, PHASES).mu)
+    return _change(reference.amplification(rough, PHASES).mu, reference.amplification(scene, PHASES).mu)
 
 
 def _printed_rest(scene: Scene) -> Array | None:
     if scene.lubricated:
         return None
     printed, mended = (
-        amplification(scene, PHASES, equations="small", rest_condition=rule).mu for rule in ("printed", "consistent")
+        reference.amplification(scene, PHASES, equations="small", rest_condition=rule).mu
+        for rule in ("printed", "consistent")
     )
     return _change(printed, mended)
 

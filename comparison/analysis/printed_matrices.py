@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.integrate import solve_ivp
 
 from comparison.study.models import V_REG
 from reference.problem import GRAVITY, Scene, ground_acceleration, ground_peak
@@ -86,6 +85,8 @@ def _between(links: Array) -> Array:
 
 
 def _peaks(scene: Scene, phase: Array, errata: Collection[str]) -> Array:
+    from scipy.integrate import solve_ivp  # loaded where it is needed: a repeated report is written in seconds
+
     fixed = _fixed(scene, errata)
     bodies = len(scene.bodies)
     count = 2 * bodies

@@ -16,12 +16,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+import reference
 from comparison.analysis.protocol import Analysis
 from comparison.analysis.trends import Trend, trend
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.study import Study
-from reference import amplification
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
@@ -100,7 +100,7 @@ def _both(scene: Scene, supremum: bool, s: float) -> tuple[Array, Array]:
     """mu and error, (2, P, N): small, exact."""
     cutoff = None if supremum else CUTOFF * s
     answers = [
-        amplification(scene, PHASES, equations=equations, tolerance=TOLERANCE, cutoff=cutoff)
+        reference.amplification(scene, PHASES, equations=equations, tolerance=TOLERANCE, cutoff=cutoff)
         for equations in ("small", "exact")
     ]
     return np.array([answer.mu for answer in answers]), np.array([answer.error for answer in answers])

@@ -121,9 +121,10 @@ def largest_travel_share(surfaces: xr.Dataset, scene: Scene, model: str) -> floa
 
 def common_phases(surfaces: xr.Dataset, scene: str, models: Sequence[str]) -> xr.Dataset:
     """The part of one scene's surfaces at the phases that each of these models was asked for."""
-    data = surfaces.sel(scene=scene)
-    every = slice(None, None, int(data["stride"].sel(model=list(models)).max()))
-    return data.isel(alpha1=every, alpha2=every)
+    row, keys = surfaces["scene"].values.tolist().index(scene), surfaces["model"].values.tolist()
+    strides = surfaces["stride"].values[row]
+    every = slice(None, None, int(max(strides[keys.index(model)] for model in models)))
+    return surfaces.isel(scene=row, alpha1=every, alpha2=every)
 
 
 def asked_of(surfaces: xr.Dataset, scene: Scene, model: Model) -> xr.Dataset:

@@ -17,6 +17,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+import reference
 from comparison.analysis.protocol import Analysis
 from comparison.analysis.steps import known_mu
 from comparison.analysis.surfaces import asked_of
@@ -26,10 +27,9 @@ from comparison.study.batches import imported
 from comparison.study.costs import seconds_per_point
 from comparison.study.models import Model, models_of, pairs_of
 from comparison.study.study import Study
-from reference import worst_phases
-from reference.phase_maximum import GRID, hills
 from reference.problem import Scene
 from reference.problem.climb import Climb, Points, Surface, predicted, square_of
+from reference.problem.hills import GRID, hills
 
 Array = NDArray[np.float64]
 
@@ -155,7 +155,7 @@ def worst_of(task: Arguments) -> list[Worst]:
     """The largest value of the equations, and of the engine beside it. Runs inside a worker process."""
     scene, model, engine, quantity, body, tolerance, starts = task
     settings: dict[str, Any] = dict(model.settings)
-    maximum = worst_phases(scene, body, quantity, tolerance=TOLERANCE, starts=starts, **settings)
+    maximum = reference.worst_phases(scene, body, quantity, tolerance=TOLERANCE, starts=starts, **settings)
     worst = Worst(scene.name, model.key, quantity, body, **vars(maximum))
     return [worst] if engine is None else [worst, _engine_beside(worst, scene, model, engine, tolerance)]
 

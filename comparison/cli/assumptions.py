@@ -24,7 +24,7 @@ from comparison.execution.executors import Pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
 from comparison.execution.processes import process_pool
 from comparison.execution.progress import wide_console
-from comparison.report.figures.file_names import figure_file
+from comparison.report.figures.file_names import assumption_figure_name, figure_file
 from comparison.study.models import has_spatial_data
 from comparison.study.study import Study, refuse_same_names
 from reference.problem import Scene, SceneError, builtin_scenes, load_scene
@@ -70,10 +70,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 
 def _draw(folder: Path, scene: Scene, cells: Sequence[Cell]) -> None:
     """Write the picture of a scene."""
-    from comparison.report.figures.assumptions import (  # plotting: not needed to refuse
-        assumption_figure_name,
-        draw_assumptions,
-    )
+    from comparison.report.figures.assumptions import draw_assumptions  # plotting: not needed to refuse
 
     files = made_by(lambda new: draw_assumptions(new / assumption_figure_name(scene), scene, cells))
     publish(folder, files, "comparison.assumptions")

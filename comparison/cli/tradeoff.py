@@ -31,7 +31,7 @@ from comparison.execution.executors import Pool
 from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
 from comparison.execution.processes import process_pool
 from comparison.execution.progress import wide_console
-from comparison.report.figures.file_names import figure_file, with_ending
+from comparison.report.figures.file_names import figure_file, tradeoff_figure_name, with_ending
 from comparison.study.study import Study, refuse_same_names
 from reference.problem import Scene, SceneError, load_scene
 from reference.problem.command import UsageError
@@ -145,7 +145,7 @@ def measured_trades(
 
 def _files(measured: MeasuredTrade) -> dict[str, bytes]:
     """Values and pictures of one scene."""
-    from comparison.report.figures.tradeoff import draw_tradeoff, tradeoff_figure_name  # plotting: not needed to refuse
+    from comparison.report.figures.tradeoff import draw_tradeoff  # plotting: not needed to refuse
 
     picture = tradeoff_figure_name(measured.trade.scene)
     return made_by(

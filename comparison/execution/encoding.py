@@ -13,6 +13,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from enum import Enum
+from functools import cache
 from types import NoneType, UnionType
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
@@ -87,11 +88,16 @@ def decoded(data: Any, declared: Any, arrays: Sequence[np.ndarray[Any, Any]]) ->
     if isinstance(declared, type) and issubclass(declared, Enum):
         return declared(data)
     if isinstance(declared, type) and is_dataclass(declared):
-        hints = get_type_hints(declared)
+        hints = _hints(declared)
         names = [part.name for part in fields(declared)]
         _checked(data, isinstance(data, dict) and sorted(data) == sorted(names), declared)
         return declared(**{name: decoded(data[name], hints[name], arrays) for name in names})
     raise TypeError(f"{declared} cannot be read from the store")
+
+
+@cache
+def _hints(declared: type) -> dict[str, Any]:
+    return get_type_hints(declared)
 
 
 def _sequence(data: Any, origin: Any, parts: tuple[Any, ...], arrays: Sequence[np.ndarray[Any, Any]]) -> Any:

@@ -11,11 +11,11 @@ from dataclasses import replace
 
 import numpy as np
 
+import reference
 from comparison.execution.task import Task
 from comparison.study.batches import Batch
 from comparison.study.overhead import START_UP
 from comparison.study.study import Study
-from reference import amplification
 from reference.problem import Scene, load_scene
 
 DURATION = 0.5  # s of motion: enough to reach every function, and over in milliseconds
@@ -50,4 +50,4 @@ def compiling_task(stage: str) -> Task:
 
 
 def _first_call(scene: Scene) -> None:
-    amplification(scene, np.zeros((1, 2)), equations="exact")
+    reference.amplification(scene, np.zeros((1, 2)), equations="exact")

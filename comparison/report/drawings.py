@@ -12,6 +12,7 @@ import xarray as xr
 from comparison.analysis.assumptions.variations import Cell
 from comparison.analysis.completion import Completion
 from comparison.execution.task import Task
+from comparison.report.figures.file_names import assumption_figure_name
 from comparison.report.figures.pictures import SHOWN, Files, Pictures
 from comparison.report.findings import Findings
 from comparison.study.models import Model
@@ -76,7 +77,7 @@ def draw_assumption_figure(figure: AssumptionFigure) -> Files:
     from comparison.report.figures import assumptions  # likewise
 
     with tempfile.TemporaryDirectory() as name:
-        place = Path(name) / assumptions.assumption_figure_name(figure.scene)
+        place = Path(name) / assumption_figure_name(figure.scene)
         assumptions.draw_assumptions(place, figure.scene, figure.cells)
         return tuple((file.name, file.read_bytes()) for file in sorted(Path(name).iterdir()))
 

@@ -21,16 +21,12 @@ from comparison.analysis.benchmarks.table import Verdict as BenchmarkVerdict
 from comparison.analysis.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE
 from comparison.analysis.claims.table import SIGNS
 from comparison.analysis.effective import PHASES
-from comparison.analysis.extremes.matrix import PICTURE
-from comparison.analysis.extremes.verdicts import Verdict
+from comparison.analysis.extremes.matrix import PICTURE, describe
+from comparison.analysis.extremes.verdicts import MEANING, Verdict
 from comparison.analysis.growth import PICTURE as GROWTH_PICTURE
 from comparison.report.drawings import assumption_tasks, drawn
-from comparison.report.figures.assumptions import assumption_figure_name
-from comparison.report.figures.extremes import MEANING, describe, draw_extremes
-from comparison.report.figures.families import draw_families
-from comparison.report.figures.growth import draw_growth
+from comparison.report.figures.file_names import assumption_figure_name, tradeoff_figure_name
 from comparison.report.figures.pictures import smaller
-from comparison.report.figures.tradeoff import draw_tradeoff, tradeoff_figure_name
 from comparison.report.findings import Findings
 from comparison.report.glossary import emphasized, term
 from comparison.report.motion_data import packed, packed_motions
@@ -94,8 +90,26 @@ def draw_all_assumptions(figures: Path, findings: Findings) -> None:
             (figures / name).write_bytes(content)
 
 
+def draw_all_families(figures: Path, findings: Findings) -> None:
+    """The pictures of every family."""
+    from comparison.report.figures.families import draw_families  # matplotlib, as in `draw_all_trades`
+
+    draw_families(figures, findings)
+
+
+def draw_matrix(figures: Path, findings: Findings) -> None:
+    """The picture of the extremes."""
+    from comparison.report.figures.extremes import draw_extremes  # likewise
+
+    if findings.extremes:
+        draw_extremes(figures / PICTURE, findings.extremes)
+
+
 def draw_all_trades(figures: Path, findings: Findings) -> None:
     """The diagrams of every scene that has them, and that of how the cost grows."""
+    from comparison.report.figures.growth import draw_growth  # matplotlib: only a report that draws here needs it
+    from comparison.report.figures.tradeoff import draw_tradeoff
+
     for trade in findings.tradeoff or ():
         draw_tradeoff(figures / tradeoff_figure_name(trade.scene), trade)
     if findings.growth:
@@ -109,7 +123,7 @@ SECTIONS = (
         "Families of scenes",
         ("families",),
         "a range in a scene file makes one: friction = {range = [0.02, 0.2], steps = 10}",
-        draw_families,
+        draw_all_families,
         folded=False,
     ),
     Section(
@@ -165,7 +179,7 @@ SECTIONS = (
         "Stability at the extremes",
         ("extremes",),
         "python -m comparison.extremes makes it, beside the report; the next run of the study shows it",
-        lambda figures, findings: draw_extremes(figures / PICTURE, findings.extremes) if findings.extremes else None,
+        draw_matrix,
     ),
     Section(
         "tradeoff",

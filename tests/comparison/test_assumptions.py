@@ -26,7 +26,8 @@ from comparison.analysis.assumptions.variations import (
     varied,
 )
 from comparison.cli.assumptions import main
-from comparison.report.figures.assumptions import assumption_figure_name, draw_assumptions
+from comparison.report.figures.assumptions import draw_assumptions
+from comparison.report.figures.file_names import assumption_figure_name
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from multibody import amplification

@@ -12,6 +12,7 @@ import pytest
 from known_analyses import collected
 from numpy.typing import NDArray
 
+import reference
 from comparison.analysis.claims import evidence
 from comparison.analysis.claims import table as table_module  # table: what a test made
 from comparison.analysis.claims.cases import CASES
@@ -195,7 +196,7 @@ def test_what_a_solver_complains_about_is_why_a_claim_is_open(monkeypatch: pytes
     def broken(*args: object, **kwargs: object) -> None:
         raise ZeroDivisionError("no ground")
 
-    monkeypatch.setattr(evidence, "amplification", broken)
+    monkeypatch.setattr(reference, "amplification", broken)
     table = collected(Claims(4, READINGS[:1]), PAPERS)
     assert not any(row[0].finding.holds for row in table.verdicts)
     reasons = [row[0].found for row in table.verdicts if row[0].finding == Finding.OPEN]

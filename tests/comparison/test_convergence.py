@@ -9,6 +9,8 @@ import pytest
 from known_analyses import collected
 from numpy.typing import NDArray
 
+import multibody
+import reference
 from comparison.analysis import convergence
 from comparison.analysis.convergence import LIMITS, PENETRATIONS, Convergence, limit_trends
 from comparison.registry import ANALYSES, predicted_costs
@@ -59,8 +61,8 @@ def _regularized(power: float) -> object:
 
 @pytest.mark.parametrize(("power", "says"), [(1.0, "like the power 1"), (0.5, "not like the power 1")])
 def test_the_order_in_v_reg_is_that_of_the_law(monkeypatch: pytest.MonkeyPatch, power: float, says: str) -> None:
-    monkeypatch.setattr(convergence, "amplification", _regularized(power))
-    monkeypatch.setattr(convergence, "engine_amplification", _regularized(power))
+    monkeypatch.setattr(reference, "amplification", _regularized(power))
+    monkeypatch.setattr(multibody, "amplification", _regularized(power))
     for number in (0, 2):  # the equations and the engine, against the resolved peak
         trends = list(limit_trends((load_scene("fig3-I"), number)))
         assert trends

@@ -18,7 +18,7 @@ from comparison.analysis.extremes.analysis import Extremes, reduced
 from comparison.analysis.extremes.causes import CAUSES
 from comparison.analysis.extremes.cells import Cell, answers, cells, read_scene, solve_cell
 from comparison.analysis.extremes.engine import amplification
-from comparison.analysis.extremes.matrix import FILE, STORED, Entry, Extreme, Matrix
+from comparison.analysis.extremes.matrix import FILE, STORED, Entry, Extreme, Matrix, describe
 from comparison.analysis.extremes.rows import COLUMNS, Column, Row, rows, scene
 from comparison.analysis.extremes.verdicts import Reply, Verdict
 from comparison.cli.extremes import main
@@ -26,7 +26,7 @@ from comparison.execution.cache import Cache
 from comparison.execution.processes import process_pool
 from comparison.execution.runner import Runner
 from comparison.execution.task_results import TaskResults
-from comparison.report.figures.extremes import describe, draw_extremes
+from comparison.report.figures.extremes import draw_extremes
 from reference.problem import Outcome
 
 PLAIN = Row("anything", "plain", scene(), ("fake",))

@@ -9,7 +9,7 @@ import pytest
 from known_analyses import collected
 from numpy.typing import NDArray
 
-from comparison.analysis import scaling
+import reference
 from comparison.analysis.scaling import PRINTED, STEP, Scaling, scaled
 from comparison.analysis.trends import Trend
 from comparison.study.study import Study
@@ -36,7 +36,7 @@ def _model(step: Callable[[float], float]) -> Callable[..., Amplification]:
 
 
 def _found(monkeypatch: pytest.MonkeyPatch, step: Callable[[float], float], name: str = "fig3-I") -> list[Trend]:
-    monkeypatch.setattr(scaling, "amplification", _model(step))
+    monkeypatch.setattr(reference, "amplification", _model(step))
     return list(collected(Scaling(), _study(name)))
 
 
@@ -67,7 +67,7 @@ def test_a_lubricated_scene_has_one_peak_and_one_that_fails_says_why(monkeypatch
     def broken(*args: object, **settings: object) -> None:
         raise RuntimeError("singular")
 
-    monkeypatch.setattr(scaling, "amplification", broken)
+    monkeypatch.setattr(reference, "amplification", broken)
     trends = collected(Scaling(), _study("fig4-viscous"))
     assert [trend.body for trend in trends] == [1, 2]
     assert {trend.verdict for trend in trends} == {"solver failed: RuntimeError: singular"}

@@ -151,6 +151,22 @@ def test_a_sliding_rigid_block_is_accelerated_by_mu_g_and_no_more():
     assert (expected < 1.0).all()
 
 
+def test_regularized_friction_of_a_turning_slide_is_mu_g_and_no_more():
+    """Creep that begins a little above v_reg would have more friction than that: up to 2e-4 of it."""
+    scene = block(2.0, 0.264, 4.4).with_values(
+        {
+            "excitation.amplitudes": [[1.95, 2.06], [2.05, 3.46]],
+            "excitation.periods": [0.127, 0.1826],
+            "excitation.decay": [0.707, 0.397],
+        }
+    )
+    phases = np.random.default_rng(6).uniform(0.0, 2.0 * np.pi, (24, 2))
+    for tolerance in (1e-4, 1e-6):
+        answer = reference.amplification(scene, phases, regularization=1.16e-3, tolerance=tolerance)
+        friction = scene.friction_coefficient * GRAVITY / ground_peak(scene, phases)
+        np.testing.assert_allclose(answer.mu[:, 0], friction, rtol=tolerance)
+
+
 @pytest.mark.parametrize("share", [0.75, 0.9, 0.99])
 def test_a_block_under_a_harmonic_slides_as_newmark_says(share):
     """From its largest value on a cosine drives the block until sin z / z = share; it stays within the half cycle."""

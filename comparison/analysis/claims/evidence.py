@@ -7,12 +7,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+import reference
 from comparison.analysis.claims.cases import CASES
 from comparison.analysis.claims.literal import literal_peaks
 from comparison.analysis.claims.readings import Reading, has_stops, settings
 from comparison.analysis.claims.smoothness import Bend, bends
 from comparison.execution.task import TaskResult
-from reference import amplification, modes, trajectory
 from reference.problem import Amplification, Outcome, Scene, exponents, ground_peak, phase_grid
 from reference.problem.reductions import half_turn
 from reference.problem.symmetry import surface
@@ -98,7 +98,7 @@ def gathered(question: Question) -> Evidence:
     law = settings(scene, question.reading)
 
     def solved(scene: Scene, phases: Array, tolerance: float = TOLERANCE) -> Amplification:
-        return amplification(scene, phases, equations="small", tolerance=tolerance, **law)
+        return reference.amplification(scene, phases, equations="small", tolerance=tolerance, **law)
 
     def factors(phases: Array) -> Array:
         return literal_peaks(scene, phases).mu if literal else solved(scene, phases, SHARP).mu
@@ -140,7 +140,7 @@ def without_value(question: Question, failed: TaskResult) -> Evidence:
 def _motion(scene: Scene, v_reg: float | None) -> tuple[tuple[float, ...], float]:
     apart, swing = np.zeros(len(scene.bodies)), 0.0
     for phase in MOTIONS:
-        place = trajectory(scene, phase, equations="small", regularization=v_reg).position[..., :2]
+        place = reference.trajectory(scene, phase, equations="small", regularization=v_reg).position[..., :2]
         reach = np.abs(place).max(axis=(0, 2))
         apart = np.maximum(apart, np.abs(place[..., 0] - place[..., 1]).max(axis=0) / np.where(reach > 0, reach, 1.0))
         swing = max(swing, float((place[:, 0] ** 2).sum(axis=-1).max()) / scene.radius**2)
@@ -153,5 +153,5 @@ def _literal_motion(scene: Scene) -> tuple[tuple[float, ...], float]:
 
 
 def _resonance(scene: Scene) -> tuple[tuple[float, float], ...]:
-    natural, periods = modes(scene).period.ravel(), 2.0 * np.pi / exponents(scene).imag
+    natural, periods = reference.modes(scene).period.ravel(), 2.0 * np.pi / exponents(scene).imag
     return tuple((float(period), float(natural[np.abs(period / natural - 1.0).argmin()])) for period in periods)

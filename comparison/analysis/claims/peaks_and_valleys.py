@@ -173,15 +173,16 @@ def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = T
         return Relief([], np.full(mu.shape, -1))
     least = max(share * span, 2.0 * error)
     around = _neighbors(*mu.shape, closed)
-    height = mu.ravel()
-    order = np.argsort(-height, kind="stable")
-    rank = np.empty(height.size, dtype=int)
-    rank[order] = np.arange(height.size)
-    parent = np.full(height.size, -1)  # of what stands above the falling water: every island's root is its highest node
-    climbs = np.empty(height.size, dtype=int)  # the maximum that steepest ascent leads to
+    height = mu.ravel().tolist()
+    order = np.argsort(-mu.ravel(), kind="stable").tolist()
+    rank = [0] * len(height)
+    for place, node in enumerate(order):
+        rank[node] = place
+    parent = [-1] * len(height)  # of what stands above the falling water: every island's root is its highest node
+    climbs = [-1] * len(height)  # the maximum that steepest ascent leads to
     into: dict[int, int] = {}  # lesser maxima, to the one across their saddle
     tops = []
-    for node in map(int, order):
+    for node in order:
         islands: dict[int, int] = {}  # beside this node, with their highest node beside it
         for other in sorted(around[node], key=rank.__getitem__):
             if parent[other] >= 0:
@@ -196,10 +197,10 @@ def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = T
         for lesser in others:
             parent[lesser] = highest
             if height[lesser] - height[node] < least:
-                into[lesser] = int(climbs[islands[highest]])
+                into[lesser] = climbs[islands[highest]]
     peaks = [top for top in tops if top not in into]
     number = {top: peaks.index(_settled(into, top)) for top in tops}
-    regions = np.array([number[int(top)] for top in climbs]).reshape(mu.shape)
+    regions = np.array([number[top] for top in climbs]).reshape(mu.shape)
     return Relief([divmod(top, mu.shape[1]) for top in peaks], regions)
 
 
@@ -209,10 +210,10 @@ def _settled(into: dict[int, int], top: int) -> int:
     return top
 
 
-def _root(parent: NDArray[np.int_], node: int) -> int:
+def _root(parent: list[int], node: int) -> int:
     while parent[node] != node:
         parent[node] = parent[parent[node]]
-        node = int(parent[node])
+        node = parent[node]
     return node
 
 

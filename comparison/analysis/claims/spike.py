@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+import reference
 from comparison.analysis.claims.cases import CASES
 from comparison.analysis.claims.literal import literal_peaks
 from comparison.analysis.claims.readings import LITERAL, SPEED, Reading
 from comparison.execution.task import TaskResult
-from reference import amplification
 
 STEPS = (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4, 1.25e-4)  # s
 CASE = "fig3-I"
@@ -48,7 +48,7 @@ def spike_over_the_step(reading: Reading = LITERAL) -> Spike:
     """
     scene, phases = CASES[CASE](reading), np.array(PHASES)
     runs = [[literal_peaks(scene, phases, step, spike) for step in STEPS] for spike in (True, False)]
-    limit = amplification(scene, phases, "small", cutoff=SPEED, tolerance=1e-4, rest_condition="printed")
+    limit = reference.amplification(scene, phases, "small", cutoff=SPEED, tolerance=1e-4, rest_condition="printed")
     counted, left_out = (tuple(tuple(map(float, run.mu[:, 0])) for run in each) for each in runs)
     starts = tuple(tuple(map(int, run.spikes)) for run in runs[0])
     return Spike(STEPS, counted, left_out, starts, tuple(map(float, limit.mu[:, 0])))

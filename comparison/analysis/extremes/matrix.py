@@ -122,3 +122,12 @@ class Matrix:
 
 
 STORED = StoredFile(FILE, Matrix, "a matrix of extremes", "python -m comparison.extremes")
+
+
+def describe(entry: Entry) -> str:
+    """What stands in the field: the error claimed, or the status in its own words."""
+    if entry.verdict == Verdict.CONVERGED and entry.error is not None:
+        return f"{entry.error:.0e}"
+    if entry.verdict == Verdict.FAILED:
+        return "FAILED"
+    return entry.status or "against a rule"

@@ -43,6 +43,14 @@ class Verdict(StrEnum):
     FAILED = "FAILED"
 
 
+MEANING = {
+    Verdict.CONVERGED: "converged: error claimed, confirmed by a finer run",
+    Verdict.REFUSED: "refused: against a rule, or the motion leaves the model",
+    Verdict.LIMIT: "limit: the model says that it cannot",
+    Verdict.FAILED: "FAILED: no answer, or a wrong one",
+}
+
+
 @dataclass(frozen=True)
 class Reply:
     """What a model answered: as `reference.problem.Amplification`, or `invalid` (its rule) or `raised` (what)."""

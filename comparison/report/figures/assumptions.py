@@ -13,17 +13,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from comparison.analysis.assumptions.variations import WITHIN, Cell
-from comparison.report.figures.file_names import figure_file
 from comparison.report.figures.pairs import save
 from reference.problem import Scene, verbatim
 
 COLORS = ("#fde725", "#35b779", "#440154")  # within 1 %, within 5 %, beyond: told apart without color vision too
 NO_VALUE, NOT_TRIED = "0.6", "0.95"
-
-
-def assumption_figure_name(scene: Scene) -> str:
-    """File name of the figure of one scene."""
-    return figure_file(scene.name, "assumptions")
 
 
 def draw_assumptions(path: Path, scene: Scene, cells: Sequence[Cell]) -> None:

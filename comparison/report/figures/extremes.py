@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from comparison.analysis.extremes.matrix import Entry, Matrix
-from comparison.analysis.extremes.verdicts import Verdict
+from comparison.analysis.extremes.matrix import Entry, Matrix, describe
+from comparison.analysis.extremes.verdicts import MEANING, Verdict
 
 Line = tuple[str, Mapping[str, Entry] | None]  # title and its entries; None for the heading of a group
 
@@ -20,12 +20,6 @@ COLORS = {
     Verdict.REFUSED: "#bcd4f0",
     Verdict.LIMIT: "#f7d488",
     Verdict.FAILED: "#8c1d18",
-}
-MEANING = {
-    Verdict.CONVERGED: "converged: error claimed, confirmed by a finer run",
-    Verdict.REFUSED: "refused: against a rule, or the motion leaves the model",
-    Verdict.LIMIT: "limit: the model says that it cannot",
-    Verdict.FAILED: "FAILED: no answer, or a wrong one",
 }
 HEIGHT, WIDTH, LABELS, MARGIN, TOP = 0.2, 0.9, 1.75, 0.2, 1.15  # of fields, labels and borders, inches
 PANELS = 2  # side by side, so that the whole fits a screen
@@ -95,12 +89,3 @@ def _field(axes: Axes, place: int, line: int, entry: Entry) -> None:
         place + 0.5, line + 0.52, describe(entry), ha="center", va="center", fontsize=6.5,
         color="white" if dark else "#1b1f24",
     )  # fmt: skip
-
-
-def describe(entry: Entry) -> str:
-    """What stands in the field: the error claimed, or the status in its own words."""
-    if entry.verdict == Verdict.CONVERGED and entry.error is not None:
-        return f"{entry.error:.0e}"
-    if entry.verdict == Verdict.FAILED:
-        return "FAILED"
-    return entry.status or "against a rule"

@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from comparison.analysis.tradeoff.trade import Answered, Entry, Trade
-from comparison.report.figures.file_names import figure_file
 from comparison.report.figures.pairs import save
 from comparison.wording import mathtext
 from reference.problem import verbatim
@@ -28,11 +27,6 @@ FAMILIES = (
     ("entered", "#b3124b", "#ec7aa2"),
 )
 MARKERS = "osD^v<>PX*"
-
-
-def tradeoff_figure_name(scene: str) -> str:
-    """File name of the diagrams of one scene."""
-    return figure_file(scene, "tradeoff")
 
 
 def draw_tradeoff(path: Path, trade: Trade) -> None:

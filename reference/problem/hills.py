@@ -1,0 +1,50 @@
+"""Hills of a surface over the phases: where the climbs to its maximum begin."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.problem.phases import phase_grid
+from reference.problem.scene import Scene
+from reference.problem.symmetry import sources
+
+Array = NDArray[np.float64]
+
+GRID = 48  # phases per axis on which the hills are found
+MAX_CLIMBS = 12  # from the hills that may rise highest
+
+
+def hills(surface: Array, scene: Scene) -> Array:
+    """
+    Phase pairs of a surface that are as high as their eight neighbors, those first that may rise highest between them.
+
+    Parameters
+    ----------
+    surface : ndarray, (n, n)
+        On `phase_grid(n)`; NaN without an answer.
+    scene : Scene
+        Of pairs that a symmetry of the motion makes alike only one is listed.
+
+    Returns
+    -------
+    ndarray, (K, 2), rad
+        At most MAX_CLIMBS of them.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from reference.problem import load_scene
+    >>> alpha = 2.0 * np.pi * np.arange(8) / 8
+    >>> hills(np.cos(2.0 * alpha)[:, None] + np.cos(2.0 * alpha)[None, :], load_scene("fig3-I")).tolist()
+    [[0.0, 0.0]]
+    """
+    points = len(surface)
+    height = np.where(np.isfinite(surface), surface, -np.inf)
+    around = [np.roll(height, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
+    lowest = np.min([np.where(np.isfinite(each), each, height) for each in around], axis=0)
+    places = np.flatnonzero(np.isfinite(height) & (height >= np.max(around, axis=0)))
+    places = places[sources(scene, points)[places] == places]
+    high, low = height.ravel()[places], lowest.ravel()[places]
+    may_reach = high + 0.5 * (high - low)
+    return phase_grid(points)[places[np.argsort(-may_reach, kind="stable")][:MAX_CLIMBS]]
