@@ -197,17 +197,17 @@ def passed(system: System, work: Work, event: int, way: float, low: float, high:
 
 
 @compiled
-def parts_above(system: System, work: Work, event: int, start: float) -> int:
+def parts_beyond(system: System, work: Work, event: int, way: float, start: float) -> int:
     """
     Number of parts of the step in which the value of `event`, `start` at theta = 0, is not below zero.
 
-    Their ends, in theta, are in work.edges (2 MAX_PARTS,).
+    way: -1 for not above zero. The ends of the parts, in theta, are in work.edges (2 MAX_PARTS,).
     """
-    parts, theta, above, value = 0, 0.0, start >= 0.0, start
+    parts, theta, counts, value = 0, 0.0, way * start >= 0.0, start
     while theta < 1.0 and parts < MAX_PARTS:
-        end = min(1.0, first_passage(system, work, event, -1.0 if above else 1.0, theta, value))
-        if above:
+        end = min(1.0, first_passage(system, work, event, -way if counts else way, theta, value))
+        if counts:
             work.edges[2 * parts], work.edges[2 * parts + 1] = theta, end
             parts += 1
-        theta, above, value = end, not above, 0.0
+        theta, counts, value = end, not counts, 0.0
     return parts
