@@ -35,7 +35,7 @@ from comparison.cli.closing import print_closing, print_errors
 from comparison.cli.computing import ending_early
 from comparison.cli.entered import Engines, as_words
 from comparison.cli.options import Options, parsed
-from comparison.cli.terminal import print_plan, print_tolerance
+from comparison.cli.terminal import print_models_left_out, print_plan, print_tolerance
 from comparison.execution.cache import Cache, store_beside
 from comparison.execution.executors import Pool
 from comparison.execution.keys import batch_key, task_key
@@ -94,6 +94,7 @@ def main(
             plan = _chosen(options, hierarchy)
             if options.budget is not None:
                 allotment(plan.study, options.budget, options.jobs)  # refuses what nothing fits
+            print_models_left_out(console, plan.study)
             if options.plan:
                 print_plan(console, plan.study, options)
             if options.tolerance is not None:

@@ -17,7 +17,7 @@ from comparison.execution.task_results import TaskResults
 from comparison.registry import chosen_analyses, first_tasks, predicted_costs
 from comparison.study.accuracy_record import recorded
 from comparison.study.batches import refusal_of
-from comparison.study.models import models_of
+from comparison.study.models import models_of, why_not_spatial
 from comparison.study.overhead import COMPILED_ONCE, LOADING, START_UP, WRITING
 from comparison.study.planning import StudyPlan
 from comparison.study.reductions import reductions
@@ -51,6 +51,13 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
         console.print(f"Not recorded, so tried here at a few phase pairs: {', '.join(tried)}.", soft_wrap=True)
     console.print(COMPILED_ONCE)
     console.print(f"{'No surface' if tried else 'Nothing'} was computed. The report would go to {options.out}.")
+
+
+def print_models_left_out(console: Console, study: Study) -> None:
+    """A line for every scene that states only a part of what a model needs."""
+    for scene in study.scenes:
+        if reason := why_not_spatial(scene):
+            console.print(f"{scene.name}: {reason}.", soft_wrap=True)
 
 
 def _refused(study: Study) -> dict[tuple[str, str], str]:

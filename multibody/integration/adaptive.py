@@ -42,8 +42,6 @@ FEEDBACK_PER_SLIP_CHANGE, MAX_FEEDBACK = 2.0, 0.3
 RIM = 1.0  # largest rise of the platform, in units of length, which is rho
 RECENT_ROWS = 8  # at the end of a chunk: they decide whether the step may grow
 SETTLED_FRACTION = 0.9  # of a largest value: later values below it do not reach it in a run of another level either
-# relative change of an acceleration over such a load (measured: up to 0.22, where supports come to v_reg one by one)
-MAX_ERROR_PER_WARPING_LOAD = 0.3
 WARPING_RELAXATION = 20.0  # time until warping has relaxed, in square roots of the warping compliance
 
 
@@ -78,8 +76,9 @@ class EngineRun:
     instant: float = math.nan  # of a termination, in units of time
     steps: int = 0
     warping_load: float = 0.0  # largest load that warping of the supports takes so far, in shares of the weight
-    # likewise, until each body's acceleration last came so near its peak that such a load may make it the peak, (N,)
-    load_at_peaks: Array = field(default_factory=lambda: np.zeros(1))
+    load_at_peaks: Array = field(default_factory=lambda: np.zeros(1))  # likewise, until each body's peak, (N,)
+    # of every chunk: the bodies' largest accelerations (N,), and such a load until then
+    loaded: list[tuple[Array, float]] = field(default_factory=list)
     last_open: float = -math.inf  # the latest instant at which a support carried no load, in units of time
     max_displacement: float = 0.0  # horizontal, of the platform, in units of length
     # the last instant at which an acceleration or the displacement of the platform came within SETTLED_FRACTION of its
@@ -271,7 +270,11 @@ def _record(
         result.max_displacement = max(result.max_displacement, displacement)
     first = int(np.searchsorted(motion.time, result.undisturbed))
     if read and first < len(motion.time):
+        before = result.peaks.value.copy()
         result.peaks.add(motion.time[first:], size[first:], motion.slip[first:])
+        result.load_at_peaks[result.peaks.value > before] = result.warping_load
+        if result.warping_load > 0.0:
+            result.loaded.append((size[first:].max(axis=0), result.warping_load))
         _record_settling(result, motion.time[first:], size[first:], distance[first:])
     gap = float(motion.gap.max())
     result.opened |= gap >= 0.0
@@ -282,8 +285,6 @@ def _record(
 
 def _record_settling(result: EngineRun, time: Array, size: Array, displacement: Array) -> None:
     """Record when something that is asked for last came near its largest value so far."""
-    below = 1.0 - MAX_ERROR_PER_WARPING_LOAD * result.warping_load
-    result.load_at_peaks[(size >= below * result.peaks.value).any(axis=0)] = result.warping_load
     near = (size >= SETTLED_FRACTION * result.peaks.value).any(axis=1)
     near |= displacement >= SETTLED_FRACTION * result.max_displacement
     if near.any():

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.problem.build_cache import cached_on_disk
+from reference.problem.compiled_parts import compiled_part
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -111,7 +112,7 @@ def _largest(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Arra
             errors[m, body] = sqrt(max(best, possible)) - sqrt(best)
 
 
-@cached_on_disk(__file__)
+@compiled_part(nogil=True)
 def _searched(series: Array) -> tuple[float, float]:
     """Largest |v|^2 on an interval with these coefficients (axes, P), and what Newton's method leaves."""
     best, place = -1.0, 0.0
@@ -133,7 +134,7 @@ def _searched(series: Array) -> tuple[float, float]:
     return best, left
 
 
-@cached_on_disk(__file__)
+@compiled_part(nogil=True)
 def _squares(series: Array, x: float) -> tuple[float, float, float]:
     """|v|^2 at x and its first two derivatives."""
     total = first = second = 0.0

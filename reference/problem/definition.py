@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.problem.build_cache import cached_on_disk
+from reference.problem.compiled_parts import compiled_part
 from reference.problem.excitation import exponents, ground_acceleration, loading_period
 from reference.problem.phases import checked_phases
 from reference.problem.scene import Scene
@@ -53,7 +54,9 @@ def ground_peak(scene: Scene, phases: ArrayLike) -> Array:
         return np.full(len(pairs), _record_peak(scene))
     s = exponents(scene)
     step = loading_period(scene) / SAMPLES_PER_PERIOD
-    return _ground_peaks(pairs, scene.amplitudes, s, scene.duration, min(step, scene.duration / 8.0))
+    with np.errstate(over="ignore"):
+        weights = np.sqrt((scene.amplitudes**2).sum(axis=0))
+    return _ground_peaks(pairs, scene.amplitudes, weights, s, scene.duration, min(step, scene.duration / 8.0))
 
 
 def _record_peak(scene: Scene) -> float:
@@ -64,7 +67,7 @@ def _record_peak(scene: Scene) -> float:
         return float(np.sqrt((ground_acceleration(scene, (0.0, 0.0), instants) ** 2).sum(axis=1)).max())
 
 
-@cached_on_disk(__file__)
+@compiled_part(nogil=True)
 def _square_and_slopes(
     t: float, phase: Array, amplitudes: Array, s: NDArray[np.complex128]
 ) -> tuple[float, float, float]:
@@ -84,7 +87,7 @@ def _square_and_slopes(
     return value, slope, curvature
 
 
-@cached_on_disk(__file__)
+@compiled_part(nogil=True)
 def _refined(left: float, right: float, phase: Array, amplitudes: Array, s: NDArray[np.complex128]) -> float:
     """Maximum of |u|^2 on [left, right], which holds one sample higher than both ends: Newton, bisection as a guard."""
     t = 0.5 * (left + right)
@@ -106,10 +109,11 @@ def _refined(left: float, right: float, phase: Array, amplitudes: Array, s: NDAr
 
 
 @cached_on_disk(__file__, nogil=True)
-def _ground_peaks(phases: Array, amplitudes: Array, s: NDArray[np.complex128], duration: float, step: float) -> Array:
+def _ground_peaks(
+    phases: Array, amplitudes: Array, weights: Array, s: NDArray[np.complex128], duration: float, step: float
+) -> Array:
+    """(M,) for the phases (M, 2); weights (2,), m/s^2: sizes of the harmonics."""
     count = math.ceil(duration / step) + 1
-    weight0 = np.sqrt((amplitudes[:, 0] ** 2).sum())
-    weight1 = np.sqrt((amplitudes[:, 1] ** 2).sum())
     peaks = np.empty(phases.shape[0])
     grown0, grown1 = np.empty(count, np.complex128), np.empty(count, np.complex128)  # exp(s t) at the samples
     bound = np.empty(count)  # of |u|^2 from there on
@@ -124,7 +128,7 @@ def _ground_peaks(phases: Array, amplitudes: Array, s: NDArray[np.complex128], d
             if n == known:
                 t = min(n * step, duration)
                 grown0[n], grown1[n] = np.exp(s[0] * t), np.exp(s[1] * t)
-                bound[n] = (weight0 * math.exp(s[0].real * t) + weight1 * math.exp(s[1].real * t)) ** 2
+                bound[n] = (weights[0] * math.exp(s[0].real * t) + weights[1] * math.exp(s[1].real * t)) ** 2
                 known += 1
             x0, x1 = (turn0 * grown0[n]).real, (turn1 * grown1[n]).real
             value = 0.0

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.problem.build_cache import cached_on_disk
+from reference.problem.compiled_parts import compiled_part
 from reference.problem.demands import ANSWERED
 from reference.problem.ranges import Range, checked_array, checked_number
 from reference.problem.result import Trajectory
@@ -150,7 +151,7 @@ def _largest_displacements(time: Array, floor: Array, period: Array, damping: fl
     return largest
 
 
-@cached_on_disk(__file__, nogil=True)
+@compiled_part(nogil=True)
 def _transition(angle: float, damping: float) -> tuple[float, float, float, float, float, float, float, float]:
     """
     One step of x'' + 2 damping x' + x = -(start + change s / angle), over the angle s: power series of what is added.

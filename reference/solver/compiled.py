@@ -14,6 +14,7 @@ from typing import Any
 import numba
 
 from reference.problem.build_cache import cached_on_disk
+from reference.problem.compiled_parts import compiled_part
 
 njit: Any = numba.njit
 
@@ -21,14 +22,14 @@ njit: Any = numba.njit
 OPTIONS = {"error_model": "numpy", "nogil": True}
 
 
-def compiled(function: Callable[..., Any]) -> Any:
-    """A part of the solver, called by compiled code alone: it is built into its caller and not wrapped for Python."""
+def allocating(function: Callable[..., Any]) -> Any:
+    """A part of the solver that makes arrays."""
     return njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)(function)
 
 
-def inlined(function: Callable[..., Any]) -> Any:
-    """A part called in one place: its body becomes part of the caller, which shortens compilation."""
-    return njit(inline="always", **OPTIONS)(function)
+def compiled(function: Callable[..., Any]) -> Any:
+    """A part of the solver, called by compiled code alone."""
+    return compiled_part(**OPTIONS)(function)
 
 
 def cached_entry_point(function: Callable[..., Any]) -> Any:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from math import pi, sqrt
 
-from reference.solver.compiled import cached_entry_point, compiled, inlined
+from reference.solver.compiled import cached_entry_point, compiled
 from reference.solver.contact.platform import load_in_state, rest_excess
 from reference.solver.ground import ground_at
 from reference.solver.phases.follow import follow
@@ -80,7 +80,7 @@ def crawls(system: System, work: Work, contact: int, demand: Demand) -> bool:
     return speed2(system, work) <= slow2 and barely_slips(system, work)
 
 
-@inlined
+@compiled
 def integrate(system: System, work: Work, demand: Demand, record: Record, stop: float) -> int:
     """
     Follow the motion from the state in work.x, work.v to `stop` or its end; how it ended (system.py), at work.time.

@@ -11,7 +11,7 @@ from numba import types
 from numba.experimental import structref
 
 from reference.solver.collocation import CHANNELS, STAGES
-from reference.solver.compiled import compiled
+from reference.solver.compiled import allocating, compiled
 from reference.solver.system import Array, Complex, Record, System
 
 # rows of Work.stage: position, velocity, drive, reaction / m1, squared speed, inertia determinant; y behind x
@@ -118,7 +118,7 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
 structref.define_proxy(Work, _WorkType, list(Work.__annotations__))
 
 
-@compiled
+@allocating
 def workspace(bodies: int) -> Work:
     """For runs with this many bodies."""
     n, s, c = bodies, STAGES, CHANNELS

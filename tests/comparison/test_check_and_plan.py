@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from conftest import Run
 from fake_models import fake_hierarchy
 
+import reference
 from comparison.study.models import MODEL_HIERARCHY
 from reference.problem import builtin_scenes
 
@@ -58,6 +60,21 @@ def test_plan_refuses_what_takes_more_work_than_is_allowed(command: Callable[...
     assert "translational engine: refused before any step" in run.out
     assert "a phase pair may take 1e+03" in run.out
     assert "refused" not in command(*SMALL, "--plan", hierarchy=MODEL_HIERARCHY).out
+
+
+def test_a_scene_that_states_a_part_of_what_the_spatial_model_needs_is_told_the_rest(
+    command: Callable[..., Run], tmp_path: Path
+) -> None:
+    lines = (Path(reference.problem.__file__).parent / "scenes" / "fig3-I.toml").read_text("utf-8").splitlines()
+
+    def planned(name: str, *left_out: str) -> str:
+        (tmp_path / name).write_text("\n".join(line for line in lines if line.split(" ")[0] not in left_out), "utf-8")
+        return command(str(tmp_path / name), "--grid", "2", "--plan").out
+
+    told = "no spatial model, as it lacks"
+    assert told not in planned("whole.toml")
+    assert f"part: {told} isolator.sphere_radius." in planned("part.toml", "sphere_radius")
+    assert told not in planned("plain.toml", "sphere_radius", "supports", "ring", "height", "size")
 
 
 def test_plan_predicts_in_proportion_to_the_points(command: Callable[..., Run]) -> None:

@@ -11,9 +11,14 @@ from scenes_at_hand import changed
 import multibody
 import reference
 from multibody.integration import one_run, refine
-from multibody.integration.adaptive import MAX_ERROR_PER_WARPING_LOAD, EngineRun, run_adaptively
+from multibody.integration.adaptive import EngineRun, run_adaptively
 from multibody.integration.constant_step import Engine
-from multibody.integration.estimate import MIN_ERROR_PER_WARPING_LOAD, measured_per_load
+from multibody.integration.estimate import (
+    MAX_ERROR_PER_WARPING_LOAD,
+    MIN_ERROR_PER_WARPING_LOAD,
+    from_sharing,
+    measured_per_load,
+)
 from multibody.integration.level import for_small_peaks
 from multibody.integration.peak import Peaks
 from reference.problem import Outcome, Scene, load_scene
@@ -169,10 +174,17 @@ def test_what_warped_supports_do_is_in_proportion_to_the_load_that_a_softer_run_
     softer.value[:] = 1.003, 2.0
     run = EngineRun(peaks, np.inf, load_at_peaks=np.array([0.2, 0.4]))
     other = EngineRun(softer, np.inf, load_at_peaks=np.array([0.1, 0.2]))
-    np.testing.assert_allclose(measured_per_load(run, other), [1.5 * 0.003 / 0.1, MIN_ERROR_PER_WARPING_LOAD])
+    np.testing.assert_allclose(measured_per_load(run, other), [2.0 * 0.003 / 0.1, MIN_ERROR_PER_WARPING_LOAD])
     assert measured_per_load(other, run).tolist() == [MAX_ERROR_PER_WARPING_LOAD] * 2, "no load is taken off"
     failed = EngineRun(softer, np.inf, Outcome.SOLVER_FAILED, load_at_peaks=np.array([0.1, 0.2]))
     assert (measured_per_load(run, failed) == MAX_ERROR_PER_WARPING_LOAD).all()
+
+
+def test_later_loads_of_warped_supports_count_as_far_as_they_can_make_a_larger_peak() -> None:
+    run = EngineRun(Peaks(2, np.inf), np.inf, load_at_peaks=np.array([0.1, 0.1]))
+    run.peaks.value[:] = 1.0, 2.0
+    run.loaded += [(np.array([1.0, 2.0]), 0.1), (np.array([0.99, 1.2]), 0.4)]
+    np.testing.assert_allclose(from_sharing(run, np.array([0.1, 0.1])), [0.99 * 1.04 - 1.0, 0.02])
 
 
 @pytest.mark.long

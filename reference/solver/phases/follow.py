@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import inf, log, sqrt
 
-from reference.solver.compiled import compiled, inlined
+from reference.solver.compiled import compiled
 from reference.solver.contact.friction import rising_rate
 from reference.solver.events import LEVEL, SPEED, expand_level, expand_speed, lowest, parts_above
 from reference.solver.near_stop import near_stop_step
@@ -63,7 +63,7 @@ FRICTION_ROUNDING = 1e-14  # of the friction limit: no acceleration is closer, a
 VARYING_NEWTON_FRACTION = 1e-3  # of that change otherwise, where friction depends on the speed
 
 
-@inlined
+@compiled
 def follow(system: System, work: Work, contact: int, demand: Demand, record: Record) -> tuple[int, int]:
     """Until the contact changes or the motion ends: (how it went, what the contact does next). See run.py."""
     since = begin_phase(system, work, contact, demand)
@@ -137,7 +137,7 @@ def proposed_length(system: System, work: Work, contact: int, demand: Demand) ->
     return min(h, work.held) if work.held > 0.0 else h
 
 
-@inlined
+@compiled
 def made(system: System, work: Work, contact: int, demand: Demand, h: float) -> int:
     """Make the step; SOLVED or what stood in the way."""
     if contact == STOPPING:
@@ -163,7 +163,7 @@ def made(system: System, work: Work, contact: int, demand: Demand, h: float) -> 
     return UNSOLVED if code == SOLVED and contact == SLIDING and turns_too_far(work) else code
 
 
-@inlined
+@compiled
 def event_within(system: System, work: Work, contact: int, demand: Demand, h: float) -> tuple[float, int]:
     """
     Length of the step up to the first event inside it, and what the contact does then.
@@ -198,7 +198,7 @@ def counted(system: System, work: Work, contact: int, demand: Demand, h: float) 
     return 1
 
 
-@inlined
+@compiled
 def after_step(
     system: System, work: Work, contact: int, following: int, demand: Demand, h: float, factor: float
 ) -> int:
