@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
+import pytest
 from numba import njit
 
 from reference.problem.compiled_parts import compiled_part
@@ -47,3 +53,22 @@ def test_a_part_can_be_shared_by_entry_points() -> None:
 
     assert entry(3) == 2.0 * 3.0 + 2.0
     assert other(np.array([1.0, 2.0])) == 4.0
+
+
+BUILDS = """
+import sys
+from numba.core.dispatcher import Dispatcher
+import reference
+reference.amplification(reference.load_scene("fig3-I"), [(0.3, 1.1)], full=True)
+solver = [vars(module) for name, module in list(sys.modules.items()) if name.startswith("reference.solver")]
+parts = {part for names in solver for part in names.values() if isinstance(part, Dispatcher)}
+assert len(parts) > 100
+print(*sorted(part.__name__ for part in parts if len(part.overloads) > 1))
+"""
+
+
+@pytest.mark.long
+def test_every_part_of_the_solver_is_compiled_once(tmp_path: Path) -> None:
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    run = subprocess.run([sys.executable, "-c", BUILDS], env=environment, check=True, capture_output=True, text=True)
+    assert run.stdout.split() == []
