@@ -165,6 +165,8 @@ def refine(
         if candidate.meets(tolerance):
             return _answer(model, candidate, Outcome.OK)
         rounded = level.rounding > np.maximum(tolerance * run.peaks.value, candidate.errors / COMPLIANCE_RATIO)
+        if rounded.any() and shared:
+            break  # hardly more than rounding is left, and no further level rounds less or shows how little it does
         if rounded.any() and best is not None and best.relative_error <= candidate.relative_error:
             return _answer(model, best, Outcome.TOLERANCE_NOT_MET)  # rounding takes over at this level
         best = candidate if candidate.is_complete else None

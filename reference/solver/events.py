@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from reference.solver.collocation import DENSE, MONOMIALS, STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.platform import load_at_stage, rest_excess
 from reference.solver.system import Array, Load, System
 from reference.solver.work import MAX_PARTS, POWERS, REACTION, SPEED2, VELOCITY, Work
 
-# What is passed: a level by the polynomial in powers[0], the friction limit at rest, a sliding speed
-LEVEL, ONSET, SPEED = range(3)
+# What is passed: a level by the polynomial in powers[0], the friction limit at rest, a sliding speed.
+# No literals (system.py).
+LEVEL, ONSET, SPEED = np.int64(0), np.int64(1), np.int64(2)
 NEVER = 2.0  # theta of an event that is not within the step
 GOLDEN_SECTIONS = 30  # of two instants: an event shorter than a millionth of the step moves nothing
 GOLDEN_SHARE = 0.382

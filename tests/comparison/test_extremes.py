@@ -19,7 +19,7 @@ from comparison.analysis.extremes.causes import CAUSES
 from comparison.analysis.extremes.cells import Cell, answers, cells, read_scene, solve_cell
 from comparison.analysis.extremes.engine import amplification
 from comparison.analysis.extremes.matrix import FILE, STORED, Entry, Extreme, Matrix, describe
-from comparison.analysis.extremes.rows import COLUMNS, Column, Row, rows, scene
+from comparison.analysis.extremes.rows import COLUMNS, PLAIN_RADIUS, Column, Row, rows, scene
 from comparison.analysis.extremes.verdicts import Reply, Verdict
 from comparison.cli.extremes import main
 from comparison.execution.cache import Cache
@@ -250,6 +250,16 @@ def test_the_error_knows_what_a_bad_choice_of_stiffness_or_step_costs(choice):
     exact = reference.amplification(brief, [(0.3, 1.1)], equations="exact", regularization=1e-3)
     assert engine.status[0] in ("ok", "tolerance not met")
     assert (abs(engine.mu - exact.mu) <= engine.error + exact.error).all()
+
+
+def test_a_larger_radius_leaves_the_building_above_its_contacts():
+    """Heights count from a radius below the contacts."""
+    plain = min(body["height"] for body in scene()["bodies"]) - PLAIN_RADIUS
+    larger = [row.scene for row in rows() if row.scene["isolator"].get("radius", 0.0) > PLAIN_RADIUS]
+    finite = [stated for stated in larger if stated["isolator"]["radius"] < float("inf")]
+    assert finite
+    for stated in finite:
+        assert min(body["height"] for body in stated["bodies"]) - stated["isolator"]["radius"] >= plain - 1e-9
 
 
 def test_every_known_cause_of_a_limit_is_that_of_a_cell():

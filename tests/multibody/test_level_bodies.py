@@ -48,7 +48,9 @@ def test_it_is_refused_where_something_may_turn(scene: Scene) -> None:
 
 def test_the_weight_of_a_second_level_body_turns_the_platform() -> None:
     scene = level("fig3-I", 2.65, bodies=2)
-    spatial, moving = (multibody.amplification(scene, PHASES[:1], model) for model in ("spatial", "translational"))
+    spatial, moving = (
+        multibody.amplification(scene, PHASES[:1], model, tolerance=5e-4) for model in ("spatial", "translational")
+    )
     assert moving.mu[0, 0] - spatial.mu[0, 0] > 2.0 * (moving.error[0, 0] + spatial.error[0, 0])
 
 

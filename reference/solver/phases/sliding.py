@@ -78,7 +78,7 @@ def begin_sliding(system: System, work: Work, demand: Demand) -> None:
         take_limit(work, squared_total(system, load, work.angle))
     ex, ey = heading(work.angle, system.axes)
     ax, ay, _, _ = directed(system, load, 0.0, ex, ey)
-    begin_with(system, work, ground, ax, ay, False)
+    begin_with(system, work, ground, ax, ay, SLIDING)
 
 
 @compiled
