@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from numba import njit
 
+import reference
 from reference.problem.compiled_parts import compiled_part
 
 
@@ -72,3 +73,24 @@ def test_every_part_of_the_solver_is_compiled_once(tmp_path: Path) -> None:
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
     run = subprocess.run([sys.executable, "-c", BUILDS], env=environment, check=True, capture_output=True, text=True)
     assert run.stdout.split() == []
+
+
+UNKNOWN_NUMBA = """
+import reference.problem.compiled_parts as parts
+parts.NEWEST_KNOWN = 0, 0
+import reference
+print(reference.amplification(reference.load_scene("fig3-I"), [(0.3, 1.1)]).mu.tolist())
+"""
+
+
+@pytest.mark.long  # compiles the solver as numba compiles functions
+def test_with_a_numba_that_is_not_known_the_numbers_are_the_same(tmp_path: Path) -> None:
+    run = subprocess.run(
+        [sys.executable, "-c", UNKNOWN_NUMBA],
+        env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    expected = reference.amplification(reference.load_scene("fig3-I"), [(0.3, 1.1)])
+    assert run.stdout.strip() == str(expected.mu.tolist())
