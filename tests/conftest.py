@@ -1,9 +1,26 @@
-"""Property tests draw the same examples in every run, so that a gate gives one answer twice; -m long draws new ones."""
+"""
+What all tests share: their examples, what they compile, and how many run at once.
+
+Property tests draw the same examples in every run, so that a gate gives one answer twice; -m long draws new ones.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
+from threading import RLock
+from typing import Any
+
 import pytest
 from hypothesis import settings
+from numba.core.dispatcher import Dispatcher
+
+from comparison.execution.executors import cores
+
+try:
+    import fcntl
+except ImportError:  # on Windows every process compiles for itself
+    fcntl = None  # type: ignore[assignment]
 
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.register_profile("new", deadline=None)
@@ -11,3 +28,39 @@ settings.register_profile("new", deadline=None)
 
 def pytest_configure(config: pytest.Config) -> None:
     settings.load_profile("new" if config.getoption("markexpr") == "long" else "same")
+    if hasattr(config, "workerinput"):  # one of several processes
+        compile_in_turn()
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """One more than processors: tests that wait for processes and for limits of time leave theirs idle."""
+    return cores() + 1
+
+
+def compile_in_turn() -> None:
+    """Let processes compile one after the other: what one has compiled and kept on disk the others read."""
+    compiled, thread = Dispatcher.compile, RLock()
+    depth = 0  # a function compiles those that it calls
+
+    def in_turn(dispatcher: Any, signature: Any) -> Any:
+        nonlocal depth
+        with thread, nullcontext() if depth else alone():
+            depth += 1
+            try:
+                return compiled(dispatcher, signature)
+            finally:
+                depth -= 1
+
+    Dispatcher.compile = in_turn
+
+
+@contextmanager
+def alone() -> Iterator[None]:
+    """Keep other processes out of the block, by a lock on this file."""
+    if fcntl is None:
+        yield
+        return
+    with open(__file__) as stream:
+        fcntl.flock(stream, fcntl.LOCK_EX)
+        yield

@@ -16,6 +16,7 @@ from reference.solver.compiled import compiled
 from reference.solver.system import Ground, System
 from reference.solver.work import Work
 
+PLATFORM = np.int64(0)  # its number; no literal (system.py)
 ONES_IN_CHANNELS = TO_CHANNELS.sum(axis=1)
 NODES_IN_CHANNELS = TO_CHANNELS @ NODES
 _THROUGH = np.einsum("kj,jm->jkm", FROM_CHANNELS, TO_CHANNELS)  # from stage m through channel j to stage k
@@ -107,7 +108,7 @@ def load_chain(system: System, work: Work, h: float) -> None:
                     load += coupling_above(system, i, axis, root) * carried
                 loads[i, axis, j] = load
                 carried = load / pivot[i, axis, j]
-            gain = coupling_above(system, 0, axis, root) * carried
+            gain = coupling_above(system, PLATFORM, axis, root) * carried
             for k in range(STAGES):
                 free[axis, k] += (FROM_CHANNELS[k, j] * gain).real
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from reference.solver.collocation import DENSE, MONOMIALS, STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.platform import load_at_stage, rest_excess
 from reference.solver.system import Array, Load, System
 from reference.solver.work import MAX_PARTS, POWERS, REACTION, SPEED2, VELOCITY, Work
 
-# What is passed: a level by the polynomial in powers[0], the friction limit at rest, a sliding speed
-LEVEL, ONSET, SPEED = range(3)
+# What is passed: a level by the polynomial in powers[0], the friction limit at rest, a sliding speed.
+# No literals (system.py).
+LEVEL, ONSET, SPEED = np.int64(0), np.int64(1), np.int64(2)
 NEVER = 2.0  # theta of an event that is not within the step
 GOLDEN_SECTIONS = 30  # of two instants: an event shorter than a millionth of the step moves nothing
 GOLDEN_SHARE = 0.382
@@ -197,17 +200,17 @@ def passed(system: System, work: Work, event: int, way: float, low: float, high:
 
 
 @compiled
-def parts_above(system: System, work: Work, event: int, start: float) -> int:
+def parts_beyond(system: System, work: Work, event: int, way: float, start: float) -> int:
     """
     Number of parts of the step in which the value of `event`, `start` at theta = 0, is not below zero.
 
-    Their ends, in theta, are in work.edges (2 MAX_PARTS,).
+    way: -1 for not above zero. The ends of the parts, in theta, are in work.edges (2 MAX_PARTS,).
     """
-    parts, theta, above, value = 0, 0.0, start >= 0.0, start
+    parts, theta, counts, value = 0, 0.0, way * start >= 0.0, start
     while theta < 1.0 and parts < MAX_PARTS:
-        end = min(1.0, first_passage(system, work, event, -1.0 if above else 1.0, theta, value))
-        if above:
+        end = min(1.0, first_passage(system, work, event, -way if counts else way, theta, value))
+        if counts:
             work.edges[2 * parts], work.edges[2 * parts + 1] = theta, end
             parts += 1
-        theta, above, value = end, not above, 0.0
+        theta, counts, value = end, not counts, 0.0
     return parts

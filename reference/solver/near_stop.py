@@ -200,7 +200,7 @@ def turn_platform(system: System, work: Work) -> None:
 def correct_turning(system: System, work: Work, h: float) -> float:
     """One iteration of Newton's method for the directions, the speeds behind them; the largest change, or infinity."""
     turning, residual = work.turning, work.residual[:STAGES]
-    matrix, pivots = work.matrix[:STAGES, :STAGES], work.pivots[:STAGES]
+    matrix, pivots = work.turn_matrix, work.pivots[:STAGES]
     for k in range(STAGES):
         residual[k] = work.angle - turning[DIRECTION, k]
         for m in range(STAGES):
@@ -219,7 +219,7 @@ def correct_turning(system: System, work: Work, h: float) -> float:
     if system.rate > 0.0 and not correct_levels(work, h):
         return inf
     for k in range(STAGES):
-        change = max(change, abs(residual[k]), abs(levels[k] - turning[SIGMA, k]))
+        change = max(change, max(abs(residual[k]), abs(levels[k] - turning[SIGMA, k])))
         turning[DIRECTION, k] += residual[k]
         turning[SIGMA, k] = levels[k]
         if not change < DIVERGED:
@@ -231,7 +231,7 @@ def correct_turning(system: System, work: Work, h: float) -> float:
 def correct_levels(work: Work, h: float) -> bool:
     """Newton's method in place of iteration for the logarithms of the speed in `levels`; False if it has no step."""
     turning, levels = work.turning, work.levels
-    matrix, pivots = work.matrix[:STAGES, :STAGES], work.pivots[:STAGES]
+    matrix, pivots = work.turn_matrix, work.pivots[:STAGES]
     for k in range(STAGES):
         levels[k] -= turning[SIGMA, k]
         for m in range(STAGES):

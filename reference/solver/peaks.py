@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from math import sqrt
 
+import numpy as np
+
 from reference.solver.collocation import DENSE, NODES, STAGES
 from reference.solver.compiled import compiled
 from reference.solver.events import expand
@@ -14,6 +16,7 @@ from reference.solver.work import POWERS, Work
 MAX_RISE_BETWEEN_STAGES = 0.2
 MAX_WAY_FACTOR = 1.5  # bound on the way within a step, times the larger speed at its ends and its length
 NEWTON_ITERATIONS = 6
+IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # components of a vector; no literals (system.py)
 SETTLED_FRACTION = 0.9  # of the largest so far: smaller values count as over
 
 
@@ -87,7 +90,7 @@ def take_peaks(work: Work, low: float, high: float) -> bool:
             continue
         for axis in range(3):
             expand(work.total[i, axis], work.powers[axis])
-        top, place = largest_square(work, 3, low, high)
+        top, place = largest_square(work, IN_SPACE, low, high)
         large = large or top >= SETTLED_FRACTION**2 * work.best[i]
         if top > work.best[i]:
             work.best[i] = top
@@ -115,7 +118,7 @@ def take_reach(work: Work, h: float, stretched: bool) -> bool:
     """
     speed2 = 0.0
     for axis in range(2):
-        speed2 = max(speed2, work.v[0, axis] ** 2, work.v1[0, axis] ** 2)
+        speed2 = max(speed2, max(work.v[0, axis] ** 2, work.v1[0, axis] ** 2))
     start = work.x[0, 0] ** 2 + work.x[0, 1] ** 2
     end = work.x1[0, 0] ** 2 + work.x1[0, 1] ** 2
     far = max(start, end)
@@ -125,7 +128,7 @@ def take_reach(work: Work, h: float, stretched: bool) -> bool:
     elif sqrt(max(start, end)) + MAX_WAY_FACTOR * h * sqrt(speed2) > sqrt(work.reach2):
         for axis in range(2):
             expand_place(work, h, axis)
-        top, _ = largest_square(work, 2, 0.0, 1.0)
+        top, _ = largest_square(work, IN_THE_PLANE, 0.0, 1.0)
         far = max(far, top)
     work.reach2 = max(work.reach2, far)
     return far >= SETTLED_FRACTION**2 * work.reach2

@@ -38,15 +38,15 @@ def begin(system: System, work: Work, contact: int) -> None:
     if contact != REST and not (contact == SLIDING and still):
         load = load_in_state(system, work, ground)
         ax, ay, _, _, _ = moving(system, contact, load, work.v[0, 0], work.v[0, 1])
-    begin_with(system, work, ground, ax, ay, contact == REST)
+    begin_with(system, work, ground, ax, ay, contact)
 
 
 @compiled
-def begin_with(system: System, work: Work, ground: Ground, ax: float, ay: float, resting: bool) -> None:
+def begin_with(system: System, work: Work, ground: Ground, ax: float, ay: float, contact: int) -> None:
     """The platform's acceleration at the start of a phase, and with it the absolute accelerations there."""
     work.a0[0, 0], work.a0[0, 1] = ax, ay
     vertical = ground.z
-    if not resting:
+    if contact != REST:
         vertical += lifted(system, work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1], ax, ay)
     for i in range(work.x.shape[0]):
         work.total0[i, 0] = work.a0[i, 0] + ground.x
@@ -90,7 +90,7 @@ def next_break(system: System, work: Work, demand: Demand) -> float:
 @compiled
 def plain_length(system: System, work: Work, demand: Demand) -> float:
     """Length of the next step in time, s: at most to the loading's next kink."""
-    return min(work.length, remaining(system, work, demand), next_break(system, work, demand) - work.time)
+    return min(min(work.length, remaining(system, work, demand)), next_break(system, work, demand) - work.time)
 
 
 @compiled

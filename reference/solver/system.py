@@ -17,11 +17,11 @@ Complex = NDArray[np.complex128]
 SET_VALUED, REGULARIZED, LUBRICATED = 0, 1, 2
 # conditions for rest
 CONSISTENT, PRINTED = 0, 1
+# numpy integers below: numba would build a function once more for every literal it is called with
 # what the contact does
-# numpy integers: numba would build a function once more for every literal it is called with
 REST, SLIDING, CREEPING, LUBRICATED_SLIDING, STOPPING = cast("tuple[int, ...]", tuple(map(np.int64, range(5))))
 # how the equations of one step, or a whole run, ended
-SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT, TRAVEL = range(7)
+SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT, TRAVEL = cast("tuple[int, ...]", tuple(map(np.int64, range(7))))
 
 
 class System(NamedTuple):

@@ -7,7 +7,7 @@ from math import inf
 from reference.solver.collocation import DENSE
 from reference.solver.compiled import compiled
 from reference.solver.events import BISECTIONS, expand, value_at
-from reference.solver.peaks import expand_place, largest_square, squares
+from reference.solver.peaks import IN_THE_PLANE, expand_place, largest_square, squares
 from reference.solver.system import REST, STOPPING, System
 from reference.solver.work import CLOCK, Work
 
@@ -23,7 +23,7 @@ def travel_reached(system: System, work: Work, contact: int, h: float) -> float:
         else:
             expand_place(work, h, axis)
     limit = system.travel * system.travel
-    top, place = largest_square(work, 2, 0.0, 1.0)
+    top, place = largest_square(work, IN_THE_PLANE, 0.0, 1.0)
     if top <= limit:
         return inf
     theta = first_beyond(work, limit, place)
@@ -40,14 +40,14 @@ def first_beyond(work: Work, limit: float, place: float) -> float:
     for n in range(1, DENSE.shape[0]):
         if DENSE[n] >= place:
             break
-        square, _, _ = squares(work, 2, DENSE[n])
+        square, _, _ = squares(work, IN_THE_PLANE, DENSE[n])
         if square > limit:
             high = DENSE[n]
             break
         low = DENSE[n]
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
-        square, _, _ = squares(work, 2, middle)
+        square, _, _ = squares(work, IN_THE_PLANE, middle)
         if square > limit:
             high = middle
         else:

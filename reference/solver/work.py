@@ -92,6 +92,7 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     slopes: Array  # (12, S) derivative of its acceleration
     matrix: Array  # (2 S, 2 S)
     residual: Array  # (2 S,)
+    turn_matrix: Array  # (S, S) of the directions near a stop
     pivots: Array  # (2 S,) rows of the factorized matrix
     chain: Array  # (N, 2, S) position of the bodies at the stages of a step near a stop
     velocity: Array  # (N, 2, S)
@@ -153,6 +154,7 @@ def workspace(bodies: int) -> Work:
         slopes=np.zeros((12, s)),
         matrix=np.zeros((2 * s, 2 * s)),
         residual=np.zeros(2 * s),
+        turn_matrix=np.zeros((s, s)),
         pivots=np.zeros(2 * s),
         chain=np.zeros((n, 2, s)),
         velocity=np.zeros((n, 2, s)),

@@ -9,6 +9,9 @@ Run with `python -m pytest tests/benchmarks/test_reference_speed.py -m long -s`;
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 import time
 from functools import cache
 
@@ -147,3 +150,29 @@ def test_the_cost_per_step_grows_linearly_with_the_number_of_bodies():
     few, many = seconds(30), seconds(300)
     print(f"\n30 bodies {few:.3f} s, 300 bodies {many:.3f} s, ratio {many / few:.1f} for 10 times the bodies")
     assert many / few < 40.0  # a longer chain also vibrates more slowly, so that the number of steps differs
+
+
+FIRST_CALL = """
+import time
+from numba import njit
+import reference.problem.compiled_parts as parts
+if {apart}:
+    parts.compiled_part = lambda **options: njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)
+import reference
+begin = time.process_time()
+reference.amplification(reference.load_scene("fig3-I"), [(0.3, 1.1)], full=True)
+print(time.process_time() - begin)
+"""
+
+
+@pytest.mark.long
+def test_parts_that_are_built_with_their_entry_point_compile_faster_than_parts_built_apart(tmp_path):
+    def seconds(apart: bool) -> float:
+        environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / str(apart))}
+        command = [sys.executable, "-c", FIRST_CALL.format(apart=apart)]
+        run = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
+        return float(run.stdout)
+
+    together, apart = seconds(False), seconds(True)
+    print(f"\nfirst call: built together {together:.1f} s, apart {apart:.1f} s, ratio {apart / together:.2f}")
+    assert apart / together > 1.3

@@ -97,7 +97,7 @@ def arc_peak(system: System, load: Load, angle: float) -> float:
         right = low + golden * (high - low)
         at_left = squared_total(system, load, left)
         at_right = squared_total(system, load, right)
-        best = max(best, at_left, at_right)
+        best = max(best, max(at_left, at_right))
         if at_left > at_right:
             high = right
         else:

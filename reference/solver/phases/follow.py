@@ -6,7 +6,7 @@ from math import inf, log, sqrt
 
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import rising_rate
-from reference.solver.events import LEVEL, SPEED, expand_level, expand_speed, lowest, parts_above
+from reference.solver.events import LEVEL, SPEED, expand_level, expand_speed, highest, lowest, parts_beyond
 from reference.solver.near_stop import near_stop_step
 from reference.solver.phases.rest import begin_rest, onset_within, set_reaction
 from reference.solver.phases.sliding import (
@@ -16,6 +16,7 @@ from reference.solver.phases.sliding import (
     guess_slide,
     sliding_length,
     slowing_within,
+    speed2,
     turns_too_far,
 )
 from reference.solver.phases.smooth import begin_smooth, decay_rate, speeding_within
@@ -57,7 +58,7 @@ from reference.solver.system import (
     System,
 )
 from reference.solver.travel import travel_reached
-from reference.solver.work import REACTION, Work
+from reference.solver.work import REACTION, SPEED2, Work
 
 FRICTION_ROUNDING = 1e-14  # of the friction limit: no acceleration is closer, a difference of such forces
 VARYING_NEWTON_FRACTION = 1e-3  # of that change otherwise, where friction depends on the speed
@@ -184,16 +185,22 @@ def counted(system: System, work: Work, contact: int, demand: Demand, h: float) 
     """
     Number of parts of the step that count for the peaks, with their ends in work.edges.
 
-    These are rest, and sliding faster than the cutoff.
+    These are rest, creep below v_reg, and sliding faster than the cutoff. A creep that begins or ends a little above
+    v_reg, as far as events are located, would have more friction than a slide.
     """
+    if contact == CREEPING:
+        level, start2 = system.v_reg * system.v_reg, speed2(system, work)
+        if max(start2, highest(work.stage[SPEED2])) > level:
+            expand_speed(work, h, level)
+            return parts_beyond(system, work, SPEED, -1.0, start2 - level)
     if demand.cutoff > 0.0 and contact == SLIDING:
         level = demand.cutoff * demand.cutoff
         expand_speed(work, h, level)
-        return parts_above(system, work, SPEED, work.start2 - level)
+        return parts_beyond(system, work, SPEED, 1.0, work.start2 - level)
     if demand.cutoff > 0.0 and contact == STOPPING:
         level = log(demand.cutoff)
         expand_level(work, work.levels, level)
-        return parts_above(system, work, LEVEL, work.log_speed + work.log_ratio - level)
+        return parts_beyond(system, work, LEVEL, 1.0, work.log_speed + work.log_ratio - level)
     work.edges[0], work.edges[1] = 0.0, 1.0
     return 1
 

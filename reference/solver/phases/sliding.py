@@ -10,7 +10,7 @@ from reference.solver.compiled import compiled
 from reference.solver.contact.friction import coefficient_slope, heading, rising_rate, sliding_speed2
 from reference.solver.contact.platform import directed, load_in_state, rest_excess
 from reference.solver.contact.stop_arc import settled_direction, squared_total
-from reference.solver.events import SPEED, expand_speed, first_passage, lowest
+from reference.solver.events import first_crossing, lowest
 from reference.solver.ground import ground_at, ground_at_stages
 from reference.solver.peaks import take_limit
 from reference.solver.step_control import (
@@ -41,7 +41,6 @@ STOP_WITHIN_TIME = 0.05  # of the period: or within this time
 MAX_CHAIN_ANGLE = 0.5  # rad: most that the chain's fastest vibration may turn in the time that is left then
 MIN_TURN_COSINE = 0.3  # cosine of the largest turn of the velocity between two stages
 LEVEL_TOLERANCE = 1e-9  # of the squared speed: a slide this close to v_reg has come down to it
-NEGLIGIBLE_EXCESS = 1e-7  # of the squared v_reg: creep that begins so far above it has no more friction than a slide
 NEAR_LEVEL_FACTOR = 1.25  # of the squared v_reg: a slide below it may pass v_reg between two stages
 # of the friction limit times the step: at a lower speed the direction follows the force
 STIFF_SPEED_FRACTION = 0.03
@@ -79,7 +78,7 @@ def begin_sliding(system: System, work: Work, demand: Demand) -> None:
         take_limit(work, squared_total(system, load, work.angle))
     ex, ey = heading(work.angle, system.axes)
     ax, ay, _, _ = directed(system, load, 0.0, ex, ey)
-    begin_with(system, work, ground, ax, ay, False)
+    begin_with(system, work, ground, ax, ay, SLIDING)
 
 
 @compiled
@@ -172,10 +171,9 @@ def slowing_within(system: System, work: Work, h: float) -> tuple[float, int]:
         return h, SLIDING
     floor2 = (system.v_reg * (1.0 - LEVEL_TOLERANCE)) ** 2
     if lowest(work.stage[SPEED2]) < NEAR_LEVEL_FACTOR * floor2:
-        above = work.start2 - floor2
-        expand_speed(work, h, floor2)
-        slowed = first_passage(system, work, SPEED, -1.0, 0.0, max(above, LEVEL_TOLERANCE * floor2))
-        if slowed < NEGLIGIBLE_STEP and above <= NEGLIGIBLE_EXCESS * floor2:
+        start = max(work.start2, floor2 * (1.0 + LEVEL_TOLERANCE))
+        slowed = first_crossing(system, work, work.stage[SPEED2], start, floor2)
+        if slowed < NEGLIGIBLE_STEP:
             return 0.0, CREEPING
         if slowed < 1.0 - NEGLIGIBLE_STEP:
             return h * slowed, SLIDING

@@ -52,7 +52,7 @@ def begin_stopping(system: System, work: Work, demand: Demand) -> None:
     load = load_in_state(system, work, ground)
     ex, ey = heading(work.angle, system.axes)
     ax, ay, _, ratio = directed(system, load, exp(work.log_speed), ex, ey)
-    begin_with(system, work, ground, ax, ay, False)
+    begin_with(system, work, ground, ax, ay, STOPPING)
     work.log_ratio, work.entered = log(ratio), work.log_speed
     work.stretched = FIRST_STEP / max(sqrt(ax * ax + ay * ay), MIN_FIRST_ACCELERATION * demand.unit)
 

@@ -1,0 +1,96 @@
+"""Parts of a compiled function are built with it and nowhere else."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numba import njit
+
+import reference
+from reference.problem.compiled_parts import compiled_part
+
+
+@compiled_part()
+def doubled(values, k):
+    return 2.0 * values[k]
+
+
+@compiled_part()
+def summed(values):
+    total = 0.0
+    for k in range(values.shape[0]):
+        total += doubled(values, k)
+    return total
+
+
+@njit
+def entry(count):
+    """Makes an array, which its parts read and which it keeps until it returns."""
+    values = np.arange(count) * 1.0
+    return summed(values) + values[count - 1]
+
+
+def test_an_entry_point_computes_with_its_parts_what_python_does() -> None:
+    assert entry(5) == 2.0 * 10.0 + 4.0
+
+
+def test_a_part_has_no_machine_code_and_counts_no_references() -> None:
+    entry(5)
+    for part in (doubled, summed):
+        (built,) = part.overloads.values()
+        assert built.library.get_pointer_to_function(built.fndesc.mangled_name) == 0
+        assert "NRT_incref" not in str(built.library._final_module)
+
+
+def test_a_part_can_be_shared_by_entry_points() -> None:
+    @njit
+    def other(values):
+        return summed(values) - doubled(values, 0)
+
+    assert entry(3) == 2.0 * 3.0 + 2.0
+    assert other(np.array([1.0, 2.0])) == 4.0
+
+
+BUILDS = """
+import sys
+from numba.core.dispatcher import Dispatcher
+import reference
+reference.amplification(reference.load_scene("fig3-I"), [(0.3, 1.1)], full=True)
+solver = [vars(module) for name, module in list(sys.modules.items()) if name.startswith("reference.solver")]
+parts = {part for names in solver for part in names.values() if isinstance(part, Dispatcher)}
+assert len(parts) > 100
+print(*sorted(part.__name__ for part in parts if len(part.overloads) > 1))
+"""
+
+
+@pytest.mark.long
+def test_every_part_of_the_solver_is_compiled_once(tmp_path: Path) -> None:
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    run = subprocess.run([sys.executable, "-c", BUILDS], env=environment, check=True, capture_output=True, text=True)
+    assert run.stdout.split() == []
+
+
+UNKNOWN_NUMBA = """
+import reference.problem.compiled_parts as parts
+parts.NEWEST_KNOWN = 0, 0
+import reference
+print(reference.amplification(reference.load_scene("fig3-I"), [(0.3, 1.1)]).mu.tolist())
+"""
+
+
+@pytest.mark.long  # compiles the solver as numba compiles functions
+def test_with_a_numba_that_is_not_known_the_numbers_are_the_same(tmp_path: Path) -> None:
+    run = subprocess.run(
+        [sys.executable, "-c", UNKNOWN_NUMBA],
+        env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    expected = reference.amplification(reference.load_scene("fig3-I"), [(0.3, 1.1)])
+    assert run.stdout.strip() == str(expected.mu.tolist())
