@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 
 # said wherever a command may have to compile first
-COMPILED_ONCE = "On a new installation the reference is compiled first, once: about half a minute of one worker."
+COMPILED_ONCE = "On a new installation the reference is compiled first, once: about 20 s of one worker."
 START_UP = 5.0  # worker processes start and load the compiled equations
 LOADING = 1.5  # modules load before the clock of a run starts
 WRITING = 6.0  # the page and its data are written by one process

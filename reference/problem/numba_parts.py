@@ -63,6 +63,7 @@ class PartCompiler(CompilerBase):  # type: ignore[misc]
     """Numba's own passes, and `_AsPart` among them."""
 
     def define_pipelines(self) -> list[Any]:
+        """Return the passes in their order."""
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
         passes.add_pass_after(_AsPart, AnnotateTypes)
         passes.finalize()
