@@ -24,6 +24,7 @@ def short(duration: float) -> Any:
     return load_scene("fig3-I").with_values({"duration": duration})
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("solver", INTEGRATORS)
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_formulation_and_solver(benchmark: Any, formulation: str, solver: str) -> None:
