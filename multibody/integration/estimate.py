@@ -30,7 +30,7 @@ ERROR_PER_WARPING_LOAD = 0.25  # relative change of a peak over the largest load
 # likewise, where a measurement fails (measured: up to 0.22, where supports come to v_reg one by one)
 MAX_ERROR_PER_WARPING_LOAD = 0.3
 MIN_ERROR_PER_WARPING_LOAD = 0.005  # likewise, where the scene itself shows less
-MIN_RELIEVED_LOAD = 1e-3  # of the weight: from less of it nothing is measured
+MIN_RELIEVED_SHARE = 0.25  # of the load, that a run with softer supports takes off: half of it is expected
 # relative error of level 0, halved by every level, of a motion with impacts: their order among the supports is decided
 # by rounding, and two levels agree better by chance (measured: 4e-4 between levels 1 to 4)
 MIN_ERROR_WITH_IMPACTS = 4e-3
@@ -112,9 +112,9 @@ def measured_per_load(run: EngineRun, softer: EngineRun) -> Array:
         return np.full(len(run.peaks.value), MAX_ERROR_PER_WARPING_LOAD)
     relieved = run.load_at_peaks - softer.load_at_peaks
     change = np.abs(run.peaks.value - softer.peaks.value) / run.peaks.value
-    measured = SAFETY_OF_SHARING * change / np.maximum(relieved, MIN_RELIEVED_LOAD)
-    measured = np.maximum(measured, MIN_ERROR_PER_WARPING_LOAD)
-    return np.where(relieved > MIN_RELIEVED_LOAD, measured, MAX_ERROR_PER_WARPING_LOAD)
+    least = np.maximum(MIN_RELIEVED_SHARE * run.load_at_peaks, SMALLEST_CHANGE)
+    measured = SAFETY_OF_SHARING * change / np.maximum(relieved, least)
+    return np.maximum(measured, np.where(relieved > least, MIN_ERROR_PER_WARPING_LOAD, MAX_ERROR_PER_WARPING_LOAD))
 
 
 def from_compliance(stiff: Peaks, soft: EngineRun, level: Level, model: EngineModel) -> Array:

@@ -208,7 +208,7 @@ def test_nine_supports_that_rattle_on_stiff_springs_have_an_answer_on_softer_one
 @pytest.mark.long
 @pytest.mark.parametrize("supports", [4, 5, 6, 8])
 def test_the_error_covers_what_supports_that_open_do(supports: int) -> None:
-    isolator = {"radius": 0.25, "friction": 0.1, "supports": supports, "ring": 0.3, "sphere_radius": 0.05}
+    isolator = {"period": None, "radius": 0.25, "friction": 0.1, "supports": supports, "ring": 0.3}
     load = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [1.0, 0.5]], "decay": [0.0, 0.0]}
     scene = strong(duration=2.0, excitation=load).with_values({f"isolator.{key}": isolator[key] for key in isolator})
     loose = multibody.amplification(scene, PHASE, "spatial", V_REG, 1e-2)
