@@ -297,6 +297,8 @@ def _softest_supports(runs: Sequence[EngineRun]) -> float:
 def _sharing(level: Level, load: float, tolerance: float, softest: float) -> Level:
     """A level whose supports give way enough against warping, which took `load` of the weight in the run before."""
     wanted = level.warping_compliance * load * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * tolerance)
+    if softest == MAX_WARPING_COMPLIANCE:
+        wanted = softest  # which supports open may depend on their springs: all levels have those of real bearings
     return replace(level, warping_compliance=min(max(wanted, level.warping_compliance), softest))
 
 
