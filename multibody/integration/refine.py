@@ -128,7 +128,7 @@ def refine(
                 break
             continue
         candidate = None
-        softest = _softest_supports(runs)
+        softest = _softest_supports(runs, remaining)
         remaining[number + 1 :] = [
             _sharing(later, run.warping_load, tolerance, softest) for later in remaining[number + 1 :]
         ]
@@ -288,17 +288,18 @@ def _first_run(pair: PhasePair, levels: list[Level], budget: Budget, keep: bool)
     return pair.at_level(levels[0], budget, keep=keep)
 
 
-def _softest_supports(runs: Sequence[EngineRun]) -> float:
-    """The compliance against warping that supports may have: that of real bearings, where any of them opened."""
-    opened = any(run.last_open > -math.inf for run in runs)
+def _softest_supports(runs: Sequence[EngineRun], levels: Sequence[Level]) -> float:
+    """The compliance against warping that supports may have: that of real bearings, where any of those opened."""
+    opened = any(
+        run.last_open > -math.inf and (run is runs[-1] or level.warping_compliance >= MAX_WARPING_COMPLIANCE)
+        for run, level in zip(runs, levels)
+    )
     return MAX_WARPING_COMPLIANCE if opened else MAX_COMPLIANCE_OF_CLOSED
 
 
 def _sharing(level: Level, load: float, tolerance: float, softest: float) -> Level:
     """A level whose supports give way enough against warping, which took `load` of the weight in the run before."""
     wanted = level.warping_compliance * load * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * tolerance)
-    if softest == MAX_WARPING_COMPLIANCE:
-        wanted = softest  # which supports open may depend on their springs: all levels have those of real bearings
     return replace(level, warping_compliance=min(max(wanted, level.warping_compliance), softest))
 
 
