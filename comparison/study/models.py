@@ -41,29 +41,30 @@ def with_mirrored_supports(scene: Scene) -> bool:
     return mirror_symmetric(scene).allowed
 
 
-def missing_spatial_keys(scene: Scene) -> list[str]:
-    """Keys that say where supports are and how high and large bodies, as far as the scene does not state them."""
+def _spatial_data(scene: Scene) -> dict[str, object]:
+    """What a scene says, by key, of where its supports are and how high and large its bodies; None if not stated."""
     isolator = scene.isolator
-    stated: dict[str, object] = {
+    data: dict[str, object] = {
         "isolator.supports": isolator.supports,
         "isolator.ring": isolator.supports if isinstance(isolator.supports, list) else isolator.ring,
         "isolator.sphere_radius": isolator.sphere_radius,
     }
     for number, body in enumerate(scene.bodies):
-        stated |= {f"bodies.{number}.height": body.height, f"bodies.{number}.size": body.size}
-    return [key for key, value in stated.items() if value is None]
+        data |= {f"bodies.{number}.height": body.height, f"bodies.{number}.size": body.size}
+    return data
 
 
 def has_spatial_data(scene: Scene) -> bool:
     """Whether the scene states all that the spatial model needs."""
-    return not missing_spatial_keys(scene)
+    return None not in _spatial_data(scene).values()
 
 
 def why_not_spatial(scene: Scene) -> str:
     """Why a scene that states a part of what the spatial model needs goes without it; "" otherwise."""
-    isolator, missing = scene.isolator, missing_spatial_keys(scene)
-    stated = [isolator.supports, isolator.ring, *(value for body in scene.bodies for value in (body.height, body.size))]
-    if not missing or all(value is None for value in stated):
+    data = _spatial_data(scene)
+    missing = [key for key, value in data.items() if value is None]
+    # the radius of a sphere alone asks for no body that turns
+    if not missing or set(data) - set(missing) <= {"isolator.sphere_radius"}:
         return ""
     return f"no spatial model, as it lacks {', '.join(missing)}"
 
