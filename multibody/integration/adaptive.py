@@ -18,7 +18,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.integration.chunk import absolute_sizes, distances, first_ends, last_near, slip_changes
+from multibody.integration.chunk import (
+    absolute_sizes,
+    distances,
+    first_ends,
+    largest_distance,
+    last_near,
+    loaded_slip,
+    slip_changes,
+)
 from multibody.integration.constant_step import Engine, Motion
 from multibody.integration.level import STEP_RATIO, Level
 from multibody.integration.openings import FIRST_STEP, Event, Openings
@@ -27,7 +35,6 @@ from multibody.integration.travel import travel_reached
 from multibody.models.recorded import align_steps
 from multibody.models.system import EngineModel, EngineState
 from reference.problem import Outcome
-from reference.problem.demands import largest_displacement
 
 Array = NDArray[np.float64]
 
@@ -259,16 +266,19 @@ def _record(
     axes = model.bodies[0, :2]
     distance = distances(motion.coordinates, axes)
     if distance.max() > CANDIDATE_FRACTION * result.max_displacement:
-        displacement = largest_displacement(motion.time, motion.coordinates[:, axes], motion.velocities[:, axes])
+        displacement = largest_distance(motion.time, motion.coordinates, motion.velocities, axes)
         result.max_displacement = max(result.max_displacement, displacement)
-    first = int(np.searchsorted(motion.time, result.undisturbed))
-    if read and first < len(motion.time):
+    time, slip = motion.time, motion.slip
+    if result.undisturbed > time[0]:
+        first = int(np.searchsorted(time, result.undisturbed))
+        time, slip, size, distance = time[first:], slip[first:], size[first:], distance[first:]
+    if read and len(time):
         before = result.peaks.value.copy()
-        result.peaks.add(motion.time[first:], size[first:], motion.slip[first:])
-        result.load_at_peaks[result.peaks.value > before] = result.warping_load
+        result.peaks.add(time, size, slip)
         if result.warping_load > 0.0:
-            result.loaded.append((size[first:].max(axis=0), result.warping_load))
-        _record_settling(result, motion.time[first:], size[first:], distance[first:])
+            result.load_at_peaks[result.peaks.value > before] = result.warping_load
+            result.loaded.append((size.max(axis=0), result.warping_load))
+        _record_settling(result, time, size, distance)
     gap = float(motion.gap.max())
     result.opened |= gap >= 0.0
     if not model.allows_liftoff:
@@ -303,7 +313,7 @@ def _step_ratio(motion: Motion, engine: Engine, platform: Array, peak: float, st
 def _slip_change(motion: Motion, engine: Engine, per_change: float) -> Array:
     """Change of the slip velocity in one step over what is allowed, (T,)."""
     corner = engine.model.corner
-    if not np.isfinite(corner):
+    if not math.isfinite(corner):
         return np.zeros(len(motion.time))
     changes: Array = slip_changes(motion.accelerations, engine.model.bodies[0], motion.contact, per_change, corner)
     return changes
@@ -355,9 +365,9 @@ def _gap_rate(motion: Motion) -> Array:
 def _steps_ahead(motion: Motion, engine: Engine, level: Level) -> int:
     """How many of the largest steps to try: up to where the slip speed, going on as now, asks for smaller ones."""
     corner = engine.model.corner
-    if len(motion.time) < 2 or not np.isfinite(corner):
+    if len(motion.time) < 2 or not math.isfinite(corner):
         return MAX_CHUNK_STEPS
-    before, slip = np.where(motion.gap[-2:] < 0.0, motion.slip[-2:], np.inf).min(axis=1).tolist()
+    before, slip = loaded_slip(motion.contact, -2), loaded_slip(motion.contact, -1)
     if not math.isfinite(before + slip):
         return MAX_CHUNK_STEPS
     rate = (slip - before) / float(motion.time[-1] - motion.time[-2])

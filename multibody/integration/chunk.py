@@ -31,6 +31,16 @@ def absolute_sizes(accelerations: Array, bodies: NDArray[np.int_], plate: Array)
 
 
 @cached_on_disk(__file__, nogil=True)
+def loaded_slip(contact: Array, row: int) -> float:
+    """Smallest slip speed of the contacts that carry load in a row; inf where none does."""
+    slip = math.inf
+    for place in range(0, contact.shape[1], 4):
+        if contact[row, place] < 0.0:
+            slip = min(slip, contact[row, place + 1])
+    return slip
+
+
+@cached_on_disk(__file__, nogil=True)
 def slip_changes(
     accelerations: Array, platform: NDArray[np.int_], contact: Array, per_change: float, corner: float
 ) -> Array:
@@ -49,11 +59,7 @@ def slip_changes(
             # an acceleration that changes within a step counts twice: it says more about the steps that follow
             dx, dy, dz = x - before_x, y - before_y, z - before_z
             size = max(size, 2.0 * math.sqrt(dx * dx + dy * dy + dz * dz))
-        slip = math.inf
-        for place in range(0, contact.shape[1], 4):
-            if contact[row, place] < 0.0:
-                slip = min(slip, contact[row, place + 1])
-        step_ratio[row] = per_change * size / max(slip, corner)
+        step_ratio[row] = per_change * size / max(loaded_slip(contact, row), corner)
         before_x, before_y, before_z = x, y, z
     return step_ratio
 
@@ -83,6 +89,21 @@ def distances(coordinates: Array, axes: NDArray[np.int_]) -> Array:
         x, y = coordinates[row, axes[0]], coordinates[row, axes[1]]
         length[row] = math.sqrt(x * x + y * y)
     return length
+
+
+@cached_on_disk(__file__, nogil=True)
+def largest_distance(time: Array, coordinates: Array, velocities: Array, axes: NDArray[np.int_]) -> float:
+    """The largest of such lengths, also between the instants (T,): `reference.problem.demands.largest_displacement`."""
+    largest = before_square = before = 0.0
+    for row in range(len(time)):
+        x, y = coordinates[row, axes[0]], coordinates[row, axes[1]]
+        square, rate = x * x + y * y, x * velocities[row, axes[0]] + y * velocities[row, axes[1]]
+        largest = max(largest, square)
+        if row > 0 and before > 0.0 > rate:
+            rise = before * before / (before - rate) * (time[row] - time[row - 1])
+            largest = max(largest, before_square + rise)
+        before_square, before = square, rate
+    return math.sqrt(largest)
 
 
 @cached_on_disk(__file__, nogil=True)

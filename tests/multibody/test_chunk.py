@@ -5,7 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from multibody.integration.chunk import absolute_sizes, distances, first_ends, last_near, slip_changes
+from multibody.integration.chunk import (
+    absolute_sizes,
+    distances,
+    first_ends,
+    largest_distance,
+    last_near,
+    slip_changes,
+)
+from reference.problem.demands import largest_displacement
 
 STEPS, CONTACTS = 57, 3
 DRAW = np.random.default_rng(5)
@@ -48,6 +56,18 @@ def test_the_first_rows_at_the_rim_and_without_contact_are_found(rim: float) -> 
 def test_distances_are_lengths_of_the_two_coordinates() -> None:
     axes = BODIES[0, :2]
     assert np.array_equal(distances(ACCELERATIONS, axes), _length(ACCELERATIONS[:, axes]))
+
+
+def test_the_largest_distance_is_that_between_the_instants_too() -> None:
+    axes, between = BODIES[0, :2], 0
+    for _ in range(20):
+        time, velocities = np.cumsum(DRAW.random(STEPS)), DRAW.normal(size=(STEPS, 8))
+        coordinates = DRAW.normal(size=(STEPS, 8))
+        place = coordinates[:, axes]
+        expected = largest_displacement(time, place, velocities[:, axes])
+        assert largest_distance(time, coordinates, velocities, axes) == expected
+        between += expected > _length(place).max()
+    assert between > 2
 
 
 @pytest.mark.parametrize("share", [0.5, 0.99, 1.01])
