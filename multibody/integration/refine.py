@@ -21,8 +21,10 @@ from numpy.typing import NDArray
 from multibody.integration.adaptive import SETTLED_FRACTION, Budget, EngineRun
 from multibody.integration.estimate import (
     ERROR_PER_WARPING_LOAD,
+    SAFETY_OF_ROUNDING,
     from_compliance,
     from_levels,
+    from_rounding,
     from_sharing,
     measured_per_load,
     share_of_change,
@@ -162,13 +164,13 @@ def refine(
             if per_load is None and capped and (from_sharing(run, None) > allowed).any():
                 per_load = _measured_sharing(pair, level, run, budget)
             errors = errors + from_sharing(run, per_load)
-        errors = widened_without_convergence(errors, run)
         before = (runs[-2], share_of_change(remaining[number - 1], model))
-        candidate = _Candidate(run, errors, level.error_floor, (before,), level if shared else None)
-        different = different + 1 if run.impacts and (errors >= run.peaks.value).all() else 0
+        rounding = from_rounding(run.peaks, level, runs[-2].peaks, remaining[number - 1])
+        candidate = _Candidate(run, errors, rounding, level, (before,), lacks_compliance=shared)
+        different = different + 1 if run.impacts and (candidate.errors >= run.peaks.value).all() else 0
         if different == MAX_DIFFERENT_MOTIONS:
             break  # impacts take every level elsewhere: a further one would, too
-        if candidate.meets(tolerance):
+        if (errors <= tolerance * run.peaks.value).all():
             candidate = candidate.completed(pair, budget, keep)
         complete = candidate if candidate.is_complete else complete
         if candidate.meets(tolerance):
@@ -213,15 +215,22 @@ class _Candidate:
     """The answer of one level."""
 
     run: EngineRun
-    errors: Array  # (N,), in units of the model
-    floor: float  # relative error that the level typically has
+    level_errors: Array  # (N,), errors that other levels and the load of warping show, in units of the model
+    rounding: Array  # likewise, that rounding of the contact forces leaves
+    level: Level
     coarser: tuple[tuple[EngineRun, float], ...]  # other runs, and the share of their difference to this one
-    without_compliance: Level | None  # the level, if the error that its contact's compliance leaves is still missing
+    lacks_compliance: bool  # whether the error that the contact's compliance leaves is still missing
+    compliance: float | Array = 0.0  # that error, (N,)
+
+    @property
+    def errors(self) -> Array:
+        """Errors (N,), in units of the model."""
+        return widened_without_convergence(self.level_errors + self.rounding, self.run) + self.compliance
 
     @property
     def is_complete(self) -> bool:
         """Whether the error lacks nothing."""
-        return self.without_compliance is None and bool(np.isfinite(self.errors).all())
+        return not self.lacks_compliance and bool(np.isfinite(self.errors).all())
 
     @property
     def relative_error(self) -> float:
@@ -232,14 +241,20 @@ class _Candidate:
 
     def completed(self, pair: PhasePair, budget: Budget, keep: bool) -> _Candidate:
         """With the error that the compliance leaves, from a run in which nothing but the contact is softer."""
-        level = self.without_compliance
-        if level is None:
+        if not self.lacks_compliance:
             return self
-        softer = replace(level, penetration=COMPLIANCE_RATIO * level.penetration)
+        level, softer = self.level, replace(self.level, penetration=COMPLIANCE_RATIO * self.level.penetration)
         run = pair.at_level(softer, budget, self.run.stop, keep=keep, residual=level.residual)
-        errors = self.errors + from_compliance(self.run.peaks, run, softer, pair.model)
-        coarser = (*self.coarser, (run, share_of_change(softer, pair.model)))
-        return replace(self, errors=errors, coarser=coarser, without_compliance=None)
+        completed = replace(
+            self,
+            compliance=from_compliance(self.run.peaks, run, softer, pair.model),
+            coarser=(*self.coarser, (run, share_of_change(softer, pair.model))),
+            lacks_compliance=False,
+        )
+        if run.outcome != Outcome.OK:
+            return completed
+        rounding = from_rounding(self.run.peaks, level, run.peaks, softer, SAFETY_OF_ROUNDING)
+        return replace(completed, rounding=np.minimum(self.rounding, rounding))
 
 
 def _beyond_tolerance(pair: PhasePair, finest: _Candidate, complete: _Candidate | None) -> Refinement:
@@ -249,7 +264,7 @@ def _beyond_tolerance(pair: PhasePair, finest: _Candidate, complete: _Candidate 
     # the run that shows what the compliance leaves has no answer
     if complete is not None:
         answer = _answer(pair.model, complete, Outcome.TOLERANCE_NOT_MET)
-        return replace(answer, finest=finest.run, coarser=finest.coarser[:1], floor=finest.floor)
+        return replace(answer, finest=finest.run, coarser=finest.coarser[:1], floor=finest.level.error_floor)
     return _no_answer(pair.model, finest.run, Outcome.SOLVER_FAILED, pair.scene.duration)
 
 
@@ -288,7 +303,7 @@ def _answer(model: EngineModel, candidate: _Candidate, outcome: Outcome) -> Refi
     worst = float(peaks.instant[(errors / peaks.value).argmax()]) * model.units.time
     instant = math.nan if outcome == Outcome.OK else worst
     answered = Refinement(peaks.value * unit, errors * unit, outcome, instant, candidate.run)
-    return replace(answered, coarser=candidate.coarser, floor=candidate.floor)
+    return replace(answered, coarser=candidate.coarser, floor=candidate.level.error_floor)
 
 
 def _no_answer(model: EngineModel, run: EngineRun, outcome: Outcome, instant: float) -> Refinement:
