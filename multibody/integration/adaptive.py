@@ -76,9 +76,6 @@ class EngineRun:
     instant: float = math.nan  # of a termination, in units of time
     steps: int = 0
     warping_load: float = 0.0  # largest load that warping of the supports takes so far, in shares of the weight
-    load_at_peaks: Array = field(default_factory=lambda: np.zeros(1))  # likewise, until each body's peak, (N,)
-    # of every chunk: the bodies' largest accelerations (N,), and such a load until then
-    loaded: list[tuple[Array, float]] = field(default_factory=list)
     last_open: float = -math.inf  # the latest instant at which a support carried no load, in units of time
     max_displacement: float = 0.0  # horizontal, of the platform, in units of length
     # the last instant at which an acceleration or the displacement of the platform came within SETTLED_FRACTION of its
@@ -90,6 +87,11 @@ class EngineRun:
     opened: bool = False  # whether any contact carried no load
     looked_over: float = math.inf  # from here on the motion was only looked over in larger steps, in units of time
     chunks: list[Motion] = field(default_factory=list)  # the motion, if it is kept
+
+    @property
+    def lifts_off(self) -> bool:
+        """Whether a support of those that share the load opened."""
+        return self.last_open > -math.inf
 
     def terminated(self, outcome: Outcome, instant: float) -> EngineRun:
         """This run, which ends with `outcome` at `instant`."""
@@ -123,7 +125,7 @@ def run_adaptively(
 def begin_run(model: EngineModel, stop: float = math.inf) -> EngineRun:
     """The result of a run that has taken no step yet."""
     peaks = Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near)
-    return EngineRun(peaks, stop, load_at_peaks=np.zeros(len(model.bodies)))
+    return EngineRun(peaks, stop)
 
 
 def go_on(
@@ -270,11 +272,7 @@ def _record(
         result.max_displacement = max(result.max_displacement, displacement)
     first = int(np.searchsorted(motion.time, result.undisturbed))
     if read and first < len(motion.time):
-        before = result.peaks.value.copy()
         result.peaks.add(motion.time[first:], size[first:], motion.slip[first:])
-        result.load_at_peaks[result.peaks.value > before] = result.warping_load
-        if result.warping_load > 0.0:
-            result.loaded.append((size[first:].max(axis=0), result.warping_load))
         _record_settling(result, motion.time[first:], size[first:], distance[first:])
     gap = float(motion.gap.max())
     result.opened |= gap >= 0.0
