@@ -119,7 +119,7 @@ def test_the_reference_is_faster_than_a_compiled_lsoda_at_better_accuracy():
 
 @pytest.mark.long
 @pytest.mark.parametrize("law", [{}, {"equations": "small"}, {"regularization": V_REG}], ids=str)
-def test_a_point_whose_second_run_stops_early_costs_less(law):
+def test_a_point_whose_runs_stop_early_costs_less(law):
     """fig3-I has no other reduction for a single point, so full over not full is the early end alone."""
     scene, phases = reference.load_scene("fig3-I"), reference.phase_grid(16) + 0.1
     reference.amplification(scene, phases[:1], **law)  # compiled
@@ -129,7 +129,7 @@ def test_a_point_whose_second_run_stops_early_costs_less(law):
     whole, early = seconds.min(axis=0)
     print(f"\nto the end {1e3 * whole / len(phases):.2f} ms a point, early {1e3 * early / len(phases):.2f} ms")
     print(f"ratio of processor time {whole / early:.2f}")
-    assert whole / early > 1.15
+    assert whole / early > 1.5  # seen: 1.88
 
 
 @pytest.mark.long
