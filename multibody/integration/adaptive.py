@@ -167,10 +167,10 @@ def go_on(
         size = absolute_accelerations(model, motion, ground)
         step_ratio = _step_ratio(motion, engine, size[:, 0], float(result.peaks.value[0]), step, level.slip_change)
         last = len(motion.time) - 1
-        failing = np.flatnonzero(step_ratio > 1.0)
-        rejected = divisions < level.max_divisions and len(failing) > 0
+        failing = _first(step_ratio > 1.0)
+        rejected = divisions < level.max_divisions and failing <= last
         if rejected:
-            last = max(int(failing[0]) - 1, 0)
+            last = max(failing - 1, 0)
         event = None if openings is None else openings.first_event(motion.until(last))
         if openings is not None and event is not None:
             last, rejected = event.row, False
@@ -192,7 +192,7 @@ def go_on(
                 divisions = max(divisions, _divisions_behind_impact(level))
             next_count = DIVIDED_CHUNK_STEPS
         elif rejected:
-            divisions += 1 if step_ratio[failing[0]] < STEP_RATIO else 2
+            divisions += 1 if step_ratio[failing] < STEP_RATIO else 2
             divisions = min(divisions, level.max_divisions)
         elif divisions > 0 and step_ratio[-RECENT_ROWS:].max() * STEP_RATIO < 1.0:
             divisions -= 1
@@ -285,8 +285,9 @@ def _record_settling(result: EngineRun, time: Array, size: Array, displacement: 
     """Record when something that is asked for last came near its largest value so far."""
     near = (size >= SETTLED_FRACTION * result.peaks.value).any(axis=1)
     near |= displacement >= SETTLED_FRACTION * result.max_displacement
-    if near.any():
-        result.settled = float(time[len(time) - 1 - near[::-1].argmax()])
+    last = _first(near[::-1])
+    if last < len(near):
+        result.settled = float(time[len(time) - 1 - last])
 
 
 def _step_ratio(motion: Motion, engine: Engine, platform: Array, peak: float, step: float, slip_change: float) -> Array:
@@ -314,14 +315,14 @@ def _slip_change(motion: Motion, engine: Engine, per_change: float) -> Array:
     size = _length(acceleration)
     # an acceleration that changes within a step counts twice: it says more about the steps that follow
     size[1:] = np.maximum(size[1:], 2.0 * _length(acceleration[1:] - acceleration[:-1]))
-    step_ratio: Array = per_change * size / np.maximum(_loaded_slip(motion), corner)
+    step_ratio: Array = per_change * size / np.maximum(_loaded_slip(motion.gap, motion.slip), corner)
     return step_ratio
 
 
-def _loaded_slip(motion: Motion) -> Array:
-    """Smallest slip speed of the contacts that carry load, (T,); inf where none does."""
-    slip: Array = np.where(motion.gap < 0.0, motion.slip, np.inf).min(axis=1)
-    return slip
+def _loaded_slip(gap: Array, slip: Array) -> Array:
+    """Smallest slip speed of the contacts that carry load, (T,), of gaps and slip speeds (T, K); inf for none."""
+    smallest: Array = np.where(gap < 0.0, slip, np.inf).min(axis=1)
+    return smallest
 
 
 def _behind_kinks(motion: Motion, size: Array, engine: Engine, peak: float, per_change: float) -> Array:
@@ -372,17 +373,17 @@ def _steps_ahead(motion: Motion, engine: Engine, level: Level) -> int:
     corner = engine.model.corner
     if len(motion.time) < 2 or not np.isfinite(corner):
         return MAX_CHUNK_STEPS
-    slip = _loaded_slip(motion)[-2:]
-    if not np.isfinite(slip).all():
+    before, slip = _loaded_slip(motion.gap[-2:], motion.slip[-2:]).tolist()
+    if not math.isfinite(before + slip):
         return MAX_CHUNK_STEPS
-    rate = (slip[1] - slip[0]) / (motion.time[-1] - motion.time[-2])
+    rate = (slip - before) / float(motion.time[-1] - motion.time[-2])
     target = corner
-    if slip[1] > corner:
+    if slip > corner:
         size = float(np.linalg.norm(motion.accelerations[-1, engine.model.bodies[0]]))
         target = max(corner, size * level.step / level.slip_change)
-    if (target - slip[1]) * rate <= 0.0:
+    if (target - slip) * rate <= 0.0:
         return MAX_CHUNK_STEPS
-    return int(np.clip((target - slip[1]) / rate / level.step, DIVIDED_CHUNK_STEPS, MAX_CHUNK_STEPS))
+    return int(min(max((target - slip) / rate / level.step, DIVIDED_CHUNK_STEPS), MAX_CHUNK_STEPS))
 
 
 def termination(motion: Motion, model: EngineModel) -> tuple[Outcome, int, float]:
@@ -421,4 +422,5 @@ def _tilt(motion: Motion, model: EngineModel) -> Array:
 
 def _first(holds: Any) -> int:
     """The first row of (T,) in which something holds; T if there is none."""
-    return int(next(iter(np.flatnonzero(holds)), len(holds)))
+    row = int(holds.argmax())
+    return row if holds[row] else len(holds)

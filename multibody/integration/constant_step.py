@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +23,7 @@ INTEGRATORS = ("generalized alpha", "trapezoidal", *EXPLICIT)
 MAX_CONTRACTIVITY = 0.2  # of modified Newton, above which the Jacobian is renewed: least time (measured)
 
 
-@dataclass(frozen=True)
-class Motion:
+class Motion(NamedTuple):
     """Steps of one run in units of the model, relative to the plate, the first row being its start."""
 
     time: Array  # (T,)
@@ -48,17 +46,14 @@ class Motion:
 
     def until(self, row: int) -> Motion:
         """The rows up to and including `row`."""
-        return Motion(*(getattr(self, column.name)[: row + 1] for column in fields(self)))
+        return self if row == len(self.time) - 1 else Motion(*[column[: row + 1] for column in self])
 
     @staticmethod
     def concatenated(chunks: list[Motion]) -> Motion:
         """One motion from chunks, each of which starts with the last row of the one before."""
-        return Motion(
-            *(
-                np.concatenate([getattr(chunk, column.name)[index > 0 :] for index, chunk in enumerate(chunks)])
-                for column in fields(Motion)
-            )
-        )
+        whole, *rest = chunks
+        columns = zip(whole, *(tuple(column[1:] for column in chunk) for chunk in rest))
+        return Motion(*map(np.concatenate, columns))
 
     @staticmethod
     def empty(model: EngineModel) -> Motion:
@@ -69,12 +64,11 @@ class Motion:
 
     def state(self, row: int) -> EngineState:
         """State of the engine at an instant, with the rate of slip since the instant before."""
-        state = EngineState(self.coordinates[row], self.velocities[row], self.contact[row], self.plate[row])
         row = range(len(self.time))[row]
-        if row == 0:
-            return state
-        rate = (self.slip[row] - self.slip[row - 1]) / (self.time[row] - self.time[row - 1])
-        return replace(state, slip_rate=rate)
+        rate = None
+        if row > 0:
+            rate = (self.slip[row] - self.slip[row - 1]) / (self.time[row] - self.time[row - 1])
+        return EngineState(self.coordinates[row], self.velocities[row], self.contact[row], self.plate[row], rate)
 
 
 @contextmanager
@@ -132,6 +126,8 @@ class Engine:
         if self.explicit:
             kind = getattr(exudyn.DynamicSolverType, self.explicit)
             self.settings.timeIntegration.solverType = kind
+        kind = exudyn.MainSolverExplicit if self.explicit else exudyn.MainSolverImplicitSecondOrder
+        self.solver = kind()
         self.iterations = 0  # of Newton's method in the last run, with those of steps that were tried again
 
     def run(self, state: EngineState, begin: float, step: float, count: int) -> Motion | None:
@@ -145,14 +141,13 @@ class Engine:
         integration.endTime = begin + count * step
         integration.numberOfSteps = count
         integration.minimumStepSize = step / MAX_STEP_REDUCTION
-        solver = exudyn.MainSolverExplicit() if self.explicit else exudyn.MainSolverImplicitSecondOrder()
         try:
-            if not solver.SolveSystem(self.model.mbs, self.settings):
+            if not self.solver.SolveSystem(self.model.mbs, self.settings):
                 return None
         except (exudyn.ExudynError, RuntimeError, ValueError):
             return None
         finally:
-            self.iterations = int(solver.it.newtonStepsCount)
+            self.iterations = int(self.solver.it.newtonStepsCount)
         return self._read()
 
     def _read(self) -> Motion:

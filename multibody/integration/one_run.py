@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +18,7 @@ from multibody.integration.look_ahead import looks_ahead, run_looking_ahead
 from multibody.integration.peak import Peaks
 from multibody.models.system import EngineModel, EngineState
 from reference.problem import Outcome, Scene, State, ground_acceleration
+from reference.problem.excitation import acceleration_of_ground
 
 Array = NDArray[np.float64]
 
@@ -35,10 +38,11 @@ class PhasePair:
         """Duration, in units of time."""
         return self.scene.duration / self.model.units.time
 
-    def ground(self, time: Array) -> Array:
-        """The plate's acceleration (T, 3) at times (T,), in units of the model."""
-        units = self.model.units
-        return ground_acceleration(self.scene, self.phase, time * units.time) / units.acceleration
+    @cached_property
+    def ground(self) -> Callable[[Array], Array]:
+        """The plate's acceleration (T, 3) as a function of times (T,), in units of the model."""
+        units, acceleration = self.model.units, acceleration_of_ground(self.scene, self.phase)
+        return lambda time: acceleration(time * units.time) / units.acceleration
 
     def at_level(
         self, level: Level, budget: Budget, stop: float = math.inf, *, keep: bool = False, residual: float | None = None

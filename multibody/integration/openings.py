@@ -72,7 +72,7 @@ class Openings:
             return motion
         contact = motion.contact.copy()
         contact[:, 0::4][:, self.is_open] = np.maximum(self.gaps(motion.coordinates)[:, self.is_open], 0.0)
-        return replace(motion, contact=contact)
+        return motion._replace(contact=contact)
 
     def first_event(self, motion: Motion) -> Event | None:
         """The first opening or closing in the rows of `motion` behind its first one."""

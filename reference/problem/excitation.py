@@ -11,6 +11,8 @@ A recorded acceleration is linear from sample to sample in each direction and ze
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -99,9 +101,15 @@ def ground_acceleration(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Arra
     >>> ground_acceleration(load_scene("fig3-I"), (0.0, 0.0), [0.0])[0].tolist()
     [1.0, 1.0, 0.0]
     """
+    return acceleration_of_ground(scene, phase)(np.asarray(time, float))
+
+
+def acceleration_of_ground(scene: Scene, phase: ArrayLike) -> Callable[[Array], Array]:
+    """`ground_acceleration` of one phase pair, as a function of time (T,), s, that can be called often."""
     if scene.recorded:
-        return _integrated(scene.record, time, 0)
-    return _superpose(scene, phase, np.exp(np.multiply.outer(np.asarray(time, float), exponents(scene))))
+        return lambda time: _integrated(scene.record, time, 0)
+    powers, turns, amplitudes = exponents(scene), _turns(phase), scene.amplitudes.T.astype(complex)
+    return lambda time: np.real((np.exp(np.multiply.outer(time, powers)) * turns) @ amplitudes)
 
 
 def ground_velocity(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
@@ -164,9 +172,13 @@ def ground_displacement(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Arra
 
 def _superpose(scene: Scene, phase: ArrayLike, harmonics: NDArray[np.complex128]) -> Array:
     """Real part of sum_i a_ki exp(i alpha_i) harmonics_i, rows x, y, z."""
-    turned = harmonics * np.exp(1j * np.asarray(phase, float))
-    result: Array = np.real(turned @ scene.amplitudes.T)
+    result: Array = np.real((harmonics * _turns(phase)) @ scene.amplitudes.T)
     return result
+
+
+def _turns(phase: ArrayLike) -> NDArray[np.complex128]:
+    turns: NDArray[np.complex128] = np.exp(1j * np.asarray(phase, float))
+    return turns
 
 
 def _integrated(knots: Array, time: ArrayLike, times: int) -> Array:
