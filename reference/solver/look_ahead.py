@@ -31,6 +31,7 @@ from reference.solver.system import (
 from reference.solver.work import Work
 
 STEPS_PER_PERIOD = 25.0  # of Demand.period
+MAX_STEP_RATIO = 25.0  # of the accurate run's mean step over the rough one, which takes about a fiftieth of the time
 MAX_CHAIN_ANGLE = 0.5  # rad: most that the chain's fastest vibration may turn during one step
 LARGE_FRACTION = 0.8  # of the largest so far: a smaller value of a rough run does not reach it in an accurate one
 # of the rim in rho, of the end of its travel, of liftoff in weights, of Painleve's paradox: closer, the run goes on
@@ -45,19 +46,26 @@ WAIT = 0.25  # of the period, from the last large value until the run looks ahea
 def end_early(system: System, work: Work, demand: Demand) -> None:
     """End the run, at a step whose end is in x, v, where nothing large can come any more; set when to look again."""
     work.look = work.settled + WAIT * demand.period
-    if work.time > work.look:
-        comes = next_large(system, work, demand)
+    h = rough_length(system, demand)
+    if work.time > work.look and work.time <= MAX_STEP_RATIO * h * work.steps:
+        comes = next_large(system, work, h)
         work.look = comes + WAIT * demand.period
         if comes == inf:
             work.end = work.time
 
 
 @compiled
-def next_large(system: System, work: Work, demand: Demand) -> float:
-    """When something large may come after the state x, v, s; infinity if nothing can."""
+def rough_length(system: System, demand: Demand) -> float:
+    """Length of the steps of a rough run, s."""
     h = demand.period / STEPS_PER_PERIOD
     if system.fastest > 0.0:
         h = min(h, MAX_CHAIN_ANGLE / system.fastest)
+    return h
+
+
+@compiled
+def next_large(system: System, work: Work, h: float) -> float:
+    """When something large may come after the state x, v, s, in steps of h; infinity if nothing can."""
     bodies = work.x.shape[0]
     for i in range(bodies):  # the next step writes x1, v1 anew
         for axis in range(2):
