@@ -3,8 +3,8 @@ What may still come after a state: a rough run from there to the end, for a smal
 
 Constant steps of second order: half a drift, the forces, half a drift. Friction acts at the end of the step, so a
 platform whose velocity it can take within the step comes to rest. Forces and friction are those of the accurate run.
-Every value counts as large that is within a fifth of the largest so far. The direction of a slide turns fast near its
-stop; there the platform's acceleration is the largest that any direction allows on the way, and a little beyond.
+Every value counts as large that reaches LARGE_FRACTION of the largest so far. The direction of a slide turns fast near
+its stop; there the platform's acceleration is the largest that any direction allows on the way, and a little beyond.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from reference.solver.work import Work
 STEPS_PER_PERIOD = 25.0  # of Demand.period
 MAX_STEP_RATIO = 25.0  # of the accurate run's mean step over the rough one, which takes about a fiftieth of the time
 MAX_CHAIN_ANGLE = 0.5  # rad: most that the chain's fastest vibration may turn during one step
-LARGE_FRACTION = 0.8  # of the largest so far: a smaller value of a rough run does not reach it in an accurate one
+LARGE_FRACTION = 0.85  # of the largest so far: a smaller value of a rough run does not reach it in an accurate one
 # of the rim in rho, of the end of its travel, of liftoff in weights, of Painleve's paradox: closer, the run goes on
 MIN_MARGIN = 0.1
 MAX_SLOW_STEPS = 2.0  # in which friction would stop the slide: so slow a slide counts as near its stop
@@ -133,10 +133,10 @@ def push_platform(system: System, work: Work, load: Load, ground: Ground, h: flo
             largest = sqrt(ground.x * ground.x + ground.y * ground.y)
             nearly = excess > (MAX_HELD_DRIVE - 1.0) * limit * limit
             if nearly:
-                gx, gy = drive_along(system, load, reaction)
+                gx, gy = load.fx - reaction * load.px / system.radius, load.fy - reaction * load.py / system.radius
                 largest = max(largest, largest_near_stop(gx, gy, gx, gy, ground, limit))
             return largest, (nearly and far) or not reaction >= least
-    sx, sy = slip(system, load, vx, vy, speed2)
+    sx, sy = slip(system, vx, vy, speed2)
     ax, ay, reaction, determinant = acceleration(system, load, speed2, sx, sy)
     if not (reaction >= least and determinant >= MIN_MARGIN):
         return inf, True
@@ -165,12 +165,10 @@ def push_platform(system: System, work: Work, load: Load, ground: Ground, h: flo
 
 
 @compiled
-def slip(system: System, load: Load, vx: float, vy: float, speed2: float) -> tuple[float, float]:
-    """Slip vector (friction.py) at the velocity before the step; along the drive where a slide begins."""
-    if system.law == SET_VALUED and speed2 == 0.0:
-        gx, gy = drive_along(system, load, system.mass_ratio * (system.gravity + load.uz))
-        drive = sqrt(gx * gx + gy * gy)
-        return (system.friction * gx / drive, system.friction * gy / drive) if drive > 0.0 else (0.0, 0.0)
+def slip(system: System, vx: float, vy: float, speed2: float) -> tuple[float, float]:
+    """Slip vector (friction.py) at the velocity before the step, for the reaction; none where a slide begins."""
+    if speed2 == 0.0:
+        return 0.0, 0.0
     contact = SLIDING
     if system.law == LUBRICATED:
         contact = LUBRICATED_SLIDING
@@ -178,12 +176,6 @@ def slip(system: System, load: Load, vx: float, vy: float, speed2: float) -> tup
         contact = CREEPING
     factor = slip_factor(system, contact, speed2)
     return factor * vx, factor * vy
-
-
-@compiled
-def drive_along(system: System, load: Load, reaction: float) -> tuple[float, float]:
-    """What moves the platform at rest against friction, m/s^2."""
-    return load.fx - reaction * load.px / system.radius, load.fy - reaction * load.py / system.radius
 
 
 @compiled
