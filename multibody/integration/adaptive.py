@@ -18,6 +18,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from multibody.integration.chunk import (
+    absolute_sizes,
+    distances,
+    first_ends,
+    largest_distance,
+    last_near,
+    loaded_slip,
+    slip_changes,
+)
 from multibody.integration.constant_step import Engine, Motion
 from multibody.integration.level import STEP_RATIO, Level
 from multibody.integration.openings import FIRST_STEP, Event, Openings
@@ -26,7 +35,6 @@ from multibody.integration.travel import travel_reached
 from multibody.models.recorded import align_steps
 from multibody.models.system import EngineModel, EngineState
 from reference.problem import Outcome
-from reference.problem.demands import largest_displacement
 
 Array = NDArray[np.float64]
 
@@ -238,15 +246,8 @@ def _divisions_behind_impact(level: Level) -> int:
 def absolute_accelerations(model: EngineModel, motion: Motion, ground: Callable[[Array], Array]) -> Array:
     """Sizes of the bodies' accelerations with that of the plate, (T, N), in units of the model."""
     plate = motion.plate[:, 2] if model.moving_plate else ground(motion.time)
-    absolute = motion.accelerations[:, model.bodies]
-    absolute += plate[:, None, :]
-    return _length(absolute)
-
-
-def _length(vectors: Array) -> Array:
-    """Of vectors along the last axis; for few of them faster than `numpy.linalg.norm`."""
-    length: Array = np.sqrt(np.einsum("...k,...k->...", vectors, vectors))
-    return length
+    sizes: Array = absolute_sizes(motion.accelerations, model.bodies, plate)
+    return sizes
 
 
 def _record(
@@ -265,15 +266,17 @@ def _record(
         return False
     _record_warping(result, motion, model, level)
     axes = model.bodies[0, :2]
-    place = motion.coordinates[:, axes]
-    distance = _length(place)
+    distance = distances(motion.coordinates, axes)
     if distance.max() > CANDIDATE_FRACTION * result.max_displacement:
-        displacement = largest_displacement(motion.time, place, motion.velocities[:, axes])
+        displacement = largest_distance(motion.time, motion.coordinates, motion.velocities, axes)
         result.max_displacement = max(result.max_displacement, displacement)
-    first = int(np.searchsorted(motion.time, result.undisturbed))
-    if read and first < len(motion.time):
-        result.peaks.add(motion.time[first:], size[first:], motion.slip[first:])
-        _record_settling(result, motion.time[first:], size[first:], distance[first:])
+    time, slip = motion.time, motion.slip
+    if result.undisturbed > time[0]:
+        first = int(np.searchsorted(time, result.undisturbed))
+        time, slip, size, distance = time[first:], slip[first:], size[first:], distance[first:]
+    if read and len(time):
+        result.peaks.add(time, size, slip)
+        _record_settling(result, time, size, distance)
     gap = float(motion.gap.max())
     result.opened |= gap >= 0.0
     if not model.allows_liftoff:
@@ -283,11 +286,10 @@ def _record(
 
 def _record_settling(result: EngineRun, time: Array, size: Array, displacement: Array) -> None:
     """Record when something that is asked for last came near its largest value so far."""
-    near = (size >= SETTLED_FRACTION * result.peaks.value).any(axis=1)
-    near |= displacement >= SETTLED_FRACTION * result.max_displacement
-    last = _first(near[::-1])
-    if last < len(near):
-        result.settled = float(time[len(time) - 1 - last])
+    near = SETTLED_FRACTION * result.peaks.value, displacement, SETTLED_FRACTION * result.max_displacement
+    row = last_near(size, *near)
+    if row >= 0:
+        result.settled = float(time[row])
 
 
 def _step_ratio(motion: Motion, engine: Engine, platform: Array, peak: float, step: float, slip_change: float) -> Array:
@@ -309,20 +311,10 @@ def _step_ratio(motion: Motion, engine: Engine, platform: Array, peak: float, st
 def _slip_change(motion: Motion, engine: Engine, per_change: float) -> Array:
     """Change of the slip velocity in one step over what is allowed, (T,)."""
     corner = engine.model.corner
-    if not np.isfinite(corner):
+    if not math.isfinite(corner):
         return np.zeros(len(motion.time))
-    acceleration = motion.accelerations[:, engine.model.bodies[0]]
-    size = _length(acceleration)
-    # an acceleration that changes within a step counts twice: it says more about the steps that follow
-    size[1:] = np.maximum(size[1:], 2.0 * _length(acceleration[1:] - acceleration[:-1]))
-    step_ratio: Array = per_change * size / np.maximum(_loaded_slip(motion.gap, motion.slip), corner)
-    return step_ratio
-
-
-def _loaded_slip(gap: Array, slip: Array) -> Array:
-    """Smallest slip speed of the contacts that carry load, (T,), of gaps and slip speeds (T, K); inf for none."""
-    smallest: Array = np.where(gap < 0.0, slip, np.inf).min(axis=1)
-    return smallest
+    changes: Array = slip_changes(motion.accelerations, engine.model.bodies[0], motion.contact, per_change, corner)
+    return changes
 
 
 def _behind_kinks(motion: Motion, size: Array, engine: Engine, peak: float, per_change: float) -> Array:
@@ -371,9 +363,9 @@ def _gap_rate(motion: Motion) -> Array:
 def _steps_ahead(motion: Motion, engine: Engine, level: Level) -> int:
     """How many of the largest steps to try: up to where the slip speed, going on as now, asks for smaller ones."""
     corner = engine.model.corner
-    if len(motion.time) < 2 or not np.isfinite(corner):
+    if len(motion.time) < 2 or not math.isfinite(corner):
         return MAX_CHUNK_STEPS
-    before, slip = _loaded_slip(motion.gap[-2:], motion.slip[-2:]).tolist()
+    before, slip = loaded_slip(motion.contact, -2), loaded_slip(motion.contact, -1)
     if not math.isfinite(before + slip):
         return MAX_CHUNK_STEPS
     rate = (slip - before) / float(motion.time[-1] - motion.time[-2])
@@ -405,9 +397,8 @@ def _end_of_validity(motion: Motion, model: EngineModel) -> tuple[Outcome, int]:
             return Outcome.OK, count - 1
         return Outcome.OVERTURNED if tilt[row] > model.critical_tilt else Outcome.RIM_REACHED, row
     # by height: the horizontal offset only touches rho at the rim and falls again beyond
-    rise = motion.coordinates[:, model.bodies[0, 2]]
-    rim = _first(rise >= RIM)
-    contact_lost = count if model.allows_liftoff else _first((motion.gap >= 0.0).all(axis=1))
+    rim, contact_lost = first_ends(motion.coordinates, model.bodies[0, 2], RIM, motion.contact)
+    contact_lost = count if model.allows_liftoff else contact_lost
     if min(rim, contact_lost) == count:
         return Outcome.OK, count - 1
     return (Outcome.RIM_REACHED, rim) if rim <= contact_lost else (Outcome.CONTACT_LOST, contact_lost)

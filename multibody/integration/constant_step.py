@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import fields
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -128,6 +129,8 @@ class Engine:
             self.settings.timeIntegration.solverType = kind
         kind = exudyn.MainSolverExplicit if self.explicit else exudyn.MainSolverImplicitSecondOrder
         self.solver = kind()
+        self.sensors: list[list[Any]] = [getattr(model.recorders, group.name) for group in fields(model.recorders)]
+        self.columns: list[slice] = []  # of each of these groups in what is read, known with the first run
         self.iterations = 0  # of Newton's method in the last run, with those of steps that were tried again
 
     def run(self, state: EngineState, begin: float, step: float, count: int) -> Motion | None:
@@ -151,28 +154,29 @@ class Engine:
         return self._read()
 
     def _read(self) -> Motion:
-        stored = self.model.mbs.GetSensorStoredData
-        recorders = self.model.recorders
-        # the engine's own instants: it halves a step that its Newton iteration could not solve
-        time = stored(recorders.contact[0])[:, 0]
-
-        def columns(sensors: list[Any]) -> Array:
-            if not sensors:
-                return np.empty((len(time), 0))
-            parts = [stored(sensor)[:, 1:] for sensor in sensors]
-            return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
-
-        motion = [columns(recorders.coordinates), columns(recorders.velocities), columns(recorders.accelerations)]
+        tables = [self.model.mbs.GetSensorStoredData(sensor) for sensors in self.sensors for sensor in sensors]
+        time = tables[0][:, 0]  # the engine's own instants: it halves a step that its Newton iteration could not solve
+        if not self.columns:
+            self.columns = _columns(self.sensors, tables)
+        values = np.concatenate([table[:, 1:] for table in tables], axis=1)
+        coordinates, velocities, accelerations, contact, force, plates = (values[:, part] for part in self.columns)
         plate = np.zeros((len(time), 3, 3))
         if self.model.moving_plate:
-            plate = np.stack([columns([sensor])[:, :3] for sensor in recorders.plate], axis=1)
-            carried = self.model.carried
-            for derivative, part in enumerate(motion):
-                axes = carried_along(carried, part.shape[1])
+            plate = plates.reshape(len(time), 3, -1)[:, :, :3]
+            for derivative, part in enumerate((coordinates, velocities, accelerations)):
+                axes = carried_along(self.model.carried, part.shape[1])
                 part[:, axes < 3] -= plate[:, derivative, axes[axes < 3]]
-        coordinates, velocities, accelerations = motion
-        contact, force = columns(recorders.contact), columns(recorders.contact_force)
         return Motion(time, coordinates, velocities, accelerations, contact, force, plate)
+
+
+def _columns(groups: list[list[Any]], tables: list[Array]) -> list[slice]:
+    """Where the values of each group of sensors are, side by side, whose tables (T, 1 + C) begin with the time."""
+    widths, columns, begin = iter([table.shape[1] - 1 for table in tables]), [], 0
+    for sensors in groups:
+        end = begin + sum(next(widths) for _ in sensors)
+        columns.append(slice(begin, end))
+        begin = end
+    return columns
 
 
 def _settings(newton: float, residual: float) -> Any:

@@ -44,11 +44,16 @@ class Peaks:
 
     def add(self, time: Array, size: Array, slip: Array) -> None:
         """Sizes (T, N) at times (T,), slip speeds (T, K); their first row repeats the last one of the chunk before."""
-        if len(self._time):
+        carried = len(self._time)
+        largest = size.max(axis=0)
+        if carried:
+            largest = np.maximum(size[1:].max(axis=0, initial=0.0), self._size.max(axis=0))
+        candidate = (largest > CANDIDATE_FRACTION * self.value).any()
+        if carried and (candidate or len(time) <= CARRIED_SAMPLES):
             time = np.concatenate([self._time, time[1:]])
             size = np.concatenate([self._size, size[1:]])
             slip = np.concatenate([self._slip, slip[1:]])
-        if (size.max(axis=0) > CANDIDATE_FRACTION * self.value).any():
+        if candidate:
             self._read_between(time, size, slip)
         self._time, self._size, self._slip = time[-CARRIED_SAMPLES:], size[-CARRIED_SAMPLES:], slip[-CARRIED_SAMPLES:]
 

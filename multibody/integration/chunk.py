@@ -1,0 +1,118 @@
+"""
+What every chunk of steps is asked for, compiled: chunks are short, and a dozen array operations cost more than they.
+
+The arrays are those of a `Motion`: accelerations and coordinates (T, n), contact (T, 4 K).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.problem.build_cache import cached_on_disk
+
+Array = NDArray[np.float64]
+
+
+@cached_on_disk(__file__, nogil=True)
+def absolute_sizes(accelerations: Array, bodies: NDArray[np.int_], plate: Array) -> Array:
+    """Sizes (T, N) of the accelerations of the coordinates `bodies` (N, 3) with that of the plate (T, 3)."""
+    steps, count = len(accelerations), len(bodies)
+    size = np.empty((steps, count))
+    for row in range(steps):
+        for body in range(count):
+            x = accelerations[row, bodies[body, 0]] + plate[row, 0]
+            y = accelerations[row, bodies[body, 1]] + plate[row, 1]
+            z = accelerations[row, bodies[body, 2]] + plate[row, 2]
+            size[row, body] = math.sqrt(x * x + y * y + z * z)
+    return size
+
+
+@cached_on_disk(__file__, nogil=True)
+def loaded_slip(contact: Array, row: int) -> float:
+    """Smallest slip speed of the contacts that carry load in a row; inf where none does."""
+    slip = math.inf
+    for place in range(0, contact.shape[1], 4):
+        if contact[row, place] < 0.0:
+            slip = min(slip, contact[row, place + 1])
+    return slip
+
+
+@cached_on_disk(__file__, nogil=True)
+def slip_changes(
+    accelerations: Array, platform: NDArray[np.int_], contact: Array, per_change: float, corner: float
+) -> Array:
+    """
+    Change of the slip velocity in one step over what is allowed, (T,).
+
+    The size of the acceleration of the coordinates `platform` (3,) times `per_change`, over the smallest slip speed of
+    the contacts that carry load, or `corner` where they are slower.
+    """
+    step_ratio = np.empty(len(accelerations))
+    before_x = before_y = before_z = 0.0
+    for row in range(len(accelerations)):
+        x, y, z = accelerations[row, platform[0]], accelerations[row, platform[1]], accelerations[row, platform[2]]
+        size = math.sqrt(x * x + y * y + z * z)
+        if row > 0:
+            # an acceleration that changes within a step counts twice: it says more about the steps that follow
+            dx, dy, dz = x - before_x, y - before_y, z - before_z
+            size = max(size, 2.0 * math.sqrt(dx * dx + dy * dy + dz * dz))
+        step_ratio[row] = per_change * size / max(loaded_slip(contact, row), corner)
+        before_x, before_y, before_z = x, y, z
+    return step_ratio
+
+
+@cached_on_disk(__file__, nogil=True)
+def first_ends(coordinates: Array, height: int, rim: float, contact: Array) -> tuple[int, int]:
+    """First rows at which the coordinate `height` reaches `rim`, and at which every contact is open; T without."""
+    steps = len(coordinates)
+    beyond, lost = steps, steps
+    for row in range(steps):
+        if beyond == steps and coordinates[row, height] >= rim:
+            beyond = row
+        if lost == steps:
+            carries = False
+            for place in range(0, contact.shape[1], 4):
+                carries |= not contact[row, place] >= 0.0
+            if not carries:
+                lost = row
+    return beyond, lost
+
+
+@cached_on_disk(__file__, nogil=True)
+def distances(coordinates: Array, axes: NDArray[np.int_]) -> Array:
+    """Length (T,) of the vector of two coordinates, those of `axes`."""
+    length = np.empty(len(coordinates))
+    for row in range(len(coordinates)):
+        x, y = coordinates[row, axes[0]], coordinates[row, axes[1]]
+        length[row] = math.sqrt(x * x + y * y)
+    return length
+
+
+@cached_on_disk(__file__, nogil=True)
+def largest_distance(time: Array, coordinates: Array, velocities: Array, axes: NDArray[np.int_]) -> float:
+    """The largest of such lengths, also between the instants (T,): `reference.problem.demands.largest_displacement`."""
+    largest = before_square = before = 0.0
+    for row in range(len(time)):
+        x, y = coordinates[row, axes[0]], coordinates[row, axes[1]]
+        square, rate = x * x + y * y, x * velocities[row, axes[0]] + y * velocities[row, axes[1]]
+        largest = max(largest, square)
+        if row > 0 and before > 0.0 > rate:
+            rise = before * before / (before - rate) * (time[row] - time[row - 1])
+            largest = max(largest, before_square + rise)
+        before_square, before = square, rate
+    return math.sqrt(largest)
+
+
+@cached_on_disk(__file__, nogil=True)
+def last_near(size: Array, sizes: Array, distance: Array, far: float) -> int:
+    """Last row at which an entry of `size` (T, N) reaches `sizes` (N,), or one of `distance` (T,) `far`; -1 without."""
+    for row in range(len(size) - 1, -1, -1):
+        if distance[row] >= far:
+            return row
+        for body in range(size.shape[1]):
+            if size[row, body] >= sizes[body]:
+                return row
+    return -1

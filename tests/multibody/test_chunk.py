@@ -1,0 +1,78 @@
+"""What is read from every chunk of steps is, to the same bits, what plain operations on whole arrays give."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from multibody.integration.chunk import (
+    absolute_sizes,
+    distances,
+    first_ends,
+    largest_distance,
+    last_near,
+    slip_changes,
+)
+from reference.problem.demands import largest_displacement
+
+STEPS, CONTACTS = 57, 3
+DRAW = np.random.default_rng(5)
+ACCELERATIONS = DRAW.normal(size=(STEPS, 11))[:, 1:9]  # columns of a wider table, as the engine's are
+CONTACT = DRAW.normal(size=(STEPS, 4 * CONTACTS))
+BODIES = np.array([[0, 1, 2], [6, 7, 2]])
+
+
+def _length(vectors: np.ndarray) -> np.ndarray:
+    square = np.zeros(vectors.shape[:-1])
+    for part in np.moveaxis(vectors, -1, 0):  # from the first to the last: sums of three depend on their order
+        square = square + part * part
+    return np.sqrt(square)
+
+
+def test_sizes_are_those_of_the_sums_with_the_acceleration_of_the_plate() -> None:
+    plate = DRAW.normal(size=(STEPS, 3))
+    expected = _length(ACCELERATIONS[:, BODIES] + plate[:, None, :])
+    assert np.array_equal(absolute_sizes(ACCELERATIONS, BODIES, plate), expected)
+
+
+@pytest.mark.parametrize("corner", [0.3, np.inf])
+def test_a_change_counts_twice_and_is_held_against_the_slowest_contact_that_carries_load(corner: float) -> None:
+    of_platform = ACCELERATIONS[:, BODIES[0]]
+    size = _length(of_platform)
+    size[1:] = np.maximum(size[1:], 2.0 * _length(np.diff(of_platform, axis=0)))
+    slip = np.where(CONTACT[:, 0::4] < 0.0, CONTACT[:, 1::4], np.inf).min(axis=1)
+    expected = 0.7 * size / np.maximum(slip, corner)
+    assert np.array_equal(slip_changes(ACCELERATIONS, BODIES[0], CONTACT, 0.7, corner), expected)
+
+
+@pytest.mark.parametrize("rim", [0.5, 1.5, 100.0])
+def test_the_first_rows_at_the_rim_and_without_contact_are_found(rim: float) -> None:
+    at_rim, is_open = ACCELERATIONS[:, 2] >= rim, (CONTACT[:, 0::4] >= 0.0).all(axis=1)
+    expected = tuple(int(np.append(holds, True).argmax()) for holds in (at_rim, is_open))
+    assert first_ends(ACCELERATIONS, 2, rim, CONTACT) == expected
+    assert first_ends(ACCELERATIONS, 2, rim, -np.abs(CONTACT))[1] == STEPS
+
+
+def test_distances_are_lengths_of_the_two_coordinates() -> None:
+    axes = BODIES[0, :2]
+    assert np.array_equal(distances(ACCELERATIONS, axes), _length(ACCELERATIONS[:, axes]))
+
+
+def test_the_largest_distance_is_that_between_the_instants_too() -> None:
+    axes, between = BODIES[0, :2], 0
+    for _ in range(20):
+        time, velocities = np.cumsum(DRAW.random(STEPS)), DRAW.normal(size=(STEPS, 8))
+        coordinates = DRAW.normal(size=(STEPS, 8))
+        place = coordinates[:, axes]
+        expected = largest_displacement(time, place, velocities[:, axes])
+        assert largest_distance(time, coordinates, velocities, axes) == expected
+        between += expected > _length(place).max()
+    assert between > 2
+
+
+@pytest.mark.parametrize("share", [0.5, 0.99, 1.01])
+def test_the_last_row_near_a_largest_value_is_found(share: float) -> None:
+    size, distance = np.abs(ACCELERATIONS[:, :2]), np.abs(ACCELERATIONS[:, 3])
+    sizes, far = share * size.max(axis=0), share * float(distance.max())
+    near = np.flatnonzero((size >= sizes).any(axis=1) | (distance >= far))
+    assert last_near(size, sizes, distance, far) == (near[-1] if len(near) else -1)
