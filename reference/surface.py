@@ -111,9 +111,9 @@ def amplification(
 
     Notes
     -----
-    Every run is made twice with different tolerances; docs/reference.md says how the error follows from both. The
-    second ends where mu, the largest displacement and the outcome can no longer change, unless `full`. Statuses
-    are the values of `Outcome`: "ok"; "tolerance not met", with mu and its larger error; the others come with mu NaN.
+    Every run is made twice with different tolerances; docs/reference.md says how the error follows from both. A run
+    ends where mu, the largest displacement and the outcome can no longer change, unless `full`. Statuses are the values
+    of `Outcome`: "ok"; "tolerance not met", with mu and its larger error; the others come with mu NaN.
 
     Examples
     --------
@@ -176,8 +176,8 @@ def superposed(scene: Scene, system: System, phases: Array, demand: Demand) -> P
     """The peaks of a linear scene, from one motion per harmonic; runs only where it may reach its end (4.1)."""
     value, error, reach, ends = frictionless_peaks(scene, phases)
     met = (error <= demand.tolerance * value).all(axis=1)
-    code, no_run = np.where(met, SOLVED, NOT_MET), np.zeros((5, len(phases)))
-    peaks = Peaks(value, error, code, no_run[0], no_run[1], reach, no_run[2], no_run[3], no_run[4])
+    code, no_run = np.where(met, SOLVED, NOT_MET), np.zeros((2, len(phases)))
+    peaks = Peaks(value, error, code, no_run[0], no_run[1], reach)
     if ends.any():  # whether it does, and when, is for the run to say
         for whole, ran in zip(peaks, peaks_with_error(system, phases[ends], demand)):
             whole[ends] = ran
@@ -240,6 +240,7 @@ def checked_demand(
         period=time_scale(scene, unit, system.fastest),
         cutoff=0.0 if cutoff is None else cutoff,
         step_limit=BASE_STEPS + int(min(MAX_STEPS, STEPS_PER_PERIOD * scene.duration / period + vibrations + knots)),
+        early=False,
     )
 
 

@@ -13,7 +13,11 @@ from rich.console import Console
 from comparison.cli.options import Options
 from comparison.cli.terminal import new_table
 from comparison.execution.resume import command_line
-from comparison.report.results import Alert, Headline, Results, SceneResult, Targets
+from comparison.report.results.alerts import Alert
+from comparison.report.results.differences import Headline
+from comparison.report.results.run import Targets
+from comparison.report.results.scene import SceneResult
+from comparison.report.results.study import Results
 from reference.problem import builtin_scenes, example_scenes
 
 FILMED = ("translational", "spatial")  # models that multibody.animate knows, by their keys

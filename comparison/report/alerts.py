@@ -7,7 +7,7 @@ from typing import Literal
 
 from comparison.analysis.surfaces import largest_cap_share, largest_travel_share
 from comparison.report.findings import Findings
-from comparison.report.results import Alert
+from comparison.report.results.alerts import Alert
 from comparison.study.models import Model, models_of
 from reference.problem import Scene
 

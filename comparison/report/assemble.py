@@ -29,41 +29,16 @@ from comparison.report.alerts import alerts
 from comparison.report.findings import Findings
 from comparison.report.motion_data import significant_digits
 from comparison.report.pdf import why_no_pdf
-from comparison.report.results import (
-    Assumptions,
-    BudgetEntry,
-    Claim,
-    Claims,
-    Completion,
-    DemandStatistics,
-    Difference,
-    Distribution,
-    Effect,
-    Effective,
-    Erratum,
-    FamilyCurve,
-    FamilyDemand,
-    FamilyResult,
-    FamilyStep,
-    FloorSpectra,
-    ForcedRatio,
-    GridMaximum,
-    Headline,
-    Limit,
-    MeasuredPeak,
-    ModelDescription,
-    ModelOutcome,
-    MotionDemands,
-    RecordValue,
-    Results,
-    Run,
-    SceneResult,
-    Spike,
-    Trend,
-    Unanswered,
-    Waterfall,
-    Worst,
-)
+from comparison.report.results.alerts import Unanswered
+from comparison.report.results.differences import BudgetEntry, Completion, Difference, Headline, Waterfall
+from comparison.report.results.measured import MeasuredPeak
+from comparison.report.results.motions import Effective, FloorSpectra, MotionDemands
+from comparison.report.results.over_phases import DemandStatistics, Distribution, GridMaximum, RecordValue, Worst
+from comparison.report.results.paper import Assumptions, Claim, Claims, Effect, Erratum, Spike
+from comparison.report.results.run import ModelDescription, Run
+from comparison.report.results.scene import ForcedRatio, Limit, ModelOutcome, SceneResult
+from comparison.report.results.study import Results
+from comparison.report.results.trends import FamilyCurve, FamilyDemand, FamilyResult, FamilyStep, Trend
 from comparison.study.models import Model, models_of
 from reference.problem import Family, Outcome, Scene
 from reference.problem import FloorSpectra as SpectraOfMotion

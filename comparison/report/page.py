@@ -45,7 +45,11 @@ from comparison.report.page_plots import (
     trend_panels,
     worst_lines,
 )
-from comparison.report.results import Alert, Claim, ClaimVerdict, Effect, Erratum, Results, SceneResult, Waterfall
+from comparison.report.results.alerts import Alert
+from comparison.report.results.differences import Waterfall
+from comparison.report.results.paper import Claim, ClaimVerdict, Effect, Erratum
+from comparison.report.results.scene import SceneResult
+from comparison.report.results.study import Results
 from comparison.report.verification import CHECKS
 from comparison.report.waterfall_chart import Scale, charts, log_scale, scales
 from comparison.study.study import Study

@@ -12,7 +12,10 @@ from comparison.analysis.distribution import CURVE
 from comparison.analysis.ensemble_file import StoredCurve
 from comparison.analysis.stored import finite_or_none
 from comparison.analysis.tradeoff.trade import Answered, Entry, Trade
-from comparison.report.results import FamilyResult, Results, SceneResult, Trend, Worst
+from comparison.report.results.over_phases import Worst
+from comparison.report.results.scene import SceneResult
+from comparison.report.results.study import Results
+from comparison.report.results.trends import FamilyResult, Trend
 from comparison.wording import MAX_NAMES, scientific, significant
 from reference.problem.peak_demands import QUANTITIES, unit_of
 

@@ -14,7 +14,9 @@ from comparison.execution.task import Task
 from comparison.report.drawings import drawn, map_task
 from comparison.report.findings import Findings
 from comparison.report.pdf_data import largest_headlines, pdf_data, short_title, size_of
-from comparison.report.results import Headline, Results, SceneResult
+from comparison.report.results.differences import Headline
+from comparison.report.results.scene import SceneResult
+from comparison.report.results.study import Results
 from comparison.study.models import Model
 
 MAX_MAPS = 4  # scenes

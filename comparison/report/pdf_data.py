@@ -8,7 +8,10 @@ from typing import Any
 
 from comparison.analysis.assumptions.validity import ASSUMPTIONS
 from comparison.report.pdf_demands import HEADINGS, demand_rows, demands_note
-from comparison.report.results import Headline, Limit, ModelDescription, ModelOutcome, Results, SceneResult, Waterfall
+from comparison.report.results.differences import Headline, Waterfall
+from comparison.report.results.run import ModelDescription
+from comparison.report.results.scene import Limit, ModelOutcome, SceneResult
+from comparison.report.results.study import Results
 from comparison.report.waterfall_chart import Scale, bars_of, scale_of
 from comparison.wording import significant
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 
-from comparison.report.results import DemandStatistics, MotionDemands, Results, SceneResult, UncertainNumber
+from comparison.report.results.motions import MotionDemands, UncertainNumber
+from comparison.report.results.over_phases import DemandStatistics
+from comparison.report.results.scene import SceneResult
+from comparison.report.results.study import Results
 
 HEADINGS = (
     "scene", "model", "isolator, mm", "residual, mm", "base shear, N", "platform, m/s²", "top, m/s²", "drift, mm",

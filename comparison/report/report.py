@@ -15,7 +15,7 @@ from comparison.report.findings import Findings
 from comparison.report.junit import junit
 from comparison.report.page import SECTIONS, page
 from comparison.report.pdf import map_tasks, write_pdf
-from comparison.report.results import Results, schema_json
+from comparison.report.results.study import Results, schema_json
 from comparison.report.summary_text import summary_text
 
 

@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from comparison.report.results import Results, Waterfall, WaterfallBar
+from comparison.report.results.differences import Waterfall, WaterfallBar
+from comparison.report.results.study import Results
 from comparison.wording import signed
 
 MARGIN = 0.03  # of the scale, beyond the longest bar

@@ -84,9 +84,6 @@ class EngineRun:
     instant: float = math.nan  # of a termination, in units of time
     steps: int = 0
     warping_load: float = 0.0  # largest load that warping of the supports takes so far, in shares of the weight
-    load_at_peaks: Array = field(default_factory=lambda: np.zeros(1))  # likewise, until each body's peak, (N,)
-    # of every chunk: the bodies' largest accelerations (N,), and such a load until then
-    loaded: list[tuple[Array, float]] = field(default_factory=list)
     last_open: float = -math.inf  # the latest instant at which a support carried no load, in units of time
     max_displacement: float = 0.0  # horizontal, of the platform, in units of length
     # the last instant at which an acceleration or the displacement of the platform came within SETTLED_FRACTION of its
@@ -98,6 +95,11 @@ class EngineRun:
     opened: bool = False  # whether any contact carried no load
     looked_over: float = math.inf  # from here on the motion was only looked over in larger steps, in units of time
     chunks: list[Motion] = field(default_factory=list)  # the motion, if it is kept
+
+    @property
+    def lifts_off(self) -> bool:
+        """Whether a support of those that share the load opened."""
+        return self.last_open > -math.inf
 
     def terminated(self, outcome: Outcome, instant: float) -> EngineRun:
         """This run, which ends with `outcome` at `instant`."""
@@ -131,7 +133,7 @@ def run_adaptively(
 def begin_run(model: EngineModel, stop: float = math.inf) -> EngineRun:
     """The result of a run that has taken no step yet."""
     peaks = Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near)
-    return EngineRun(peaks, stop, load_at_peaks=np.zeros(len(model.bodies)))
+    return EngineRun(peaks, stop)
 
 
 def go_on(
@@ -273,11 +275,7 @@ def _record(
         first = int(np.searchsorted(time, result.undisturbed))
         time, slip, size, distance = time[first:], slip[first:], size[first:], distance[first:]
     if read and len(time):
-        before = result.peaks.value.copy()
         result.peaks.add(time, size, slip)
-        if result.warping_load > 0.0:
-            result.load_at_peaks[result.peaks.value > before] = result.warping_load
-            result.loaded.append((size.max(axis=0), result.warping_load))
         _record_settling(result, time, size, distance)
     gap = float(motion.gap.max())
     result.opened |= gap >= 0.0

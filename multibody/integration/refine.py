@@ -21,8 +21,10 @@ from numpy.typing import NDArray
 from multibody.integration.adaptive import SETTLED_FRACTION, Budget, EngineRun
 from multibody.integration.estimate import (
     ERROR_PER_WARPING_LOAD,
+    SAFETY_OF_ROUNDING,
     from_compliance,
     from_levels,
+    from_rounding,
     from_sharing,
     measured_per_load,
     share_of_change,
@@ -32,7 +34,7 @@ from multibody.integration.estimate import (
 from multibody.integration.level import (
     COMPLIANCE_RATIO,
     MAX_COMPLIANCE_OF_CLOSED,
-    MAX_WARPING_COMPLIANCE,
+    REAL_WARPING_COMPLIANCE,
     Level,
     for_small_peaks,
     levels_of,
@@ -55,8 +57,6 @@ MAX_WORK_GROWTH = 2.0  # steps of a level over those of the level before
 STEPS_AFTER_SETTLING = 20.0  # largest steps from the last large value of a run to the end of the next
 # change between two levels over what separates later values from the largest: beyond it a run goes to the end after all
 MAX_EARLY_CHANGE = 0.2
-WARPING_RATIO = 2.0  # of the supports' compliance against warping, to measure what the load of warping does
-MAX_SHARING_ERROR = 2.0  # over the error from levels: beyond it further levels hardly help
 MAX_DIFFERENT_MOTIONS = 3  # successive levels with impacts that are another motion than the level before
 # of the first run from the rim, in rho, and the end of its travel, and contact force, in weights: closer, all go to the
 # end
@@ -102,6 +102,7 @@ def refine(
         return _no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
     runs: list[EngineRun] = []
     different = 0  # how many of the last levels with impacts were another motion
+    softest = MAX_COMPLIANCE_OF_CLOSED  # compliance against warping that supports may have
     per_load: Array | None = None  # see `measured_per_load`, once it is measured
     stop = math.inf  # of the next run, where nothing later can matter
     candidate: _Candidate | None = None
@@ -110,14 +111,22 @@ def refine(
     for number in range(len(remaining)):
         level = remaining[number]
         shared = number > 0 and level.penetration >= remaining[number - 1].penetration
-        beside = shared + (per_load is None and _warps(runs))  # runs that complete the error
-        if runs and budget.left < _work_of_next(runs[-1], stop, pair.end) * (1.0 + beside):
+        # a run more completes the error of a contact that stays the same
+        if runs and budget.left < _work_of_next(runs[-1], stop, pair.end) * (1.0 + shared):
             break
-        if number == 0 and model.warping_displacement is not None:
-            run = _first_run(pair, remaining, budget, keep)
-        else:
-            run = pair.at_level(level, budget, stop, keep=keep)
+        rattles = number == 0 and model.warping_displacement is not None
+        run = _trial_run(pair, level, budget, keep) if rattles else pair.at_level(level, budget, stop, keep=keep)
         if stop < pair.end and not _stays_settled(run, runs[-1]):
+            stop = math.inf
+            run = pair.at_level(level, budget, keep=keep)
+        rattles = rattles and run.outcome == Outcome.STEP_LIMIT
+        # springs stiffer than those of real bearings lift supports off by the misfit of the platform; where supports do
+        # open, those of real bearings are part of the model
+        if (rattles or run.lifts_off) and level.warping_compliance != REAL_WARPING_COMPLIANCE:
+            if level.warping_compliance > REAL_WARPING_COMPLIANCE:
+                softest = REAL_WARPING_COMPLIANCE
+            real = [replace(other, warping_compliance=REAL_WARPING_COMPLIANCE) for other in remaining[number:]]
+            remaining[number:], level = real, real[0]
             stop = math.inf
             run = pair.at_level(level, budget, keep=keep)
         runs.append(run)
@@ -128,7 +137,8 @@ def refine(
                 break
             continue
         candidate = None
-        softest = _softest_supports(runs, remaining)
+        if run.lifts_off:
+            softest = REAL_WARPING_COMPLIANCE
         remaining[number + 1 :] = [
             _sharing(later, run.warping_load, tolerance, softest) for later in remaining[number + 1 :]
         ]
@@ -143,24 +153,25 @@ def refine(
         if run.outcome != Outcome.OK:
             break
         finished = [other.peaks for other in runs[-3:] if other.outcome == Outcome.OK]
-        lifted = any(other.last_open > -math.inf for other in runs)
         compliances = [other.warping_compliance for other in remaining[max(number - 2, 0) : number + 1]]
-        if lifted and compliances[0] != compliances[-2]:
+        if softest == REAL_WARPING_COMPLIANCE and compliances[0] != compliances[-2]:
             finished = finished[-2:]
         errors = widened_by_impacts(from_levels(finished, remaining[: number + 1], model), run, number)
-        unmeasured = per_load is None and _warps(runs)
-        sharing = from_sharing(run, per_load)
-        uneven = (sharing > np.maximum(tolerance * run.peaks.value, MAX_SHARING_ERROR * errors)).all()
-        errors = widened_without_convergence(errors if unmeasured else errors + sharing, run)
+        if not run.lifts_off:
+            allowed = tolerance * run.peaks.value - errors
+            # no softer springs are left, and sharing alone misses the tolerance
+            capped = level.warping_compliance >= softest and (allowed >= 0.0).all()
+            if per_load is None and capped and (from_sharing(run, None) > allowed).any():
+                per_load = _measured_sharing(pair, level, run, budget)
+            errors = errors + from_sharing(run, per_load)
         before = (runs[-2], share_of_change(remaining[number - 1], model))
-        missing = level if shared else None, level if unmeasured else None
-        candidate = _Candidate(run, errors, level.error_floor, (before,), *missing, per_load)
-        different = different + 1 if run.impacts and (errors >= run.peaks.value).all() else 0
+        rounding = from_rounding(run.peaks, level, runs[-2].peaks, remaining[number - 1])
+        candidate = _Candidate(run, errors, rounding, level, (before,), lacks_compliance=shared)
+        different = different + 1 if run.impacts and (candidate.errors >= run.peaks.value).all() else 0
         if different == MAX_DIFFERENT_MOTIONS:
             break  # impacts take every level elsewhere: a further one would, too
-        if candidate.meets(tolerance):
+        if (errors <= tolerance * run.peaks.value).all():
             candidate = candidate.completed(pair, budget, keep)
-            per_load = candidate.per_load
         complete = candidate if candidate.is_complete else complete
         if candidate.meets(tolerance):
             return _answer(model, candidate, Outcome.OK)
@@ -170,16 +181,9 @@ def refine(
         if rounded.any() and best is not None and best.relative_error <= candidate.relative_error:
             return _answer(model, best, Outcome.TOLERANCE_NOT_MET)  # rounding takes over at this level
         best = candidate if candidate.is_complete else None
-        if lifted and uneven and not unmeasured and level.warping_compliance >= softest:
-            break  # hardly more than the uneven share of the load is left, and no further level shares it better
     if candidate is not None:
         return _beyond_tolerance(pair, candidate.completed(pair, budget, keep), complete)
     return _unfinished(pair, runs)
-
-
-def _warps(runs: Sequence[EngineRun]) -> bool:
-    """Whether a support opened in any of the runs and more than three of them share the load: warping may take much."""
-    return any(run.last_open > -math.inf for run in runs) and runs[-1].warping_load > 0.0
 
 
 def _work_of_next(run: EngineRun, stop: float, end: float) -> float:
@@ -211,17 +215,22 @@ class _Candidate:
     """The answer of one level."""
 
     run: EngineRun
-    errors: Array  # (N,), in units of the model
-    floor: float  # relative error that the level typically has
+    level_errors: Array  # (N,), errors that other levels and the load of warping show, in units of the model
+    rounding: Array  # likewise, that rounding of the contact forces leaves
+    level: Level
     coarser: tuple[tuple[EngineRun, float], ...]  # other runs, and the share of their difference to this one
-    without_compliance: Level | None  # the level, if the error that its contact's compliance leaves is still missing
-    without_sharing: Level | None  # likewise, the error that the load of warped supports leaves
-    per_load: Array | None  # see `measured_per_load`; None if it is not measured
+    lacks_compliance: bool  # whether the error that the contact's compliance leaves is still missing
+    compliance: float | Array = 0.0  # that error, (N,)
+
+    @property
+    def errors(self) -> Array:
+        """Errors (N,), in units of the model."""
+        return widened_without_convergence(self.level_errors + self.rounding, self.run) + self.compliance
 
     @property
     def is_complete(self) -> bool:
         """Whether the error lacks nothing."""
-        return not (self.without_compliance or self.without_sharing) and bool(np.isfinite(self.errors).all())
+        return not self.lacks_compliance and bool(np.isfinite(self.errors).all())
 
     @property
     def relative_error(self) -> float:
@@ -231,29 +240,21 @@ class _Candidate:
         return bool((self.errors <= tolerance * self.run.peaks.value).all())
 
     def completed(self, pair: PhasePair, budget: Budget, keep: bool) -> _Candidate:
-        """With the errors that are missing, each from a run in which nothing but its cause changes."""
-        return self._with_sharing(pair, budget)._with_compliance(pair, budget, keep)
-
-    def _with_compliance(self, pair: PhasePair, budget: Budget, keep: bool) -> _Candidate:
-        """With the error that the compliance leaves, from a run with a softer contact."""
-        level = self.without_compliance
-        if level is None:
+        """With the error that the compliance leaves, from a run in which nothing but the contact is softer."""
+        if not self.lacks_compliance:
             return self
-        softer = replace(level, penetration=COMPLIANCE_RATIO * level.penetration)
+        level, softer = self.level, replace(self.level, penetration=COMPLIANCE_RATIO * self.level.penetration)
         run = pair.at_level(softer, budget, self.run.stop, keep=keep, residual=level.residual)
-        errors = self.errors + from_compliance(self.run.peaks, run, softer, pair.model)
-        coarser = (*self.coarser, (run, share_of_change(softer, pair.model)))
-        return replace(self, errors=errors, coarser=coarser, without_compliance=None)
-
-    def _with_sharing(self, pair: PhasePair, budget: Budget) -> _Candidate:
-        """With the error that the load of warped supports leaves, from a run whose supports warp more easily."""
-        level = self.without_sharing
-        if level is None:
-            return self
-        softer = replace(level, warping_compliance=WARPING_RATIO * level.warping_compliance)
-        per_load = measured_per_load(self.run, pair.at_level(softer, budget, self.run.stop))
-        errors = self.errors + from_sharing(self.run, per_load)
-        return replace(self, errors=errors, without_sharing=None, per_load=per_load)
+        completed = replace(
+            self,
+            compliance=from_compliance(self.run.peaks, run, softer, pair.model),
+            coarser=(*self.coarser, (run, share_of_change(softer, pair.model))),
+            lacks_compliance=False,
+        )
+        if run.outcome != Outcome.OK:
+            return completed
+        rounding = from_rounding(self.run.peaks, level, run.peaks, softer, SAFETY_OF_ROUNDING)
+        return replace(completed, rounding=np.minimum(self.rounding, rounding))
 
 
 def _beyond_tolerance(pair: PhasePair, finest: _Candidate, complete: _Candidate | None) -> Refinement:
@@ -263,7 +264,7 @@ def _beyond_tolerance(pair: PhasePair, finest: _Candidate, complete: _Candidate 
     # the run that shows what the compliance leaves has no answer
     if complete is not None:
         answer = _answer(pair.model, complete, Outcome.TOLERANCE_NOT_MET)
-        return replace(answer, finest=finest.run, coarser=finest.coarser[:1], floor=finest.floor)
+        return replace(answer, finest=finest.run, coarser=finest.coarser[:1], floor=finest.level.error_floor)
     return _no_answer(pair.model, finest.run, Outcome.SOLVER_FAILED, pair.scene.duration)
 
 
@@ -275,26 +276,19 @@ def _unfinished(pair: PhasePair, runs: list[EngineRun]) -> Refinement:
     return _no_answer(pair.model, failed, failed.outcome, failed.instant * pair.model.units.time)
 
 
-def _first_run(pair: PhasePair, levels: list[Level], budget: Budget, keep: bool) -> EngineRun:
-    """The run at the first level of a model whose supports share the load; levels: softer ones, where they must be."""
+def _trial_run(pair: PhasePair, level: Level, budget: Budget, keep: bool) -> EngineRun:
+    """The first run of a model whose supports may rattle, with a share of the work."""
     trial = Budget(MAX_FIRST_SHARE * budget.left)
     budget.left -= trial.left
-    run = pair.at_level(levels[0], trial, keep=keep)
+    run = pair.at_level(level, trial, keep=keep)
     budget.left += trial.left
-    if run.outcome != Outcome.STEP_LIMIT:
-        return run
-    # springs stiffer than those of real bearings lift supports off by the misfit of the platform, and they rattle
-    levels[:] = [replace(level, warping_compliance=MAX_WARPING_COMPLIANCE) for level in levels]
-    return pair.at_level(levels[0], budget, keep=keep)
+    return run
 
 
-def _softest_supports(runs: Sequence[EngineRun], levels: Sequence[Level]) -> float:
-    """The compliance against warping that supports may have: that of real bearings, where any of those opened."""
-    opened = any(
-        run.last_open > -math.inf and (run is runs[-1] or level.warping_compliance >= MAX_WARPING_COMPLIANCE)
-        for run, level in zip(runs, levels)
-    )
-    return MAX_WARPING_COMPLIANCE if opened else MAX_COMPLIANCE_OF_CLOSED
+def _measured_sharing(pair: PhasePair, level: Level, run: EngineRun, budget: Budget) -> Array:
+    """What the load of warping does to the peaks of `run`, (N,), from a run that warps less easily."""
+    stiffer = replace(level, warping_compliance=level.warping_compliance / COMPLIANCE_RATIO)
+    return measured_per_load(run, pair.at_level(stiffer, budget, run.stop))
 
 
 def _sharing(level: Level, load: float, tolerance: float, softest: float) -> Level:
@@ -309,7 +303,7 @@ def _answer(model: EngineModel, candidate: _Candidate, outcome: Outcome) -> Refi
     worst = float(peaks.instant[(errors / peaks.value).argmax()]) * model.units.time
     instant = math.nan if outcome == Outcome.OK else worst
     answered = Refinement(peaks.value * unit, errors * unit, outcome, instant, candidate.run)
-    return replace(answered, coarser=candidate.coarser, floor=candidate.floor)
+    return replace(answered, coarser=candidate.coarser, floor=candidate.level.error_floor)
 
 
 def _no_answer(model: EngineModel, run: EngineRun, outcome: Outcome, instant: float) -> Refinement:

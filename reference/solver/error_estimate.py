@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from reference.solver.peaks import SETTLED_FRACTION
 from reference.solver.run import runs
 from reference.solver.step_control import MIN_SCALE_FRACTION
 from reference.solver.system import SOLVED, Array, Demand, Record, System, record_of
@@ -29,13 +27,6 @@ MIN_STEP_TOLERANCE = 1e-11
 # Tolerance inside a step over the tolerance of the peak: errors inside a step are local, a peak comes from all steps.
 STEP_TOLERANCE_FACTOR = 10.0
 
-PERIODS_AFTER_SETTLING = 1.0  # Demand.period: from the last large value of a run to the end of the next
-# change between two runs over what separates later values from the largest: beyond it a run goes to the end after all
-MAX_EARLY_CHANGE = 0.2
-# of the first run from the rim in rho, from the end of its travel, from liftoff in weights, from Painleve's paradox:
-# closer, all go to the end
-MIN_END_MARGIN = 0.1
-
 NOT_MET = 100  # code of a run whose error stays above the tolerance; system.py has the other codes
 
 
@@ -48,30 +39,20 @@ class Peaks(NamedTuple):
     instant: Array  # (M,) s
     steps: Array  # (M,) of the last run
     reach: Array  # (M,) m, largest horizontal displacement of the platform
-    settled: Array  # (M,) s, end of the last step with a large value of anything that is asked for
-    least_reaction: Array  # (M,) m/s^2, smallest normal force / m1
-    least_determinant: Array  # (M,) of the inertia while sliding
 
 
-def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float, stop: Array | None = None) -> Peaks:
-    """
-    One run from rest for every phase pair (M, 2), this tolerance inside the steps; errors are those of reading.
-
-    stop: (M,), s, no run goes further. To the end of the motion if None.
-    """
+def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float) -> Peaks:
+    """One run from rest for every phase pair (M, 2), this tolerance inside the steps; errors are those of reading."""
     rest = np.zeros((len(system.below), 2))
     demand = demand._replace(tolerance=tolerance)
-    return peaks_from(rest, rest, system, phases, demand, record_of(0, len(rest)), stop)
+    return peaks_from(rest, rest, system, phases, demand, record_of(0, len(rest)))
 
 
-def peaks_from(
-    x: Array, v: Array, system: System, phases: Array, demand: Demand, record: Record, stop: Array | None = None
-) -> Peaks:
+def peaks_from(x: Array, v: Array, system: System, phases: Array, demand: Demand, record: Record) -> Peaks:
     """One run from positions x and velocities v (N, 2) for every phase pair (M, 2), rad; `record` keeps its steps."""
     count, bodies = len(phases), len(x)
     value, error, ends = np.empty((count, bodies)), np.empty((count, bodies)), np.empty((len(Peaks._fields) - 2, count))
-    last = np.full(count, np.inf) if stop is None else stop
-    runs(system, phases, x, v, demand, record, value, error, ends, last)
+    runs(system, phases, x, v, demand, record, value, error, ends)
     return Peaks(value, error, *ends)
 
 
@@ -80,21 +61,16 @@ def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool 
     Peaks to the relative tolerance of `demand`, with errors.
 
     The tolerance inside the steps is tightened until two runs agree; one that cannot be finished is tried again, too.
-    The first run goes to the end of the motion and shows when the last large value comes. The others stop soon after
-    it, as long as they agree with the run before. `whole`: all go to the end.
+    Every run ends where nothing can come that changes them, the displacement or the outcome (look_ahead.py).
+    `whole`: all go to the end of the motion.
     """
+    demand = demand._replace(early=not whole)
     tolerance = min(MAX_STEP_TOLERANCE, max(STEP_TOLERANCE_FACTOR * demand.tolerance, MIN_STEP_TOLERANCE))
     before = peaks_at(system, phases, demand, TOLERANCE_RATIO * tolerance)
-    stop = np.full(len(phases), np.inf) if whole else _settled(system, before, demand)
     peaks = Peaks(*(part.copy() for part in before))
     unfinished = np.arange(len(phases))
     while len(unfinished):
-        after = peaks_at(system, phases[unfinished], demand, tolerance, stop)
-        lost = np.isfinite(stop) & ~_stays_settled(before, after)
-        if lost.any():
-            stop[lost] = np.inf
-            for part, again in zip(after, peaks_at(system, phases[unfinished[lost]], demand, tolerance)):
-                part[lost] = again
+        after = peaks_at(system, phases[unfinished], demand, tolerance)
         error = _error(before, after, tolerance, demand.unit)
         fraction = MIN_ERROR_FRACTION if system.rate == 0.0 else MIN_ERROR_FRACTION_VARYING
         error_or_minimum = np.maximum(error, fraction * demand.tolerance * after.value)
@@ -108,25 +84,9 @@ def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool 
             peaks.code[unfinished[again & (after.code == SOLVED)]] = NOT_MET
             break
         before = Peaks(*(part[again] for part in after))
-        unfinished, stop = unfinished[again], stop[again]
+        unfinished = unfinished[again]
         tolerance = max(tolerance / TOLERANCE_RATIO, MIN_STEP_TOLERANCE)
     return peaks
-
-
-def _settled(system: System, first: Peaks, demand: Demand) -> Array:
-    """When further runs may stop, (M,), s, after one to the end of the motion; infinity where nothing allows it."""
-    safe = (first.code == SOLVED) & (first.reach <= (1.0 - MIN_END_MARGIN) * min(system.radius, system.travel))
-    safe &= first.least_reaction >= MIN_END_MARGIN * system.mass_ratio * system.gravity
-    safe &= first.least_determinant >= MIN_END_MARGIN
-    return np.where(safe, first.settled + PERIODS_AFTER_SETTLING * demand.period, np.inf)
-
-
-def _stays_settled(before: Peaks, after: Peaks) -> NDArray[np.bool_]:
-    """Whether runs that stopped early, (M,), agree so well with those before that nothing later can matter."""
-    largest = np.column_stack([after.value, after.reach])
-    change = np.abs(largest - np.column_stack([before.value, before.reach]))
-    agree = (change <= MAX_EARLY_CHANGE * (1.0 - SETTLED_FRACTION) * largest).all(axis=1)
-    return np.asarray(agree & (after.code == SOLVED))
 
 
 def _error(before: Peaks, after: Peaks, tolerance: float, unit: float) -> Array:

@@ -10,7 +10,7 @@ A lubricated contact stays lubricated. Each phase carries the state in `Work` on
 
 from __future__ import annotations
 
-from math import pi, sqrt
+from math import inf, pi, sqrt
 
 from reference.solver.compiled import cached_entry_point, compiled
 from reference.solver.contact.platform import load_in_state, rest_excess
@@ -81,14 +81,16 @@ def crawls(system: System, work: Work, contact: int, demand: Demand) -> bool:
 
 
 @compiled
-def integrate(system: System, work: Work, demand: Demand, record: Record, stop: float) -> int:
+def integrate(system: System, work: Work, demand: Demand, record: Record) -> int:
     """
-    Follow the motion from the state in work.x, work.v to `stop` or its end; how it ended (system.py), at work.time.
+    Follow the motion from the state in work.x, work.v; how it ended (system.py), at work.time.
+
+    A run that may end early does so where nothing large can come any more (look_ahead.py).
 
     work.best (N,) holds the squared peaks of absolute acceleration, m^2/s^4.
     """
-    end = min(stop, system.duration)
-    start_anew(work, min(FIRST_STEP * demand.period, end), end)
+    start_anew(work, min(FIRST_STEP * demand.period, system.duration), system.duration)
+    work.look = 0.0 if demand.early else inf
     contact = first_contact(system, work)
     before, idle = -1.0, 0
     while remaining(system, work, demand) > 0.0:
@@ -110,15 +112,14 @@ def integrate(system: System, work: Work, demand: Demand, record: Record, stop: 
 @cached_entry_point
 def runs(
     system: System, phases: Array, x: Array, v: Array, demand: Demand, record: Record,
-    peaks: Array, reading_errors: Array, ends: Array, stop: Array,
+    peaks: Array, reading_errors: Array, ends: Array,
 ) -> None:  # fmt: skip
     """
     Follow the motion from x, v (N, 2) for every phase pair (M, 2), rad.
 
     Fills peaks (M, N), the largest absolute accelerations, m/s^2, and reading_errors (M, N), their errors inside their
-    steps, and ends (7, M): how (system.py), when (s) and after how many steps each
-    run ended, the platform's largest displacement (m), when the last large value came (s), the smallest reaction / m1
-    (m/s^2) and inertia determinant. A run goes no further than `stop` (M,), s.
+    steps, and ends (4, M): how (system.py), when (s) and after how many steps each run ended, and the platform's
+    largest displacement (m).
     """
     work = workspace(peaks.shape[1])
     system_reference, record_reference = SystemReference(*system), RecordReference(*record)
@@ -128,9 +129,8 @@ def runs(
             for axis in range(2):
                 work.x[i, axis] = x[i, axis]
                 work.v[i, axis] = v[i, axis]
-        code = integrate(system_reference, work, demand, record_reference, stop[m])
+        code = integrate(system_reference, work, demand, record_reference)
         ends[0, m], ends[1, m], ends[2, m], ends[3, m] = code, work.time, work.steps, sqrt(work.reach2)
-        ends[4, m], ends[5, m], ends[6, m] = work.settled, work.least_reaction, work.least_determinant
         for i in range(peaks.shape[1]):
             peaks[m, i] = sqrt(work.best[i])
             reading_errors[m, i] = work.reading_error[i]

@@ -8,13 +8,13 @@ from reference.solver.chain import chain_acceleration
 from reference.solver.collocation import NODES, STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.platform import load_in_state, moving
-from reference.solver.events import expand, lowest
+from reference.solver.events import expand
 from reference.solver.ground import ground_at, knot_after
 from reference.solver.peaks import take_peaks, take_reach
 from reference.solver.record import record_step
 from reference.solver.steps import lifted
 from reference.solver.system import REST, SLIDING, STOPPING, UNSOLVED, Demand, Ground, Record, System
-from reference.solver.work import CLOCK, DETERMINANT, REACTION, Work
+from reference.solver.work import CLOCK, Work
 
 MIN_LENGTH_FACTOR, MAX_LENGTH_FACTOR, SAFETY_FACTOR = 0.1, 5.0, 0.85
 MAX_SHORTENING = 0.7  # factor of the length of a step that misses the tolerance, at most
@@ -155,11 +155,8 @@ def commit(work: Work, record: Record, h: float, contact: int, parts: int) -> No
     large = False
     for part in range(parts):
         large = take_peaks(work, work.edges[2 * part], work.edges[2 * part + 1]) or large
-    work.least_reaction = min(work.least_reaction, lowest(work.stage[REACTION]))
     if contact != REST:
         large = take_reach(work, h, contact == STOPPING) or large
-    if contact not in (REST, STOPPING):
-        work.least_determinant = min(work.least_determinant, lowest(work.stage[DETERMINANT]))
     for axis in range(2):
         expand(work.a[0, axis], work.powers[axis])
         for k in range(STAGES):

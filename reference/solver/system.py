@@ -97,6 +97,7 @@ class Demand(NamedTuple):
     period: float  # s, in which forces change (time_scale)
     cutoff: float  # m/s, v_c of the resolved peak; 0 for the supremum
     step_limit: int
+    early: bool  # whether a run ends where nothing asked for can come any more (look_ahead.py)
 
 
 def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = False, axes: int = 2) -> System:

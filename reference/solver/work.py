@@ -112,8 +112,7 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     reading_error: Array  # (N,) m/s^2, error of reading it inside its step
     reach2: float  # m^2, largest squared displacement of the platform
     settled: float  # s, end of the last step with a large value of anything that is asked for
-    least_reaction: float  # m/s^2, of the platform / m1
-    least_determinant: float  # of the inertia while sliding
+    look: float  # s, after which the run looks ahead; infinite if it goes to the end in any case
 
 
 structref.define_proxy(Work, _WorkType, list(Work.__annotations__))
@@ -172,8 +171,7 @@ def workspace(bodies: int) -> Work:
         reading_error=np.zeros(n),
         reach2=0.0,
         settled=0.0,
-        least_reaction=0.0,
-        least_determinant=0.0,
+        look=0.0,
     )
 
 
@@ -182,7 +180,7 @@ def start_anew(work: Work, length: float, end: float) -> None:
     """Forget the run before; `length` of the first step and end of the run, s."""
     work.time = work.angle = work.log_speed = work.log_ratio = work.start2 = 0.0
     work.length, work.stretched, work.growth, work.old_length = length, 0.0, 0.0, 0.0
-    work.end, work.settled, work.least_reaction, work.least_determinant = end, 0.0, np.inf, np.inf
+    work.end, work.settled = end, 0.0
     work.held = work.entered = work.left = work.steps = work.reach2 = 0.0
     for i in range(work.x.shape[0]):
         work.best[i] = work.reading_error[i] = 0.0

@@ -13,7 +13,8 @@ from jsonschema import Draft202012Validator
 
 from comparison.analysis.effective import read_back
 from comparison.analysis.errata import ERRATA
-from comparison.report.results import Effective, Results
+from comparison.report.results.motions import Effective
+from comparison.report.results.study import Results
 from comparison.study.models import MODEL_HIERARCHY, models_of
 from multibody.film import drawing
 from reference import demands, trajectory

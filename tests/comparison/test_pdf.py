@@ -18,7 +18,7 @@ from comparison.report import pdf
 from comparison.report.assemble import assemble
 from comparison.report.findings import Fault, Findings, collect_findings
 from comparison.report.pdf_demands import demand_rows
-from comparison.report.results import Results
+from comparison.report.results.study import Results
 from comparison.study.batches import execute_batch
 from comparison.study.models import Model
 from comparison.study.study import Study

@@ -53,7 +53,7 @@ def test_what_needs_phases_or_amplitudes_is_not_asked_of_a_record(study):
     stages = {task.stage for task in first_tasks(Study(study.scenes[:1], 4, 1e-3), ANALYSES)}
     assert stages == {"effective values"}
     assert predicted_costs(Study(study.scenes[:1], 4, 1e-3), ANALYSES)["pictures"][0] == 0
-    assert {row.what for row in reductions(Study(study.scenes[:1], 4, 1e-3))} <= {"end of all runs but the first"}
+    assert {row.what for row in reductions(Study(study.scenes[:1], 4, 1e-3))} <= {"end of every run"}
     (place,) = chosen_places(study, None, study.scenes[0])
     assert (place.row, place.column) == (0, 0)
 

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from comparison.report.results import WaterfallBar
+from comparison.report.results.differences import WaterfallBar
 from comparison.report.waterfall_chart import bars_of, log_scale, scale_of
 
 NAN = float("nan")

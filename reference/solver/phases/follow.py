@@ -7,6 +7,7 @@ from math import inf, log, sqrt
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import rising_rate
 from reference.solver.events import LEVEL, SPEED, expand_level, expand_speed, highest, lowest, parts_beyond
+from reference.solver.look_ahead import end_early
 from reference.solver.near_stop import near_stop_step
 from reference.solver.phases.rest import begin_rest, onset_within, set_reaction
 from reference.solver.phases.sliding import (
@@ -107,6 +108,8 @@ def follow(system: System, work: Work, contact: int, demand: Demand, record: Rec
             work.time = reached
             return TRAVEL, contact
         following = after_step(system, work, contact, following, demand, end, factor)
+        if contact != STOPPING and work.time > work.look:
+            end_early(system, work, demand)
     if contact in (REST, CREEPING):
         note_stick(record, since, work.time)
     return SOLVED, following

@@ -1,0 +1,200 @@
+"""
+What may still come after a state: a rough run from there to the end, for a small part of the cost of an accurate one.
+
+Constant steps of second order: half a drift, the forces, half a drift. Friction acts at the end of the step, so a
+platform whose velocity it can take within the step comes to rest. Forces and friction are those of the accurate run.
+Every value counts as large that reaches LARGE_FRACTION of the largest so far. The direction of a slide turns fast near
+its stop; there the platform's acceleration is the largest that any direction allows on the way, and a little beyond.
+"""
+
+from __future__ import annotations
+
+from math import cos, inf, sin, sqrt
+
+from reference.solver.chain import chain_acceleration
+from reference.solver.compiled import compiled
+from reference.solver.contact.friction import coefficient, sliding_speed2
+from reference.solver.contact.platform import acceleration, load_in_state, rest_excess, slip_factor
+from reference.solver.ground import ground_at
+from reference.solver.steps import lifted
+from reference.solver.system import (
+    CREEPING,
+    LUBRICATED,
+    LUBRICATED_SLIDING,
+    SET_VALUED,
+    SLIDING,
+    Demand,
+    Ground,
+    Load,
+    System,
+)
+from reference.solver.work import Work
+
+STEPS_PER_PERIOD = 25.0  # of Demand.period
+MAX_STEP_RATIO = 25.0  # of the accurate run's mean step over the rough one, which takes about a fiftieth of the time
+MAX_CHAIN_ANGLE = 0.5  # rad: most that the chain's fastest vibration may turn during one step
+LARGE_FRACTION = 0.85  # of the largest so far: a smaller value of a rough run does not reach it in an accurate one
+# of the rim in rho, of the end of its travel, of liftoff in weights, of Painleve's paradox: closer, the run goes on
+MIN_MARGIN = 0.1
+MAX_SLOW_STEPS = 2.0  # in which friction would stop the slide: so slow a slide counts as near its stop
+DIRECTION_MARGIN = 0.35  # rad, by which the direction of a slide near its stop is uncertain
+MAX_HELD_DRIVE = 0.8  # of the squared friction limit: a larger drive may move a platform that rests in a rough run
+WAIT = 0.25  # of the period, from the last large value until the run looks ahead
+
+
+@compiled
+def end_early(system: System, work: Work, demand: Demand) -> None:
+    """End the run, at a step whose end is in x, v, where nothing large can come any more; set when to look again."""
+    work.look = work.settled + WAIT * demand.period
+    h = rough_length(system, demand)
+    if work.time > work.look and work.time <= MAX_STEP_RATIO * h * work.steps:
+        comes = next_large(system, work, h)
+        work.look = comes + WAIT * demand.period
+        if comes == inf:
+            work.end = work.time
+
+
+@compiled
+def rough_length(system: System, demand: Demand) -> float:
+    """Length of the steps of a rough run, s."""
+    h = demand.period / STEPS_PER_PERIOD
+    if system.fastest > 0.0:
+        h = min(h, MAX_CHAIN_ANGLE / system.fastest)
+    return h
+
+
+@compiled
+def next_large(system: System, work: Work, h: float) -> float:
+    """When something large may come after the state x, v, s, in steps of h; infinity if nothing can."""
+    bodies = work.x.shape[0]
+    for i in range(bodies):  # the next step writes x1, v1 anew
+        for axis in range(2):
+            work.x1[i, axis], work.v1[i, axis] = work.x[i, axis], work.v[i, axis]
+    time, large = work.time, False
+    while time < system.duration and not large:
+        large = rough_step(system, work, time, h)
+        time += h
+    for i in range(bodies):
+        for axis in range(2):
+            work.x[i, axis], work.v[i, axis] = work.x1[i, axis], work.v1[i, axis]
+    return time if large else inf
+
+
+@compiled
+def rough_step(system: System, work: Work, time: float, h: float) -> bool:
+    """Move x, v by h; whether something large may come meanwhile. Uses a0 of the bodies above the platform."""
+    drift(work, 0.5 * h)
+    ground = ground_at(system, work, time + 0.5 * h)
+    chain_acceleration(system, work, ground)
+    vx, vy = work.v[0, 0], work.v[0, 1]
+    largest, far = push_platform(system, work, load_in_state(system, work, ground), ground, h)
+    ax, ay = (work.v[0, 0] - vx) / h, (work.v[0, 1] - vy) / h
+    vertical = ground.z + lifted(system, work.x[0, 0], work.x[0, 1], vx, vy, ax, ay)
+    level = LARGE_FRACTION * LARGE_FRACTION
+    # a number that is none is large, too
+    small = not far and largest * largest + vertical * vertical < level * work.best[0]
+    for i in range(1, work.x.shape[0]):
+        tx, ty = work.a0[i, 0] + ground.x, work.a0[i, 1] + ground.y
+        small = small and tx * tx + ty * ty + vertical * vertical < level * work.best[i]
+        for axis in range(2):
+            work.v[i, axis] += h * work.a0[i, axis]
+    drift(work, 0.5 * h)
+    return not small
+
+
+@compiled
+def drift(work: Work, h: float) -> None:
+    """Move every body at its velocity."""
+    for i in range(work.x.shape[0]):
+        for axis in range(2):
+            work.x[i, axis] += h * work.v[i, axis]
+
+
+@compiled
+def push_platform(system: System, work: Work, load: Load, ground: Ground, h: float) -> tuple[float, bool]:
+    """
+    Change the platform's velocity by a step.
+
+    Returns the largest its horizontal absolute acceleration may be, m/s^2, and whether it may come to where it was
+    farthest, to the rim, the end of its travel, liftoff or Painleve's paradox.
+    """
+    vx, vy = work.v[0, 0], work.v[0, 1]
+    place2 = load.px * load.px + load.py * load.py
+    bound = (1.0 - MIN_MARGIN) * min(system.radius, system.travel)
+    if not place2 < bound * bound:
+        return inf, True
+    far = place2 >= LARGE_FRACTION * LARGE_FRACTION * work.reach2
+    least = MIN_MARGIN * system.mass_ratio * system.gravity
+    speed2 = sliding_speed2(system, load.px, load.py, vx, vy)
+    if system.law == SET_VALUED and speed2 == 0.0:
+        excess, reaction = rest_excess(system, load)
+        limit = system.friction * reaction
+        if excess <= 0.0:
+            largest = sqrt(ground.x * ground.x + ground.y * ground.y)
+            nearly = excess > (MAX_HELD_DRIVE - 1.0) * limit * limit
+            if nearly:
+                gx, gy = load.fx - reaction * load.px / system.radius, load.fy - reaction * load.py / system.radius
+                largest = max(largest, largest_near_stop(gx, gy, gx, gy, ground, limit))
+            return largest, (nearly and far) or not reaction >= least
+    sx, sy = slip(system, vx, vy, speed2)
+    ax, ay, reaction, determinant = acceleration(system, load, speed2, sx, sy)
+    if not (reaction >= least and determinant >= MIN_MARGIN):
+        return inf, True
+    gx, gy = ax + reaction * sx, ay + reaction * sy  # without friction
+    free_x, free_y = vx + h * gx, vy + h * gy
+    free = sqrt(free_x * free_x + free_y * free_y)
+    if free == 0.0:
+        work.v[0, 0] = work.v[0, 1] = 0.0
+        return sqrt(ground.x * ground.x + ground.y * ground.y), far
+    if system.law == LUBRICATED:
+        share = 1.0 / (1.0 + h * reaction * system.friction)
+    else:
+        ratio = sqrt(sliding_speed2(system, load.px, load.py, free_x / free, free_y / free))
+        limit = reaction * coefficient(system, sqrt(speed2)) / ratio
+        share = max(0.0, 1.0 - h * limit / free)
+        if share * free * ratio < system.v_reg:
+            share = 1.0 / (1.0 + h * limit * ratio / system.v_reg)
+        limit = max(limit, reaction * system.friction / ratio)  # friction may rise on the way to the stop
+        slow = share * free < MAX_SLOW_STEPS * h * limit
+        if slow and speed2 > system.v_reg * system.v_reg:
+            work.v[0, 0], work.v[0, 1] = share * free_x, share * free_y
+            return largest_near_stop(gx, gy, vx, vy, ground, limit), far
+    work.v[0, 0], work.v[0, 1] = share * free_x, share * free_y
+    ax, ay = (share * free_x - vx) / h + ground.x, (share * free_y - vy) / h + ground.y
+    return sqrt(ax * ax + ay * ay), far
+
+
+@compiled
+def slip(system: System, vx: float, vy: float, speed2: float) -> tuple[float, float]:
+    """Slip vector (friction.py) at the velocity before the step, for the reaction; none where a slide begins."""
+    if speed2 == 0.0:
+        return 0.0, 0.0
+    contact = SLIDING
+    if system.law == LUBRICATED:
+        contact = LUBRICATED_SLIDING
+    elif speed2 < system.v_reg * system.v_reg:
+        contact = CREEPING
+    factor = slip_factor(system, contact, speed2)
+    return factor * vx, factor * vy
+
+
+@compiled
+def largest_near_stop(gx: float, gy: float, vx: float, vy: float, ground: Ground, friction: float) -> float:
+    """
+    Largest absolute acceleration on the way from the velocity v into a stop under the drive g, m/s^2.
+
+    The direction of the slide turns from that of v to that of g (stop_arc.py), and friction, m/s^2, with it.
+    """
+    dx, dy = gx + ground.x, gy + ground.y
+    drive, speed, force = sqrt(dx * dx + dy * dy), sqrt(vx * vx + vy * vy), sqrt(gx * gx + gy * gy)
+    if drive == 0.0 or speed == 0.0 or force == 0.0:
+        return drive + friction
+    cosine = min((dx * vx + dy * vy) / speed, (dx * gx + dy * gy) / force) / drive
+    cosine = min(max(cosine, -1.0), 1.0)
+    sine = sqrt(1.0 - cosine * cosine)
+    turn = vx * gy - vy * gx
+    opposed = turn * (dx * vy - dy * vx) > 0.0 and turn * (gx * dy - gy * dx) > 0.0  # somewhere on the way
+    if opposed or cosine < -cos(DIRECTION_MARGIN):
+        return drive + friction
+    cosine = cosine * cos(DIRECTION_MARGIN) - sine * sin(DIRECTION_MARGIN)
+    return sqrt(drive * drive + friction * friction - 2.0 * cosine * drive * friction)
