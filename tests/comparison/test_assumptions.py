@@ -157,6 +157,18 @@ def test_one_run_of_an_uneven_variation_gives_the_factors_of_the_model_and_its_t
     assert np.array(solved.torsion)[:, 1].min() > 1e-3
 
 
+def test_where_motions_raise_the_factors_stay_and_the_sentence_says_why_no_torsion_is_known() -> None:
+    spatial = replace(MODEL_HIERARCHY[-1], trajectory="comparison.nowhere:trajectory")
+    short, uneven = STATED.with_values({"duration": 0.5}), Variation(offset=0.1)
+    solved = varied((short, spatial, uneven, 1e-3))
+    factors = amplification(uneven.of(short), PHASES, tolerance=1e-3, **spatial.settings)
+    assert np.array_equal(solved.mu, factors.mu)
+    reason = "no motion: ModuleNotFoundError: No module named 'comparison.nowhere'"
+    assert solved.error_message == reason
+    cell = replace(_cell(uneven, 0.03, 0.02), error_message=reason)
+    assert ValidityRanges([STATED], [_cell(Variation(), 0.0, 0.0), cell]).lines(STATED)[-1].endswith(f"({reason})")
+
+
 def _turning(scene: Scene, variations: Sequence[Variation]) -> list[Cell]:
     study = Study((scene.with_values({"duration": 2.0}),), 1, 1e-3, MODEL_HIERARCHY)
     return list(collected(Assumptions(variations), study).cells)

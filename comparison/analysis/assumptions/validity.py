@@ -222,5 +222,6 @@ def describe_torsion(scene: Scene, cell: Cell) -> str:
     changes = ", ".join(f"mu_{body} by up to {100.0 * cell.largest(body):.2g} %" for body in bodies)
     turns = np.array(cell.torsion)
     known = turns.shape == (len(PHASES), len(scene.bodies)) and np.isfinite(turns).all()
-    torsion = f"they turn by up to {1e3 * turns.max():.3g} mrad" if known else "no motion says how far they turn"
+    unknown = f"no motion says how far they turn{f' ({cell.error_message})' if cell.error_message else ''}"
+    torsion = f"they turn by up to {1e3 * turns.max():.3g} mrad" if known else unknown
     return f"the bodies above the platform {where} change {changes}; {torsion}"

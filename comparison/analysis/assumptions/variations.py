@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -263,12 +262,15 @@ def varied(task: Arguments) -> Solved:
     scene, model, variation, tolerance = task
     short = scene.with_values({"duration": min(scene.duration, DURATION)})
     changed = short if variation is None else variation.of(short)
+    without_torsion = ""
     if variation is not None and variation.is_uneven and model.trajectory is not None:
-        with suppress(Exception):  # without motions their torsion alone is not known
+        try:
             return _moved(changed, model, tolerance)
+        except Exception as error:  # the factors are known without motions
+            without_torsion = f"no motion: {type(error).__name__}: {error}"
     whole = {"full": True} if untilted(changed) else {}  # a check of assumption (vi) must not make use of it
     result = imported(model.amplification)(changed, PHASES, **model.settings, tolerance=tolerance, **whole)
-    return Solved(result.mu, result.error, tuple(map(str, result.status)), "", float(result.cost))
+    return Solved(result.mu, result.error, tuple(map(str, result.status)), without_torsion, float(result.cost))
 
 
 def _moved(scene: Scene, model: Model, tolerance: float) -> Solved:
