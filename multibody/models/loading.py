@@ -46,12 +46,14 @@ class SymbolicGround:
 
     def along(self, axis: int, time: Any) -> Any:
         """Expression of the acceleration along `axis` at the symbolic instant `time`."""
-        total, time = exudyn.symbolic.Real(0.0), time + self.shift
-        for amplitude, exponent, phase in zip(self.amplitudes[axis], self.exponents, self.phases, strict=True):
-            if amplitude != 0.0:
-                decay = exudyn.symbolic.exp(exponent.real * time)
-                total = total + amplitude * decay * exudyn.symbolic.cos(exponent.imag * time + phase)
-        return total
+        time = time + self.shift
+        terms = [  # no term that changes nothing: the engine evaluates all of them in every iteration
+            (amplitude if exponent.real == 0.0 else amplitude * exudyn.symbolic.exp(exponent.real * time))
+            * exudyn.symbolic.cos(exponent.imag * time + phase)
+            for amplitude, exponent, phase in zip(self.amplitudes[axis], self.exponents, self.phases, strict=True)
+            if amplitude != 0.0
+        ]
+        return sum(terms[1:], terms[0]) if terms else exudyn.symbolic.Real(0.0)
 
 
 Ground = SymbolicGround | RecordedGround
