@@ -130,6 +130,8 @@ def refine(
                 softest = softest if stiff else REAL_WARPING_COMPLIANCE
                 remaining[number:] = [_on_real_bearings(later) for later in remaining[number:]]
                 run, level, stop, of_springs = real, remaining[number], math.inf, None
+        if level.warping_compliance == REAL_WARPING_COMPLIANCE:
+            of_springs = None
         runs.append(run)
         if run.outcome == Outcome.OK and run.stop == math.inf and not (keep or whole):
             stop = _settled(run, model, remaining[0].step)
