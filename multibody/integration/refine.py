@@ -104,6 +104,8 @@ def refine(
     different = 0  # how many of the last levels with impacts were another motion
     softest = MAX_COMPLIANCE_OF_CLOSED  # compliance against warping that supports may have
     per_load: Array | None = None  # see `measured_per_load`, once it is measured
+    # change of the peaks, (N,), on springs of real bearings, once supports opened on stiffer ones
+    of_springs: Array | None = None
     stop = math.inf  # of the next run, where nothing later can matter
     candidate: _Candidate | None = None
     complete: _Candidate | None = None  # the last candidate whose error lacks nothing
@@ -120,15 +122,16 @@ def refine(
             stop = math.inf
             run = pair.at_level(level, budget, keep=keep)
         rattles = rattles and run.outcome == Outcome.STEP_LIMIT
-        # springs stiffer than those of real bearings lift supports off by the misfit of the platform; where supports do
-        # open, those of real bearings are part of the model
-        if (rattles or run.lifts_off) and level.warping_compliance != REAL_WARPING_COMPLIANCE:
-            if level.warping_compliance > REAL_WARPING_COMPLIANCE:
-                softest = REAL_WARPING_COMPLIANCE
-            real = [replace(other, warping_compliance=REAL_WARPING_COMPLIANCE) for other in remaining[number:]]
-            remaining[number:], level = real, real[0]
-            stop = math.inf
-            run = pair.at_level(level, budget, keep=keep)
+        if (rattles or run.lifts_off) and level.warping_compliance != REAL_WARPING_COMPLIANCE and of_springs is None:
+            real, of_springs = _run_on_real_bearings(pair, level, run, budget, keep)
+            stiff = level.warping_compliance < REAL_WARPING_COMPLIANCE
+            # stiff springs also lift supports off by the misfit of the platform alone
+            if not (stiff and real.lifts_off) or (of_springs > tolerance * run.peaks.value).any():
+                softest = softest if stiff else REAL_WARPING_COMPLIANCE
+                remaining[number:] = [_on_real_bearings(later) for later in remaining[number:]]
+                run, level, stop, of_springs = real, remaining[number], math.inf, None
+        if level.warping_compliance == REAL_WARPING_COMPLIANCE:
+            of_springs = None
         runs.append(run)
         if run.outcome == Outcome.OK and run.stop == math.inf and not (keep or whole):
             stop = _settled(run, model, remaining[0].step)
@@ -156,7 +159,11 @@ def refine(
         compliances = [other.warping_compliance for other in remaining[max(number - 2, 0) : number + 1]]
         if softest == REAL_WARPING_COMPLIANCE and compliances[0] != compliances[-2]:
             finished = finished[-2:]
-        errors = widened_by_impacts(from_levels(finished, remaining[: number + 1], model), run, number)
+        errors = from_levels(finished, remaining[: number + 1], model)
+        rounding = from_rounding(run.peaks, level, runs[-2].peaks, remaining[number - 1])
+        rounding = widened_by_impacts(errors + rounding, run, number)
+        errors = widened_by_impacts(errors, run, number)
+        rounding -= errors
         if not run.lifts_off:
             allowed = tolerance * run.peaks.value - errors
             # no softer springs are left, and sharing alone misses the tolerance
@@ -164,8 +171,16 @@ def refine(
             if per_load is None and capped and (from_sharing(run, None) > allowed).any():
                 per_load = _measured_sharing(pair, level, run, budget)
             errors = errors + from_sharing(run, per_load)
+        if of_springs is not None and (errors + of_springs <= tolerance * run.peaks.value).all():
+            real, change = _run_on_real_bearings(pair, level, run, budget, keep)
+            of_springs = np.maximum(of_springs, change)
+            if real.outcome not in UNFINISHED and (of_springs > tolerance * run.peaks.value).any():
+                remaining[number:] = [_on_real_bearings(later) for later in remaining[number:]]
+                runs[-1], stop, of_springs = real, math.inf, None
+                continue
+        if of_springs is not None:
+            errors = errors + of_springs
         before = (runs[-2], share_of_change(remaining[number - 1], model))
-        rounding = from_rounding(run.peaks, level, runs[-2].peaks, remaining[number - 1])
         candidate = _Candidate(run, errors, rounding, level, (before,), lacks_compliance=shared)
         different = different + 1 if run.impacts and (candidate.errors >= run.peaks.value).all() else 0
         if different == MAX_DIFFERENT_MOTIONS:
@@ -274,6 +289,23 @@ def _unfinished(pair: PhasePair, runs: list[EngineRun]) -> Refinement:
     if failed is None:  # one level has an answer, and no steps are left for another that shows its error
         return _no_answer(pair.model, runs[-1], Outcome.STEP_LIMIT, pair.scene.duration)
     return _no_answer(pair.model, failed, failed.outcome, failed.instant * pair.model.units.time)
+
+
+def _on_real_bearings(level: Level) -> Level:
+    """A level whose supports give way against warping as real bearings do."""
+    return replace(level, warping_compliance=REAL_WARPING_COMPLIANCE)
+
+
+def _run_on_real_bearings(
+    pair: PhasePair, level: Level, run: EngineRun, budget: Budget, keep: bool
+) -> tuple[EngineRun, Array]:
+    """The run of a level on springs of real bearings, and by how much its peaks, (N,), differ from those of `run`."""
+    real = pair.at_level(_on_real_bearings(level), budget, keep=keep)
+    if real.outcome in UNFINISHED:
+        return real, run.peaks.value  # nothing is known
+    if real.outcome != run.outcome:
+        return real, np.full_like(run.peaks.value, np.inf)
+    return real, np.abs(run.peaks.value - real.peaks.value)
 
 
 def _trial_run(pair: PhasePair, level: Level, budget: Budget, keep: bool) -> EngineRun:
