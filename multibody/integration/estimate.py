@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 SAFETY_TWO_LEVELS, SAFETY_THREE_LEVELS = 1.5, 1.25  # on the error that so many levels, or more, show (Roache)
 # on what a softer contact shows of rounding at the same step: its own compliance may act against that (measured: 2 is
-# 1.2 times too little, once in 60)
+# 1.2 times too little, once in 48)
 SAFETY_OF_ROUNDING = 3.0
 SAFETY_OF_SHARING = 2.0  # on what two loads of warping show
 MIN_RATE, MAX_RATE = 2.0, 4.0  # factor by which a level reduces the error: at stops, in smooth motion

@@ -8,8 +8,9 @@ from collections.abc import Callable
 from multibody.integration.adaptive import Budget
 from multibody.integration.constant_step import silence
 from multibody.integration.level import STEPS_PER_PERIOD, levels_of
+from multibody.integration.level_runs import MAX_WORK_GROWTH
 from multibody.integration.look_ahead import longest_steps
-from multibody.integration.refine import MAX_WORK, MAX_WORK_GROWTH
+from multibody.integration.refine import MAX_WORK
 from multibody.models.assembly import assemble, required_model
 from reference.problem import Scene, SceneError
 

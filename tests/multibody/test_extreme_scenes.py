@@ -10,7 +10,7 @@ from scenes_at_hand import changed
 
 import multibody
 import reference
-from multibody.integration import one_run, refine
+from multibody.integration import candidate, one_run
 from multibody.integration.adaptive import EngineRun, run_adaptively
 from multibody.integration.constant_step import Engine
 from multibody.integration.estimate import ERROR_PER_WARPING_LOAD, MIN_ERROR_PER_WARPING_LOAD, measured_per_load
@@ -121,7 +121,7 @@ def test_what_the_compliance_leaves_is_part_of_an_error_that_misses_the_toleranc
 
 
 def test_without_a_run_about_the_compliance_the_level_before_answers(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(refine, "from_compliance", lambda stiff, *rest: np.full_like(stiff.value, np.inf))
+    monkeypatch.setattr(candidate, "from_compliance", lambda stiff, *rest: np.full_like(stiff.value, np.inf))
     scene = strong(duration=0.3)
     result = multibody.amplification(scene, PHASE, tolerance=1e-6)
     assert result.status[0] == Outcome.TOLERANCE_NOT_MET

@@ -1,0 +1,78 @@
+"""The answer of one level of accuracy, with all that its error is made of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.integration.adaptive import Budget, EngineRun
+from multibody.integration.estimate import (
+    SAFETY_OF_ROUNDING,
+    from_compliance,
+    from_rounding,
+    share_of_change,
+    widened_without_convergence,
+)
+from multibody.integration.level import COMPLIANCE_RATIO, Level
+from multibody.integration.one_run import PhasePair
+from reference.problem import Outcome
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """The answer of one level."""
+
+    run: EngineRun
+    level: Level
+    shares_contact: bool  # with the level before, which then does not show what the contact's compliance leaves
+    level_errors: Array  # (N,), errors that other levels and the springs of supports show, in units of the model
+    rounding: Array  # likewise, that rounding of the contact forces leaves
+    coarser: tuple[tuple[EngineRun, float], ...]  # other runs, and the share of their difference to this one
+    compliance: Array | None = None  # errors (N,) that the contact's compliance leaves, once a run has shown them
+
+    @property
+    def errors(self) -> Array:
+        """Errors (N,), in units of the model."""
+        shown = widened_without_convergence(self.level_errors + self.rounding, self.run)
+        return shown if self.compliance is None else shown + self.compliance
+
+    @property
+    def lacks_compliance(self) -> bool:
+        """Whether the error that the contact's compliance leaves is still missing."""
+        return self.shares_contact and self.compliance is None
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether the error lacks nothing."""
+        return not self.lacks_compliance and bool(np.isfinite(self.errors).all())
+
+    @property
+    def relative_error(self) -> float:
+        return float((self.errors / self.run.peaks.value).max())
+
+    def meets(self, tolerance: float) -> bool:
+        return bool((self.errors <= tolerance * self.run.peaks.value).all())
+
+    def may_meet(self, tolerance: float) -> bool:
+        """Whether it meets the tolerance if a softer contact shows that rounding does nothing."""
+        return bool((self.level_errors <= tolerance * self.run.peaks.value).all())
+
+    def completed(self, pair: PhasePair, budget: Budget, keep: bool) -> Candidate:
+        """With the error that the compliance leaves, from a run in which nothing but the contact is softer."""
+        if not self.lacks_compliance:
+            return self
+        level, softer = self.level, replace(self.level, penetration=COMPLIANCE_RATIO * self.level.penetration)
+        run = pair.at_level(softer, budget, self.run.stop, keep=keep, residual=level.residual)
+        completed = replace(
+            self,
+            compliance=from_compliance(self.run.peaks, run, softer, pair.model),
+            coarser=(*self.coarser, (run, share_of_change(softer, pair.model))),
+        )
+        if run.outcome != Outcome.OK:
+            return completed
+        rounding = from_rounding(self.run.peaks, level, run.peaks, softer, SAFETY_OF_ROUNDING)
+        return replace(completed, rounding=np.minimum(self.rounding, rounding))

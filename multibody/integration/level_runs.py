@@ -1,0 +1,241 @@
+"""
+The runs of one phase pair at successive levels: how far each goes, and on which springs its supports stand.
+
+The first run shows when the last large value comes (`look_ahead`). Runs at further levels stop soon after it, as long
+as they differ from the run before by much less than what separates later values from the largest.
+
+While all supports are closed, their springs against warping give way as much as the tolerance asks for. Where one
+opens the springs of real bearings are part of the model. Stiffer ones remain where those change no peak beyond the
+tolerance; the change is an error then.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.integration.adaptive import SETTLED_FRACTION, Budget, EngineRun
+from multibody.integration.candidate import Candidate
+from multibody.integration.estimate import (
+    ERROR_PER_WARPING_LOAD,
+    from_levels,
+    from_rounding,
+    from_sharing,
+    measured_per_load,
+    share_of_change,
+    widened_by_impacts,
+)
+from multibody.integration.level import (
+    COMPLIANCE_RATIO,
+    MAX_COMPLIANCE_OF_CLOSED,
+    REAL_WARPING_COMPLIANCE,
+    Level,
+    for_small_peaks,
+)
+from multibody.integration.one_run import PhasePair
+from multibody.models.system import EngineModel
+from reference.problem import Outcome
+
+Array = NDArray[np.float64]
+
+UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
+MAX_WARPING_ERROR_SHARE = 0.2  # of the tolerance, that the load of warped supports may take as an error
+MAX_FIRST_SHARE = 0.2  # of the work of a point, that its first run may take where supports may rattle
+MAX_WORK_GROWTH = 2.0  # steps of a level over those of the level before
+STEPS_AFTER_SETTLING = 20.0  # largest steps from the last large value of a run to the end of the next
+# change between two levels over what separates later values from the largest: beyond it a run goes to the end after all
+MAX_EARLY_CHANGE = 0.2
+# of the first run from the rim, in rho, and the end of its travel, and contact force, in weights: closer, all go to the
+# end
+MIN_END_MARGIN = 0.1
+
+
+@dataclass
+class LevelRuns:
+    """The runs of one phase pair so far, and its levels, which adapt to what the runs show."""
+
+    pair: PhasePair
+    tolerance: float  # relative error that is asked for
+    budget: Budget  # of all runs
+    levels: list[Level]  # those of the runs, and those to come
+    softens: bool  # whether small peaks may soften the contact of the levels to come
+    whole: bool  # whether every run goes to the end
+    keep: bool  # the motions of the last two runs
+    runs: list[EngineRun] = field(default_factory=list)
+    stop: float = math.inf  # of the next run, where nothing later can matter
+    softest: float = MAX_COMPLIANCE_OF_CLOSED  # compliance against warping that supports may have
+    per_load: Array | None = None  # see `measured_per_load`, once it is measured
+    # change of the peaks, (N,), on springs of real bearings, once supports opened on stiffer ones
+    change_on_real: Array | None = None
+
+    def can_go_on(self) -> bool:
+        """Whether there is another level, and work for it."""
+        number = len(self.runs)
+        if number == len(self.levels):
+            return False
+        # a run more completes the error of a contact that stays the same
+        runs = 1.0 + self.shares_contact(number)
+        return not self.runs or self.budget.left >= runs * _work_of_next(self.runs[-1], self.stop, self.pair.end)
+
+    def shares_contact(self, number: int) -> bool:
+        """Whether the contact of a level is no stiffer than that of the level before."""
+        return number > 0 and self.levels[number].penetration >= self.levels[number - 1].penetration
+
+    def run_next(self) -> EngineRun:
+        """The run at the next level; the levels to come are adapted to it."""
+        number, level = len(self.runs), self.levels[len(self.runs)]
+        trial = number == 0 and self.pair.model.warping_displacement is not None
+        run = self._trial(level) if trial else self._at(level, self.stop)
+        if self.stop < self.pair.end and not _stays_settled(run, self.runs[-1]):
+            self.stop = math.inf
+            run = self._at(level)
+        rattles = trial and run.outcome == Outcome.STEP_LIMIT
+        if rattles or run.lifts_off:
+            run = self._on_springs_for_opening(run)
+        if self.levels[number].warping_compliance == REAL_WARPING_COMPLIANCE:
+            self.change_on_real = None
+        self.runs.append(run)
+        if run.outcome == Outcome.OK and run.stop == math.inf and not self.whole:
+            self.stop = _settled(run, self.pair.model, self.levels[0].step)
+        if run.outcome not in UNFINISHED:
+            self._adapt_levels(run)
+        return run
+
+    def candidate(self) -> Candidate | None:
+        """The answer of the last level, beside the level before; None where that proves to be another motion."""
+        number, run, model = len(self.runs) - 1, self.runs[-1], self.pair.model
+        level, before = self.levels[number], self.levels[number - 1]
+        finished = [other.peaks for other in self.runs[-3:] if other.outcome == Outcome.OK]
+        compliances = [other.warping_compliance for other in self.levels[max(number - 2, 0) : number + 1]]
+        if self.softest == REAL_WARPING_COMPLIANCE and compliances[0] != compliances[-2]:
+            finished = finished[-2:]
+        errors = from_levels(finished, self.levels[: number + 1], model)
+        rounding = from_rounding(run.peaks, level, self.runs[-2].peaks, before)
+        rounding = widened_by_impacts(errors + rounding, run, number)
+        errors = widened_by_impacts(errors, run, number)
+        rounding -= errors
+        if not run.lifts_off:
+            errors = errors + self._sharing_error(level, run, errors)
+        if self.change_on_real is not None:
+            allowed = self.tolerance * run.peaks.value
+            if (errors + self.change_on_real <= allowed).all() and self._real_bearings_differ():
+                return None
+            errors = errors + self.change_on_real
+        coarser = ((self.runs[-2], share_of_change(before, model)),)
+        return Candidate(run, level, self.shares_contact(number), errors, rounding, coarser)
+
+    def _at(self, level: Level, stop: float = math.inf) -> EngineRun:
+        return self.pair.at_level(level, self.budget, stop, keep=self.keep)
+
+    def _trial(self, level: Level) -> EngineRun:
+        """The first run of a model whose supports may rattle, with a share of the work."""
+        trial = Budget(MAX_FIRST_SHARE * self.budget.left)
+        self.budget.left -= trial.left
+        run = self.pair.at_level(level, trial, keep=self.keep)
+        self.budget.left += trial.left
+        return run
+
+    def _on_springs_for_opening(self, run: EngineRun) -> EngineRun:
+        """The last level's run where a support opens in `run`: that, or the one on springs of real bearings."""
+        number = len(self.runs)
+        level = self.levels[number]
+        if level.warping_compliance == REAL_WARPING_COMPLIANCE or self.change_on_real is not None:
+            return run
+        real, change = self._on_real_bearings(level, run)
+        stiff = level.warping_compliance < REAL_WARPING_COMPLIANCE
+        # stiff springs also lift supports off by the misfit of the platform alone
+        if stiff and real.lifts_off and (change <= self.tolerance * run.peaks.value).all():
+            self.change_on_real = change
+            return run
+        self.softest = self.softest if stiff else REAL_WARPING_COMPLIANCE
+        self._take_real_bearings(number)
+        return real
+
+    def _on_real_bearings(self, level: Level, run: EngineRun) -> tuple[EngineRun, Array]:
+        """The run of a level on springs of real bearings, and by how much its peaks, (N,), differ from `run`."""
+        real = self._at(_of_real_bearings(level))
+        if real.outcome in UNFINISHED:
+            return real, run.peaks.value  # nothing is known
+        if real.outcome != run.outcome:
+            return real, np.full_like(run.peaks.value, np.inf)
+        return real, np.abs(run.peaks.value - real.peaks.value)
+
+    def _real_bearings_differ(self) -> bool:
+        """Whether springs of real bearings change the last level's peaks beyond the tolerance; they are taken then."""
+        number, run = len(self.runs) - 1, self.runs[-1]
+        assert self.change_on_real is not None
+        real, change = self._on_real_bearings(self.levels[number], run)
+        self.change_on_real = np.maximum(self.change_on_real, change)
+        if real.outcome in UNFINISHED or (self.change_on_real <= self.tolerance * run.peaks.value).all():
+            return False
+        self.runs[-1] = real
+        self._take_real_bearings(number)
+        return True
+
+    def _take_real_bearings(self, number: int) -> None:
+        """Give all levels from `number` on the springs of real bearings."""
+        self.levels[number:] = [_of_real_bearings(level) for level in self.levels[number:]]
+        self.stop, self.change_on_real = math.inf, None
+
+    def _adapt_levels(self, run: EngineRun) -> None:
+        """Supports and contact of the levels to come, as soft as `run` asks for."""
+        if run.lifts_off:
+            self.softest = REAL_WARPING_COMPLIANCE
+        coming = [_sharing(level, run.warping_load, self.tolerance, self.softest) for level in self._coming]
+        # a softer contact would let a platform that turns tilt
+        if self.softens and run.outcome == Outcome.OK and self.pair.model.depressions is None:
+            smallest = float(run.peaks.value.min())
+            coming = [for_small_peaks(level, smallest, self.tolerance) for level in coming]
+        self.levels[len(self.runs) :] = coming
+
+    @property
+    def _coming(self) -> list[Level]:
+        return self.levels[len(self.runs) :]
+
+    def _sharing_error(self, level: Level, run: EngineRun, errors: Array) -> Array:
+        """Error (N,) from the load of warping, beside `errors` from levels; measured where it alone would miss."""
+        allowed = self.tolerance * run.peaks.value - errors
+        # no softer springs are left
+        capped = level.warping_compliance >= self.softest and (allowed >= 0.0).all()
+        if self.per_load is None and capped and (from_sharing(run, None) > allowed).any():
+            stiffer = replace(level, warping_compliance=level.warping_compliance / COMPLIANCE_RATIO)
+            self.per_load = measured_per_load(run, self.pair.at_level(stiffer, self.budget, run.stop))
+        return from_sharing(run, self.per_load)
+
+
+def _of_real_bearings(level: Level) -> Level:
+    """A level whose supports give way against warping as real bearings do."""
+    return replace(level, warping_compliance=REAL_WARPING_COMPLIANCE)
+
+
+def _sharing(level: Level, load: float, tolerance: float, softest: float) -> Level:
+    """A level whose supports give way enough against warping, which took `load` of the weight in the run before."""
+    wanted = level.warping_compliance * load * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * tolerance)
+    return replace(level, warping_compliance=min(max(wanted, level.warping_compliance), softest))
+
+
+def _work_of_next(run: EngineRun, stop: float, end: float) -> float:
+    """Steps of the run at the level after that of `run`, up to `stop`."""
+    own = min(run.looked_over, end)  # both runs look over what comes later
+    shorter = min(stop, own) / min(run.stop, own) if run.outcome == Outcome.OK else 1.0
+    return MAX_WORK_GROWTH * shorter * run.steps
+
+
+def _settled(run: EngineRun, model: EngineModel, step: float) -> float:
+    """When runs at further levels may stop, after one to the end of the motion; step: the largest of any level."""
+    limit = (1.0 - MIN_END_MARGIN) * min(model.rim, model.travel)
+    if run.max_displacement > limit or run.min_load < MIN_END_MARGIN:
+        return math.inf
+    return run.settled + STEPS_AFTER_SETTLING * step
+
+
+def _stays_settled(run: EngineRun, before: EngineRun) -> bool:
+    """Whether a run that stopped early agrees so well with the one before that nothing later can matter."""
+    if run.outcome != Outcome.OK:
+        return False
+    largest = np.array([*run.peaks.value, run.max_displacement])
+    change = np.abs(largest - [*before.peaks.value, before.max_displacement])
+    return bool((change <= MAX_EARLY_CHANGE * (1.0 - SETTLED_FRACTION) * largest).all())
