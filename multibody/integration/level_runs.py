@@ -76,8 +76,8 @@ class LevelRuns:
         number = len(self.runs)
         if number == len(self.levels):
             return False
-        # a run more completes the error of a contact that stays the same
-        runs = 1.0 + self.shares_contact(number)
+        # a run more completes the error of a contact that stays the same, another one that of stiff springs
+        runs = 1.0 + self.shares_contact(number) + (self.change_on_real is not None)
         return not self.runs or self.budget.left >= runs * _work_of_next(self.runs[-1], self.stop, self.pair.end)
 
     def shares_contact(self, number: int) -> bool:
@@ -142,7 +142,9 @@ class LevelRuns:
         """The last level's run where a support opens in `run`: that, or the one on springs of real bearings."""
         number = len(self.runs)
         level = self.levels[number]
-        if level.warping_compliance == REAL_WARPING_COMPLIANCE or self.change_on_real is not None:
+        if level.warping_compliance == REAL_WARPING_COMPLIANCE:
+            return self._at(level) if number == 0 and run.outcome == Outcome.STEP_LIMIT else run
+        if self.change_on_real is not None:
             return run
         real, change = self._on_real_bearings(level, run)
         stiff = level.warping_compliance < REAL_WARPING_COMPLIANCE

@@ -90,6 +90,7 @@ def refine(
             break
         candidate = done.candidate()
         if candidate is None:
+            complete = best = None
             continue
         different = different + 1 if run.impacts and (candidate.errors >= run.peaks.value).all() else 0
         if different == MAX_DIFFERENT_MOTIONS:

@@ -8,7 +8,7 @@ import numpy as np
 
 from reference.solver.run import runs
 from reference.solver.step_control import MIN_SCALE_FRACTION
-from reference.solver.system import SOLVED, Array, Demand, Record, System, record_of
+from reference.solver.system import CONSISTENT, SOLVED, Array, Demand, Record, System, record_of
 
 TOLERANCE_RATIO = 30.0  # tolerance inside a step of the coarser run over that of the finer run
 # Share of the runs' difference that counts as error of the finer run. 1 / TOLERANCE_RATIO is expected.
@@ -64,7 +64,8 @@ def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool 
     Every run ends where nothing can come that changes them, the displacement or the outcome (look_ahead.py).
     `whole`: all go to the end of the motion.
     """
-    demand = demand._replace(early=not whole)
+    # the rough run knows the consistent condition for rest alone
+    demand = demand._replace(early=not whole and system.rest_condition == CONSISTENT)
     tolerance = min(MAX_STEP_TOLERANCE, max(STEP_TOLERANCE_FACTOR * demand.tolerance, MIN_STEP_TOLERANCE))
     before = peaks_at(system, phases, demand, TOLERANCE_RATIO * tolerance)
     peaks = Peaks(*(part.copy() for part in before))

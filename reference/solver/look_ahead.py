@@ -31,13 +31,14 @@ from reference.solver.system import (
 from reference.solver.work import Work
 
 STEPS_PER_PERIOD = 25.0  # of Demand.period
-MAX_STEP_RATIO = 25.0  # of the accurate run's mean step over the rough one, which takes about a fiftieth of the time
+MAX_STEPS_PER_STEP = 50.0  # steps of a rough run over the accurate ones so far, each of which costs about as much as 50
 MAX_CHAIN_ANGLE = 0.5  # rad: most that the chain's fastest vibration may turn during one step
 LARGE_FRACTION = 0.85  # of the largest so far: a smaller value of a rough run does not reach it in an accurate one
 # of the rim in rho, of the end of its travel, of liftoff in weights, of Painleve's paradox: closer, the run goes on
 MIN_MARGIN = 0.1
 MAX_SLOW_STEPS = 2.0  # in which friction would stop the slide: so slow a slide counts as near its stop
 DIRECTION_MARGIN = 0.35  # rad, by which the direction of a slide near its stop is uncertain
+MIN_SURE_DRIVE = 0.5  # of the friction limit: the direction of a smaller drive changes too much until the stop
 MAX_HELD_DRIVE = 0.8  # of the squared friction limit: a larger drive may move a platform that rests in a rough run
 WAIT = 0.25  # of the period, from the last large value until the run looks ahead
 
@@ -47,7 +48,7 @@ def end_early(system: System, work: Work, demand: Demand) -> None:
     """End the run, at a step whose end is in x, v, where nothing large can come any more; set when to look again."""
     work.look = work.settled + WAIT * demand.period
     h = rough_length(system, demand)
-    if work.time > work.look and work.time <= MAX_STEP_RATIO * h * work.steps:
+    if work.time > work.look and system.duration - work.time <= MAX_STEPS_PER_STEP * h * work.steps:
         comes = next_large(system, work, h)
         work.look = comes + WAIT * demand.period
         if comes == inf:
@@ -187,7 +188,7 @@ def largest_near_stop(gx: float, gy: float, vx: float, vy: float, ground: Ground
     """
     dx, dy = gx + ground.x, gy + ground.y
     drive, speed, force = sqrt(dx * dx + dy * dy), sqrt(vx * vx + vy * vy), sqrt(gx * gx + gy * gy)
-    if drive == 0.0 or speed == 0.0 or force == 0.0:
+    if drive == 0.0 or speed == 0.0 or force <= MIN_SURE_DRIVE * friction:
         return drive + friction
     cosine = min((dx * vx + dy * vy) / speed, (dx * gx + dy * gy) / force) / drive
     cosine = min(max(cosine, -1.0), 1.0)

@@ -205,7 +205,7 @@ def test_where_a_support_opens_every_level_has_the_springs_of_real_bearings(monk
     monkeypatch.setattr(PhasePair, "at_level", noted)
     result = multibody.amplification(ring_that_opens(4), PHASE, "spatial", V_REG, 1e-2)
     assert result.status[0] == Outcome.OK
-    assert [level.warping_compliance for level, _ in levels[:3]] == [2e-5, *[REAL_WARPING_COMPLIANCE] * 2]
+    assert [level.warping_compliance for level, _ in levels] == [2e-5, *[REAL_WARPING_COMPLIANCE] * (len(levels) - 1)]
     assert all(run.lifts_off for _, run in levels)
     assert result.mu[0, 0] == pytest.approx(1.826, abs=float(result.error[0, 0]))
 
