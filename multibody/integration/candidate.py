@@ -52,9 +52,11 @@ class Candidate:
 
     @property
     def relative_error(self) -> float:
+        """The largest error of any body over its peak."""
         return float((self.errors / self.run.peaks.value).max())
 
     def meets(self, tolerance: float) -> bool:
+        """Whether every body's relative error is at most `tolerance`."""
         return bool((self.errors <= tolerance * self.run.peaks.value).all())
 
     def may_meet(self, tolerance: float) -> bool:
