@@ -286,8 +286,8 @@ def _record(
 
 def _record_settling(result: EngineRun, time: Array, size: Array, displacement: Array) -> None:
     """Record when something that is asked for last came near its largest value so far."""
-    near = SETTLED_FRACTION * result.peaks.value, displacement, SETTLED_FRACTION * result.max_displacement
-    row = last_near(size, *near)
+    large, far = SETTLED_FRACTION * result.peaks.value, SETTLED_FRACTION * result.max_displacement
+    row = last_near(size, large, displacement, far)
     if row >= 0:
         result.settled = float(time[row])
 

@@ -184,18 +184,15 @@ class LevelRuns:
 
     def _adapt_levels(self, run: EngineRun) -> None:
         """Supports and contact of the levels to come, as soft as `run` asks for."""
+        done = len(self.runs)
         if run.lifts_off:
             self.softest = REAL_WARPING_COMPLIANCE
-        coming = [_sharing(level, run.warping_load, self.tolerance, self.softest) for level in self._coming]
+        coming = [_sharing(level, run.warping_load, self.tolerance, self.softest) for level in self.levels[done:]]
         # a softer contact would let a platform that turns tilt
         if self.softens and run.outcome == Outcome.OK and self.pair.model.depressions is None:
             smallest = float(run.peaks.value.min())
             coming = [for_small_peaks(level, smallest, self.tolerance) for level in coming]
-        self.levels[len(self.runs) :] = coming
-
-    @property
-    def _coming(self) -> list[Level]:
-        return self.levels[len(self.runs) :]
+        self.levels[done:] = coming
 
     def _sharing_error(self, level: Level, run: EngineRun, errors: Array) -> Array:
         """Error (N,) from the load of warping, beside `errors` from levels; measured where it alone would miss."""

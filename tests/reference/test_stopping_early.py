@@ -197,17 +197,17 @@ def test_a_peak_at_a_stop_is_not_lost_where_a_small_drive_turns(scene: Scene, ph
     np.testing.assert_allclose(early.value, whole.value, rtol=1e-12)
 
 
-STIFF = {"bodies.1.damping": 1.0}
+DAMPED = {"bodies.1.damping": 1.0}
 
 
 @pytest.mark.parametrize(
     "values",
     [
-        {**STIFF, "bodies.1.period": [1e-3, 1e-3]},
-        {**STIFF, "bodies.1.period": [1e-4, 1e-4]},
-        {**STIFF, "bodies.1.period": [0.5, 0.5], "excitation.decay": [1e4, 1e4]},
-        {**STIFF, "bodies.1.period": [0.5, 0.5], "excitation.decay": [1e6, 1e6]},
-        {**STIFF, "bodies.1.period": [0.5, 0.5], "duration": 1e5},
+        {**DAMPED, "bodies.1.period": [1e-3, 1e-3]},
+        {**DAMPED, "bodies.1.period": [1e-4, 1e-4]},
+        {**DAMPED, "bodies.1.period": [0.5, 0.5], "excitation.decay": [1e4, 1e4]},
+        {**DAMPED, "bodies.1.period": [0.5, 0.5], "excitation.decay": [1e6, 1e6]},
+        {**DAMPED, "bodies.1.period": [0.5, 0.5], "duration": 1e5},
     ],
     ids=str,
 )
