@@ -40,6 +40,9 @@ MAX_CONTACT_LAG = 0.3  # x at level 0 where rounding allows: from there on a lev
 MAX_CONTACT_TIME = 0.25
 MAX_CONTACT_TIME_OF_ROCKING = 0.04  # likewise, where bodies turn: links then press the supports by their height, too
 NEWTON_TOLERANCE = 1e-5  # relative, of the forces, at level 0
+# squared step over the penetration, up to which that is enough: it is relative to a step's first residual, which is
+# what the prediction of the step misses, pressed on the contact
+MAX_SQUARED_STEP = 1e3
 MAX_ROUNDING_SHARE = 0.25  # of the tolerance, that rounding of the forces may take at a peak of MIN_PEAK
 MIN_PEAK = 0.2  # of g
 WEAK_LOADING = 1e-4  # of g: below, the loading itself is the peak that rounding is held against
@@ -191,7 +194,7 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
             step=step / 2.0**level,
             slip_change=MAX_SLIP_CHANGE / 2.0**level,
             penetration=penetration,
-            newton=NEWTON_TOLERANCE / 4.0**level,
+            newton=NEWTON_TOLERANCE / 4.0**level * min(1.0, MAX_SQUARED_STEP * penetration / (step / 2.0**level) ** 2),
             rounding_moment=model.rounding,
             max_divisions=max_divisions,
             error_floor=MIN_RELATIVE_ERROR / 4.0**level,

@@ -11,7 +11,7 @@ from scenes_at_hand import changed, frame
 
 import multibody
 import reference
-from reference.problem import Outcome, load_scene
+from reference.problem import Outcome, Scene, load_scene
 
 PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (0.867, 4.951)])
 V_REG = 1e-3
@@ -26,6 +26,20 @@ def test_every_factor_lies_within_its_error_of_the_exact_equations(scene: str, r
     equations = reference.amplification(loaded, phases, equations="exact", regularization=regularization)
     assert engine.status.tolist() == [Outcome.OK] * len(phases)
     assert (engine.error <= 1e-3 * engine.mu).all()
+    assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
+
+
+def test_a_contact_that_a_small_v_reg_makes_stiff_is_solved_as_well_as_a_softer_one() -> None:
+    """What the prediction of a step misses presses a stiff contact: Newton's first residual is large."""
+    bearing = {"radius": 0.17, "friction": 0.0755}
+    above = {"mass": 2.06, "period": [1.9, 0.58], "damping": 0.02}
+    loading = {"amplitudes": [[-3.0, -0.63], [4.5, 3.6]], "periods": [1.58, 1.89], "decay": [0.46, 0.43]}
+    scene = Scene.model_validate(
+        {"title": "small", "duration": 1.2, "isolator": bearing, "bodies": [{"mass": 1.0}, above], "excitation": loading}
+    )
+    engine = multibody.amplification(scene, [(1.8, 1.27)], regularization=1.1e-4)
+    equations = reference.amplification(scene, [(1.8, 1.27)], regularization=1.1e-4)
+    assert engine.status[0] == Outcome.OK
     assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
 
 
