@@ -27,9 +27,8 @@ TYPICAL = "fig3-I"  # scene from which nothing is left out but what is left out 
 # phase pairs of a scene that is tried. Of 16 pairs of the reference every thread has one at a time, and each costs
 # twice what it does in a batch
 TRIAL_POINTS = {"reference": 96, "engine": 2}
-MAX_TRIAL_SECONDS = (
-    4.0  # of processor time for the pairs of a trial, beyond the first: links of 10 us take seconds each
-)
+# of processor time, for the pairs of a trial beyond the first: links of 10 us take seconds each
+MAX_TRIAL_SECONDS = 4.0
 TRIAL_SCENES = 2  # scenes that are tried: a family's others cost what these do
 SEED = 4
 
