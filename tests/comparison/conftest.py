@@ -14,7 +14,7 @@ from known_analyses import analyses_are, known_others
 from PIL import Image
 
 from comparison.analysis.errata import Effect
-from comparison.report.figures import assumptions, budget, pairs, paper
+from comparison.report.figures import assumptions, budget, pairs, paper, print_maps
 from comparison.run import main
 from comparison.study import accuracy_record
 from comparison.study.models import Model
@@ -35,6 +35,9 @@ class Run:
     report: Path
 
 
+QUICK_MAPS = b'<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"/>'
+
+
 def quick_figure(path: Path, *rest: object) -> None:
     """One dot."""
     Image.new("RGB", (1, 1)).save(path, "PNG")
@@ -45,6 +48,7 @@ def quick_figures(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(pairs, "draw_pair", quick_figure)
     patch.setattr(budget, "draw_budget", quick_figure)
     patch.setattr(paper, "draw_paper_figure", quick_figure)
+    patch.setattr(print_maps, "draw_maps", lambda *arguments: QUICK_MAPS)
 
 
 @pytest.fixture(scope="session", autouse=True)

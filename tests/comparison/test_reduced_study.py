@@ -74,7 +74,7 @@ def alone(scene: Scene) -> Scene:
     return Scene.model_validate({**table, "bodies": table["bodies"][:1]})
 
 
-@pytest.mark.parametrize("supports", [4, 6])
+@pytest.mark.parametrize("supports", [4, pytest.param(6, marks=pytest.mark.long)])
 def test_the_spatial_model_on_an_even_ring_has_it_too(supports: int) -> None:
     scene = short(isolator={"supports": supports})
     phases = np.array([[2.0, 0.7], [0.3, 1.1]])

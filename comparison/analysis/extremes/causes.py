@@ -8,10 +8,6 @@ _TINY = (
     "mu_2 is so small beside mu_1 that a contact stiff enough not to change it rounds by as much, and a softer one "
     "changes it"
 )
-_BEARINGS = (
-    "supports that open and hit again share the load by how far they give way: the springs of real bearings leave a "
-    "share of the peaks open"
-)
 _LONG_CHAIN = "the fastest swing of the chain sets the step: the steps take more processor time than a cell may"
 _LIGHT_PLATFORM = (
     "the weight of the tower is so much more than the platform's that the force which starts a slide is less than the "
@@ -40,7 +36,6 @@ CAUSES: dict[tuple[str, str], dict[str, str]] = {
         ("translational", "spatial"),
         "the contact force rounds by 1e-15 of the weight over its penetration, which is as much as the accelerations",
     ),
-    ("amplitude, m/s^2", "5"): {"spatial": _BEARINGS},
     ("rho, m", "0.001"): {
         "spatial": "heights of a thousand rho: their rounding makes that of the contact force a share of the peaks"
     },
@@ -57,7 +52,6 @@ CAUSES: dict[tuple[str, str], dict[str, str]] = {
     ("link periods, s", "0.001"): {"spatial": _LONG_CHAIN},
     ("load over the buckling load of bars", "0.0001"): {"spatial": _STIFF_LINK},
     ("duration, s", "0.001"): dict.fromkeys(("translational", "spatial"), _TINY),
-    ("vertical loading, m/s^2", "15"): {"spatial": _BEARINGS},
     ("relative error asked", "1e-06"): {
         "translational": "the error estimate of the engine counts 1e-6 of a peak at least: less is not measured"
     },
