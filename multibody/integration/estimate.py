@@ -27,6 +27,7 @@ SAFETY_TWO_LEVELS, SAFETY_THREE_LEVELS = 1.5, 1.25  # on the error that so many 
 # 1.2 times too little, once in 48)
 SAFETY_OF_ROUNDING = 3.0
 SAFETY_OF_SHARING = 2.0  # on what two loads of warping show
+SAFETY_OF_BEARINGS = 2.0  # on what springs of real bearings change at a coarser level
 MIN_RATE, MAX_RATE = 2.0, 4.0  # factor by which a level reduces the error: at stops, in smooth motion
 MAX_CREDIBLE_RATE = 5.0  # a larger factor is accidental
 # relative change of a peak over the largest load that warping takes while all supports are closed (measured: up to

@@ -21,6 +21,7 @@ from multibody.integration.adaptive import SETTLED_FRACTION, Budget, EngineRun
 from multibody.integration.candidate import Candidate
 from multibody.integration.estimate import (
     ERROR_PER_WARPING_LOAD,
+    SAFETY_OF_BEARINGS,
     from_levels,
     from_rounding,
     from_sharing,
@@ -105,7 +106,7 @@ class LevelRuns:
         return run
 
     def candidate(self) -> Candidate | None:
-        """The answer of the last level, beside the level before; None where that proves to be another motion."""
+        """The answer of the last level, beside the level before; None where it has none on real bearings."""
         number, run, model = len(self.runs) - 1, self.runs[-1], self.pair.model
         level, before = self.levels[number], self.levels[number - 1]
         finished = [other.peaks for other in self.runs[-3:] if other.outcome == Outcome.OK]
@@ -119,13 +120,17 @@ class LevelRuns:
         rounding -= errors
         if not run.lifts_off:
             errors = errors + self._sharing_error(level, run, errors)
+        confirmed = True
         if self.change_on_real is not None:
-            allowed = self.tolerance * run.peaks.value
-            if (errors + self.change_on_real <= allowed).all() and self._real_bearings_differ():
+            change = self.change_on_real
+            if (errors + change <= self.tolerance * run.peaks.value).all():
+                change, confirmed = self._repeat_on_real_bearings(change)
+                level, run = self.levels[number], self.runs[-1]
+            if run.outcome != Outcome.OK:
                 return None
-            errors = errors + self.change_on_real
+            errors = widened_by_impacts(errors + change, run, number)
         coarser = ((self.runs[-2], share_of_change(before, model)),)
-        return Candidate(run, level, self.shares_contact(number), errors, rounding, coarser)
+        return Candidate(run, level, self.shares_contact(number), errors, rounding, coarser, confirmed)
 
     def _at(self, level: Level, stop: float = math.inf) -> EngineRun:
         return self.pair.at_level(level, self.budget, stop, keep=self.keep)
@@ -159,23 +164,27 @@ class LevelRuns:
     def _on_real_bearings(self, level: Level, run: EngineRun) -> tuple[EngineRun, Array]:
         """The run of a level on springs of real bearings, and by how much its peaks, (N,), differ from `run`."""
         real = self._at(_of_real_bearings(level))
-        if real.outcome in UNFINISHED:
-            return real, run.peaks.value  # nothing is known
-        if real.outcome != run.outcome:
+        if real.outcome in UNFINISHED or real.outcome != run.outcome:
             return real, np.full_like(run.peaks.value, np.inf)
         return real, np.abs(run.peaks.value - real.peaks.value)
 
-    def _real_bearings_differ(self) -> bool:
-        """Whether springs of real bearings change the last level's peaks beyond the tolerance; they are taken then."""
+    def _repeat_on_real_bearings(self, earlier: Array) -> tuple[Array, bool]:
+        """
+        Change (N,) of the last level's peaks on springs of real bearings, and whether a run that ends shows it.
+
+        earlier: the change (N,) at a level before. Beyond the tolerance the run on real bearings is the last one.
+        """
         number, run = len(self.runs) - 1, self.runs[-1]
-        assert self.change_on_real is not None
         real, change = self._on_real_bearings(self.levels[number], run)
-        self.change_on_real = np.maximum(self.change_on_real, change)
-        if real.outcome in UNFINISHED or (self.change_on_real <= self.tolerance * run.peaks.value).all():
-            return False
-        self.runs[-1] = real
-        self._take_real_bearings(number)
-        return True
+        if real.outcome in UNFINISHED:  # its peaks may still grow
+            return np.maximum(SAFETY_OF_BEARINGS * earlier, real.peaks.value - run.peaks.value), False
+        change = np.maximum(earlier, change)
+        if (change <= self.tolerance * run.peaks.value).all():
+            self.change_on_real = change
+        else:
+            self.runs[-1] = real
+            self._take_real_bearings(number)
+        return change, True
 
     def _take_real_bearings(self, number: int) -> None:
         """Give all levels from `number` on the springs of real bearings."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -17,6 +18,11 @@ from comparison.report.figures import assumptions, budget, pairs, paper
 from comparison.run import main
 from comparison.study import accuracy_record
 from comparison.study.models import Model
+
+try:
+    import fcntl
+except ImportError:  # on Windows every process makes its own
+    fcntl = None  # type: ignore[assignment]
 
 
 @dataclass(frozen=True)
@@ -70,8 +76,23 @@ def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pyte
 
 @pytest.fixture(scope="session")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The report of two scenes, one dry and one lubricated, on a 4 x 4 grid; the engine 1 % above the reference."""
-    place = tmp_path_factory.mktemp("finished") / "report"
+    """
+    The report of two scenes, one dry and one lubricated, on a 4 x 4 grid; the engine 1 % above the reference.
+
+    The first process that needs it makes it for all.
+    """
+    base = tmp_path_factory.getbasetemp()
+    place = (base.parent if "PYTEST_XDIST_WORKER" in os.environ and fcntl else base) / "finished" / "report"
+    place.parent.mkdir(exist_ok=True)
+    with open(place.with_name("lock"), "w") as stream:
+        if fcntl:
+            fcntl.flock(stream, fcntl.LOCK_EX)
+        if not place.exists():
+            _write_finished(place)
+    return place
+
+
+def _write_finished(place: Path) -> None:
     effects = [
         Effect("fig3-I", 0, ((0.5, -0.25), (float("nan"), 0.125))),
         Effect("fig3-I", 1, error_message="it broke"),
@@ -80,7 +101,6 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
         analyses_are(patch, errata=effects, motions=known_motions, **known_others())
         assert main(words, _spatial_named(fake_hierarchy()), ThreadPoolExecutor) == 0
-    return place
 
 
 def _spatial_named(hierarchy: Sequence[Model]) -> list[Model]:

@@ -31,7 +31,6 @@ from reference.problem import Outcome
 
 PLAIN = Row("anything", "plain", scene(), ("fake",))
 FAILING = {
-    "crashes": "exit code 3",
     "raises": "an inner fault",
     "calls_nan_ok": "no finite number",
     "lies_about_its_error": "times what is claimed",
@@ -55,19 +54,23 @@ def computed(extremes: Extremes, results: TaskResults | None = None) -> Matrix:
     return extremes.collect(None, None, results)
 
 
-def entry(column: Column) -> Entry:
-    return computed(Extremes([PLAIN], [column])).rows[0].entries["fake"]
-
-
 def named(group: str) -> list[Row]:
     return [row for row in reduced(list(rows())) if row.group == group]
 
 
 @pytest.mark.parametrize("model", FAILING)
 def test_a_model_that_is_wrong_fails_and_is_told_why(model):
-    cell = entry(fake(model))
+    cell = solve_cell(Cell(PLAIN, fake(model)))
     assert cell.verdict == Verdict.FAILED
     assert FAILING[model] in cell.reason
+
+
+def test_models_that_crash_or_raise_in_a_worker_fail_and_are_told_why():
+    columns = [replace(fake(model), key=model) for model in ("crashes", "raises")]
+    (row,) = computed(Extremes([replace(PLAIN, columns=("crashes", "raises"))], columns)).rows
+    assert {entry.verdict for entry in row.entries.values()} == {Verdict.FAILED}
+    assert "exit code 3" in row.entries["crashes"].reason
+    assert FAILING["raises"] in row.entries["raises"].reason
 
 
 def test_a_model_that_hangs_costs_its_cell_and_neither_another_one_nor_the_next_run(tmp_path):

@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 import pytest
 from axe_playwright_python.sync_playwright import Axe
+from conftest import quick_figures
 from fake_models import fake_hierarchy, silenced
 from known_analyses import analyses_are
 from matplotlib.image import imread
@@ -338,6 +339,7 @@ def test_surfaces_without_any_value_are_said_to_have_none(
     browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     analyses_are(monkeypatch, motions=[])
+    quick_figures(monkeypatch)
     hierarchy = silenced(*(model.key for model in fake_hierarchy()))
     words = ["fig3-I", "--grid", "2", "--jobs", "2", "--out", str(tmp_path / "report")]
     assert comparison.run.main(words, hierarchy, ThreadPoolExecutor) == 0

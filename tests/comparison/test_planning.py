@@ -6,6 +6,8 @@ import json
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -106,6 +108,22 @@ def test_models_under_another_name_are_not_tried(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(cost_of, "_trial_run", lambda *rest: 0.1)
     other = replace(TRANSLATIONAL, amplification="somewhere:else")
     assert set(cost_of.tried_costs((NEW,), (EXACT, other))) == {(NEW.name, "exact")}
+
+
+@pytest.mark.parametrize(("seconds", "most"), [(1e-3, 98), (0.1, 41), (1.5, 3), (60.0, 2)])
+def test_a_trial_takes_as_many_pairs_as_it_may_or_the_first_alone(
+    seconds: float, most: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Links of 10 us take seconds for every phase pair: 96 of them would take minutes of a plan."""
+    pairs = [0]
+
+    def answer(scene: Scene, phases: np.ndarray, **asked: Any) -> None:
+        pairs[0] += len(phases)
+
+    monkeypatch.setattr(cost_of, "imported", lambda function: answer)
+    monkeypatch.setattr(cost_of, "time", SimpleNamespace(process_time=lambda: seconds * pairs[0]))
+    assert cost_of.tried_costs((NEW,), (EXACT,))[NEW.name, "exact"] == pytest.approx(seconds)
+    assert pairs[0] <= most, "one of them in a short motion, so that nothing is compiled"
 
 
 def test_without_a_trial_cost_grows_with_duration_and_bodies() -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -32,7 +33,7 @@ DURATION = 3.0  # s: the loading is strongest then, and interpreted code is slow
 SCENE = "fig3-II"  # of the paper's dry scenes the one whose four phase pairs are not all mirror images
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Mistake:
     """What is wrong, in which models, and the body whose mu tells best."""
 
@@ -89,14 +90,20 @@ def sound() -> Solved:
     return Solved.by(MODEL_HIERARCHY)
 
 
-def _with(sound: Solved, mistake: Mistake) -> Solved:
-    """The sound surfaces with those of the models that have the mistake in place of their own."""
+@cache
+def _altered(mistake: Mistake) -> xr.Dataset:
+    """The surfaces of the models that have the mistake."""
     wrong = tuple(
         replace(model, amplification=mistake.function, settings={**model.settings, **mistake.settings})
         for model in MODEL_HIERARCHY
         if model.key in mistake.models
     )
-    altered = Solved.by(wrong).surfaces
+    return Solved.by(wrong).surfaces
+
+
+def _with(sound: Solved, mistake: Mistake) -> Solved:
+    """The sound surfaces with those of the models that have the mistake in place of their own."""
+    altered = _altered(mistake)
     surfaces = sound.surfaces.copy(deep=True)
     for name in ("mu", "error"):
         surfaces[name].loc[{"model": list(mistake.models)}] = altered[name].sel(model=list(mistake.models))

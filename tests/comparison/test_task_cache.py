@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-import os
 import pickle
-import signal
 from collections.abc import Callable
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import replace
@@ -16,6 +14,7 @@ import numpy as np
 import pytest
 from fake_models import fake_hierarchy
 from known_analyses import collected
+from light_tasks import dies, doubled, raises
 from rich.console import Console
 
 from comparison.analysis import errata
@@ -49,19 +48,6 @@ def another_motion(task: tuple[object, ...]) -> StoredMotion:
 def broken(task: object) -> tuple[Effect, ...]:
     calls.append(task)
     return Effect("s", 0), Effect("s", 1, error_message="it broke")
-
-
-def raises(number: int) -> int:
-    raise RuntimeError("singular")
-
-
-def dies(number: int) -> int:
-    os.kill(os.getpid(), signal.SIGKILL)
-    return number
-
-
-def doubled(number: int) -> int:
-    return 2 * number
 
 
 def forbidden(jobs: int) -> Executor:
@@ -149,13 +135,17 @@ def test_a_task_that_raises_or_whose_worker_dies_is_a_result_with_its_reason_and
     def on_failure(argument: object, failed: TaskResult) -> object:
         return argument, failed.outcome, failed.error_message
 
-    tasks = [Task(raises, 1, "errata", 0.3), Task(dies, 2, "errata", 0.2), Task(doubled, 3, "errata", 0.1)]
+    tasks = [
+        Task(raises, "1", "errata", 0.3),
+        Task(dies, "2", "errata", 0.2),
+        Task(doubled, str(tmp_path / "3"), "errata", 0.1),
+    ]
     results = TaskResults(Cache(tmp_path))
     Runner(results, QUIET, 2, process_pool).run_tasks(tasks)
     assert [results.value(task, on_failure) for task in tasks] == [
-        (1, Outcome.SOLVER_FAILED, "RuntimeError: singular"),
-        (2, Outcome.WORKER_DIED, "the worker process died 2 times (exit code -9)"),
-        6,
+        ("1", Outcome.SOLVER_FAILED, "RuntimeError: singular"),
+        ("2", Outcome.WORKER_DIED, "the worker process died 2 times (exit code -9)"),
+        2,
     ]
     assert TaskResults(Cache(tmp_path)).missing(tasks) == tasks[:2], "the next run tries them again"
     assert results.parts["errata"].tasks == 3

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import itertools
-import os
 import time
 from concurrent.futures import Executor
 from pathlib import Path
 
 import pytest
+from light_tasks import doubled, hangs, hangs_in_compiled_code, is_kept_waiting, raises, waits_for_ever
 from rich.console import Console
 
 from comparison.execution.cache import Cache
@@ -19,43 +18,6 @@ from comparison.execution.task_results import TaskResults
 from reference.problem import Outcome
 
 pytest.importorskip("resource", reason="the system limits no processor time")
-
-
-def _mark(place: str) -> None:
-    """Leave a trace of the call."""
-    (Path(place).parent / f"{Path(place).name}-{os.getpid()}-{time.monotonic_ns()}").touch()
-
-
-def doubled(place: str) -> int:
-    _mark(place)
-    return 2
-
-
-def hangs(place: str) -> int:
-    _mark(place)
-    while True:
-        pass
-
-
-def hangs_in_compiled_code(place: str) -> int:
-    """No line of Python is reached any more, so that no handler of a signal runs."""
-    _mark(place)
-    return sum(itertools.repeat(0))
-
-
-def is_kept_waiting(place: str) -> int:
-    """What a busy machine does to a task: it takes long, and computes little."""
-    time.sleep(2.5)
-    return 1
-
-
-def waits_for_ever(place: str) -> int:
-    while True:
-        time.sleep(1.0)
-
-
-def raises(place: str) -> int:
-    raise RuntimeError("singular")
 
 
 def _run(tasks: list[Task], folder: Path, make: object = process_pool, jobs: int = 2) -> list[TaskResult]:

@@ -35,7 +35,7 @@ from comparison.cli import tradeoff as command
 from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
 
-SECONDS = 2.0  # of motion: a few slides and stops
+SECONDS = 1.5  # of motion: a slide and a stop
 
 
 @pytest.fixture(scope="module")

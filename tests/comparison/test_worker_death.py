@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 from collections.abc import Callable
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
@@ -13,6 +12,7 @@ from threading import Barrier
 import numpy as np
 import pytest
 from fake_models import fake_hierarchy
+from light_tasks import counted
 
 from comparison.execution.executors import ExecutorLostError
 from comparison.execution.processes import process_pool
@@ -36,15 +36,6 @@ def _lost(task: Path, outcome: Outcome, error_message: str) -> str:
 
 def _done(task: object, result: object) -> None:
     pass
-
-
-def counted(place: Path) -> str:
-    """Leaves a mark of every call; the one named "kills" dies at its first, "kills always" at each."""
-    calls = len(list(place.parent.glob(f"{place.name}-*")))
-    (place.parent / f"{place.name}-{calls}").touch()
-    if place.name == "kills always" or (place.name == "kills" and calls == 0):
-        os.kill(os.getpid(), signal.SIGKILL)
-    return place.name
 
 
 def _calls(folder: Path) -> dict[str, int]:

@@ -27,9 +27,9 @@ def damped(scene: Scene, *damping: float | list[float], **values: Any) -> Scene:
 
 
 SCENES = {  # scene, equations, v_reg
-    "5 %": (damped(load_scene("fig3-I"), 0.05, duration=3.0), "exact", None),
-    "unequal axes": (damped(load_scene("fig3-II"), [2.0, 0.3], duration=3.0), "exact", None),
-    "small equations": (damped(load_scene("fig3-I"), 0.02, duration=3.0), "small", None),
+    "5 %": (damped(load_scene("fig3-I"), 0.05, duration=2.0), "exact", None),
+    "unequal axes": (damped(load_scene("fig3-II"), [2.0, 0.3], duration=2.0), "exact", None),
+    "small equations": (damped(load_scene("fig3-I"), 0.02, duration=2.0), "small", None),
     "stiffly damped": (damped(load_scene("fig3-I"), 5.0, duration=3.0, **{"isolator.friction": 0.05}), "exact", None),
     "lubricated": (damped(load_scene("fig4-viscous"), 0.1, duration=3.0), "exact", None),
     "v_reg, nonproportional": (damped(chain(0.4, 0.07, **THREE, duration=3.0), 0.5, 0.01), "exact", 1e-2),

@@ -57,9 +57,9 @@ def test_mu_is_within_its_error_of_a_run_a_hundred_times_tighter(name, law, scal
     ("name", "equations"),
     [
         ("synthetic-pair", "exact"),
-        pytest.param("synthetic-pair", "small", marks=pytest.mark.long),
+        ("synthetic-pair", "small"),
         pytest.param("synthetic-triple", "exact", marks=pytest.mark.long),
-        ("synthetic-triple", "small"),
+        pytest.param("synthetic-triple", "small", marks=pytest.mark.long),
     ],
 )
 def test_mu_is_that_of_scipys_integrators_which_stop_at_every_knot(name, equations):

@@ -1,0 +1,60 @@
+"""Tasks of worker processes, in a module that imports next to nothing: a worker that runs them starts quickly."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import signal
+import time
+from pathlib import Path
+
+
+def _mark(place: str) -> None:
+    """Leave a trace of the call."""
+    (Path(place).parent / f"{Path(place).name}-{os.getpid()}-{time.monotonic_ns()}").touch()
+
+
+def doubled(place: str) -> int:
+    _mark(place)
+    return 2
+
+
+def hangs(place: str) -> int:
+    _mark(place)
+    while True:
+        pass
+
+
+def hangs_in_compiled_code(place: str) -> int:
+    """No line of Python is reached any more, so that no handler of a signal runs."""
+    _mark(place)
+    return sum(itertools.repeat(0))
+
+
+def is_kept_waiting(place: str) -> int:
+    """What a busy machine does to a task: it takes long, and computes little."""
+    time.sleep(2.5)
+    return 1
+
+
+def waits_for_ever(place: str) -> int:
+    while True:
+        time.sleep(1.0)
+
+
+def raises(place: str) -> int:
+    raise RuntimeError("singular")
+
+
+def dies(place: str) -> int:
+    os.kill(os.getpid(), signal.SIGKILL)
+    return 0
+
+
+def counted(place: Path) -> str:
+    """Leaves a mark of every call; the one named "kills" dies at its first, "kills always" at each."""
+    calls = len(list(place.parent.glob(f"{place.name}-*")))
+    (place.parent / f"{place.name}-{calls}").touch()
+    if place.name == "kills always" or (place.name == "kills" and calls == 0):
+        os.kill(os.getpid(), signal.SIGKILL)
+    return place.name

@@ -1,0 +1,330 @@
+"""
+Which springs the supports of an answer stand on, and what that leaves open, with runs whose results are stated here.
+
+A run of the engine is replaced by a function of the level, so that every path is reached without a step.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import multibody
+from multibody.integration.adaptive import Budget, EngineRun
+from multibody.integration.estimate import ERROR_PER_WARPING_LOAD, SAFETY_OF_BEARINGS, SAFETY_OF_SHARING
+from multibody.integration.level import COMPLIANCE_RATIO, MAX_COMPLIANCE_OF_CLOSED, REAL_WARPING_COMPLIANCE, Level
+from multibody.integration.level_runs import MAX_FIRST_SHARE, MAX_WARPING_ERROR_SHARE
+from multibody.integration.one_run import PhasePair
+from multibody.integration.peak import Peaks
+from multibody.integration.refine import Refinement, refine
+from multibody.models.supports import MIN_WARPING_COMPLIANCE
+from reference.problem import Outcome, load_scene
+
+TOLERANCE = 1e-3
+STIFF, REAL = MIN_WARPING_COMPLIANCE, REAL_WARPING_COMPLIANCE
+STEPS = 1000  # of every run
+SCENE = load_scene("fig3-I")
+# of a contact that gets stiffer from level to level, and whose forces do not round
+LEVELS = [
+    replace(level, penetration=1e-6 / COMPLIANCE_RATIO**number, rounding_moment=1e-20)
+    for number, level in enumerate(multibody.levels(SCENE, tolerance=TOLERANCE))
+]
+MODEL: Any = SimpleNamespace(
+    bodies=np.zeros((2, 3), int),
+    units=SimpleNamespace(time=1.0, acceleration=1.0),
+    ground=SimpleNamespace(knots=np.empty(0)),
+    corner=math.inf,
+    relaxation=1.0,
+    depressions=SimpleNamespace(),
+    warping_displacement=lambda coordinates: coordinates,
+)
+
+
+def result(
+    platform: float, *, opens: bool = True, outcome: Outcome = Outcome.OK, load: float = 0.0, steps: int = STEPS
+) -> EngineRun:
+    """A run with this peak of the platform; that of the other body is always 2."""
+    run = EngineRun(Peaks(2, math.inf), math.inf, steps=steps, warping_load=load)
+    run.peaks.value[:] = platform, 2.0
+    run.last_open = 0.5 if opens else -math.inf
+    return run if outcome == Outcome.OK else run.terminated(outcome, 0.7)
+
+
+@dataclass
+class Refined:
+    """A refinement, and the runs that it asked for."""
+
+    answer: Refinement
+    asked: list[tuple[int, float]] = field(
+        default_factory=list
+    )  # the number of the level, and how far supports give way
+    work: list[float] = field(default_factory=list)  # steps that each run was allowed
+
+
+@pytest.fixture
+def refined(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Refined]:
+    """Refine with runs that are a function of the number of the level and of how far supports give way."""
+
+    def refine_on(runs: Callable[[int, float], EngineRun], levels: int = 6, max_work: float = 1e9) -> Refined:
+        done = Refined(answer=None)  # type: ignore[arg-type]
+
+        def at_level(pair: PhasePair, level: Level, budget: Budget, *given: Any, **more: Any) -> EngineRun:
+            number = [other.step for other in LEVELS].index(level.step)
+            done.asked.append((number, level.warping_compliance))
+            done.work.append(budget.left)
+            run = runs(number, level.warping_compliance)
+            budget.left -= run.steps
+            return run
+
+        monkeypatch.setattr(PhasePair, "at_level", at_level)
+        phase = np.array([0.3, 1.1])
+        done.answer = refine(SCENE, MODEL, phase, TOLERANCE, whole=True, levels=LEVELS[:levels], max_work=max_work)
+        return done
+
+    return refine_on
+
+
+def level_error(number: int) -> float:
+    """The relative error of an answer at a level that agrees with the one before."""
+    return LEVELS[number].error_floor + 1e-6
+
+
+def test_an_answer_that_real_bearings_hardly_change_stays_and_the_change_is_an_error(refined: Any) -> None:
+    changes = [3e-4, 5e-4]
+    done = refined(lambda number, springs: result(1.0 + changes[number] * (springs == REAL)))
+    assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF), (1, REAL)]
+    assert done.answer.outcome == Outcome.OK
+    np.testing.assert_allclose(done.answer.peaks, [1.0, 2.0])
+    np.testing.assert_allclose(done.answer.errors, [5e-4 + level_error(1), 2.0 * level_error(1)])
+
+
+def test_the_larger_change_of_two_levels_is_the_error(refined: Any) -> None:
+    changes = [5e-4, 1e-5]
+    done = refined(lambda number, springs: result(1.0 + changes[number] * (springs == REAL)))
+    np.testing.assert_allclose(done.answer.errors[0], 5e-4 + level_error(1))
+
+
+def test_a_change_that_leaves_no_room_for_the_error_of_levels_asks_for_another_level_and_no_run_in_vain(
+    refined: Any,
+) -> None:
+    done = refined(lambda number, springs: result(1.0 + 9e-4 * (springs == REAL)))
+    assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF), (2, STIFF), (2, REAL)]
+    assert done.answer.outcome == Outcome.OK
+    np.testing.assert_allclose(done.answer.errors[0], 9e-4 + level_error(2))
+
+
+def test_where_real_bearings_change_the_peaks_at_once_every_further_level_has_them(refined: Any) -> None:
+    done = refined(lambda number, springs: result(1.893 if springs == STIFF else 1.826))
+    assert done.asked == [(0, STIFF), (0, REAL), (1, REAL)]
+    assert done.answer.outcome == Outcome.OK
+    np.testing.assert_allclose(done.answer.peaks, [1.826, 2.0])
+    np.testing.assert_allclose(done.answer.errors, [1.826 * level_error(1), 2.0 * level_error(1)])
+
+
+def real_from_level_1(number: int, springs: float) -> EngineRun:
+    """Real bearings change nothing at level 0, and the order of impacts at all others."""
+    return result(1.826 if number > 0 and springs == REAL else 1.893, steps=STEPS + STEPS // 2 * (springs == REAL))
+
+
+def test_an_answer_that_real_bearings_change_is_dropped_and_further_levels_have_them(refined: Any) -> None:
+    done = refined(real_from_level_1)
+    assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF), (1, REAL), (2, REAL)]
+    assert done.answer.outcome == Outcome.OK
+    np.testing.assert_allclose(done.answer.peaks, [1.826, 2.0])
+    np.testing.assert_allclose(done.answer.errors[0], 1.826 * level_error(2))
+
+
+@pytest.mark.parametrize(("levels", "max_work"), [(2, 1e9), (6, 7.0 * STEPS)], ids=["last level", "end of the work"])
+def test_without_a_further_level_the_answer_is_that_of_real_bearings_and_its_error_covers_the_change(
+    refined: Any, levels: int, max_work: float
+) -> None:
+    done = refined(real_from_level_1, levels, max_work)
+    assert done.asked[-1] == (1, REAL)
+    assert done.answer.outcome == Outcome.TOLERANCE_NOT_MET
+    np.testing.assert_allclose(done.answer.peaks, [1.826, 2.0])
+    np.testing.assert_allclose(done.answer.errors[0], 1.893 - 1.826 + 1.893 * level_error(1))
+    assert done.answer.finest.peaks.value[0] == 1.826
+    assert done.answer.instant == 0.0, "where the worst peak is"
+
+
+def test_the_error_of_an_answer_on_real_bearings_counts_their_impacts(refined: Any) -> None:
+    def runs(number: int, springs: float) -> EngineRun:
+        run = real_from_level_1(number, springs)
+        run.impacts = int(number > 0 and springs == REAL)
+        return run
+
+    done = refined(runs, 2)
+    assert done.answer.errors[1] == pytest.approx(2.0 * 4e-3 / 2.0)
+
+
+def test_the_compliance_of_an_answer_on_real_bearings_is_measured_on_them(
+    refined: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shared = [LEVELS[0], replace(LEVELS[1], penetration=LEVELS[0].penetration)]
+    monkeypatch.setattr("test_springs_of_supports.LEVELS", shared)
+    done = refined(real_from_level_1, 2)
+    assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF), (1, REAL), (1, REAL)]
+    assert done.answer.outcome == Outcome.TOLERANCE_NOT_MET
+
+
+def test_an_answer_before_real_bearings_changed_it_does_not_come_back(
+    refined: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The run that would complete the error of the last level fails: the level before was another motion."""
+    shared = [replace(level, penetration=LEVELS[min(number, 1)].penetration) for number, level in enumerate(LEVELS)]
+    monkeypatch.setattr("test_springs_of_supports.LEVELS", shared)
+    completing: list[int] = []
+
+    def runs(number: int, springs: float) -> EngineRun:
+        if number == 2 and springs == REAL:
+            completing.append(number)
+            return result(1.8, outcome=Outcome.SOLVER_FAILED if len(completing) > 1 else Outcome.OK)
+        return result(1.0 + 8.7e-4 * (springs == REAL))
+
+    done = refined(runs, 3)
+    assert len(completing) == 2
+    assert done.answer.outcome == Outcome.SOLVER_FAILED
+    assert np.isnan(done.answer.peaks).all()
+
+
+@pytest.mark.parametrize("outcome", [Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED])
+@pytest.mark.parametrize("so_far", [0.4, 1.05])
+def test_an_answer_that_no_run_on_real_bearings_confirms_has_the_change_of_a_coarser_level_twice(
+    refined: Any, outcome: Outcome, so_far: float
+) -> None:
+    def runs(number: int, springs: float) -> EngineRun:
+        if number > 0 and springs == REAL:
+            return result(so_far, outcome=outcome)
+        return result(1.0 + 1e-4 * (springs == REAL))
+
+    done = refined(runs, 2)
+    assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF), (1, REAL)]
+    assert done.answer.outcome == Outcome.TOLERANCE_NOT_MET
+    np.testing.assert_allclose(done.answer.peaks, [1.0, 2.0])
+    # the peaks of a run that did not end can only grow
+    change = max(SAFETY_OF_BEARINGS * 1e-4, so_far - 1.0)
+    np.testing.assert_allclose(done.answer.errors[0], change + level_error(1))
+
+
+def test_a_level_at_which_the_run_on_real_bearings_ends_confirms_the_answer(refined: Any) -> None:
+    def runs(number: int, springs: float) -> EngineRun:
+        outcome = Outcome.SOLVER_FAILED if number == 1 and springs == REAL else Outcome.OK
+        return result(1.0 + 1e-4 * (springs == REAL), outcome=outcome)
+
+    done = refined(runs)
+    assert done.asked[-2:] == [(2, STIFF), (2, REAL)]
+    assert done.answer.outcome == Outcome.OK
+    np.testing.assert_allclose(done.answer.errors[0], 1e-4 + level_error(2))
+
+
+def test_a_motion_that_ends_on_real_bearings_alone_has_no_value_and_says_how_it_ends(refined: Any) -> None:
+    def runs(number: int, springs: float) -> EngineRun:
+        tips = number > 0 and springs == REAL
+        return result(1.0, outcome=Outcome.RIM_REACHED if tips else Outcome.OK)
+
+    for levels, last in ((2, (1, REAL)), (6, (2, REAL))):
+        done = refined(runs, levels)
+        assert done.asked[-1] == last
+        assert done.answer.outcome == Outcome.RIM_REACHED
+        assert done.answer.instant == 0.7
+        assert np.isnan(done.answer.peaks).all()
+
+
+def test_without_any_run_on_real_bearings_there_is_no_value(refined: Any) -> None:
+    def runs(number: int, springs: float) -> EngineRun:
+        return result(1.0, outcome=Outcome.SOLVER_FAILED if springs == REAL else Outcome.OK)
+
+    done = refined(runs)
+    assert done.asked == [(0, STIFF), (0, REAL), (1, REAL)]
+    assert done.answer.outcome == Outcome.SOLVER_FAILED
+    assert np.isnan(done.answer.peaks).all()
+
+
+def test_supports_that_rattle_on_any_springs_stand_on_those_of_real_bearings(refined: Any) -> None:
+    done = refined(lambda number, _: result(1.0, outcome=Outcome.STEP_LIMIT if number == 0 else Outcome.OK))
+    assert done.asked == [(0, STIFF), (0, REAL), (1, REAL), (2, REAL)]
+    assert done.answer.outcome == Outcome.OK
+
+
+def test_no_level_is_begun_without_work_for_its_run_on_real_bearings(refined: Any) -> None:
+    done = refined(lambda number, springs: result(1.0 + 9e-4 * (springs == REAL)), max_work=6.5 * STEPS)
+    assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF)]
+    assert done.answer.outcome == Outcome.TOLERANCE_NOT_MET
+    np.testing.assert_allclose(done.answer.errors[0], 9e-4 + level_error(1))
+
+
+def test_the_first_run_of_supports_that_may_rattle_has_a_share_of_the_work(refined: Any) -> None:
+    def runs(number: int, springs: float) -> EngineRun:
+        outcome = Outcome.STEP_LIMIT if springs == STIFF else Outcome.OK
+        return result(1.0, outcome=outcome)
+
+    done = refined(runs, max_work=1e5)
+    assert done.asked == [(0, STIFF), (0, REAL), (1, REAL)]
+    assert done.work[:2] == [MAX_FIRST_SHARE * 1e5, 1e5 - STEPS]
+    assert done.answer.outcome == Outcome.OK
+
+
+def test_supports_that_open_by_the_misfit_of_the_platform_alone_may_give_way_by_more_than_real_bearings(
+    refined: Any,
+) -> None:
+    load = 0.02
+    wanted = REAL * load * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * TOLERANCE)
+
+    def runs(number: int, springs: float) -> EngineRun:
+        return result(1.0, opens=springs == STIFF, load=load * REAL / max(springs, REAL))
+
+    done = refined(runs)
+    assert done.asked[:3] == [(0, STIFF), (0, REAL), (1, pytest.approx(wanted))]
+    assert wanted > REAL
+
+
+@pytest.mark.parametrize("softest_closed", [0.0, REAL], ids=["open on any", "open on softer ones only"])
+def test_supports_that_open_on_softer_springs_stand_on_those_of_real_bearings_from_then_on(
+    refined: Any, softest_closed: float
+) -> None:
+    def runs(number: int, springs: float) -> EngineRun:
+        return result(1.0 + 0.1 * (number == 1), opens=number > 0 and springs > softest_closed, load=4e-7 / springs)
+
+    done = refined(runs)
+    assert done.asked[0] == (0, STIFF)
+    assert done.asked[1][1] > REAL
+    assert {springs for _, springs in done.asked[2:]} == {REAL}
+    assert [number for number, _ in done.asked] == [0, 1, *range(1, 5)], "levels 0 and 1 differ: more follow"
+
+
+def test_supports_give_way_until_warping_takes_no_more_load_than_the_tolerance_allows(refined: Any) -> None:
+    """The load falls as the springs get softer."""
+
+    def runs(number: int, springs: float) -> EngineRun:
+        return result(1.0, opens=False, load=4e-3 * STIFF / springs)
+
+    done = refined(runs)
+    softer = STIFF * 4e-3 * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * TOLERANCE)
+    assert done.asked == [(0, STIFF), (1, pytest.approx(softer))]
+    left = ERROR_PER_WARPING_LOAD * 4e-3 * STIFF / softer
+    assert left == pytest.approx(MAX_WARPING_ERROR_SHARE * TOLERANCE)
+    np.testing.assert_allclose(done.answer.errors[0], level_error(1) + left)
+
+
+@pytest.mark.parametrize(("per_load", "levels"), [(0.02, 2), (0.1, 3)], ids=["met", "not met"])
+def test_what_warping_does_is_measured_once_where_no_softer_springs_are_left(
+    refined: Any, per_load: float, levels: int
+) -> None:
+    """per_load: relative change of the platform's peak over the load that warping takes."""
+    load, softest = 0.01, MAX_COMPLIANCE_OF_CLOSED
+
+    def runs(number: int, springs: float) -> EngineRun:
+        share = load * softest / springs
+        return result(1.0 + per_load * (share - load) * (number > 0), opens=False, load=min(share, 1.0))
+
+    done = refined(runs, levels)
+    assert done.asked == [(0, STIFF), (1, softest), (1, softest / COMPLIANCE_RATIO), (2, softest)][: levels + 1]
+    assert done.answer.outcome == (Outcome.OK if levels == 2 else Outcome.TOLERANCE_NOT_MET)
+    error = level_error(levels - 1) + SAFETY_OF_SHARING * per_load * load
+    np.testing.assert_allclose(done.answer.errors[0], error)
