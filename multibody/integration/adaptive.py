@@ -391,6 +391,8 @@ def _end_of_validity(motion: Motion, model: EngineModel) -> tuple[Outcome, int]:
     """The first event that ends the model's validity and its row; OK and the last row if there is none."""
     count = len(motion.time)
     if model.depressions is not None:
+        if model.depressions.near_rest(motion.coordinates):
+            return Outcome.OK, count - 1
         tilt = _tilt(motion, model)
         row = _first(model.depressions.beyond_rim(motion.coordinates) | (tilt >= 0.5 * math.pi))
         if row == count:

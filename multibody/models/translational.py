@@ -62,10 +62,10 @@ def translational(
     container = exudyn.SystemContainer()
     mbs = container.AddSystem()
     platform_node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * COORDINATES))
-    platform = mbs.AddObject(
+    mbs.AddObject(
         items.ObjectRigidBody(nodeNumber=platform_node, mass=masses[0], inertia=[LOCKED_INERTIA] * 3 + [0.0] * 3)
     )
-    depression = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=platform))
+    depression = mbs.AddMarker(items.MarkerNodeRigid(nodeNumber=platform_node))
     nodes = [platform_node]
     if len(masses) > 1:
         links = (link_stiffness(scene, units)[:, :axes], link_damping(scene, units)[:, :axes])
