@@ -62,14 +62,9 @@ def translational(
     container = exudyn.SystemContainer()
     mbs = container.AddSystem()
     platform_node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * COORDINATES))
-    mbs.AddObject(
-        items.ObjectRigidBody(nodeNumber=platform_node, mass=masses[0], inertia=[LOCKED_INERTIA] * 3 + [0.0] * 3)
-    )
     depression = mbs.AddMarker(items.MarkerNodeRigid(nodeNumber=platform_node))
-    nodes = [platform_node]
-    if len(masses) > 1:
-        links = (link_stiffness(scene, units)[:, :axes], link_damping(scene, units)[:, :axes])
-        nodes.append(_chain(mbs, platform_node, masses, *links))
+    links = (link_stiffness(scene, units)[:, :axes], link_damping(scene, units)[:, :axes])
+    nodes = _chain(mbs, platform_node, masses, *links)
 
     ground = ground_of(mbs, scene, units)
     plate = plate_for(mbs, loading, ground)
@@ -153,21 +148,27 @@ def _contact_on_plane(mbs: Any, plate: Plate, platform: Any, friction: float, th
     return mbs.AddObject(contact), node
 
 
-def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, damping: Array) -> Any:
-    """Bodies 2..N as one linear object on their x, y (or x) and the platform's x, y, z. Returns their node."""
+def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, damping: Array) -> list[Any]:
+    """
+    All bodies as one linear object on the platform's coordinates and x, y (or x) of the others. Returns the nodes.
+
+    Its mass matrix is constant, so that the engine does not assemble it again in every iteration.
+    """
     axes = stiffness.shape[1]
     count = axes * (len(masses) - 1)
-    node = mbs.AddNode(
-        items.NodeGenericODE2(
+    nodes = [platform_node]
+    if count:
+        above = items.NodeGenericODE2(
             referenceCoordinates=[0.0] * count,
             initialCoordinates=[0.0] * count,
             initialCoordinates_t=[0.0] * count,
             numberOfODE2Coordinates=count,
         )
-    )
+        nodes.append(mbs.AddNode(above))
     mass_matrix = np.zeros((COORDINATES + count, COORDINATES + count))
     stiffness_matrix, damping_matrix = np.zeros((2, *mass_matrix.shape))
-    mass_matrix[2, 2] = masses[1:].sum()
+    np.fill_diagonal(mass_matrix[:COORDINATES], [*masses[:1]] * 3 + [LOCKED_INERTIA] * 3)
+    mass_matrix[2, 2] += masses[1:].sum()
     for link in range(len(masses) - 1):
         for axis in range(axes):
             upper = COORDINATES + axes * link + axis
@@ -179,8 +180,8 @@ def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, dampin
     matrices = {"massMatrix": _container(mass_matrix), "stiffnessMatrix": _container(stiffness_matrix)}
     if damping.any():
         matrices["dampingMatrix"] = _container(damping_matrix)
-    mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=[platform_node, node], **matrices))
-    return node
+    mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=nodes, **matrices))
+    return nodes
 
 
 def _container(matrix: Array) -> Any:
