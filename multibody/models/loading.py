@@ -44,6 +44,10 @@ class SymbolicGround:
         """Nothing likewise."""
         return True
 
+    def shakes(self, axis: int) -> bool:
+        """Whether the plate is accelerated along `axis`."""
+        return bool(self.amplitudes[axis].any())
+
     def along(self, axis: int, time: Any) -> Any:
         """Expression of the acceleration along `axis` at the symbolic instant `time`."""
         time = time + self.shift

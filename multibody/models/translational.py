@@ -71,7 +71,7 @@ def translational(
     friction, threshold = contact_law(scene, regularization, units)
     add_contact = _contact_on_plane if scene.flat else _contact
     contact, contact_node = add_contact(mbs, plate, depression, friction, threshold)
-    expressions = _inertial_loads(mbs, ground, plate, masses, depression, nodes, axes)
+    expressions = [*plate.expressions] if plate.moves else _inertial_loads(mbs, ground, masses, nodes, axes)
     recorders = add_recorders(mbs, nodes, [contact_node], [contact] if contact_force else [], plate.node)
     mbs.Assemble()
 
@@ -150,7 +150,9 @@ def _contact_on_plane(mbs: Any, plate: Plate, platform: Any, friction: float, th
 
 def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, damping: Array) -> list[Any]:
     """
-    All bodies as one linear object on the platform's coordinates and x, y (or x) of the others. Returns the nodes.
+    All bodies and their weight as one linear object on the platform's coordinates and x, y (or x) of the others.
+
+    Returns the nodes.
 
     Its mass matrix is constant, so that the engine does not assemble it again in every iteration.
     """
@@ -177,10 +179,12 @@ def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, dampin
             pair = np.ix_([lower, upper], [lower, upper])
             stiffness_matrix[pair] += stiffness[link, axis] * BETWEEN_TWO
             damping_matrix[pair] += damping[link, axis] * BETWEEN_TWO
+    weight = np.zeros(len(mass_matrix))
+    weight[2] = -1.0
     matrices = {"massMatrix": _container(mass_matrix), "stiffnessMatrix": _container(stiffness_matrix)}
     if damping.any():
         matrices["dampingMatrix"] = _container(damping_matrix)
-    mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=nodes, **matrices))
+    mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=nodes, forceVector=weight, **matrices))
     return nodes
 
 
@@ -193,26 +197,20 @@ def _container(matrix: Array) -> Any:
     return entries
 
 
-def _inertial_loads(
-    mbs: Any, ground: Ground, plate: Plate, masses: Array, depression: Any, nodes: list[Any], axes: int
-) -> list[Any]:
-    """Weight and, unless the plate moves, -m times its acceleration on every body. Returns the expressions."""
+def _inertial_loads(mbs: Any, ground: Ground, masses: Array, nodes: list[Any], axes: int) -> list[Any]:
+    """-m times the acceleration of a plate that does not move on every coordinate. Returns the expressions."""
 
-    def on_platform(mbs: Any, t: Any, loadVector: Any) -> list[Any]:
-        return [-masses[0] * ground.along(0, t), -masses[0] * ground.along(1, t), -1.0 - ground.along(2, t)]
+    def force(mass: float, axis: int) -> Any:
+        return lambda mbs, t, load: -mass * ground.along(axis, t)
 
-    if plate.moves:
-        mbs.AddLoad(items.LoadForceVector(markerNumber=depression, loadVector=[0.0, 0.0, -1.0]))
-        return list(plate.expressions)
-
-    def on_body(i: int, axis: int) -> Any:
-        return lambda mbs, t, load: -masses[i] * ground.along(axis, t)
-
-    load = mbs.AddLoad(items.LoadForceVector(markerNumber=depression, loadVector=[0.0, 0.0, -1.0]))
-    expressions = [symbolic_load(mbs, load, "loadVectorUserFunction", on_platform)]
+    # bodies above share the vertical motion: all of the mass, which is one, moves along z
+    pushed = [(nodes[0], axis, mass, axis) for axis, mass in enumerate([masses[0], masses[0], 1.0])]
     for i in range(1, len(masses)):
-        for axis in range(axes):
-            coordinate = items.MarkerNodeCoordinate(nodeNumber=nodes[1], coordinate=axes * (i - 1) + axis)
-            load = mbs.AddLoad(items.LoadCoordinate(markerNumber=mbs.AddMarker(coordinate)))
-            expressions.append(symbolic_load(mbs, load, "loadUserFunction", on_body(i, axis)))
+        pushed += [(nodes[1], axes * (i - 1) + axis, masses[i], axis) for axis in range(axes)]
+    expressions = []
+    for node, place, mass, axis in pushed:
+        if ground.shakes(axis):
+            coordinate = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=place))
+            load = mbs.AddLoad(items.LoadCoordinate(markerNumber=coordinate))
+            expressions.append(symbolic_load(mbs, load, "loadUserFunction", force(float(mass), axis)))
     return expressions
