@@ -131,6 +131,7 @@ class Engine:
         kind = exudyn.MainSolverExplicit if self.explicit else exudyn.MainSolverImplicitSecondOrder
         self.solver = kind()
         self.sensors: list[list[Any]] = [getattr(model.recorders, group.name) for group in fields(model.recorders)]
+        self.columns: list[slice] = []  # of each of these groups in what is read, known with the first run
         self.iterations = 0  # of Newton's method in the last run, with those of steps that were tried again
 
     def run(self, state: EngineState, begin: float, step: float, count: int) -> Motion | None:
@@ -155,11 +156,12 @@ class Engine:
 
     def _read(self) -> Motion:
         stored = self.model.mbs.GetSensorStoredData
-        groups = [[stored(sensor) for sensor in sensors] for sensors in self.sensors]
-        time = groups[0][0][:, 0]  # the engine's own instants: it halves a step that its Newton iteration cannot solve
-        coordinates, velocities, accelerations, contact, force, plates = (
-            _side_by_side(tables, len(time)) for tables in groups
-        )
+        tables = [stored(sensor) for sensors in self.sensors for sensor in sensors]
+        time = tables[0][:, 0]  # the engine's own instants: it halves a step that its Newton iteration could not solve
+        if not self.columns:
+            self.columns = _columns(self.sensors, tables)
+        values = np.concatenate([table[:, 1:] for table in tables], axis=1)
+        coordinates, velocities, accelerations, contact, force, plates = (values[:, part] for part in self.columns)
         plate = np.zeros((len(time), 3, 3))
         if self.model.moving_plate:
             plate = plates.reshape(len(time), 3, -1)[:, :, :3]
@@ -169,12 +171,14 @@ class Engine:
         return Motion(time, coordinates, velocities, accelerations, contact, force, plate)
 
 
-def _side_by_side(tables: list[Array], count: int) -> Array:
-    """The values of tables (T, 1 + C), without the time that each begins with; (count, 0) without tables."""
-    if not tables:
-        return np.empty((count, 0))
-    table = tables[0] if len(tables) == 1 else np.concatenate([tables[0], *(table[:, 1:] for table in tables[1:])], 1)
-    return table[:, 1:]
+def _columns(groups: list[list[Any]], tables: list[Array]) -> list[slice]:
+    """Where the values of each group of sensors are, side by side, whose tables (T, 1 + C) begin with the time."""
+    widths, columns, begin = iter([table.shape[1] - 1 for table in tables]), [], 0
+    for sensors in groups:
+        end = begin + sum(next(widths) for _ in sensors)
+        columns.append(slice(begin, end))
+        begin = end
+    return columns
 
 
 def _settings(newton: float, residual: float) -> Any:

@@ -25,7 +25,7 @@ from multibody.models.contact import (
     settled_contact,
 )
 from multibody.models.engine import MAX_DENSE_COORDINATES, exudyn, items
-from multibody.models.loading import Ground, ground_of, symbolic_load
+from multibody.models.loading import Push, ground_of, push
 from multibody.models.plane import farthest, plane_contact, platform_on_plane, set_extent
 from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate, plate_for
 from multibody.models.recorders import add_recorders
@@ -71,7 +71,7 @@ def translational(
     friction, threshold = contact_law(scene, regularization, units)
     add_contact = _contact_on_plane if scene.flat else _contact
     contact, contact_node = add_contact(mbs, plate, depression, friction, threshold)
-    expressions = [*plate.expressions] if plate.moves else _inertial_loads(mbs, ground, masses, nodes, axes)
+    expressions = [*plate.expressions] if plate.moves else push(mbs, ground, _pushed(masses, nodes, axes))
     recorders = add_recorders(mbs, nodes, [contact_node], [contact] if contact_force else [], plate.node)
     mbs.Assemble()
 
@@ -197,20 +197,12 @@ def _container(matrix: Array) -> Any:
     return entries
 
 
-def _inertial_loads(mbs: Any, ground: Ground, masses: Array, nodes: list[Any], axes: int) -> list[Any]:
-    """-m times the acceleration of a plate that does not move on every coordinate. Returns the expressions."""
-
-    def force(mass: float, axis: int) -> Any:
-        return lambda mbs, t, load: -mass * ground.along(axis, t)
-
-    # bodies above share the vertical motion: all of the mass, which is one, moves along z
-    pushed = [(nodes[0], axis, mass, axis) for axis, mass in enumerate([masses[0], masses[0], 1.0])]
-    for i in range(1, len(masses)):
-        pushed += [(nodes[1], axes * (i - 1) + axis, masses[i], axis) for axis in range(axes)]
-    expressions = []
-    for node, place, mass, axis in pushed:
-        if ground.shakes(axis):
-            coordinate = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=place))
-            load = mbs.AddLoad(items.LoadCoordinate(markerNumber=coordinate))
-            expressions.append(symbolic_load(mbs, load, "loadUserFunction", force(float(mass), axis)))
-    return expressions
+def _pushed(masses: Array, nodes: list[Any], axes: int) -> list[Push]:
+    """What the loading accelerates: the bodies above share the platform's vertical motion, so all of the mass there."""
+    platform = [Push(nodes[0], axis, float(masses[0]), axis) for axis in range(2)]
+    above = [
+        Push(nodes[1], axes * number + axis, float(mass), axis)
+        for number, mass in enumerate(masses[1:])
+        for axis in range(axes)
+    ]
+    return [*platform, Push(nodes[0], 2, 1.0, 2), *above]
