@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 SPECTRAL_RADIUS = 0.8  # of generalized alpha: the contact must not ring, the rest must not be damped
 MAX_STEP_REDUCTION = 1e4  # of a step that the engine cannot solve: contacts touch, friction turns
 EXPLICIT = {"RK44": "RK44", "velocity Verlet": "VelocityVerlet"}  # integrators, and their names in the engine
+INITIAL = exudyn.ConfigurationType.Initial
 INTEGRATORS = ("generalized alpha", "trapezoidal", *EXPLICIT)
 
 MAX_CONTRACTIVITY = 0.2  # of modified Newton, above which the Jacobian is renewed: least time (measured)
@@ -92,10 +93,10 @@ def set_initial_state(model: EngineModel, state: EngineState) -> None:
         turns = np.zeros(COORDINATES - 3)
         coordinates = np.concatenate([coordinates + shift[0, axes], state.plate[0], turns])
         velocities = np.concatenate([velocities + shift[1, axes], state.plate[1], turns])
-    data, initial = model.mbs.systemData, exudyn.ConfigurationType.Initial
-    data.SetODE2Coordinates(coordinates, configuration=initial)
-    data.SetODE2Coordinates_t(velocities, configuration=initial)
-    data.SetDataCoordinates(state.contact, configuration=initial)
+    data = model.mbs.systemData
+    data.SetODE2Coordinates(coordinates, configuration=INITIAL)
+    data.SetODE2Coordinates_t(velocities, configuration=INITIAL)
+    data.SetDataCoordinates(state.contact, configuration=INITIAL)
 
 
 class Engine:
