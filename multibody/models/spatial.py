@@ -100,7 +100,7 @@ def spatial(
     pushed = [Push(node, axis, float(mass), axis) for node, mass in zip(nodes, masses) for axis in range(3)]
     expressions = [*plate.expressions] if plate.moves else push(mbs, ground, pushed)
     forces = contacts if contact_force else []
-    recorders = add_recorders(mbs, [*nodes, *supports.nodes], contact_nodes, forces, plate.node)
+    recorders = add_recorders(mbs, [*nodes, *supports.nodes], supports.springs, contact_nodes, forces, plate.node)
     mbs.Assemble()
 
     index = PER_BODY * np.arange(len(masses))[:, None] + np.arange(3)

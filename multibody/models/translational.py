@@ -64,7 +64,7 @@ def translational(
     platform_node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * COORDINATES))
     depression = mbs.AddMarker(items.MarkerNodeRigid(nodeNumber=platform_node))
     links = (link_stiffness(scene, units)[:, :axes], link_damping(scene, units)[:, :axes])
-    nodes = _chain(mbs, platform_node, masses, *links)
+    nodes, chain = _chain(mbs, platform_node, masses, *links)
 
     ground = ground_of(mbs, scene, units)
     plate = plate_for(mbs, loading, ground)
@@ -72,7 +72,7 @@ def translational(
     add_contact = _contact_on_plane if scene.flat else _contact
     contact, contact_node = add_contact(mbs, plate, depression, friction, threshold)
     expressions = [*plate.expressions] if plate.moves else push(mbs, ground, _pushed(masses, nodes, axes))
-    recorders = add_recorders(mbs, nodes, [contact_node], [contact] if contact_force else [], plate.node)
+    recorders = add_recorders(mbs, [], [chain], [contact_node], [contact] if contact_force else [], plate.node)
     mbs.Assemble()
 
     count = COORDINATES + axes * (len(masses) - 1)
@@ -148,11 +148,11 @@ def _contact_on_plane(mbs: Any, plate: Plate, platform: Any, friction: float, th
     return mbs.AddObject(contact), node
 
 
-def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, damping: Array) -> list[Any]:
+def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, damping: Array) -> tuple[list[Any], Any]:
     """
     All bodies and their weight as one linear object on the platform's coordinates and x, y (or x) of the others.
 
-    Returns the nodes.
+    Returns the nodes and the object.
 
     Its mass matrix is constant, so that the engine does not assemble it again in every iteration.
     """
@@ -184,8 +184,7 @@ def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, dampin
     matrices = {"massMatrix": _container(mass_matrix), "stiffnessMatrix": _container(stiffness_matrix)}
     if damping.any():
         matrices["dampingMatrix"] = _container(damping_matrix)
-    mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=nodes, forceVector=weight, **matrices))
-    return nodes
+    return nodes, mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=nodes, forceVector=weight, **matrices))
 
 
 def _container(matrix: Array) -> Any:
