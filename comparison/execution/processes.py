@@ -7,6 +7,7 @@ handler of Python would run. It counts the process's own processor time: what el
 
 from __future__ import annotations
 
+import gc
 import math
 import multiprocessing
 import os
@@ -135,7 +136,7 @@ class _Process:
 
     def __init__(self) -> None:
         self._pipe, theirs = CONTEXT.Pipe()
-        self._process = CONTEXT.Process(target=_serve, args=(theirs,), daemon=True)
+        self._process = CONTEXT.Process(target=_serve, args=(theirs, gc.get_threshold()), daemon=True)
         with _processes, _deaf_to_ctrl_c():
             self._process.start()
         theirs.close()
@@ -172,8 +173,9 @@ class _Process:
         self._pipe.close()
 
 
-def _serve(pipe: Connection) -> None:
-    """What a process does until its parent closes the pipe or ends."""
+def _serve(pipe: Connection, collections: tuple[int, int, int]) -> None:
+    """What a process does until its parent closes the pipe or ends. collections: thresholds of garbage collection."""
+    gc.set_threshold(*collections)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to the whole group; the parent alone decides
     threading.Thread(target=_end_with_parent, daemon=True).start()
     numba.set_num_threads(1)

@@ -343,12 +343,13 @@ def _record_warping(result: EngineRun, motion: Motion, model: EngineModel, level
     """
     if model.warping_displacement is None:
         return
-    is_open = (motion.gap >= 0.0).any(axis=1)
-    last_open = np.maximum.accumulate(np.where(is_open, motion.time, result.last_open))
-    settled = motion.time - last_open > WARPING_RELAXATION * math.sqrt(level.warping_compliance)
-    displacement = model.warping_displacement(motion.coordinates)[settled]
+    displacement = model.warping_displacement(motion.coordinates)
+    if result.lifts_off or motion.gap.max() >= 0.0:
+        is_open = (motion.gap >= 0.0).any(axis=1)
+        last_open = np.maximum.accumulate(np.where(is_open, motion.time, result.last_open))
+        displacement = displacement[motion.time - last_open > WARPING_RELAXATION * math.sqrt(level.warping_compliance)]
+        result.last_open = float(last_open[-1])
     result.warping_load = max(result.warping_load, float(displacement.max(initial=0.0)) / level.warping_compliance)
-    result.last_open = float(last_open[-1])
 
 
 def _gap_rate(motion: Motion) -> Array:
@@ -391,6 +392,8 @@ def _end_of_validity(motion: Motion, model: EngineModel) -> tuple[Outcome, int]:
     """The first event that ends the model's validity and its row; OK and the last row if there is none."""
     count = len(motion.time)
     if model.depressions is not None:
+        if model.depressions.near_rest(motion.coordinates):
+            return Outcome.OK, count - 1
         tilt = _tilt(motion, model)
         row = _first(model.depressions.beyond_rim(motion.coordinates) | (tilt >= 0.5 * math.pi))
         if row == count:

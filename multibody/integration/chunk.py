@@ -116,3 +116,13 @@ def last_near(size: Array, sizes: Array, distance: Array, far: float) -> int:
             if size[row, body] >= sizes[body]:
                 return row
     return -1
+
+
+@cached_on_disk(__file__, nogil=True)
+def any_larger(size: Array, first: int, least: Array) -> bool:
+    """Whether an entry of `size` (T, N) is larger than its column's of `least` (N,), from the row `first` on."""
+    for row in range(first, len(size)):
+        for body in range(size.shape[1]):
+            if size[row, body] > least[body]:
+                return True
+    return False

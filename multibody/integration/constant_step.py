@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 SPECTRAL_RADIUS = 0.8  # of generalized alpha: the contact must not ring, the rest must not be damped
 MAX_STEP_REDUCTION = 1e4  # of a step that the engine cannot solve: contacts touch, friction turns
 EXPLICIT = {"RK44": "RK44", "velocity Verlet": "VelocityVerlet"}  # integrators, and their names in the engine
+INITIAL = exudyn.ConfigurationType.Initial
 INTEGRATORS = ("generalized alpha", "trapezoidal", *EXPLICIT)
 
 MAX_CONTRACTIVITY = 0.2  # of modified Newton, above which the Jacobian is renewed: least time (measured)
@@ -92,10 +93,10 @@ def set_initial_state(model: EngineModel, state: EngineState) -> None:
         turns = np.zeros(COORDINATES - 3)
         coordinates = np.concatenate([coordinates + shift[0, axes], state.plate[0], turns])
         velocities = np.concatenate([velocities + shift[1, axes], state.plate[1], turns])
-    data, initial = model.mbs.systemData, exudyn.ConfigurationType.Initial
-    data.SetODE2Coordinates(coordinates, configuration=initial)
-    data.SetODE2Coordinates_t(velocities, configuration=initial)
-    data.SetDataCoordinates(state.contact, configuration=initial)
+    data = model.mbs.systemData
+    data.SetODE2Coordinates(coordinates, configuration=INITIAL)
+    data.SetODE2Coordinates_t(velocities, configuration=INITIAL)
+    data.SetDataCoordinates(state.contact, configuration=INITIAL)
 
 
 class Engine:
@@ -127,6 +128,7 @@ class Engine:
         if self.explicit:
             kind = getattr(exudyn.DynamicSolverType, self.explicit)
             self.settings.timeIntegration.solverType = kind
+        self.integration = self.settings.timeIntegration
         kind = exudyn.MainSolverExplicit if self.explicit else exudyn.MainSolverImplicitSecondOrder
         self.solver = kind()
         self.sensors: list[list[Any]] = [getattr(model.recorders, group.name) for group in fields(model.recorders)]
@@ -139,7 +141,7 @@ class Engine:
         self.model.ground.begin(begin)
         if self.model.friction is not None:
             self.model.friction.begin(self.model.mbs, state.contact, state.slip_rate, begin)
-        integration = self.settings.timeIntegration
+        integration = self.integration
         integration.startTime = begin
         integration.endTime = begin + count * step
         integration.numberOfSteps = count
@@ -154,7 +156,8 @@ class Engine:
         return self._read()
 
     def _read(self) -> Motion:
-        tables = [self.model.mbs.GetSensorStoredData(sensor) for sensors in self.sensors for sensor in sensors]
+        stored = self.model.mbs.GetSensorStoredData
+        tables = [stored(sensor) for sensors in self.sensors for sensor in sensors]
         time = tables[0][:, 0]  # the engine's own instants: it halves a step that its Newton iteration could not solve
         if not self.columns:
             self.columns = _columns(self.sensors, tables)

@@ -45,6 +45,7 @@ NEWTON_TOLERANCE = 1e-5  # relative, of the forces, at level 0
 MAX_SQUARED_STEP = 1e3
 MAX_ROUNDING_SHARE = 0.25  # of the tolerance, that rounding of the forces may take at a peak of MIN_PEAK
 MIN_PEAK = 0.2  # of g
+LOOSEST_FOR_ROUNDING = 1e-3  # tolerance: a looser one permits no more rounding, which at a stop may grow a hundredfold
 WEAK_LOADING = 1e-4  # of g: below, the loading itself is the peak that rounding is held against
 MAX_WEAK_PENETRATION = 4e-4  # of rho, under such a loading: the contact force hardly changes
 WEAKEST_PEAK = 1e-300  # of g: keeps the softer contact finite
@@ -178,7 +179,8 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
     step = largest_step(period, model)
     strength = 1.0 if model.allows_liftoff else weak_strength(scene)  # a tower tilts on soft contacts
     peak, most = (MIN_PEAK, MAX_PENETRATION) if strength == 1.0 else (strength, MAX_WEAK_PENETRATION)
-    stiffest = min(model.rounding / (MAX_ROUNDING_SHARE * peak * tolerance), most / COMPLIANCE_RATIO)
+    rounding = MAX_ROUNDING_SHARE * peak * min(tolerance, LOOSEST_FOR_ROUNDING)
+    stiffest = min(model.rounding / rounding, most / COMPLIANCE_RATIO)
     share = MAX_CONTACT_TIME_OF_ROCKING if model.allows_liftoff else MAX_CONTACT_TIME
     slowest = min(MAX_CONTACT_LAG * model.relaxation, share * period / (2.0 * math.pi), 1.0)
     softest = max(min(slowest**2, MAX_PENETRATION), stiffest)

@@ -14,6 +14,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from multibody.integration.chunk import any_larger
+
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
@@ -45,10 +47,8 @@ class Peaks:
     def add(self, time: Array, size: Array, slip: Array) -> None:
         """Sizes (T, N) at times (T,), slip speeds (T, K); their first row repeats the last one of the chunk before."""
         carried = len(self._time)
-        largest = size.max(axis=0)
-        if carried:
-            largest = np.maximum(size[1:].max(axis=0, initial=0.0), self._size.max(axis=0))
-        candidate = (largest > CANDIDATE_FRACTION * self.value).any()
+        least = CANDIDATE_FRACTION * self.value
+        candidate = any_larger(size, 1 if carried else 0, least) or any_larger(self._size, 0, least)
         if carried and (candidate or len(time) <= CARRIED_SAMPLES):
             time = np.concatenate([self._time, time[1:]])
             size = np.concatenate([self._size, size[1:]])

@@ -8,6 +8,7 @@ side once the platform has risen by twice rho. So the clearance between platform
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +44,25 @@ class Depressions:
         # a sphere below the rim touches nothing until it is back inside, or has left (`beyond_rim`)
         clear: Array = 1.0 - np.where(upward > 0.0, np.hypot(across, upward), 0.0)
         return clear
+
+    def near_rest(self, coordinates: Array) -> bool:
+        """
+        Whether bounds prove for all coordinates (T, n) that no sphere is `beyond_rim` and no tilt reaches 90 degrees.
+
+        A platform that is displaced by u and turned by the angle t moves a depression at the distance l from its center
+        by |u| + t l at most, and lifts it by |u_z| + t l.
+        """
+        largest = np.abs(coordinates).max(axis=0)
+        shift, lift, turn = float(largest[:3].sum()), float(largest[2]), float(largest[3:6].sum())
+        sinking = float(largest[self.vertical].max(initial=0.0))
+        moved = turn * self._farthest
+        above = 1.0 - sinking - lift - moved - turn * (1.0 + sinking + shift + moved)  # height of a sphere in the rim
+        return above > 0.0 and turn < 1.0
+
+    @cached_property
+    def _farthest(self) -> float:
+        """Largest distance of a depression from the platform's center of mass."""
+        return float(np.hypot(np.hypot(*(self.ring - self.center[:2]).T), self.center[2]).max())
 
     def beyond_rim(self, coordinates: Array) -> NDArray[np.bool_]:
         """Whether a sphere has left its depression, (T,), for coordinates (T, n)."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from multibody.models.engine import exudyn, symbolic_function
+from multibody.models.engine import exudyn, items, symbolic_function
 from multibody.models.recorded import RecordedGround
 from multibody.models.units import Units
 from reference.problem import Scene, exponents
@@ -44,6 +44,10 @@ class SymbolicGround:
         """Nothing likewise."""
         return True
 
+    def shakes(self, axis: int) -> bool:
+        """Whether the plate is accelerated along `axis`."""
+        return bool(self.amplitudes[axis].any())
+
     def along(self, axis: int, time: Any) -> Any:
         """Expression of the acceleration along `axis` at the symbolic instant `time`."""
         time = time + self.shift
@@ -73,3 +77,31 @@ def symbolic_load(mbs: Any, load: Any, parameter: str, function: Callable[..., A
     expression = symbolic_function(mbs, function, parameter, load)
     mbs.SetLoadParameter(load, parameter, expression)
     return expression
+
+
+class Push(NamedTuple):
+    """A coordinate with a mass that the loading accelerates."""
+
+    node: Any
+    coordinate: int  # of the node
+    mass: float
+    axis: int  # of the acceleration
+
+
+def push(mbs: Any, ground: Ground, pushes: Iterable[Push]) -> list[Any]:
+    """
+    -m times the plate's acceleration on every coordinate. Returns the expressions, see `symbolic_load`.
+
+    Loads on coordinates take a fraction of the time of force vectors on bodies.
+    """
+
+    def force(mass: float, axis: int) -> Any:
+        return lambda mbs, t, load: -mass * ground.along(axis, t)
+
+    expressions = []
+    for node, coordinate, mass, axis in pushes:
+        if ground.shakes(axis):
+            marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
+            load = mbs.AddLoad(items.LoadCoordinate(markerNumber=marker))
+            expressions.append(symbolic_load(mbs, load, "loadUserFunction", force(mass, axis)))
+    return expressions

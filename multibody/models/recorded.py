@@ -48,6 +48,10 @@ class RecordedGround:
         self._interval = -1
         self._enter(int(np.searchsorted(self._time, time + self._shift + self.near, side="right")))
 
+    def shakes(self, axis: int) -> bool:
+        """Whether the plate is accelerated along `axis`."""
+        return bool(self._samples[:, axis].any())
+
     def along(self, axis: int, time: Any) -> Any:
         """Expression of the acceleration along `axis` at the symbolic instant `time`, inside the step being made."""
         return self._value[axis] + self._rate[axis] * (time - self._origin)

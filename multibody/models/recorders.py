@@ -9,9 +9,19 @@ from multibody.models.system import Recorders
 
 
 def add_recorders(
-    mbs: Any, nodes: list[Any], contact_nodes: list[Any], contacts: list[Any], plate: Any = None
+    mbs: Any,
+    nodes: list[Any],
+    linear: list[Any],
+    contact_nodes: list[Any],
+    contacts: list[Any],
+    plate: Any = None,
 ) -> Recorders:
-    """Motion of `nodes`, gap and slip at `contact_nodes`, force and normal of `contacts`, motion of node `plate`."""
+    """
+    Motion of `nodes`, then of the coordinates of objects `linear`; gap and slip at `contact_nodes`, force and normal of
+    `contacts`, motion of node `plate`.
+
+    One sensor for all coordinates of an object takes less time than one for each of its nodes.
+    """
     kind = exudyn.OutputVariableType
 
     def at(node: Any, quantity: Any) -> Any:
@@ -24,11 +34,18 @@ def add_recorders(
         )
         return mbs.AddSensor(sensor)
 
+    def across(body: Any, quantity: Any) -> Any:
+        sensor = items.SensorBody(bodyNumber=body, outputVariableType=quantity, storeInternal=True, writeToFile=False)
+        return mbs.AddSensor(sensor)
+
+    def motion_of(quantity: Any) -> list[Any]:
+        return [at(node, quantity) for node in nodes] + [across(body, quantity) for body in linear]
+
     motion = (kind.Coordinates, kind.Coordinates_t, kind.Coordinates_tt)
     return Recorders(
-        coordinates=[at(node, kind.Coordinates) for node in nodes],
-        velocities=[at(node, kind.Coordinates_t) for node in nodes],
-        accelerations=[at(node, kind.Coordinates_tt) for node in nodes],
+        coordinates=motion_of(kind.Coordinates),
+        velocities=motion_of(kind.Coordinates_t),
+        accelerations=motion_of(kind.Coordinates_tt),
         contact=[at(node, kind.Coordinates) for node in contact_nodes],
         contact_force=[of(contact, quantity) for contact in contacts for quantity in (kind.Force, kind.Director1)],
         plate=[] if plate is None else [at(plate, quantity) for quantity in motion],

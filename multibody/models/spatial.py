@@ -40,7 +40,7 @@ from multibody.models.depressions import Depressions, FlatUnderside, rotation
 from multibody.models.engine import exudyn, items
 from multibody.models.impact import ImpactLaw
 from multibody.models.links import PER_BODY, Link, add_links, fastest_of_bars, undeformed
-from multibody.models.loading import Ground, ground_of, symbolic_load
+from multibody.models.loading import Push, ground_of, push
 from multibody.models.plane import farthest, plane_contact, platform_on_plane, set_extent
 from multibody.models.plate import plate_for
 from multibody.models.recorders import add_recorders
@@ -96,9 +96,11 @@ def spatial(
     contacts, contact_nodes = _contacts(
         mbs, supports.markers, bodies[0], depressions, radius, friction, threshold, scene.flat
     )
-    expressions = [*plate.expressions, *_loads(mbs, bodies, masses, None if plate.moves else ground)]
+    _weights(mbs, nodes, masses)
+    pushed = [Push(node, axis, float(mass), axis) for node, mass in zip(nodes, masses) for axis in range(3)]
+    expressions = [*plate.expressions] if plate.moves else push(mbs, ground, pushed)
     forces = contacts if contact_force else []
-    recorders = add_recorders(mbs, [*nodes, *supports.nodes], contact_nodes, forces, plate.node)
+    recorders = add_recorders(mbs, [*nodes, *supports.nodes], supports.springs, contact_nodes, forces, plate.node)
     mbs.Assemble()
 
     index = PER_BODY * np.arange(len(masses))[:, None] + np.arange(3)
@@ -289,16 +291,10 @@ def _contacts(
     return contacts, nodes
 
 
-def _loads(mbs: Any, bodies: list[Any], masses: Array, ground: Ground | None) -> list[Any]:
-    """Weight and, if the ground acts as inertial forces, -m times its acceleration. Returns the expressions."""
-    expressions = []
-    for mass, body in zip(masses, bodies):
-        center = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body))
-        load = mbs.AddLoad(items.LoadForceVector(markerNumber=center, loadVector=[0.0, 0.0, -mass]))
-        if ground is not None:
-            force = _inertial(ground, float(mass))
-            expressions.append(symbolic_load(mbs, load, "loadVectorUserFunction", force))
-    return expressions
+def _weights(mbs: Any, nodes: list[Any], masses: Array) -> None:
+    for mass, node in zip(masses, nodes):
+        vertical = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=2))
+        mbs.AddLoad(items.LoadCoordinate(markerNumber=vertical, load=-float(mass)))
 
 
 def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:
@@ -327,12 +323,3 @@ def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:
     if scene.flat:
         centers[:, 2] += 1.0 + radius  # the plane is as high above the middle as the tops of the spheres
     return ring, radius, centers, sizes
-
-
-def _inertial(ground: Ground, mass: float) -> Any:
-    """Weight and -m times the plate's acceleration."""
-
-    def force(mbs: Any, t: Any, loadVector: Any) -> list[Any]:
-        return [-mass * ground.along(0, t), -mass * ground.along(1, t), -mass - mass * ground.along(2, t)]
-
-    return force

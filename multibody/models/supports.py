@@ -38,6 +38,7 @@ class Supports:
 
     markers: list[Any]  # of the spheres' centers
     nodes: list[Any]  # of the spheres' own coordinates; empty where the spheres are fixed
+    springs: list[Any]  # in place of the nodes: an object on all of these coordinates and no others
     coordinates: int  # how many these are
     vertical: NDArray[np.int_]  # (K,) or (0,), index of each sphere's vertical coordinate
     carried: NDArray[np.int_]  # (K, 3) or (0, 3), index of the coordinates that a moving plate carries along
@@ -71,7 +72,7 @@ def fixed_supports(mbs: Any, plate: Plate, ring: Array) -> Supports:
         mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body, localPosition=[*place, 1.0])) for place in ring
     ]
     none, count = np.empty(0, np.int_), len(ring)
-    return Supports(markers, [], 0, none, none.reshape(0, 3), np.zeros((0, count)), lambda penetration, share: None)
+    return Supports(markers, [], [], 0, none, none.reshape(0, 3), np.zeros((0, count)), lambda penetration, share: None)
 
 
 def sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) -> Supports:
@@ -86,7 +87,8 @@ def sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) -> S
     if plate.moves:
         inertia = [LOCKED_INERTIA] * 3 + [0.0] * 3
         spheres = [items.ObjectRigidBody(nodeNumber=node, mass=SPHERES_MASS / count, inertia=inertia) for node in nodes]
-        springs = _springs_on_plate(mbs, plate, nodes, warped)
+        _, springs = _springs_on_plate(mbs, plate, nodes, warped)
+        read: tuple[list[Any], list[Any]] = nodes, []
         each, upright = COORDINATES, 2
     else:
         spheres = [
@@ -95,7 +97,8 @@ def sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) -> S
             )
             for node, place in zip(nodes, ring)
         ]
-        springs = _springs_on_ground(mbs, nodes, warped)
+        linear, springs = _springs_on_ground(mbs, nodes, warped)
+        read = [], [linear]
         each, upright = 1, 0
     markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=mbs.AddObject(sphere))) for sphere in spheres]
     first = each * np.arange(count)
@@ -106,23 +109,25 @@ def sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) -> S
         # damped critically, as the platform's share of the mass on the same springs
         springs(stiff, soft, 2.0 * np.sqrt(stiff / count), 2.0 * np.sqrt(soft / count))
 
-    return Supports(markers, nodes, each * count, first + upright, carried, warped, set_stiffness)
+    return Supports(markers, *read, each * count, first + upright, carried, warped, set_stiffness)
 
 
 Springs = Callable[[float, float, float, float], None]  # stiffness against heave and tilt, warping; damping likewise
 
 
-def _springs_on_ground(mbs: Any, nodes: list[Any], warped: Array) -> Springs:
+def _springs_on_ground(mbs: Any, nodes: list[Any], warped: Array) -> tuple[Any, Springs]:
+    """The springs as an object, and what sets them."""
     count = len(nodes)
     springs = mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=nodes, forceVector=np.full(count, 1.0 / count)))
 
     def matrix(stiff: float, soft: float) -> Array:
         return stiff * (np.eye(count) - warped) + soft * warped
 
-    return _setter(mbs, springs, matrix)
+    return springs, _setter(mbs, springs, matrix)
 
 
-def _springs_on_plate(mbs: Any, plate: Plate, nodes: list[Any], warped: Array) -> Springs:
+def _springs_on_plate(mbs: Any, plate: Plate, nodes: list[Any], warped: Array) -> tuple[Any, Springs]:
+    """As `_springs_on_ground`, over a plate that moves."""
     count = len(nodes)
     against = np.hstack([np.eye(count), -np.ones((count, 1))])  # of a sphere against the plate, along one axis
     index = [COORDINATES * np.arange(count + 1) + axis for axis in range(3)]
@@ -137,7 +142,7 @@ def _springs_on_plate(mbs: Any, plate: Plate, nodes: list[Any], warped: Array) -
             whole[np.ix_(axis, axis)] = against.T @ part @ against
         return whole
 
-    return _setter(mbs, springs, matrix)
+    return springs, _setter(mbs, springs, matrix)
 
 
 def _setter(mbs: Any, springs: Any, matrix: Callable[[float, float], Array]) -> Springs:

@@ -25,7 +25,7 @@ from multibody.models.contact import (
     settled_contact,
 )
 from multibody.models.engine import MAX_DENSE_COORDINATES, exudyn, items
-from multibody.models.loading import Ground, ground_of, symbolic_load
+from multibody.models.loading import Push, ground_of, push
 from multibody.models.plane import farthest, plane_contact, platform_on_plane, set_extent
 from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate, plate_for
 from multibody.models.recorders import add_recorders
@@ -62,22 +62,17 @@ def translational(
     container = exudyn.SystemContainer()
     mbs = container.AddSystem()
     platform_node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * COORDINATES))
-    platform = mbs.AddObject(
-        items.ObjectRigidBody(nodeNumber=platform_node, mass=masses[0], inertia=[LOCKED_INERTIA] * 3 + [0.0] * 3)
-    )
-    depression = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=platform))
-    nodes = [platform_node]
-    if len(masses) > 1:
-        links = (link_stiffness(scene, units)[:, :axes], link_damping(scene, units)[:, :axes])
-        nodes.append(_chain(mbs, platform_node, masses, *links))
+    depression = mbs.AddMarker(items.MarkerNodeRigid(nodeNumber=platform_node))
+    links = (link_stiffness(scene, units)[:, :axes], link_damping(scene, units)[:, :axes])
+    nodes, chain = _chain(mbs, platform_node, masses, *links)
 
     ground = ground_of(mbs, scene, units)
     plate = plate_for(mbs, loading, ground)
     friction, threshold = contact_law(scene, regularization, units)
     add_contact = _contact_on_plane if scene.flat else _contact
     contact, contact_node = add_contact(mbs, plate, depression, friction, threshold)
-    expressions = _inertial_loads(mbs, ground, plate, masses, depression, nodes, axes)
-    recorders = add_recorders(mbs, nodes, [contact_node], [contact] if contact_force else [], plate.node)
+    expressions = [*plate.expressions] if plate.moves else push(mbs, ground, _pushed(masses, nodes, axes))
+    recorders = add_recorders(mbs, [], [chain], [contact_node], [contact] if contact_force else [], plate.node)
     mbs.Assemble()
 
     count = COORDINATES + axes * (len(masses) - 1)
@@ -153,21 +148,29 @@ def _contact_on_plane(mbs: Any, plate: Plate, platform: Any, friction: float, th
     return mbs.AddObject(contact), node
 
 
-def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, damping: Array) -> Any:
-    """Bodies 2..N as one linear object on their x, y (or x) and the platform's x, y, z. Returns their node."""
+def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, damping: Array) -> tuple[list[Any], Any]:
+    """
+    All bodies and their weight as one linear object on the platform's coordinates and x, y (or x) of the others.
+
+    Returns the nodes and the object.
+
+    Its mass matrix is constant, so that the engine does not assemble it again in every iteration.
+    """
     axes = stiffness.shape[1]
     count = axes * (len(masses) - 1)
-    node = mbs.AddNode(
-        items.NodeGenericODE2(
+    nodes = [platform_node]
+    if count:
+        above = items.NodeGenericODE2(
             referenceCoordinates=[0.0] * count,
             initialCoordinates=[0.0] * count,
             initialCoordinates_t=[0.0] * count,
             numberOfODE2Coordinates=count,
         )
-    )
+        nodes.append(mbs.AddNode(above))
     mass_matrix = np.zeros((COORDINATES + count, COORDINATES + count))
     stiffness_matrix, damping_matrix = np.zeros((2, *mass_matrix.shape))
-    mass_matrix[2, 2] = masses[1:].sum()
+    np.fill_diagonal(mass_matrix[:COORDINATES], [*masses[:1]] * 3 + [LOCKED_INERTIA] * 3)
+    mass_matrix[2, 2] += masses[1:].sum()
     for link in range(len(masses) - 1):
         for axis in range(axes):
             upper = COORDINATES + axes * link + axis
@@ -176,11 +179,12 @@ def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, dampin
             pair = np.ix_([lower, upper], [lower, upper])
             stiffness_matrix[pair] += stiffness[link, axis] * BETWEEN_TWO
             damping_matrix[pair] += damping[link, axis] * BETWEEN_TWO
+    weight = np.zeros(len(mass_matrix))
+    weight[2] = -1.0
     matrices = {"massMatrix": _container(mass_matrix), "stiffnessMatrix": _container(stiffness_matrix)}
     if damping.any():
         matrices["dampingMatrix"] = _container(damping_matrix)
-    mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=[platform_node, node], **matrices))
-    return node
+    return nodes, mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=nodes, forceVector=weight, **matrices))
 
 
 def _container(matrix: Array) -> Any:
@@ -192,26 +196,12 @@ def _container(matrix: Array) -> Any:
     return entries
 
 
-def _inertial_loads(
-    mbs: Any, ground: Ground, plate: Plate, masses: Array, depression: Any, nodes: list[Any], axes: int
-) -> list[Any]:
-    """Weight and, unless the plate moves, -m times its acceleration on every body. Returns the expressions."""
-
-    def on_platform(mbs: Any, t: Any, loadVector: Any) -> list[Any]:
-        return [-masses[0] * ground.along(0, t), -masses[0] * ground.along(1, t), -1.0 - ground.along(2, t)]
-
-    if plate.moves:
-        mbs.AddLoad(items.LoadForceVector(markerNumber=depression, loadVector=[0.0, 0.0, -1.0]))
-        return list(plate.expressions)
-
-    def on_body(i: int, axis: int) -> Any:
-        return lambda mbs, t, load: -masses[i] * ground.along(axis, t)
-
-    load = mbs.AddLoad(items.LoadForceVector(markerNumber=depression, loadVector=[0.0, 0.0, -1.0]))
-    expressions = [symbolic_load(mbs, load, "loadVectorUserFunction", on_platform)]
-    for i in range(1, len(masses)):
-        for axis in range(axes):
-            coordinate = items.MarkerNodeCoordinate(nodeNumber=nodes[1], coordinate=axes * (i - 1) + axis)
-            load = mbs.AddLoad(items.LoadCoordinate(markerNumber=mbs.AddMarker(coordinate)))
-            expressions.append(symbolic_load(mbs, load, "loadUserFunction", on_body(i, axis)))
-    return expressions
+def _pushed(masses: Array, nodes: list[Any], axes: int) -> list[Push]:
+    """What the loading accelerates: the bodies above share the platform's vertical motion, so all of the mass there."""
+    platform = [Push(nodes[0], axis, float(masses[0]), axis) for axis in range(2)]
+    above = [
+        Push(nodes[1], axes * number + axis, float(mass), axis)
+        for number, mass in enumerate(masses[1:])
+        for axis in range(axes)
+    ]
+    return [*platform, Push(nodes[0], 2, 1.0, 2), *above]

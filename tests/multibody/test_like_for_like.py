@@ -35,7 +35,7 @@ def test_a_contact_that_a_small_v_reg_makes_stiff_is_solved_as_well_as_a_softer_
     above = {"mass": 2.06, "period": [1.9, 0.58], "damping": 0.02}
     loading = {"amplitudes": [[-3.0, -0.63], [4.5, 3.6]], "periods": [1.58, 1.89], "decay": [0.46, 0.43]}
     scene = Scene.model_validate(
-        {"title": "small", "duration": 1.2, "isolator": bearing, "bodies": [{"mass": 1.0}, above], "excitation": loading}
+        {"title": "", "duration": 1.2, "isolator": bearing, "bodies": [{"mass": 1.0}, above], "excitation": loading}
     )
     engine = multibody.amplification(scene, [(1.8, 1.27)], regularization=1.1e-4)
     equations = reference.amplification(scene, [(1.8, 1.27)], regularization=1.1e-4)
