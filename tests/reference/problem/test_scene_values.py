@@ -60,7 +60,7 @@ def toml(data: dict) -> str:
 
 
 @given(scenes)
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 def test_a_valid_scene_goes_through_a_file_and_back_unchanged(data):
     scene = parse_scene(toml(data).encode(), "folder/random.toml")
     direct = Scene.model_validate({**data, "name": "random"})
