@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -45,7 +46,7 @@ def test_the_next_commands_work_as_they_are_printed(
     words = shlex.split(finer.split("costs: ")[1])
     assert words[:3] == ["python", "-m", "comparison.run"]
     assert words.count("--grid") == 1
-    assert main([*words[3:], "--out", str(tmp_path / "other")]) == 0
+    assert main([*words[3:], "--out", str(tmp_path / "other")], fake_hierarchy(), ThreadPoolExecutor) == 0
     assert "4 x 4 phases" in capfd.readouterr().out.replace("\n", " ")
 
 

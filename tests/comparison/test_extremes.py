@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections import Counter
-from concurrent.futures import Executor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -169,7 +169,7 @@ def test_the_command_writes_the_matrix_and_its_picture_and_computes_nothing_twic
     with pytest.raises(AssertionError, match="computed"):
         main([*words, "--fresh"], forbidden)
     capsys.readouterr()
-    assert main(words) == 0
+    assert main(words, ThreadPoolExecutor) == 0
     assert "tasks are in" not in capsys.readouterr().out, "what --fresh dropped is computed by the next run"
 
 
@@ -180,7 +180,7 @@ def forbidden(jobs: int) -> Executor:
 def test_a_failed_cell_is_an_exit_code_and_in_the_picture(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr("comparison.cli.extremes.COLUMNS", (fake("calls_nan_ok"),))
     monkeypatch.setattr("comparison.cli.extremes.rows", lambda: iter([PLAIN]))
-    assert main(["--jobs", "1", "--out", str(tmp_path / "report")]) == 1
+    assert main(["--jobs", "1", "--out", str(tmp_path / "report")], ThreadPoolExecutor) == 1
     assert "FAILED: anything plain" in capsys.readouterr().out
 
 
