@@ -132,7 +132,6 @@ class Engine:
         kind = exudyn.MainSolverExplicit if self.explicit else exudyn.MainSolverImplicitSecondOrder
         self.solver = kind()
         self.sensors: list[list[Any]] = [getattr(model.recorders, group.name) for group in fields(model.recorders)]
-        self.columns: list[slice] = []  # of each of these groups in what is read, known with the first run
         self.iterations = 0  # of Newton's method in the last run, with those of steps that were tried again
 
     def run(self, state: EngineState, begin: float, step: float, count: int) -> Motion | None:
@@ -157,12 +156,11 @@ class Engine:
 
     def _read(self) -> Motion:
         stored = self.model.mbs.GetSensorStoredData
-        tables = [stored(sensor) for sensors in self.sensors for sensor in sensors]
-        time = tables[0][:, 0]  # the engine's own instants: it halves a step that its Newton iteration could not solve
-        if not self.columns:
-            self.columns = _columns(self.sensors, tables)
-        values = np.concatenate([table[:, 1:] for table in tables], axis=1)
-        coordinates, velocities, accelerations, contact, force, plates = (values[:, part] for part in self.columns)
+        tables = [[stored(sensor) for sensor in sensors] for sensors in self.sensors]
+        time = tables[0][0][:, 0]  # the engine's own instants: it halves a step that its Newton iteration cannot solve
+        coordinates, velocities, accelerations, contact, force, plates = [
+            _values(group) if group else np.empty((len(time), 0)) for group in tables
+        ]
         plate = np.zeros((len(time), 3, 3))
         if self.model.moving_plate:
             plate = plates.reshape(len(time), 3, -1)[:, :, :3]
@@ -172,14 +170,11 @@ class Engine:
         return Motion(time, coordinates, velocities, accelerations, contact, force, plate)
 
 
-def _columns(groups: list[list[Any]], tables: list[Array]) -> list[slice]:
-    """Where the values of each group of sensors are, side by side, whose tables (T, 1 + C) begin with the time."""
-    widths, columns, begin = iter([table.shape[1] - 1 for table in tables]), [], 0
-    for sensors in groups:
-        end = begin + sum(next(widths) for _ in sensors)
-        columns.append(slice(begin, end))
-        begin = end
-    return columns
+def _values(tables: list[Array]) -> Array:
+    """The values of tables (T, 1 + C), which begin with the time, side by side. A single table is not copied."""
+    if len(tables) == 1:
+        return tables[0][:, 1:]
+    return np.concatenate([tables[0], *[table[:, 1:] for table in tables[1:]]], axis=1)[:, 1:]
 
 
 def _settings(newton: float, residual: float) -> Any:
