@@ -41,18 +41,25 @@ class Peaks(NamedTuple):
     reach: Array  # (M,) m, largest horizontal displacement of the platform
 
 
-def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float) -> Peaks:
-    """One run from rest for every phase pair (M, 2), this tolerance inside the steps; errors are those of reading."""
+def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float, until: Array | None = None) -> Peaks:
+    """
+    One run from rest for every phase pair (M, 2), this tolerance inside the steps; errors are those of reading.
+
+    until: (M,) s, where the runs end at the latest; the end of the motion by default.
+    """
     rest = np.zeros((len(system.below), 2))
     demand = demand._replace(tolerance=tolerance)
-    return peaks_from(rest, rest, system, phases, demand, record_of(0, len(rest)))
+    return peaks_from(rest, rest, system, phases, demand, record_of(0, len(rest)), until)
 
 
-def peaks_from(x: Array, v: Array, system: System, phases: Array, demand: Demand, record: Record) -> Peaks:
+def peaks_from(
+    x: Array, v: Array, system: System, phases: Array, demand: Demand, record: Record, until: Array | None = None
+) -> Peaks:
     """One run from positions x and velocities v (N, 2) for every phase pair (M, 2), rad; `record` keeps its steps."""
     count, bodies = len(phases), len(x)
     value, error, ends = np.empty((count, bodies)), np.empty((count, bodies)), np.empty((len(Peaks._fields) - 2, count))
-    runs(system, phases, x, v, demand, record, value, error, ends)
+    until = np.full(count, system.duration) if until is None else until
+    runs(system, phases, x, v, demand, record, until, value, error, ends)
     return Peaks(value, error, *ends)
 
 
@@ -61,17 +68,18 @@ def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool 
     Peaks to the relative tolerance of `demand`, with errors.
 
     The tolerance inside the steps is tightened until two runs agree; one that cannot be finished is tried again, too.
-    Every run ends where nothing can come that changes them, the displacement or the outcome (look_ahead.py).
-    `whole`: all go to the end of the motion.
+    Every run ends where nothing can come that changes them, the displacement or the outcome (look_ahead.py), and the
+    coarser one where the finer one does. `whole`: all go to the end of the motion.
     """
     # the rough run knows the consistent condition for rest alone
     demand = demand._replace(early=not whole and system.rest_condition == CONSISTENT)
     tolerance = min(MAX_STEP_TOLERANCE, max(STEP_TOLERANCE_FACTOR * demand.tolerance, MIN_STEP_TOLERANCE))
-    before = peaks_at(system, phases, demand, TOLERANCE_RATIO * tolerance)
-    peaks = Peaks(*(part.copy() for part in before))
+    after = peaks_at(system, phases, demand, tolerance)
+    until = np.where(after.code == SOLVED, after.instant, system.duration)
+    before = peaks_at(system, phases, demand._replace(early=False), TOLERANCE_RATIO * tolerance, until)
+    peaks = Peaks(*(part.copy() for part in after))
     unfinished = np.arange(len(phases))
-    while len(unfinished):
-        after = peaks_at(system, phases[unfinished], demand, tolerance)
+    while True:
         error = _error(before, after, tolerance, demand.unit)
         fraction = MIN_ERROR_FRACTION if system.rate == 0.0 else MIN_ERROR_FRACTION_VARYING
         error_or_minimum = np.maximum(error, fraction * demand.tolerance * after.value)
@@ -86,7 +94,10 @@ def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool 
             break
         before = Peaks(*(part[again] for part in after))
         unfinished = unfinished[again]
+        if not len(unfinished):
+            break
         tolerance = max(tolerance / TOLERANCE_RATIO, MIN_STEP_TOLERANCE)
+        after = peaks_at(system, phases[unfinished], demand, tolerance)
     return peaks
 
 

@@ -16,7 +16,9 @@ LEVEL, ONSET, SPEED = np.int64(0), np.int64(1), np.int64(2)
 NEVER = 2.0  # theta of an event that is not within the step
 GOLDEN_SECTIONS = 30  # of two instants: an event shorter than a millionth of the step moves nothing
 GOLDEN_SHARE = 0.382
-BISECTIONS = 50
+BISECTIONS = 50  # travel.py
+MAX_SECANTS = 60
+SHARPNESS = 1e-15  # of the step: how closely an event is located
 NEAR_LIMIT = 0.5  # of the squared friction limit: between two stages of a step at rest the excess changes by less
 
 
@@ -189,13 +191,23 @@ def first_passage(system: System, work: Work, event: int, way: float, begin: flo
 
 @compiled
 def passed(system: System, work: Work, event: int, way: float, low: float, high: float) -> float:
-    """Where `beyond`, not positive at low and positive at high, becomes positive."""
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        if beyond(system, work, event, way, middle) > 0.0:
-            high = middle
+    """Where `beyond`, not positive at low and positive at high, becomes positive: Illinois variant of regula falsi."""
+    at_low, at_high = beyond(system, work, event, way, low), beyond(system, work, event, way, high)
+    rose = fell = False
+    for _ in range(MAX_SECANTS):
+        if high - low <= SHARPNESS:
+            break
+        middle = high - (high - low) * at_high / (at_high - at_low)
+        if not low < middle < high:
+            middle = 0.5 * (low + high)
+        here = beyond(system, work, event, way, middle)
+        if here > 0.0:
+            high, at_high = middle, here
+            at_low = 0.5 * at_low if fell else at_low
         else:
-            low = middle
+            low, at_low = middle, here
+            at_high = 0.5 * at_high if rose else at_high
+        rose, fell = not here > 0.0, here > 0.0
     return high
 
 

@@ -81,15 +81,15 @@ def crawls(system: System, work: Work, contact: int, demand: Demand) -> bool:
 
 
 @compiled
-def integrate(system: System, work: Work, demand: Demand, record: Record) -> int:
+def integrate(system: System, work: Work, demand: Demand, record: Record, end: float) -> int:
     """
-    Follow the motion from the state in work.x, work.v; how it ended (system.py), at work.time.
+    Follow the motion from the state in work.x, work.v to `end`, s; how it ended (system.py), at work.time.
 
     A run that may end early does so where nothing large can come any more (look_ahead.py).
 
     work.best (N,) holds the squared peaks of absolute acceleration, m^2/s^4.
     """
-    start_anew(work, min(FIRST_STEP * demand.period, system.duration), system.duration)
+    start_anew(work, min(FIRST_STEP * demand.period, system.duration), end)
     work.look = 0.0 if demand.early else inf
     contact = first_contact(system, work)
     before, idle = -1.0, 0
@@ -112,10 +112,10 @@ def integrate(system: System, work: Work, demand: Demand, record: Record) -> int
 @cached_entry_point
 def runs(
     system: System, phases: Array, x: Array, v: Array, demand: Demand, record: Record,
-    peaks: Array, reading_errors: Array, ends: Array,
+    until: Array, peaks: Array, reading_errors: Array, ends: Array,
 ) -> None:  # fmt: skip
     """
-    Follow the motion from x, v (N, 2) for every phase pair (M, 2), rad.
+    Follow the motion from x, v (N, 2) for every phase pair (M, 2), rad, no further than `until` (M,), s.
 
     Fills peaks (M, N), the largest absolute accelerations, m/s^2, and reading_errors (M, N), their errors inside their
     steps, and ends (4, M): how (system.py), when (s) and after how many steps each run ended, and the platform's
@@ -129,7 +129,7 @@ def runs(
             for axis in range(2):
                 work.x[i, axis] = x[i, axis]
                 work.v[i, axis] = v[i, axis]
-        code = integrate(system_reference, work, demand, record_reference)
+        code = integrate(system_reference, work, demand, record_reference, until[m])
         ends[0, m], ends[1, m], ends[2, m], ends[3, m] = code, work.time, work.steps, sqrt(work.reach2)
         for i in range(peaks.shape[1]):
             peaks[m, i] = sqrt(work.best[i])
