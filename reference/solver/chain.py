@@ -13,10 +13,11 @@ import numpy as np
 
 from reference.solver.collocation import A2, CHANNELS, EIGENVALUES, FROM_CHANNELS, NODES, STAGES, TO_CHANNELS, A
 from reference.solver.compiled import compiled
-from reference.solver.system import Ground, System
+from reference.solver.system import Array, Ground, System
 from reference.solver.work import Work
 
 PLATFORM = np.int64(0)  # its number; no literal (system.py)
+TO_CHANNELS_REAL, TO_CHANNELS_IMAGINARY = TO_CHANNELS.real.copy(), TO_CHANNELS.imag.copy()
 ONES_IN_CHANNELS = TO_CHANNELS.sum(axis=1)
 NODES_IN_CHANNELS = TO_CHANNELS @ NODES
 _THROUGH = np.einsum("kj,jm->jkm", FROM_CHANNELS, TO_CHANNELS)  # from stage m through channel j to stage k
@@ -28,31 +29,36 @@ CHANNEL_ROUNDING = float(np.finfo(float).eps * (np.abs(FROM_CHANNELS) @ np.abs(T
 @compiled
 def coupling_below(system: System, i: int, axis: int, root: complex) -> complex:
     """Acceleration of body i by one of the body below, through the link, with root = h lambda_j."""
-    return root**2 * system.below[i, axis] + root * system.damping_below[i, axis]
+    return root * root * system.below[i, axis] + root * system.damping_below[i, axis]
 
 
 @compiled
 def coupling_above(system: System, i: int, axis: int, root: complex) -> complex:
     """The same by an acceleration of the body above."""
-    return root**2 * system.above[i, axis] + root * system.damping_above[i, axis]
+    return root * root * system.above[i, axis] + root * system.damping_above[i, axis]
+
+
+@compiled
+def reciprocal(number: complex) -> complex:
+    """1 / number, whose square neither overflows nor vanishes."""
+    square = number.real * number.real + number.imag * number.imag
+    return complex(number.real / square, -number.imag / square)
 
 
 @compiled
 def eliminate_chain(system: System, work: Work, h: float) -> None:
-    """For step length h: the pivots."""
+    """For step length h: the inverse pivots."""
     bodies = work.x.shape[0]
     for axis in range(system.axes):
         for j in range(CHANNELS):
             root = h * EIGENVALUES[j]
-            upper = 1.0 + 0.0j
-            pivot = upper
+            upper = inverse = 1.0 + 0.0j
             for i in range(bodies - 1, 0, -1):
                 if i < bodies - 1:
-                    upper = 1.0 + coupling_above(system, i, axis, root) * upper / pivot
-                pivot = upper + coupling_below(system, i, axis, root)
-                work.pivot[i, axis, j] = pivot
-            work.gain[axis, j] = system.above[0, axis] * (root**2 * upper / pivot)
-            work.gain[axis, j] += system.damping_above[0, axis] * (root * upper / pivot)
+                    upper = 1.0 + coupling_above(system, i, axis, root) * (upper * inverse)
+                inverse = reciprocal(upper + coupling_below(system, i, axis, root))
+                work.inverse[i, axis, j] = inverse
+            work.gain[axis, j] = coupling_above(system, PLATFORM, axis, root) * (upper * inverse)
 
 
 @compiled
@@ -74,9 +80,19 @@ def feed_back(system: System, work: Work, h: float) -> None:
 
 
 @compiled
+def in_channel(values: Array, j: int) -> complex:
+    """The stage values (S,) in channel j of the eigenbasis."""
+    real = imaginary = 0.0
+    for k in range(STAGES):
+        real += TO_CHANNELS_REAL[j, k] * values[k]
+        imaginary += TO_CHANNELS_IMAGINARY[j, k] * values[k]
+    return complex(real, imaginary)
+
+
+@compiled
 def load_chain(system: System, work: Work, h: float) -> None:
     """The loads of the eliminated chain from the state and the ground; fills `free`."""
-    x, v, free, ground, loads, pivot = work.x, work.v, work.free, work.ground, work.load, work.pivot
+    x, v, free, ground, loads, inverse = work.x, work.v, work.free, work.ground, work.load, work.inverse
     bodies = work.x.shape[0]
     for axis in range(system.axes):
         for k in range(STAGES):
@@ -90,9 +106,7 @@ def load_chain(system: System, work: Work, h: float) -> None:
         for k in range(STAGES):
             free[axis, k] += c0 * (stretch + NODES[k] * rate) + damped
         for j in range(CHANNELS):
-            drive = 0.0 + 0.0j
-            for k in range(STAGES):
-                drive -= TO_CHANNELS[j, k] * ground[axis, k]
+            drive = -in_channel(ground[axis], j)
             root = h * EIGENVALUES[j]
             carried = 0.0 + 0.0j
             for i in range(bodies - 1, 0, -1):
@@ -107,7 +121,7 @@ def load_chain(system: System, work: Work, h: float) -> None:
                 if i < bodies - 1:
                     load += coupling_above(system, i, axis, root) * carried
                 loads[i, axis, j] = load
-                carried = load / pivot[i, axis, j]
+                carried = load * inverse[i, axis, j]
             gain = coupling_above(system, PLATFORM, axis, root) * carried
             for k in range(STAGES):
                 free[axis, k] += (FROM_CHANNELS[k, j] * gain).real
@@ -116,7 +130,7 @@ def load_chain(system: System, work: Work, h: float) -> None:
 @compiled
 def move_chain(system: System, work: Work, h: float) -> None:
     """Stage accelerations of the bodies from those of the platform; the state at the end of the step in x1, v1."""
-    x, v, a, load, pivot = work.x, work.v, work.a, work.load, work.pivot
+    x, v, a, load, inverse = work.x, work.v, work.a, work.load, work.inverse
     bodies = work.x.shape[0]
     for axis in range(system.axes):
         for i in range(1, bodies):
@@ -125,11 +139,9 @@ def move_chain(system: System, work: Work, h: float) -> None:
         if bodies > 1:
             for j in range(CHANNELS):
                 root = h * EIGENVALUES[j]
-                below = 0.0 + 0.0j
-                for k in range(STAGES):
-                    below += TO_CHANNELS[j, k] * a[0, axis, k]
+                below = in_channel(a[0, axis], j)
                 for i in range(1, bodies):
-                    below = (load[i, axis, j] + coupling_below(system, i, axis, root) * below) / pivot[i, axis, j]
+                    below = (load[i, axis, j] + coupling_below(system, i, axis, root) * below) * inverse[i, axis, j]
                     for k in range(STAGES):
                         a[i, axis, k] += (FROM_CHANNELS[k, j] * below).real
         for i in range(bodies):

@@ -42,6 +42,7 @@ from reference.solver.work import (
 )
 
 MAX_ITERATIONS = 40  # of Newton's method
+SLOW_CONVERGENCE = 0.01  # of the change before: a larger change asks for new slopes
 ROUNDING_ANGLE = 1e-13  # rad: change of the angles by rounding alone
 DIRECTION_DIFFERENCE = 1e-6  # rad: step of the difference quotient by the direction, needed to a few digits only
 SPEED_DIFFERENCE = 1e-6  # of the speed: step of the difference quotient by its logarithm
@@ -57,16 +58,17 @@ def near_stop_step(system: System, work: Work, h: float, tolerance: float) -> in
     Fills a, total and `turning` at the stages and x1, v1 at the end; `tolerance` bounds the last change of the angle.
     """
     guess_turning(system, work, h)
-    before = 0.0
+    before, fresh = 0.0, True
     for iteration in range(MAX_ITERATIONS):
         move_bodies(system, work, h)
         change = pull_bodies(system, work, h)
         if not inside_rim(system, work):
             return beyond_rim(system, work)
-        turn_platform(system, work)
-        change = max(change, correct_turning(system, work, h))
+        turn_platform(system, work, fresh)
+        change = max(change, correct_turning(system, work, h, fresh))
         if not change < DIVERGED or (iteration > 4 and change > 2.0 * before):
             return UNSOLVED
+        fresh = iteration == 0 or change > SLOW_CONVERGENCE * before or system.rate > 0.0
         before = change
         if change <= max(tolerance, ROUNDING_ANGLE):
             for i in range(work.x.shape[0]):
@@ -171,9 +173,9 @@ def inside_rim(system: System, work: Work) -> bool:
 
 
 @compiled
-def turn_platform(system: System, work: Work) -> None:
+def turn_platform(system: System, work: Work, fresh: bool) -> None:
     """
-    Acceleration of the platform at the stages, along and across its direction, and their slopes by the direction.
+    Acceleration of the platform at the stages, along and across its direction; `fresh`: and slopes by the direction.
 
     Where friction depends on the speed, also the slope of that along the direction by the speed's logarithm.
     """
@@ -182,33 +184,42 @@ def turn_platform(system: System, work: Work) -> None:
         speed, ex, ey = turning[SPEED, k], turning[COSINE, k], turning[SINE, k]
         load = load_at_stage(work, k)
         ax, ay, reaction, ratio = directed(system, load, speed, ex, ey)
-        gx, gy = ex - DIRECTION_DIFFERENCE * ey, ey + DIRECTION_DIFFERENCE * ex
-        bx, by, _, _ = directed(system, load, speed, gx, gy)
         work.a[0, 0, k], work.a[0, 1, k] = ax, ay
         turning[ALONG, k] = ax * ex + ay * ey
         turning[ACROSS, k] = ay * ex - ax * ey
+        turning[LOG_RATIO, k] = log(ratio)
+        stage[REACTION, k], stage[SPEED2, k] = reaction, (speed * ratio) ** 2
+        if not fresh:
+            continue
+        gx, gy = ex - DIRECTION_DIFFERENCE * ey, ey + DIRECTION_DIFFERENCE * ex
+        bx, by, _, _ = directed(system, load, speed, gx, gy)
         turning[ALONG_SLOPE, k] = (bx * gx + by * gy - turning[ALONG, k]) / DIRECTION_DIFFERENCE
         turning[ACROSS_SLOPE, k] = (by * gx - bx * gy - turning[ACROSS, k]) / DIRECTION_DIFFERENCE
         if system.rate > 0.0:
             cx, cy, _, _ = directed(system, load, (1.0 + SPEED_DIFFERENCE) * speed, ex, ey)
             turning[ALONG_BY_SIGMA, k] = (cx * ex + cy * ey - turning[ALONG, k]) / SPEED_DIFFERENCE
-        turning[LOG_RATIO, k] = log(ratio)
-        stage[REACTION, k], stage[SPEED2, k] = reaction, (speed * ratio) ** 2
 
 
 @compiled
-def correct_turning(system: System, work: Work, h: float) -> float:
-    """One iteration of Newton's method for the directions, the speeds behind them; the largest change, or infinity."""
+def correct_turning(system: System, work: Work, h: float, fresh: bool) -> float:
+    """
+    One iteration of Newton's method for the directions, the speeds behind them; the largest change, or infinity.
+
+    fresh: with slopes of this iteration, not with the factors of the one before.
+    """
     turning, residual = work.turning, work.residual[:STAGES]
     matrix, pivots = work.turn_matrix, work.pivots[:STAGES]
     for k in range(STAGES):
         residual[k] = work.angle - turning[DIRECTION, k]
         for m in range(STAGES):
             residual[k] += h * A[k, m] * turning[ACROSS, m]
-            matrix[k, m] = -h * A[k, m] * turning[ACROSS_SLOPE, m]
-        matrix[k, k] += 1.0
-    if not factorize(matrix, pivots):
-        return inf
+    if fresh:
+        for k in range(STAGES):
+            for m in range(STAGES):
+                matrix[k, m] = -h * A[k, m] * turning[ACROSS_SLOPE, m]
+            matrix[k, k] += 1.0
+        if not factorize(matrix, pivots):
+            return inf
     solve(matrix, pivots, residual)
     change, levels = 0.0, work.levels
     for k in range(STAGES):

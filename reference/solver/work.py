@@ -85,7 +85,7 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     total: Array  # (N, 3, S) absolute acceleration at the stages
     free: Array  # (2, S) driving acceleration of the platform if it kept its velocity
     feedback: Array  # (2, S, S) what its own stage accelerations add to that
-    pivot: Complex  # (N, 2, CHANNELS) eliminated chain
+    inverse: Complex  # (N, 2, CHANNELS) of the pivots of the eliminated chain
     load: Complex  # (N, 2, CHANNELS)
     gain: Complex  # (2, CHANNELS) what the platform's acceleration takes from its own drive through the chain
     stage: Array  # (9, S) the platform at the stages
@@ -146,7 +146,7 @@ def workspace(bodies: int) -> Work:
         total=np.zeros((n, 3, s)),
         free=np.zeros((2, s)),
         feedback=np.zeros((2, s, s)),
-        pivot=np.zeros((n, 2, c), np.complex128),
+        inverse=np.zeros((n, 2, c), np.complex128),
         load=np.zeros((n, 2, c), np.complex128),
         gain=np.zeros((2, c), np.complex128),
         stage=np.zeros((9, s)),

@@ -92,14 +92,16 @@ def arc_peak(system: System, load: Load, angle: float) -> float:
     low = angle + max(top - 1, 0) * stride
     high = angle + min(top + 1, samples) * stride
     golden = 0.5 * (sqrt(5.0) - 1.0)
+    left, right = high - golden * (high - low), low + golden * (high - low)
+    at_left, at_right = squared_total(system, load, left), squared_total(system, load, right)
     for _ in range(GOLDEN_SECTIONS):
-        left = high - golden * (high - low)
-        right = low + golden * (high - low)
-        at_left = squared_total(system, load, left)
-        at_right = squared_total(system, load, right)
         best = max(best, max(at_left, at_right))
         if at_left > at_right:
-            high = right
+            high, right, at_right = right, left, at_left
+            left = high - golden * (high - low)
+            at_left = squared_total(system, load, left)
         else:
-            low = left
+            low, left, at_left = left, right, at_right
+            right = low + golden * (high - low)
+            at_right = squared_total(system, load, right)
     return best
