@@ -40,12 +40,13 @@ def exact_acceleration(
     D = 1 + (M - 1) (n_h^2 - n_h . s). D is the determinant of M in (3.10) up to a factor that never vanishes; where it
     reaches zero the equations have no solution (Painleve's paradox). R <= 0 means that the contact opens.
     """
-    nx = -px / radius
-    ny = -py / radius
+    curvature = 1.0 / radius
+    nx = -px * curvature
+    ny = -py * curvature
     tilt = nx * nx + ny * ny
     nz = sqrt(1.0 - tilt)
     determinant = 1.0 + (mass_ratio - 1.0) * (tilt - nx * sx - ny * sy)
-    reaction = mass_ratio * (speed2 / radius - nx * fx - ny * fy + nz * pressure) / determinant
+    reaction = mass_ratio * (speed2 * curvature - nx * fx - ny * fy + nz * pressure) / determinant
     return fx + reaction * (nx - sx), fy + reaction * (ny - sy), reaction, determinant
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, exp
+from math import cos, exp, sin
 
 from reference.solver.collocation import NODES, STAGES
 from reference.solver.compiled import compiled
@@ -46,6 +46,30 @@ def ground_at(system: System, work: Work, t: float) -> Ground:
     z1 = exp(e1.real * t) * cos(e1.imag * t + work.phase[1])
     a = system.amplitudes
     return Ground(a[0, 0] * z0 + a[0, 1] * z1, a[1, 0] * z0 + a[1, 1] * z1, a[2, 0] * z0 + a[2, 1] * z1)
+
+
+@compiled
+def start_waves(system: System, work: Work, t: float, h: float) -> None:
+    """Prepare `next_ground`: the harmonics at t, and by what they turn and decay within h."""
+    for m in range(2):
+        e = system.exponents[m]
+        angle, size = e.imag * t + work.phase[m], exp(e.real * t)
+        work.waves[m] = complex(size * cos(angle), size * sin(angle))
+        work.turns[m] = complex(exp(e.real * h) * cos(e.imag * h), exp(e.real * h) * sin(e.imag * h))
+
+
+@compiled
+def next_ground(system: System, work: Work, t: float) -> Ground:
+    """The ground at t, a step of `start_waves` after the last call."""
+    if system.record.shape[0] > 0:
+        return recorded_at(system.record, t)
+    z0, z1, a = work.waves[0], work.waves[1], system.amplitudes
+    work.waves[0], work.waves[1] = z0 * work.turns[0], z1 * work.turns[1]
+    return Ground(
+        a[0, 0] * z0.real + a[0, 1] * z1.real,
+        a[1, 0] * z0.real + a[1, 1] * z1.real,
+        a[2, 0] * z0.real + a[2, 1] * z1.real,
+    )
 
 
 @compiled

@@ -15,7 +15,7 @@ from reference.solver.chain import chain_acceleration
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import coefficient, sliding_speed2
 from reference.solver.contact.platform import acceleration, load_in_state, rest_excess, slip_factor
-from reference.solver.ground import ground_at
+from reference.solver.ground import next_ground, start_waves
 from reference.solver.steps import lifted
 from reference.solver.system import (
     CREEPING,
@@ -72,6 +72,7 @@ def next_large(system: System, work: Work, h: float) -> float:
         for axis in range(2):
             work.x1[i, axis], work.v1[i, axis] = work.x[i, axis], work.v[i, axis]
     time, large = work.time, False
+    start_waves(system, work, time + 0.5 * h, h)
     while time < system.duration and not large:
         large = rough_step(system, work, time, h)
         time += h
@@ -85,7 +86,7 @@ def next_large(system: System, work: Work, h: float) -> float:
 def rough_step(system: System, work: Work, time: float, h: float) -> bool:
     """Move x, v by h; whether something large may come meanwhile. Uses a0 of the bodies above the platform."""
     drift(work, 0.5 * h)
-    ground = ground_at(system, work, time + 0.5 * h)
+    ground = next_ground(system, work, time + 0.5 * h)
     chain_acceleration(system, work, ground)
     vx, vy = work.v[0, 0], work.v[0, 1]
     largest, far = push_platform(system, work, load_in_state(system, work, ground), ground, h)

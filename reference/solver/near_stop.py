@@ -30,8 +30,8 @@ from reference.solver.work import (
     COSINE,
     DIRECTION,
     DRIVE,
-    LOG_RATIO,
     POSITION,
+    RATIO,
     REACTION,
     SIGMA,
     SINE,
@@ -76,7 +76,7 @@ def near_stop_step(system: System, work: Work, h: float, tolerance: float) -> in
                     work.x1[i, axis] = work.chain[i, axis, STAGES - 1]
                     work.v1[i, axis] = work.velocity[i, axis, STAGES - 1]
             for k in range(STAGES):
-                work.levels[k] = work.turning[SIGMA, k] + work.turning[LOG_RATIO, k]
+                work.levels[k] = work.turning[SIGMA, k] + log(work.turning[RATIO, k])
             absolute_accelerations(system, work, SLIDING)
             return SOLVED if lowest(work.stage[REACTION]) > 0.0 else OPEN
     return UNSOLVED
@@ -187,7 +187,7 @@ def turn_platform(system: System, work: Work, fresh: bool) -> None:
         work.a[0, 0, k], work.a[0, 1, k] = ax, ay
         turning[ALONG, k] = ax * ex + ay * ey
         turning[ACROSS, k] = ay * ex - ax * ey
-        turning[LOG_RATIO, k] = log(ratio)
+        turning[RATIO, k] = ratio
         stage[REACTION, k], stage[SPEED2, k] = reaction, (speed * ratio) ** 2
         if not fresh:
             continue

@@ -43,11 +43,17 @@ RIM_SQUARED_FRACTION = 0.99  # of the squared radius: an iteration that starts b
 
 
 @compiled
-def rest_step(system: System, work: Work, h: float) -> None:
-    """The platform stays; the chain above it vibrates (4.4)."""
+def load_step(system: System, work: Work, h: float) -> None:
+    """The ground at the stages, and what it and the state do to the platform through the eliminated chain."""
     ground_at_stages(system, work, h)
     eliminate_chain(system, work, h)
     load_chain(system, work, h)
+
+
+@compiled
+def rest_step(system: System, work: Work, h: float) -> None:
+    """The platform stays; the chain above it vibrates (4.4)."""
+    load_step(system, work, h)
     for axis in range(system.axes):
         for k in range(STAGES):
             work.a[0, axis, k] = 0.0
@@ -63,13 +69,10 @@ def moving_step(system: System, work: Work, contact: int, h: float, tolerance: f
     """
     Newton's method for the stage accelerations of the platform, the chain eliminated exactly.
 
-    `a[0]` holds the first guess on entry. `tolerance`, m/s^2: the iteration ends when the change is below it. A
-    derivative serves several iterations while these converge fast, so what is left is far smaller. A tolerance below
-    what rounding does to the accelerations is met at that level.
+    `load_step` comes before; `a[0]` holds the first guess on entry. `tolerance`, m/s^2: the iteration ends when the
+    change is below it. A derivative serves several iterations while these converge fast, so what is left is far
+    smaller. A tolerance below what rounding does to the accelerations is met at that level.
     """
-    ground_at_stages(system, work, h)
-    eliminate_chain(system, work, h)
-    load_chain(system, work, h)
     feed_back(system, work, h)
     pivots = work.pivots[: system.axes * STAGES]
     fresh, before = True, 0.0

@@ -20,7 +20,7 @@ POSITION, VELOCITY, DRIVE, REACTION, SPEED2, DETERMINANT = 0, 2, 4, 6, 7, 8
 BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
 # rows of Work.turning (near_stop.py)
 (
-    DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, LOG_RATIO, SPEED, COSINE, SINE, ALONG_BY_SIGMA,
+    DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, RATIO, SPEED, COSINE, SINE, ALONG_BY_SIGMA,
 ) = range(12)  # fmt: skip
 MAX_PARTS = 3  # of a step, apart from each other, that count for the peaks
 POWERS = STAGES + 2  # coefficients of a polynomial: a position is the second integral of one through the stages
@@ -105,6 +105,8 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     # the step before
     old_length: float  # s; 0 where its polynomial is no guess for the next step
     guess: Array  # (2, S) coefficients of the platform's acceleration in it
+    waves: Complex  # (2,) the harmonics in a rough run
+    turns: Complex  # (2,) by what they change in a step of it
     # the run
     end: float  # s, at most the duration
     steps: float
@@ -165,6 +167,8 @@ def workspace(bodies: int) -> Work:
         defect=np.zeros(n),
         old_length=0.0,
         guess=np.zeros((2, s)),
+        waves=np.zeros(2, np.complex128),
+        turns=np.zeros(2, np.complex128),
         end=0.0,
         steps=0.0,
         best=np.zeros(n),

@@ -121,5 +121,5 @@ def slip_vector(system: System, px: float, py: float, speed: float, ex: float, e
     speed: the horizontal one, m/s.
     """
     ratio = sqrt(sliding_speed2(system, px, py, ex, ey))
-    friction = coefficient(system, speed * ratio)
-    return friction * ex / ratio, friction * ey / ratio, ratio
+    friction = coefficient(system, speed * ratio) / ratio
+    return friction * ex, friction * ey, ratio

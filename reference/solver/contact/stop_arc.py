@@ -15,6 +15,7 @@ from reference.solver.system import Load, System
 
 SAMPLES_PER_TURN = 48
 GOLDEN_SECTIONS = 20  # they leave 1e-5 of a sample, and an error of the order of its square
+MAX_RISE_BETWEEN_SAMPLES = 0.1  # of the largest sample, squared: a peak between two samples is less above it
 MAX_ROUNDING_TURN = 1e-9  # of the drive: sideways acceleration that rounding may make
 
 
@@ -79,8 +80,12 @@ def turning_ends(system: System, load: Load, inside: float, outside: float) -> f
 
 
 @compiled
-def arc_peak(system: System, load: Load, angle: float) -> float:
-    """Largest squared absolute acceleration of the platform over the arc that begins at `angle`, m^2/s^4."""
+def arc_peak(system: System, load: Load, angle: float, floor: float) -> float:
+    """
+    Largest squared absolute acceleration of the platform over the arc that begins at `angle`, m^2/s^4.
+
+    Where that stays below `floor`, the largest sample.
+    """
     end = settled_direction(system, load, angle, MAX_ROUNDING_TURN)
     samples = 4 + int(abs(end - angle) * SAMPLES_PER_TURN / (2.0 * pi))
     stride = (end - angle) / samples
@@ -89,6 +94,8 @@ def arc_peak(system: System, load: Load, angle: float) -> float:
         value = squared_total(system, load, angle + n * stride)
         if value > best:
             best, top = value, n
+    if (1.0 + MAX_RISE_BETWEEN_SAMPLES) * best < floor:
+        return best
     low = angle + max(top - 1, 0) * stride
     high = angle + min(top + 1, samples) * stride
     golden = 0.5 * (sqrt(5.0) - 1.0)

@@ -43,7 +43,7 @@ from reference.solver.step_control import (
     set_length,
     too_short,
 )
-from reference.solver.steps import moving_step, rest_step, step_error
+from reference.solver.steps import load_step, moving_step, rest_step, step_error
 from reference.solver.system import (
     CREEPING,
     OPEN,
@@ -151,6 +151,7 @@ def made(system: System, work: Work, contact: int, demand: Demand, h: float) -> 
         rest_step(system, work, h)
         set_reaction(system, work)
         return OPEN if lowest(work.stage[REACTION]) <= 0.0 else SOLVED
+    load_step(system, work, h)
     enough = NEWTON_FRACTION * demand.tolerance * work.scale[0]
     if contact == SLIDING:
         guess_slide(system, work, h)

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from math import atan2, log, sqrt
 
-from reference.solver.chain import eliminate_chain, load_chain
 from reference.solver.collocation import NODES, STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import coefficient_slope, heading, rising_rate, sliding_speed2
 from reference.solver.contact.platform import directed, load_in_state, rest_excess
 from reference.solver.contact.stop_arc import settled_direction, squared_total
 from reference.solver.events import first_crossing, lowest
-from reference.solver.ground import ground_at, ground_at_stages
+from reference.solver.ground import ground_at
 from reference.solver.peaks import take_limit
 from reference.solver.step_control import (
     MAX_LENGTH_FACTOR,
@@ -111,9 +110,6 @@ def guess_slide(system: System, work: Work, h: float) -> None:
     if speed >= STIFF_SPEED_FRACTION * h * system.friction * system.mass_ratio * system.gravity:
         first_guess(work, h)
         return
-    ground_at_stages(system, work, h)
-    eliminate_chain(system, work, h)
-    load_chain(system, work, h)
     ex, ey = heading(work.angle, system.axes)
     ground, free = work.ground, work.free
     start = speed if system.rate > 0.0 else 0.0

@@ -12,11 +12,11 @@ from reference.solver.contact.platform import directed, load_in_state, rest_exce
 from reference.solver.contact.stop_arc import arc_peak
 from reference.solver.events import first_crossing, lowest
 from reference.solver.ground import ground_at
-from reference.solver.peaks import take_limit
+from reference.solver.peaks import SETTLED_FRACTION, take_limit
 from reference.solver.phases.sliding import STOP_WITHIN_STEPS, STOP_WITHIN_TIME
 from reference.solver.step_control import MIN_STEP, begin_with, next_break
 from reference.solver.system import CREEPING, REGULARIZED, REST, SLIDING, STOPPING, Demand, System
-from reference.solver.work import ACROSS, ALONG, CLOCK, DIRECTION, LOG_RATIO, SIGMA, Work
+from reference.solver.work import ACROSS, ALONG, CLOCK, DIRECTION, RATIO, SIGMA, Work
 
 FIRST_STEP = 0.5  # change of direction or logarithm of the speed in the first step
 MIN_FIRST_ACCELERATION = 1e-3  # of the loading: the first step is no longer than it makes with this acceleration
@@ -99,7 +99,7 @@ def after_stopping_step(system: System, work: Work, demand: Demand, h: float, fa
     """Commit time, direction and speed; what the contact does next."""
     last = STAGES - 1
     work.time, work.angle = work.turning[CLOCK, last], work.turning[DIRECTION, last]
-    work.log_speed, work.log_ratio = work.turning[SIGMA, last], work.turning[LOG_RATIO, last]
+    work.log_speed, work.log_ratio = work.turning[SIGMA, last], log(work.turning[RATIO, last])
     work.stretched = h * factor
     if work.time >= work.end - 10.0 * MIN_STEP * demand.period:
         return STOPPING
@@ -147,7 +147,7 @@ def after_stop(system: System, work: Work, demand: Demand) -> int:
     if along >= 0.0 or speed > MAX_FROZEN_TIME * demand.period * -along or changing:
         return STOPPING if speed > SMALLEST_SPEED else REST
     if demand.cutoff == 0.0:
-        arc = arc_peak(system, load, work.angle)
+        arc = arc_peak(system, load, work.angle, SETTLED_FRACTION**2 * work.best[0])
         if speed > MIN_FOLLOWED_SPEED * unit and arc > DECISIVE_ARC_FRACTION * DECISIVE_ARC_FRACTION * work.best[0]:
             return STOPPING
         take_limit(work, arc)
