@@ -45,7 +45,7 @@ def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float, un
     """
     One run from rest for every phase pair (M, 2), this tolerance inside the steps; errors are those of reading.
 
-    until: (M,) s, where the runs end at the latest; the end of the motion by default.
+    until: (M,) s, beyond which runs that do not end early make no step; the end of the motion by default.
     """
     rest = np.zeros((len(system.below), 2))
     demand = demand._replace(tolerance=tolerance)

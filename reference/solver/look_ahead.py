@@ -46,6 +46,9 @@ WAIT = 0.25  # of the period, from the last large value until the run looks ahea
 @compiled
 def end_early(system: System, work: Work, demand: Demand) -> None:
     """End the run, at a step whose end is in x, v, where nothing large can come any more; set when to look again."""
+    if not demand.early:  # told when to end
+        work.end = work.time
+        return
     work.look = work.settled + WAIT * demand.period
     h = rough_length(system, demand)
     if work.time > work.look and system.duration - work.time <= MAX_STEPS_PER_STEP * h * work.steps:

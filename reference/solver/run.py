@@ -10,7 +10,7 @@ A lubricated contact stays lubricated. Each phase carries the state in `Work` on
 
 from __future__ import annotations
 
-from math import inf, pi, sqrt
+from math import pi, sqrt
 
 from reference.solver.compiled import cached_entry_point, compiled
 from reference.solver.contact.platform import load_in_state, rest_excess
@@ -81,16 +81,17 @@ def crawls(system: System, work: Work, contact: int, demand: Demand) -> bool:
 
 
 @compiled
-def integrate(system: System, work: Work, demand: Demand, record: Record, end: float) -> int:
+def integrate(system: System, work: Work, demand: Demand, record: Record, until: float) -> int:
     """
-    Follow the motion from the state in work.x, work.v to `end`, s; how it ended (system.py), at work.time.
+    Follow the motion from the state in work.x, work.v; how it ended (system.py), at work.time.
 
-    A run that may end early does so where nothing large can come any more (look_ahead.py).
+    A run that may end early does so where nothing large can come any more (look_ahead.py), any other with the first
+    whole step beyond `until`, s.
 
     work.best (N,) holds the squared peaks of absolute acceleration, m^2/s^4.
     """
-    start_anew(work, min(FIRST_STEP * demand.period, system.duration), end)
-    work.look = 0.0 if demand.early else inf
+    start_anew(work, min(FIRST_STEP * demand.period, system.duration), system.duration)
+    work.look = 0.0 if demand.early else until
     contact = first_contact(system, work)
     before, idle = -1.0, 0
     while remaining(system, work, demand) > 0.0:
@@ -115,7 +116,7 @@ def runs(
     until: Array, peaks: Array, reading_errors: Array, ends: Array,
 ) -> None:  # fmt: skip
     """
-    Follow the motion from x, v (N, 2) for every phase pair (M, 2), rad, no further than `until` (M,), s.
+    Follow the motion from x, v (N, 2) for every phase pair (M, 2), rad, until (M,), s, or an early end.
 
     Fills peaks (M, N), the largest absolute accelerations, m/s^2, and reading_errors (M, N), their errors inside their
     steps, and ends (4, M): how (system.py), when (s) and after how many steps each run ended, and the platform's

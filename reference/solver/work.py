@@ -114,7 +114,7 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     reading_error: Array  # (N,) m/s^2, error of reading it inside its step
     reach2: float  # m^2, largest squared displacement of the platform
     settled: float  # s, end of the last step with a large value of anything that is asked for
-    look: float  # s, after which the run looks ahead; infinite if it goes to the end in any case
+    look: float  # s, after which the run looks ahead, or ends if it may not end early by itself
 
 
 structref.define_proxy(Work, _WorkType, list(Work.__annotations__))

@@ -131,7 +131,8 @@ def ends_of_runs(monkeypatch: pytest.MonkeyPatch, scene: Scene, full: bool, **la
 
 def test_every_run_of_a_surface_stops_early_and_of_a_full_one_goes_to_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = load_scene("fig3-I")
-    assert (ends_of_runs(monkeypatch, scene, full=False) < 0.25 * scene.duration).all()
+    finer, coarser = ends_of_runs(monkeypatch, scene, full=False)
+    assert finer <= coarser < finer + 0.02 * scene.duration < 0.25 * scene.duration
     np.testing.assert_allclose(ends_of_runs(monkeypatch, scene, full=True), scene.duration, rtol=1e-9)
     early, whole = (reference.amplification(scene, [(0.3, 1.1)], full=full) for full in (False, True))
     np.testing.assert_array_equal(early.mu, whole.mu)
