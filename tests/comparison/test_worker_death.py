@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import signal
 from collections.abc import Callable
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
@@ -49,6 +50,16 @@ def test_a_death_costs_its_own_task_one_retry_and_no_other(tmp_path: Path) -> No
     died = "worker died: the worker process died 2 times (exit code -9)"
     assert results == ["one", "kills", "two", died, "three", "four"]
     assert _calls(tmp_path) == {"one": 1, "kills": 2, "two": 1, "kills always": 2, "three": 1, "four": 1}
+
+
+def test_a_worker_collects_garbage_as_seldom_as_its_parent() -> None:
+    before = gc.get_threshold()
+    gc.set_threshold(1234, 20, 30)
+    try:
+        with process_pool(1) as pool:
+            assert pool.submit(gc.get_threshold).result() == (1234, 20, 30)
+    finally:
+        gc.set_threshold(*before)
 
 
 @pytest.mark.long
