@@ -88,7 +88,7 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     base = tmp_path_factory.getbasetemp()
     place = (base.parent if "PYTEST_XDIST_WORKER" in os.environ and fcntl else base) / "finished" / "report"
     place.parent.mkdir(exist_ok=True)
-    with open(place.with_name("lock"), "w") as stream:
+    with open(place.parent.with_suffix(".lock"), "w") as stream:
         if fcntl:
             fcntl.flock(stream, fcntl.LOCK_EX)
         if not place.exists():
