@@ -62,7 +62,7 @@ class Candidate:
 
     def may_meet(self, tolerance: float) -> bool:
         """Whether it meets the tolerance if a softer contact shows that rounding does nothing."""
-        return bool((self.level_errors <= tolerance * self.run.peaks.value).all())
+        return self.confirmed and bool((self.level_errors <= tolerance * self.run.peaks.value).all())
 
     def completed(self, pair: PhasePair, budget: Budget, keep: bool) -> Candidate:
         """With the error that the compliance leaves, from a run in which nothing but the contact is softer."""

@@ -43,6 +43,7 @@ NEWTON_TOLERANCE = 1e-5  # relative, of the forces, at level 0
 # squared step over the penetration, up to which that is enough: it is relative to a step's first residual, which is
 # what the prediction of the step misses, pressed on the contact
 MAX_SQUARED_STEP = 1e3
+MIN_NEWTON_TOLERANCE = 1e-12  # rounding of the residuals
 MAX_ROUNDING_SHARE = 0.25  # of the tolerance, that rounding of the forces may take at a peak of MIN_PEAK
 MIN_PEAK = 0.2  # of g
 LOOSEST_FOR_ROUNDING = 1e-3  # tolerance: a looser one permits no more rounding, which at a stop may grow a hundredfold
@@ -196,7 +197,7 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
             step=step / 2.0**level,
             slip_change=MAX_SLIP_CHANGE / 2.0**level,
             penetration=penetration,
-            newton=NEWTON_TOLERANCE / 4.0**level * min(1.0, MAX_SQUARED_STEP * penetration / (step / 2.0**level) ** 2),
+            newton=newton_tolerance(level, step / 2.0**level, penetration),
             rounding_moment=model.rounding,
             max_divisions=max_divisions,
             error_floor=MIN_RELATIVE_ERROR / 4.0**level,
@@ -207,6 +208,12 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
         )
         for level, penetration in enumerate(penetrations)
     ]
+
+
+def newton_tolerance(number: int, step: float, penetration: float) -> float:
+    """Relative tolerance of Newton's iteration at level `number`."""
+    stiff = min(1.0, MAX_SQUARED_STEP * penetration / step**2)
+    return max(NEWTON_TOLERANCE / 4.0**number * stiff, MIN_NEWTON_TOLERANCE)
 
 
 def for_small_peaks(level: Level, smallest: float, tolerance: float) -> Level:

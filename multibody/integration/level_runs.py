@@ -177,7 +177,7 @@ class LevelRuns:
         number, run = len(self.runs) - 1, self.runs[-1]
         real, change = self._on_real_bearings(self.levels[number], run)
         if real.outcome in UNFINISHED:  # its peaks may still grow
-            return np.maximum(SAFETY_OF_BEARINGS * earlier, real.peaks.value - run.peaks.value), False
+            return np.fmax(SAFETY_OF_BEARINGS * earlier, real.peaks.value - run.peaks.value), False
         change = np.maximum(earlier, change)
         if (change <= self.tolerance * run.peaks.value).all():
             self.change_on_real = change

@@ -93,6 +93,7 @@ def refine(
             complete = best = None
         if candidate is None:
             continue
+        run = candidate.run
         different = different + 1 if run.impacts and (candidate.errors >= run.peaks.value).all() else 0
         if different == MAX_DIFFERENT_MOTIONS:
             break  # impacts take every level elsewhere: a further one would, too

@@ -16,9 +16,9 @@ LEVEL, ONSET, SPEED = np.int64(0), np.int64(1), np.int64(2)
 NEVER = 2.0  # theta of an event that is not within the step
 GOLDEN_SECTIONS = 30  # of two instants: an event shorter than a millionth of the step moves nothing
 GOLDEN_SHARE = 0.382
-BISECTIONS = 50  # travel.py
-MAX_SECANTS = 60
-SHARPNESS = 1e-15  # of the step: how closely an event is located
+MAX_SECANTS = 200
+SECANTS_PER_HALVING = 3  # that do not halve the interval: a bisection follows
+LOCATION_TOLERANCE = 1e-15  # of the step
 NEAR_LIMIT = 0.5  # of the squared friction limit: between two stages of a step at rest the excess changes by less
 
 
@@ -191,15 +191,24 @@ def first_passage(system: System, work: Work, event: int, way: float, begin: flo
 
 @compiled
 def passed(system: System, work: Work, event: int, way: float, low: float, high: float) -> float:
-    """Where `beyond`, not positive at low and positive at high, becomes positive: Illinois variant of regula falsi."""
+    """
+    Where `beyond`, not positive at low and positive at high, becomes positive: Illinois variant of regula falsi.
+
+    By bisection where secants are slow: at a multiple root, at a kink, or where rounding makes it positive at low.
+    """
     at_low, at_high = beyond(system, work, event, way, low), beyond(system, work, event, way, high)
     rose = fell = False
+    width, secants = high - low, 0
     for _ in range(MAX_SECANTS):
-        if high - low <= SHARPNESS:
+        if high - low <= LOCATION_TOLERANCE:
             break
+        if high - low <= 0.5 * width:
+            width, secants = high - low, 0
         middle = high - (high - low) * at_high / (at_high - at_low)
-        if not low < middle < high:
-            middle = 0.5 * (low + high)
+        if secants == SECANTS_PER_HALVING or not low <= middle <= high:
+            middle, secants = 0.5 * (low + high), 0
+        middle = min(max(middle, low + 0.5 * LOCATION_TOLERANCE), high - 0.5 * LOCATION_TOLERANCE)
+        secants += 1
         here = beyond(system, work, event, way, middle)
         if here > 0.0:
             high, at_high = middle, here

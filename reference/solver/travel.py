@@ -6,10 +6,12 @@ from math import inf
 
 from reference.solver.collocation import DENSE
 from reference.solver.compiled import compiled
-from reference.solver.events import BISECTIONS, expand, value_at
+from reference.solver.events import expand, value_at
 from reference.solver.peaks import IN_THE_PLANE, expand_place, largest_square, squares
 from reference.solver.system import REST, STOPPING, System
 from reference.solver.work import CLOCK, Work
+
+BISECTIONS = 50  # of a step, to its rounding
 
 
 @compiled

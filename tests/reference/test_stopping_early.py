@@ -129,7 +129,7 @@ def ends_of_runs(monkeypatch: pytest.MonkeyPatch, scene: Scene, full: bool, **la
     return np.concatenate(ends)
 
 
-def test_every_run_of_a_surface_stops_early_and_of_a_full_one_goes_to_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_both_runs_of_a_point_stop_early_and_those_of_a_full_one_go_to_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = load_scene("fig3-I")
     finer, coarser = ends_of_runs(monkeypatch, scene, full=False)
     assert finer <= coarser < finer + 0.02 * scene.duration < 0.25 * scene.duration

@@ -15,7 +15,7 @@ from reference.solver.system import Load, System
 
 SAMPLES_PER_TURN = 48
 GOLDEN_SECTIONS = 20  # they leave 1e-5 of a sample, and an error of the order of its square
-MAX_RISE_BETWEEN_SAMPLES = 0.1  # of the largest sample, squared: a peak between two samples is less above it
+MAX_RISE_BETWEEN_SAMPLES = 0.1  # of the largest squared sample: a peak between two samples is taken to be less above it
 MAX_ROUNDING_TURN = 1e-9  # of the drive: sideways acceleration that rounding may make
 
 

@@ -55,7 +55,7 @@ def test_motion_starts_from_rest():
 
 def test_amplification_is_the_maximum_of_the_motion():
     """Against 5e4 samples: |a|^2 between two of them rises by less than 1e-6 of itself."""
-    phases = np.array([PHASE, (4.0, 2.0)])
+    phases = np.array([PHASE, (0.0, 0.0)])
     times = np.linspace(0.0, SCENE.duration, 50_001)
     found = frictionless_amplification(SCENE, phases)
     for phase, mu in zip(phases, found):

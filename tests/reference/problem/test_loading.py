@@ -105,10 +105,10 @@ def test_the_plate_starts_from_rest():
     duration=st.floats(0.05, 10.0),
     phase=st.tuples(st.floats(0.0, 6.3), st.floats(0.0, 6.3)),
 )
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=50, deadline=None)
 def test_ground_peak_is_the_maximum_of_dense_samples(amplitudes, periods, decay, duration, phase):
     load = scene(amplitudes, periods, decay, duration)
-    times = np.linspace(0.0, duration, 5_001)
+    times = np.linspace(0.0, duration, 20_001)
     sampled = np.sqrt((ground_acceleration(load, phase, times) ** 2).sum(axis=1).max())
     peak = ground_peak(load, [phase])[0]
     assert peak >= sampled * (1.0 - 1e-13)
