@@ -83,7 +83,7 @@ def test_plan_predicts_in_proportion_to_the_points(command: Callable[..., Run]) 
         lines = [line for line in out.splitlines() if line.startswith(" fig3-I") and "engine" not in line]
         return sum(float(line.split()[-1]) for line in lines)
 
-    assert total(40) == pytest.approx(4.0 * total(20), rel=0.02)  # printed to 0.1 s
+    assert total(160) == pytest.approx(4.0 * total(80), rel=0.02)  # printed to 0.1 s
 
 
 def test_the_closing_table_has_a_row_for_every_scene_body_and_pair(command: Callable[..., Run]) -> None:
