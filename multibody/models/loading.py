@@ -79,6 +79,12 @@ def symbolic_load(mbs: Any, load: Any, parameter: str, function: Callable[..., A
     return expression
 
 
+def load_on_coordinate(mbs: Any, node: Any, coordinate: int, load: float = 0.0) -> Any:
+    """A constant load on a coordinate of a node; an expression may take its place."""
+    marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
+    return mbs.AddLoad(items.LoadCoordinate(markerNumber=marker, load=load))
+
+
 class Push(NamedTuple):
     """A coordinate with a mass that the loading accelerates."""
 
@@ -101,7 +107,6 @@ def push(mbs: Any, ground: Ground, pushes: Iterable[Push]) -> list[Any]:
     expressions = []
     for node, coordinate, mass, axis in pushes:
         if ground.shakes(axis):
-            marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
-            load = mbs.AddLoad(items.LoadCoordinate(markerNumber=marker))
+            load = load_on_coordinate(mbs, node, coordinate)
             expressions.append(symbolic_load(mbs, load, "loadUserFunction", force(mass, axis)))
     return expressions

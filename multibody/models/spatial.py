@@ -40,7 +40,7 @@ from multibody.models.depressions import Depressions, FlatUnderside, rotation
 from multibody.models.engine import exudyn, items
 from multibody.models.impact import ImpactLaw
 from multibody.models.links import PER_BODY, Link, add_links, fastest_of_bars, undeformed
-from multibody.models.loading import Push, ground_of, push
+from multibody.models.loading import Push, ground_of, load_on_coordinate, push
 from multibody.models.plane import farthest, plane_contact, platform_on_plane, set_extent
 from multibody.models.plate import plate_for
 from multibody.models.recorders import add_recorders
@@ -293,8 +293,7 @@ def _contacts(
 
 def _weights(mbs: Any, nodes: list[Any], masses: Array) -> None:
     for mass, node in zip(masses, nodes):
-        vertical = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=2))
-        mbs.AddLoad(items.LoadCoordinate(markerNumber=vertical, load=-float(mass)))
+        load_on_coordinate(mbs, node, 2, -float(mass))
 
 
 def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:

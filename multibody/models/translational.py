@@ -169,7 +169,7 @@ def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, dampin
         nodes.append(mbs.AddNode(above))
     mass_matrix = np.zeros((COORDINATES + count, COORDINATES + count))
     stiffness_matrix, damping_matrix = np.zeros((2, *mass_matrix.shape))
-    np.fill_diagonal(mass_matrix[:COORDINATES], [*masses[:1]] * 3 + [LOCKED_INERTIA] * 3)
+    np.fill_diagonal(mass_matrix[:COORDINATES], [masses[0]] * 3 + [LOCKED_INERTIA] * 3)
     mass_matrix[2, 2] += masses[1:].sum()
     for link in range(len(masses) - 1):
         for axis in range(axes):

@@ -54,8 +54,9 @@ def start_waves(system: System, work: Work, t: float, h: float) -> None:
     for m in range(2):
         e = system.exponents[m]
         angle, size = e.imag * t + work.phase[m], exp(e.real * t)
+        turn, growth = e.imag * h, exp(e.real * h)
         work.waves[m] = complex(size * cos(angle), size * sin(angle))
-        work.turns[m] = complex(exp(e.real * h) * cos(e.imag * h), exp(e.real * h) * sin(e.imag * h))
+        work.turns[m] = complex(growth * cos(turn), growth * sin(turn))
 
 
 @compiled
