@@ -176,8 +176,8 @@ def superposed(scene: Scene, system: System, phases: Array, demand: Demand) -> P
     """The peaks of a linear scene, from one motion per harmonic; runs only where it may reach its end (4.1)."""
     value, error, reach, ends = frictionless_peaks(scene, phases)
     met = (error <= demand.tolerance * value).all(axis=1)
-    code, no_run = np.where(met, SOLVED, NOT_MET), np.zeros((2, len(phases)))
-    peaks = Peaks(value, error, code, no_run[0], no_run[1], reach)
+    code, no_run = np.where(met, SOLVED, NOT_MET), np.zeros((3, len(phases)))
+    peaks = Peaks(value, error, code, no_run[0], no_run[1], reach, no_run[2])
     if ends.any():  # whether it does, and when, is for the run to say
         for whole, ran in zip(peaks, peaks_with_error(system, phases[ends], demand)):
             whole[ends] = ran

@@ -27,6 +27,9 @@ MIN_STEP_TOLERANCE = 1e-11
 # Tolerance inside a step over the tolerance of the peak: errors inside a step are local, a peak comes from all steps.
 STEP_TOLERANCE_FACTOR = 10.0
 
+# Of the period (Demand.period): by which the coarser run goes beyond the peaks, since its events come earlier or later.
+EVENT_MARGIN = 0.01
+
 NOT_MET = 100  # code of a run whose error stays above the tolerance; system.py has the other codes
 
 
@@ -39,6 +42,7 @@ class Peaks(NamedTuple):
     instant: Array  # (M,) s
     steps: Array  # (M,) of the last run
     reach: Array  # (M,) m, largest horizontal displacement of the platform
+    peaked: Array  # (M,) s, from when on no acceleration comes near the largest
 
 
 def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float, until: Array | None = None) -> Peaks:
@@ -68,14 +72,16 @@ def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool 
     Peaks to the relative tolerance of `demand`, with errors.
 
     The tolerance inside the steps is tightened until two runs agree; one that cannot be finished is tried again, too.
-    Every run ends where nothing can come that changes them, the displacement or the outcome (look_ahead.py), and the
-    coarser one where the finer one does. `whole`: all go to the end of the motion.
+    Every run ends where nothing can come that changes them, the displacement or the outcome (look_ahead.py). The
+    coarser one serves the error of the peaks alone and ends behind the last of them. `whole`: all go to the end of the
+    motion.
     """
     # the rough run knows the consistent condition for rest alone
     demand = demand._replace(early=not whole and system.rest_condition == CONSISTENT)
     tolerance = min(MAX_STEP_TOLERANCE, max(STEP_TOLERANCE_FACTOR * demand.tolerance, MIN_STEP_TOLERANCE))
     after = peaks_at(system, phases, demand, tolerance)
-    until = np.where(after.code == SOLVED, after.instant, system.duration)
+    known = demand.early & (after.code == SOLVED)
+    until = np.where(known, after.peaked + EVENT_MARGIN * demand.period, system.duration)
     before = peaks_at(system, phases, demand._replace(early=False), TOLERANCE_RATIO * tolerance, until)
     peaks = Peaks(*(part.copy() for part in after))
     unfinished = np.arange(len(phases))

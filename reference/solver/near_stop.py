@@ -216,7 +216,7 @@ def correct_turning(system: System, work: Work, h: float, fresh: bool) -> float:
     if fresh:
         for k in range(STAGES):
             for m in range(STAGES):
-                matrix[k, m] = -h * A[k, m] * turning[ACROSS_SLOPE, m]
+                matrix[m, k] = -h * A[k, m] * turning[ACROSS_SLOPE, m]
             matrix[k, k] += 1.0
         if not factorize(matrix, pivots):
             return inf
@@ -246,7 +246,7 @@ def correct_levels(work: Work, h: float) -> bool:
     for k in range(STAGES):
         levels[k] -= turning[SIGMA, k]
         for m in range(STAGES):
-            matrix[k, m] = -h * A[k, m] * turning[ALONG_BY_SIGMA, m]
+            matrix[m, k] = -h * A[k, m] * turning[ALONG_BY_SIGMA, m]
         matrix[k, k] += 1.0
     if not factorize(matrix, pivots):
         return False

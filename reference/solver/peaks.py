@@ -102,7 +102,7 @@ def take_peaks(work: Work, low: float, high: float) -> bool:
 def take_limit(work: Work, squared: float) -> None:
     """Raises the platform's largest acceleration by a one-sided limit, which is read without an error."""
     if squared >= SETTLED_FRACTION**2 * work.best[0]:
-        work.settled = work.time
+        work.peaked = work.settled = work.time
     if squared > work.best[0]:
         work.best[0] = squared
         work.reading_error[0] = 0.0

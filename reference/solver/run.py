@@ -119,8 +119,8 @@ def runs(
     Follow the motion from x, v (N, 2) for every phase pair (M, 2), rad, until (M,), s, or an early end.
 
     Fills peaks (M, N), the largest absolute accelerations, m/s^2, and reading_errors (M, N), their errors inside their
-    steps, and ends (4, M): how (system.py), when (s) and after how many steps each run ended, and the platform's
-    largest displacement (m).
+    steps, and ends (5, M): how (system.py), when (s) and after how many steps each run ended, the platform's largest
+    displacement (m), and from when on no acceleration comes near the largest (s).
     """
     work = workspace(peaks.shape[1])
     system_reference, record_reference = SystemReference(*system), RecordReference(*record)
@@ -132,6 +132,7 @@ def runs(
                 work.v[i, axis] = v[i, axis]
         code = integrate(system_reference, work, demand, record_reference, until[m])
         ends[0, m], ends[1, m], ends[2, m], ends[3, m] = code, work.time, work.steps, sqrt(work.reach2)
+        ends[4, m] = work.peaked
         for i in range(peaks.shape[1]):
             peaks[m, i] = sqrt(work.best[i])
             reading_errors[m, i] = work.reading_error[i]

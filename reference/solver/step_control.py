@@ -152,11 +152,10 @@ def commit(work: Work, record: Record, h: float, contact: int, parts: int) -> No
     """Make the step's end the new state; `parts` of it count for the peaks, between pairs of work.edges."""
     if record.start.shape[0] > 0:
         record_step(work, record, h, contact)
-    large = False
+    peaking = False
     for part in range(parts):
-        large = take_peaks(work, work.edges[2 * part], work.edges[2 * part + 1]) or large
-    if contact != REST:
-        large = take_reach(work, h, contact == STOPPING) or large
+        peaking = take_peaks(work, work.edges[2 * part], work.edges[2 * part + 1]) or peaking
+    far = contact != REST and take_reach(work, h, contact == STOPPING)
     for axis in range(2):
         expand(work.a[0, axis], work.powers[axis])
         for k in range(STAGES):
@@ -171,5 +170,7 @@ def commit(work: Work, record: Record, h: float, contact: int, parts: int) -> No
     work.old_length = 0.0 if contact in (STOPPING, REST) else h
     if contact != STOPPING:
         work.time += h
-    if large:
+    if peaking or far:
         work.settled = work.turning[CLOCK, STAGES - 1] if contact == STOPPING else work.time
+    if peaking:
+        work.peaked = work.settled

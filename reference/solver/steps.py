@@ -164,7 +164,7 @@ def set_matrix(work: Work, h: float, axes: int) -> None:
                 by_velocity = h * slope[BY_VELOCITY + 2 * column + row, k]
                 by_drive = slope[BY_DRIVE + 2 * column + row, k]
                 for m in range(STAGES):
-                    matrix[row * STAGES + k, column * STAGES + m] = -(
+                    matrix[column * STAGES + m, row * STAGES + k] = -(
                         by_position * A2[k, m] + by_velocity * A[k, m] + by_drive * feedback[column, k, m]
                     )
     for k in range(axes * STAGES):

@@ -90,9 +90,9 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     gain: Complex  # (2, CHANNELS) what the platform's acceleration takes from its own drive through the chain
     stage: Array  # (9, S) the platform at the stages
     slopes: Array  # (12, S) derivative of its acceleration
-    matrix: Array  # (2 S, 2 S)
+    matrix: Array  # (2 S, 2 S) by columns (linear_solve.py)
     residual: Array  # (2 S,)
-    turn_matrix: Array  # (S, S) of the directions near a stop
+    turn_matrix: Array  # (S, S) of the directions near a stop, by columns
     pivots: Array  # (2 S,) rows of the factorized matrix
     chain: Array  # (N, 2, S) position of the bodies at the stages of a step near a stop
     velocity: Array  # (N, 2, S)
@@ -113,6 +113,7 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     best: Array  # (N,) largest squared absolute acceleration so far
     reading_error: Array  # (N,) m/s^2, error of reading it inside its step
     reach2: float  # m^2, largest squared displacement of the platform
+    peaked: float  # s, end of the last step with a large acceleration
     settled: float  # s, end of the last step with a large value of anything that is asked for
     look: float  # s, after which the run looks ahead, or ends if it may not end early by itself
 
@@ -174,6 +175,7 @@ def workspace(bodies: int) -> Work:
         best=np.zeros(n),
         reading_error=np.zeros(n),
         reach2=0.0,
+        peaked=0.0,
         settled=0.0,
         look=0.0,
     )
@@ -184,7 +186,7 @@ def start_anew(work: Work, length: float, end: float) -> None:
     """Forget the run before; `length` of the first step and end of the run, s."""
     work.time = work.angle = work.log_speed = work.log_ratio = work.start2 = 0.0
     work.length, work.stretched, work.growth, work.old_length = length, 0.0, 0.0, 0.0
-    work.end, work.settled = end, 0.0
+    work.end, work.peaked, work.settled = end, 0.0, 0.0
     work.held = work.entered = work.left = work.steps = work.reach2 = 0.0
     for i in range(work.x.shape[0]):
         work.best[i] = work.reading_error[i] = 0.0
