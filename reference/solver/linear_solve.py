@@ -1,8 +1,8 @@
 """
 Gaussian elimination with row pivoting for the small dense systems of one step, without allocation.
 
-A matrix is kept by columns: row i of column j is `columns[j, i]`. Every inner loop goes along a column, and the sizes are
-known when the solver is compiled: the processor does several entries at once.
+A matrix is kept by columns: row i of column j is `columns[j, i]`. Every inner loop goes along a column, and the sizes
+are known when the solver is compiled: the processor does several entries at once.
 """
 
 from __future__ import annotations
