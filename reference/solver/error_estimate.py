@@ -83,28 +83,29 @@ def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool 
     known = demand.early & (after.code == SOLVED)
     until = np.where(known, after.peaked + EVENT_MARGIN * demand.period, system.duration)
     before = peaks_at(system, phases, demand._replace(early=False), TOLERANCE_RATIO * tolerance, until)
-    peaks = Peaks(*(part.copy() for part in after))
-    unfinished = np.arange(len(phases))
-    while True:
-        error = _error(before, after, tolerance, demand.unit)
-        fraction = MIN_ERROR_FRACTION if system.rate == 0.0 else MIN_ERROR_FRACTION_VARYING
-        error_or_minimum = np.maximum(error, fraction * demand.tolerance * after.value)
-        for total, part in zip(peaks, after._replace(error=error_or_minimum)):
-            total[unfinished] = part
-        solved = (before.code == SOLVED) & (after.code == SOLVED)
-        met = solved & (error <= demand.tolerance * after.value).all(axis=1)
-        refused = (before.code == after.code) & (after.code != SOLVED)
-        again = ~(met | refused)
-        if tolerance <= MIN_STEP_TOLERANCE:
-            peaks.code[unfinished[again & (after.code == SOLVED)]] = NOT_MET
-            break
-        before = Peaks(*(part[again] for part in after))
-        unfinished = unfinished[again]
-        if not len(unfinished):
-            break
+    peaks, disagree = _judged(before, after, tolerance, system, demand)
+    unfinished = np.flatnonzero(disagree)
+    while len(unfinished) and tolerance > MIN_STEP_TOLERANCE:
         tolerance = max(tolerance / TOLERANCE_RATIO, MIN_STEP_TOLERANCE)
+        before = Peaks(*(part[disagree] for part in after))
         after = peaks_at(system, phases[unfinished], demand, tolerance)
+        finer, disagree = _judged(before, after, tolerance, system, demand)
+        for values, better in zip(peaks, finer):
+            values[unfinished] = better
+        unfinished = unfinished[disagree]
+    peaks.code[unfinished[peaks.code[unfinished] == SOLVED]] = NOT_MET
     return peaks
+
+
+def _judged(before: Peaks, after: Peaks, tolerance: float, system: System, demand: Demand) -> tuple[Peaks, Array]:
+    """`after` with its errors, and at which phase pairs (M,) the two runs disagree by more than `demand` permits."""
+    error = _error(before, after, tolerance, demand.unit)
+    permitted = demand.tolerance * after.value
+    solved = (before.code == SOLVED) & (after.code == SOLVED)
+    met = solved & (error <= permitted).all(axis=1)
+    refused = (before.code == after.code) & (after.code != SOLVED)
+    fraction = MIN_ERROR_FRACTION if system.rate == 0.0 else MIN_ERROR_FRACTION_VARYING
+    return after._replace(error=np.maximum(error, fraction * permitted)), ~(met | refused)
 
 
 def _error(before: Peaks, after: Peaks, tolerance: float, unit: float) -> Array:
