@@ -32,6 +32,7 @@ from comparison.analysis.tradeoff.trade import (
     with_pareto_fronts,
 )
 from comparison.cli import tradeoff as command
+from comparison.report.figures.tradeoff import MAX_TICKS, round_ticks
 from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
 
@@ -226,3 +227,11 @@ def test_the_command_measures_nothing_twice_and_its_values_come_back_to_the_last
     assert again[0].run["stored_before"] == 9
     again_values = xr.load_dataset(tmp_path / "out" / "fig3-I-tradeoff.nc", engine="h5netcdf")
     xr.testing.assert_equal(again_values, values)  # to the last bit, processor time included
+
+
+@pytest.mark.parametrize("low", [4.2e-4, 6.8e-4, 9.5e-4, 0.23, 7.0])
+@pytest.mark.parametrize("ratio", [1.2, 1.7, 3.0, 10.0, 4e3, 1e9])
+def test_the_axis_of_times_has_three_to_six_round_ticks_however_wide_it_is(low: float, ratio: float) -> None:
+    ticks = round_ticks(low, low * ratio)
+    assert 3 <= len(ticks) <= MAX_TICKS
+    assert all(low <= tick <= low * ratio and float(f"{tick:.2g}") == tick for tick in ticks)

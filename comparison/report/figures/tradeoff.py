@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator
+from matplotlib.ticker import NullLocator
 
 from comparison.analysis.tradeoff.trade import Answered, Entry, Trade
 from comparison.report.figures.pairs import save
@@ -27,6 +28,7 @@ FAMILIES = (
     ("entered", "#b3124b", "#ec7aa2"),
 )
 MARKERS = "osD^v<>PX*"
+MAX_TICKS = 6
 
 
 def draw_tradeoff(path: Path, trade: Trade) -> None:
@@ -60,7 +62,6 @@ def draw_tradeoff(path: Path, trade: Trade) -> None:
 def _panel(axes: Axes, trade: Trade, question: Answered, body: int) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.xaxis.set_minor_locator(LogLocator(subs=(2.0, 3.0, 6.0)))  # labels that do not touch
     axes.set_ylim(LOWEST, HIGHEST)
     axes.grid(alpha=0.25)
     axes.axhspan(LOWEST, max(question.error, LOWEST), color="0.9", zorder=0)
@@ -74,6 +75,20 @@ def _panel(axes: Axes, trade: Trade, question: Answered, body: int) -> None:
     )
     if front:
         axes.plot(*np.transpose(front), "o", ms=12, mfc="none", mec="k", mew=1.1, label="on the Pareto front")
+    ticks = round_ticks(*axes.get_xlim())
+    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.xaxis.set_minor_locator(NullLocator())
+
+
+def round_ticks(low: float, high: float) -> list[float]:
+    """At least three round numbers between the two, and few enough that their labels do not touch."""
+    decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    ticks: list[float] = []
+    for parts in ((10,), (10, 20, 50), (10, 15, 20, 30, 50, 70), range(10, 100)):
+        ticks = [tick for k in decades for part in parts if low <= (tick := float(f"{part}e{k - 1}")) <= high]
+        if len(ticks) >= 3:
+            break
+    return ticks[:: -(-len(ticks) // MAX_TICKS)] if ticks else []
 
 
 def _curve(axes: Axes, method: str, entries: list[Entry], body: int, color: str, marker: str) -> None:
