@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from comparison.study.models import V_REG
-from reference.problem import GRAVITY, Scene, ground_acceleration, ground_peak
+from reference.problem import GRAVITY, Scene, ground_peak
+from reference.problem.excitation import acceleration_of_ground
 
 Array = NDArray[np.float64]
 
@@ -46,7 +47,6 @@ class _Fixed(NamedTuple):
     varies: bool  # whether the friction depends on the speed
     total: float
     masses: Array  # (2 N,), each twice
-    inertia: Array  # (2 N, 2 N), M but for its first two rows
     links: Array  # (2 N, 2 N), C but for Delta, the factor of its first two rows, and their diagonal
     dampers: Array  # (2 N, 2 N), of the links, as `links`; the paper has none
     first: tuple[float, float]  # stiffness of the lowest link, N/m
@@ -67,7 +67,6 @@ def _fixed(scene: Scene, errata: Collection[str]) -> _Fixed:
         scene.radius,
         *law,
         masses,
-        np.diag(masses),
         links,
         dampers,
         (first[0], first[-1]),
@@ -91,8 +90,10 @@ def _peaks(scene: Scene, phase: Array, errata: Collection[str]) -> Array:
     bodies = len(scene.bodies)
     count = 2 * bodies
 
+    ground_at = acceleration_of_ground(scene, phase)
+
     def slope(t: float, state: Array) -> Array:
-        ground = ground_acceleration(scene, phase, [t])[0]
+        ground = ground_at(np.array([t]))[0]
         return np.concatenate([state[count:], _accelerations(fixed, state[:count], state[count:], ground)])
 
     def rim(t: float, state: Array) -> float:
@@ -105,7 +106,7 @@ def _peaks(scene: Scene, phase: Array, errata: Collection[str]) -> Array:
     if motion.status != 0:
         return np.full(bodies, np.nan)
     total = np.empty((len(motion.t), bodies, 3))
-    grounds = ground_acceleration(scene, phase, motion.t)
+    grounds = ground_at(motion.t)
     for row, (u, state) in enumerate(zip(grounds, motion.y.T)):
         q, v = state[:count], state[count:]
         a = _accelerations(fixed, q, v, u)
@@ -135,10 +136,9 @@ def _accelerations(fixed: _Fixed, q: Array, v: Array, ground: Array) -> Array:
     over_speed = friction if fixed.lubricated else friction / max(speed, V_REG)
     s = over_speed * rho  # mu rho / v, (3.14) included
 
-    inertia = fixed.inertia.copy()
-    own = m * (delta - s * (vx * p + vy * r))
-    inertia[0, 0], inertia[0, 1] = own + total * p * (x + s * vx), total * r * (x + s * vx)
-    inertia[1, 0], inertia[1, 1] = total * p * (y + s * vy), own + total * r * (y + s * vy)
+    own = m * (delta - s * (vx * p + vy * r))  # the first two rows of M, which is diagonal but for them
+    m_xx, m_xy = own + total * p * (x + s * vx), total * r * (x + s * vx)
+    m_yx, m_yy = total * p * (y + s * vy), own + total * r * (y + s * vy)
 
     main, cross, last = -total * (GRAVITY + zeta - w) * s, s, eta
     if WRONG_DAMPING in fixed.errata:
@@ -159,4 +159,9 @@ def _accelerations(fixed: _Fixed, q: Array, v: Array, ground: Array) -> Array:
             pull = fixed.first[axis] * (q[axis + 2] - place) + fixed.first_damper[axis] * (v[axis + 2] - rate)
             load[axis] -= s * (vx * p + vy * r) * pull
     load -= sprung
-    return np.asarray(np.linalg.solve(inertia, load), np.float64)
+    acceleration: Array = load / fixed.masses
+    along_x, along_y = load[:2].tolist()
+    determinant = m_xx * m_yy - m_xy * m_yx
+    acceleration[0] = (m_yy * along_x - m_xy * along_y) / determinant
+    acceleration[1] = (m_xx * along_y - m_yx * along_x) / determinant
+    return acceleration

@@ -157,7 +157,9 @@ def go_on(
         step = level.step / STEP_RATIO**divisions
         count = next_count if divisions == 0 else DIVIDED_CHUNK_STEPS
         count = min(count, math.ceil((end - time) / step * (1.0 - 1e-12)))
-        step, count = align_steps(model.ground.knots, model.ground.near, time, min(step, (end - time) / count), count)
+        step = min(step, (end - time) / count)
+        if len(model.ground.knots):
+            step, count = align_steps(model.ground.knots, model.ground.near, time, step, count)
         motion = engine.run(state, time, step, count)
         result.steps += count if motion is None else len(motion.time) - 1
         budget.left -= max(count, engine.iterations / FREE_ITERATIONS)
@@ -187,7 +189,6 @@ def go_on(
             if not _record(result, accepted, size[: last + 1], model, level, keep):
                 break
             state, time = accepted.state(last), float(accepted.time[last])
-            next_count = min(_steps_ahead(accepted, engine, level), CHUNK_GROWTH * last)
             if rejected:
                 state = model.settle(state, _gap_rate(accepted), level.penetration)
         if openings is not None and event is not None:
@@ -202,8 +203,11 @@ def go_on(
         elif rejected:
             divisions += 1 if step_ratio[failing] < STEP_RATIO else 2
             divisions = min(divisions, level.max_divisions)
-        elif divisions > 0 and step_ratio[-RECENT_ROWS:].max() * STEP_RATIO < 1.0:
-            divisions -= 1
+        else:
+            if divisions > 0 and step_ratio[-RECENT_ROWS:].max() * STEP_RATIO < 1.0:
+                divisions -= 1
+            if divisions == 0:
+                next_count = min(_steps_ahead(motion, engine, level), CHUNK_GROWTH * last)
     return Place(state, time, divisions, next_count)
 
 

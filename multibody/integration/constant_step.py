@@ -69,7 +69,8 @@ class Motion(NamedTuple):
         row = range(len(self.time))[row]
         rate = None
         if row > 0:
-            rate = (self.slip[row] - self.slip[row - 1]) / (self.time[row] - self.time[row - 1])
+            slip = self.slip
+            rate = (slip[row] - slip[row - 1]) / (self.time[row] - self.time[row - 1])
         return EngineState(self.coordinates[row], self.velocities[row], self.contact[row], self.plate[row], rate)
 
 

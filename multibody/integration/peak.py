@@ -112,22 +112,22 @@ def _smooth(
     sample = float(size[row]), 0.0, float(time[row])
     if not (first <= min(others) and max(others) <= last):
         return sample
-    t, f = time[list(others)] - time[row], size[list(others)] - size[row]
-    left, right = f[0] / t[0], f[1] / t[1]
+    t = [float(time[other] - time[row]) for other in others]
+    left, right = (float(size[other] - size[row]) / apart for other, apart in zip(others, t))
     curvature = (right - left) / (t[1] - t[0])
     slope = left - curvature * t[0]
     if curvature >= 0.0:
         return sample
     around = others[0] < row < others[1]
-    summit = float(np.clip(-0.5 * slope / curvature, min(t[0], 0.0), t[1] if around else max(t[0], 0.0)))
+    summit = min(max(-0.5 * slope / curvature, min(t[0], 0.0)), t[1] if around else max(t[0], 0.0))
     rise = (slope + curvature * summit) * summit
     error = 0.0
     for extra in (row - 2, row + 2) if around else (2 * others[1] - others[0],):
         if first <= extra <= last:
-            s = time[extra] - time[row]
-            third = (size[extra] - size[row] - (slope + curvature * s) * s) / (s * (s - t[0]) * (s - t[1]))
+            s = float(time[extra] - time[row])
+            third = (float(size[extra] - size[row]) - (slope + curvature * s) * s) / (s * (s - t[0]) * (s - t[1]))
             error = max(error, abs(third * summit * (summit - t[0]) * (summit - t[1])))
-    return float(size[row] + rise), float(error), float(time[row] + summit)
+    return float(size[row]) + rise, error, float(time[row]) + summit
 
 
 def _corner(
@@ -193,8 +193,8 @@ def _extrapolated(time: Array, values: Array, instant: float) -> float:
 def _passing(time: Array, slip: Array, threshold: float, ends: tuple[float, float]) -> float:
     """Instant between `ends` at which the slip speed of one side (two or three samples) passes the threshold."""
     near, far = (-1, -2) if time[-1] <= ends[0] else (0, 1)
-    rate = (slip[near] - slip[far]) / (time[near] - time[far])
+    rate = float((slip[near] - slip[far]) / (time[near] - time[far]))
     if rate == 0.0:
         return 0.5 * (ends[0] + ends[1])
-    instant = float(np.clip(time[near] + (threshold - slip[near]) / rate, *ends))
-    return float(np.clip(instant - (_extrapolated(time, slip, instant) - threshold) / rate, *ends))
+    instant = min(max(float(time[near]) + (threshold - float(slip[near])) / rate, ends[0]), ends[1])
+    return min(max(instant - (_extrapolated(time, slip, instant) - threshold) / rate, ends[0]), ends[1])

@@ -52,9 +52,9 @@ class Depressions:
         A platform that is displaced by u and turned by the angle t moves a depression at the distance l from its center
         by |u| + t l at most, and lifts it by |u_z| + t l.
         """
-        largest = np.abs(coordinates).max(axis=0)
-        shift, lift, turn = float(largest[:3].sum()), float(largest[2]), float(largest[3:6].sum())
-        sinking = float(largest[self.vertical].max(initial=0.0))
+        largest: list[float] = np.abs(coordinates).max(axis=0).tolist()
+        shift, lift, turn = sum(largest[:3]), largest[2], sum(largest[3:6])
+        sinking = max([largest[place] for place in self.vertical], default=0.0)
         moved = turn * self._farthest
         above = 1.0 - sinking - lift - moved - turn * (1.0 + sinking + shift + moved)  # height of a sphere in the rim
         return above > 0.0 and turn < 1.0

@@ -76,17 +76,23 @@ def _turns(phases: Array) -> Array:
 @cached_on_disk(__file__)
 def _bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array, most: Array) -> None:
     """Fills |v|^2 in the middle of each interval, and what it cannot exceed on it, (T,) each."""
-    a, b, c, d = turn
     least[:] = 0.0
     most[:] = 0.0
     for axis in range(terms.shape[2]):
-        value, slope, remainder = terms[0, body, axis], terms[1, body, axis], rest[body, axis]
         for n in range(len(least)):
-            v = a * value[0, n] + b * value[1, n] + c * value[2, n] + d * value[3, n]
-            s = a * slope[0, n] + b * slope[1, n] + c * slope[2, n] + d * slope[3, n]
-            size = abs(v) + abs(s) + remainder[n]
-            least[n] += v * v
+            value, slope = _coefficient(terms, turn, 0, body, axis, n), _coefficient(terms, turn, 1, body, axis, n)
+            size = abs(value) + abs(slope) + rest[body, axis, n]
+            least[n] += value * value
             most[n] += size * size
+
+
+@compiled_part()
+def _coefficient(terms: Array, turn: Array, order: int, body: int, axis: int, n: int) -> float:
+    """Coefficient of x^order on interval n."""
+    total = 0.0
+    for part in range(4):
+        total += turn[part] * terms[order, body, axis, part, n]
+    return total
 
 
 @cached_on_disk(__file__, nogil=True)
@@ -97,14 +103,16 @@ def _largest(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Arra
     for m in range(len(turns)):
         for body in range(bodies):
             _bounds(terms, rest, turns[m], body, least, most)
-            best = least.max()
+            best = 0.0
+            for n in range(intervals):
+                best = max(best, least[n])
             possible = best
             for n in range(intervals):
                 if most[n] < best:
                     continue
                 for axis in range(axes):
                     for order in range(orders):
-                        series[axis, order] = (turns[m] * terms[order, body, axis, :, n]).sum()
+                        series[axis, order] = _coefficient(terms, turns[m], order, body, axis, n)
                 value, error = _searched(series)
                 best = max(best, value)
                 possible = max(possible, value + error)

@@ -56,7 +56,8 @@ def ground_peak(scene: Scene, phases: ArrayLike) -> Array:
     step = loading_period(scene) / SAMPLES_PER_PERIOD
     with np.errstate(over="ignore"):
         weights = np.sqrt((scene.amplitudes**2).sum(axis=0))
-    return _ground_peaks(pairs, scene.amplitudes, weights, s, scene.duration, min(step, scene.duration / 8.0))
+    parts = np.stack([s.real, s.imag], axis=1)
+    return _ground_peaks(pairs, scene.amplitudes, weights, parts, scene.duration, min(step, scene.duration / 8.0))
 
 
 def _record_peak(scene: Scene) -> float:
@@ -68,19 +69,18 @@ def _record_peak(scene: Scene) -> float:
 
 
 @compiled_part(nogil=True)
-def _square_and_slopes(
-    t: float, phase: Array, amplitudes: Array, s: NDArray[np.complex128]
-) -> tuple[float, float, float]:
+def _square_and_slopes(t: float, phase: Array, amplitudes: Array, s: Array) -> tuple[float, float, float]:
     """|u|^2 and its first two derivatives at time t."""
-    z0 = np.exp(s[0] * t + 1j * phase[0])
-    z1 = np.exp(s[1] * t + 1j * phase[1])
     value = slope = curvature = 0.0
     for k in range(3):
-        w0 = amplitudes[k, 0] * z0
-        w1 = amplitudes[k, 1] * z1
-        u = (w0 + w1).real
-        du = (s[0] * w0 + s[1] * w1).real
-        ddu = (s[0] * s[0] * w0 + s[1] * s[1] * w1).real
+        u = du = ddu = 0.0
+        for harmonic in range(2):
+            rate, pace = s[harmonic, 0], s[harmonic, 1]
+            size, angle = amplitudes[k, harmonic] * math.exp(rate * t), pace * t + phase[harmonic]
+            x, y = size * math.cos(angle), size * math.sin(angle)
+            u += x
+            du += rate * x - pace * y
+            ddu += (rate * rate - pace * pace) * x - 2.0 * rate * pace * y
         value += u * u
         slope += 2.0 * u * du
         curvature += 2.0 * (du * du + u * ddu)
@@ -88,7 +88,7 @@ def _square_and_slopes(
 
 
 @compiled_part(nogil=True)
-def _refined(left: float, right: float, phase: Array, amplitudes: Array, s: NDArray[np.complex128]) -> float:
+def _refined(left: float, right: float, phase: Array, amplitudes: Array, s: Array) -> float:
     """Maximum of |u|^2 on [left, right], which holds one sample higher than both ends: Newton, bisection as a guard."""
     t = 0.5 * (left + right)
     best = 0.0
@@ -109,31 +109,37 @@ def _refined(left: float, right: float, phase: Array, amplitudes: Array, s: NDAr
 
 
 @cached_on_disk(__file__, nogil=True)
-def _ground_peaks(
-    phases: Array, amplitudes: Array, weights: Array, s: NDArray[np.complex128], duration: float, step: float
-) -> Array:
-    """(M,) for the phases (M, 2); weights (2,), m/s^2: sizes of the harmonics."""
+def _ground_peaks(phases: Array, amplitudes: Array, weights: Array, s: Array, duration: float, step: float) -> Array:
+    """(M,) for the phases (M, 2); weights (2,), m/s^2: sizes of the harmonics; s (2, 2): of their exponents' parts."""
     count = math.ceil(duration / step) + 1
     peaks = np.empty(phases.shape[0])
-    grown0, grown1 = np.empty(count, np.complex128), np.empty(count, np.complex128)  # exp(s t) at the samples
+    grown = np.empty((count, 2, 2))  # real and imaginary part of exp(s t) at the samples
     bound = np.empty(count)  # of |u|^2 from there on
+    turn = np.empty((2, 2))  # likewise of exp(i phase)
     known = 0  # samples of these that some phase has needed
     square = np.empty(count)  # |u|^2 of one phase, rounded otherwise than `_square_and_slopes` does
     for m in range(phases.shape[0]):
         phase = phases[m]
-        turn0, turn1 = np.exp(1j * phase[0]), np.exp(1j * phase[1])
+        for harmonic in range(2):
+            turn[harmonic, 0], turn[harmonic, 1] = math.cos(phase[harmonic]), math.sin(phase[harmonic])
         highest = 0.0
         end = count
         for n in range(count):
             if n == known:
                 t = min(n * step, duration)
-                grown0[n], grown1[n] = np.exp(s[0] * t), np.exp(s[1] * t)
-                bound[n] = (weights[0] * math.exp(s[0].real * t) + weights[1] * math.exp(s[1].real * t)) ** 2
+                largest = 0.0
+                for harmonic in range(2):
+                    size, angle = math.exp(s[harmonic, 0] * t), s[harmonic, 1] * t
+                    grown[n, harmonic, 0], grown[n, harmonic, 1] = size * math.cos(angle), size * math.sin(angle)
+                    largest += weights[harmonic] * size
+                bound[n] = largest**2
                 known += 1
-            x0, x1 = (turn0 * grown0[n]).real, (turn1 * grown1[n]).real
             value = 0.0
             for k in range(3):
-                u = amplitudes[k, 0] * x0 + amplitudes[k, 1] * x1
+                u = 0.0
+                for harmonic in range(2):
+                    real, imaginary = grown[n, harmonic]
+                    u += amplitudes[k, harmonic] * (turn[harmonic, 0] * real - turn[harmonic, 1] * imaginary)
                 value += u * u
             square[n] = value
             highest = max(highest, value) if math.isfinite(value) else math.inf

@@ -108,8 +108,8 @@ def acceleration_of_ground(scene: Scene, phase: ArrayLike) -> Callable[[Array], 
     """`ground_acceleration` of one phase pair, as a function of time (T,), s, that can be called often."""
     if scene.recorded:
         return lambda time: _integrated(scene.record, time, 0)
-    powers, turns, amplitudes = exponents(scene), _turns(phase), scene.amplitudes.T.astype(complex)
-    return lambda time: np.real((np.exp(np.multiply.outer(time, powers)) * turns) @ amplitudes)
+    powers, amplitudes = exponents(scene), _turns(phase)[:, None] * scene.amplitudes.T
+    return lambda time: (np.exp(time[..., None] * powers) @ amplitudes).real
 
 
 def ground_velocity(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
