@@ -39,7 +39,10 @@ from reference.problem import Outcome
 Array = NDArray[np.float64]
 
 FIRST_DIVISIONS = 2  # of the largest step in the first chunk: the contact settles
-MAX_CHUNK_STEPS, DIVIDED_CHUNK_STEPS = 256, 32  # steps in a chunk at the largest step, at smaller ones
+MIN_CHUNK_STEPS, MAX_CHUNK_STEPS = 32, 256  # steps in a chunk at the largest step
+# steps in a chunk at smaller steps, times the allowed change of the slip velocity: the chunks of all levels then end,
+# and their steps grow, at the same instants
+DIVIDED_CHUNK_CHANGE = 4.48
 CHUNK_GROWTH = 2  # of the steps in a chunk over those of the chunk before
 FREE_ITERATIONS = 2  # of Newton's method in a step; further ones count as steps
 GAP_RATE_STEPS = 4  # over which the rate of a gap is taken
@@ -155,7 +158,7 @@ def go_on(
     while time < min(end, result.stop) * (1.0 - 1e-12) and not pause(time):
         divisions = max(divisions, level.min_divisions(time))
         step = level.step / STEP_RATIO**divisions
-        count = next_count if divisions == 0 else DIVIDED_CHUNK_STEPS
+        count = next_count if divisions == 0 else round(DIVIDED_CHUNK_CHANGE / level.slip_change)
         count = min(count, math.ceil((end - time) / step * (1.0 - 1e-12)))
         step = min(step, (end - time) / count)
         if len(model.ground.knots):
@@ -199,7 +202,7 @@ def go_on(
             state, time = passed
             if event.closes:
                 divisions = max(divisions, _divisions_behind_impact(level))
-            next_count = DIVIDED_CHUNK_STEPS
+            next_count = MIN_CHUNK_STEPS
         elif rejected:
             divisions += 1 if step_ratio[failing] < STEP_RATIO else 2
             divisions = min(divisions, level.max_divisions)
@@ -380,7 +383,7 @@ def _steps_ahead(motion: Motion, engine: Engine, level: Level) -> int:
         target = max(corner, size * level.step / level.slip_change)
     if (target - slip) * rate <= 0.0:
         return MAX_CHUNK_STEPS
-    return int(min(max((target - slip) / rate / level.step, DIVIDED_CHUNK_STEPS), MAX_CHUNK_STEPS))
+    return int(min(max((target - slip) / rate / level.step, MIN_CHUNK_STEPS), MAX_CHUNK_STEPS))
 
 
 def termination(motion: Motion, model: EngineModel) -> tuple[Outcome, int, float]:
