@@ -6,13 +6,18 @@ All of this is numba's inside, which may change with any version.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
 from numba.core.compiler_machinery import LoweringPass, register_pass
 from numba.core.runtime.context import NRTContext
-from numba.core.typed_passes import AnnotateTypes
+from numba.core.typed_passes import AnnotateTypes, InlineOverloads, IRLegalization, NopythonRewrites
+from numba.core.untyped_passes import DeadBranchPrune, InlineClosureLikes
+
+# Passes that change nothing in a part: it has no expressions of whole arrays, functions within, branches on None
+# or functions that numba inlines before their types are known, and needs no end of a variable's life to be marked.
+UNNEEDED = {NopythonRewrites, InlineClosureLikes, DeadBranchPrune, InlineOverloads, IRLegalization}
 
 
 class _NoEnvironment:
@@ -59,12 +64,35 @@ class _AsPart(LoweringPass):  # type: ignore[misc]
         return False
 
 
+class _SharedFlags(Flags):  # type: ignore[misc]
+    """
+    Numba's options of a function, as one object for all functions with the same options.
+
+    Numba looks up what an operator does by the options as well, tens of thousands of times. It compares one object
+    with itself at once, and two of them value by value.
+    """
+
+    _known: ClassVar[dict[str, Flags]] = {}
+    __eq__ = object.__eq__
+    __hash__ = object.__hash__
+
+    def copy(self) -> Flags:
+        """Return the shared object, which numba uses while it compiles."""
+        return self._known.setdefault(repr(self), self)
+
+
 class PartCompiler(CompilerBase):  # type: ignore[misc]
-    """Numba's own passes, and `_AsPart` among them."""
+    """Numba's own passes but those that a part does not need, and `_AsPart` among them."""
+
+    def compile_extra(self, func: Any) -> Any:
+        """Compile a Python function."""
+        self.state.flags = _SharedFlags(self.state.flags)
+        return super().compile_extra(func)
 
     def define_pipelines(self) -> list[Any]:
         """Return the passes in their order."""
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        passes.passes = [each for each in passes.passes if each[0] not in UNNEEDED]
         passes.add_pass_after(_AsPart, AnnotateTypes)
         passes.finalize()
         return [passes]
