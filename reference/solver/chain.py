@@ -11,19 +11,29 @@ from __future__ import annotations
 
 import numpy as np
 
-from reference.solver.collocation import A2, CHANNELS, EIGENVALUES, FROM_CHANNELS, NODES, STAGES, TO_CHANNELS, A
+from reference.solver.collocation import (
+    A2,
+    CHANNELS,
+    EIGENVALUES,
+    FROM_CHANNELS,
+    NODES,
+    STAGES,
+    TO_CHANNELS,
+    A,
+    product,
+)
 from reference.solver.compiled import compiled
 from reference.solver.system import Array, Ground, System
 from reference.solver.work import Work
 
 PLATFORM = np.int64(0)  # its number; no literal (system.py)
 TO_CHANNELS_REAL, TO_CHANNELS_IMAGINARY = TO_CHANNELS.real.copy(), TO_CHANNELS.imag.copy()
-ONES_IN_CHANNELS = TO_CHANNELS.sum(axis=1)
-NODES_IN_CHANNELS = TO_CHANNELS @ NODES
-_THROUGH = np.einsum("kj,jm->jkm", FROM_CHANNELS, TO_CHANNELS)  # from stage m through channel j to stage k
+ONES_IN_CHANNELS, NODES_IN_CHANNELS = product(TO_CHANNELS, np.stack([np.ones(STAGES), NODES], axis=1)).T.copy()
+# from stage m through channel j to stage k
+_THROUGH = np.array([product(FROM_CHANNELS[:, j : j + 1], TO_CHANNELS[j : j + 1]) for j in range(CHANNELS)])
 THROUGH_REAL, THROUGH_IMAGINARY = _THROUGH.real.copy(), _THROUGH.imag.copy()
 # of the loads: what rounding on the way through the channels leaves in an acceleration, at the worst stage (3e-13)
-CHANNEL_ROUNDING = float(np.finfo(float).eps * (np.abs(FROM_CHANNELS) @ np.abs(TO_CHANNELS)).sum(axis=1).max())
+CHANNEL_ROUNDING = float(np.finfo(float).eps * product(np.abs(FROM_CHANNELS), np.abs(TO_CHANNELS)).sum(axis=1).max())
 
 
 @compiled

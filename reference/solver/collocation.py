@@ -5,15 +5,50 @@ On one step of length h the acceleration is a polynomial through the stages c_i,
 integrals:  v_i = v_0 + h (A a)_i,  x_i = x_0 + c_i h v_0 + h^2 (A^2 a)_i.  The last stage is the end of the step.
 A = T diag(lambda) T^-1 turns a linear chain into one scalar problem per eigenvalue; of each conjugate pair one is kept.
 Source: Hairer and Wanner, Solving Ordinary Differential Equations II, sections IV.5 and IV.8.
+
+LAPACK rounds otherwise on every kind of processor, and mu would follow in its eighth digit. So it only gives first
+guesses here, rounded to a few digits; sums are Python's own (docs/decisions/0003-floating-point-flags.md).
 """
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 from numpy.polynomial import legendre
 
 STAGES = 7
 CHANNELS = (STAGES + 1) // 2  # one real eigenvalue and one of each conjugate pair
+GUESSED_DIGITS = 3
+ITERATIONS = 12  # from such a guess to rounding
+
+
+def _solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """X of matrix X = right, by elimination with row pivoting."""
+    rows = [[*left, *rest] for left, rest in zip(matrix.tolist(), right.tolist())]
+    size = len(rows)
+    for i in range(size):
+        pivot = max(range(i, size), key=lambda k: abs(rows[k][i]))
+        rows[i], rows[pivot] = rows[pivot], rows[i]
+        for k in range(size):
+            if k != i:
+                factor = rows[k][i] / rows[i][i]
+                rows[k] = [value - factor * top for value, top in zip(rows[k], rows[i])]
+    return np.array([[value / row[i] for value in row[size:]] for i, row in enumerate(rows)])
+
+
+def product(left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """left @ right, with exact sums."""
+    columns = right.T.tolist()
+    entries = np.array([[_dot(row, column) for column in columns] for row in left.tolist()])
+    return entries if np.iscomplexobj(left) or np.iscomplexobj(right) else entries.real.copy()
+
+
+def _dot(row: list[complex], column: list[complex]) -> complex:
+    """Sum of the products of their entries."""
+    pairs = list(zip(row, column))
+    real = math.fsum([*(a.real * b.real for a, b in pairs), *(-a.imag * b.imag for a, b in pairs)])
+    return complex(real, math.fsum([*(a.real * b.imag for a, b in pairs), *(a.imag * b.real for a, b in pairs)]))
 
 
 def _shifted_legendre(order: int) -> legendre.Legendre:
@@ -22,7 +57,10 @@ def _shifted_legendre(order: int) -> legendre.Legendre:
 
 def _nodes(stages: int) -> np.ndarray:
     """Right Radau points on (0, 1]: the roots of P_s - P_{s-1}."""
-    roots = np.sort((_shifted_legendre(stages) - _shifted_legendre(stages - 1)).roots().real)
+    polynomial = _shifted_legendre(stages) - _shifted_legendre(stages - 1)
+    roots = np.round(np.sort(polynomial.roots().real), GUESSED_DIGITS)
+    for _ in range(ITERATIONS):
+        roots -= polynomial(roots) / polynomial.deriv()(roots)
     roots[-1] = 1.0
     return roots
 
@@ -32,26 +70,43 @@ def _weights(theta: np.ndarray, integrated: bool) -> np.ndarray:
     basis = [_shifted_legendre(k) for k in range(STAGES)]
     values = np.stack([p(NODES) for p in basis], axis=1)
     raised = np.stack([(p.integ(lbnd=0.0) if integrated else p)(theta) for p in basis], axis=1)
-    weights: np.ndarray = np.linalg.solve(values.T, raised.T).T
-    return weights
+    return np.ascontiguousarray(_solved(values.T, raised.T).T)
 
 
 NODES = _nodes(STAGES)
 A = _weights(NODES, True)
-A2 = A @ A
+A2 = product(A, A)
 # values of the interpolating polynomial at theta = 0: the defect there against the true acceleration is the error
 AT_START = _weights(np.zeros(1), False)[0]
 # coefficients of theta^k of the interpolating polynomial
-MONOMIALS = np.linalg.inv(np.vander(NODES, increasing=True))
+MONOMIALS = _solved(np.vander(NODES, increasing=True), np.eye(STAGES))
 
 
 def _channels() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    values, vectors = np.linalg.eig(A)
-    inverse = np.linalg.inv(vectors)
-    kept = np.flatnonzero(values.imag > -1e-12)
-    kept = kept[np.argsort(values[kept].imag)]
-    doubled = np.where(np.abs(values[kept].imag) > 1e-12, 2.0, 1.0)  # the conjugate's share
-    return values[kept], inverse[kept], vectors[:, kept] * doubled
+    guesses = np.round(np.linalg.eigvals(A), GUESSED_DIGITS)
+    kept = sorted((complex(guess) for guess in guesses if guess.imag >= 0.0), key=lambda guess: guess.imag)
+    values, vectors = zip(*(_eigenpair(guess) for guess in kept))
+    doubled = [1.0 if value.imag == 0.0 else 2.0 for value in values]  # the conjugate's share
+    others = [vector.conj() for vector, factor in zip(vectors, doubled) if factor == 2.0]
+    every = np.stack([*vectors, *others], axis=1)
+    inverse = _solved(every, np.eye(STAGES))
+    inverse = 2.0 * inverse - product(inverse, product(every, inverse))
+    return np.array(values), inverse[:CHANNELS], np.stack(vectors, axis=1) * doubled
+
+
+def _eigenpair(guess: complex) -> tuple[complex, np.ndarray]:
+    """Eigenvalue of A next to a guess, and its eigenvector with one entry 1: inverse iteration, by its corrections."""
+    shifted = A - guess * np.eye(STAGES)
+    vector = _solved(shifted, np.ones((STAGES, 1), complex))
+    unit = int(np.abs(vector).argmax())
+    value = guess
+    for _ in range(ITERATIONS):
+        vector = np.array([[entry / vector[unit, 0].item()] for entry in vector[:, 0].tolist()])
+        image = product(A, vector)
+        value = image[unit, 0].item()
+        missed = [[a - value * b] for a, b in zip(image[:, 0].tolist(), vector[:, 0].tolist())]
+        vector = vector - _solved(shifted, np.array(missed))
+    return value, vector[:, 0]
 
 
 EIGENVALUES, TO_CHANNELS, FROM_CHANNELS = (np.ascontiguousarray(part) for part in _channels())
@@ -60,4 +115,4 @@ EIGENVALUES, TO_CHANNELS, FROM_CHANNELS = (np.ascontiguousarray(part) for part i
 DENSE = np.linspace(0.0, 1.0, 15)
 DENSE_VALUES = _weights(DENSE, False)
 DENSE_FIRST = _weights(DENSE, True)
-DENSE_SECOND = DENSE_FIRST @ A  # position as the integral of the velocity through the stages
+DENSE_SECOND = product(DENSE_FIRST, A)  # position as the integral of the velocity through the stages

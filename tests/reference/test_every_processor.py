@@ -13,10 +13,20 @@ import pytest
 import reference
 from reference.problem import load_scene, phase_grid
 from reference.problem.build_cache import build_folder
+from reference.solver import chain, collocation
 
 ROOT = Path(__file__).parents[2]
 SCENES = ("fig3-I", "fig4-dry", "fig4-viscous")
 TOLERANCE = 1e-7
+NAMES = ("NODES", "A", "A2", "AT_START", "MONOMIALS", "EIGENVALUES", "TO_CHANNELS", "FROM_CHANNELS", "DENSE_SECOND")
+NAMES_OF_CHAIN = ("ONES_IN_CHANNELS", "NODES_IN_CHANNELS", "THROUGH_REAL", "THROUGH_IMAGINARY")
+CONSTANTS = f"""
+import sys
+from reference.solver import chain, collocation
+for module, names in ((collocation, {NAMES}), (chain, {NAMES_OF_CHAIN})):
+    for name in names:
+        sys.stdout.buffer.write(getattr(module, name).tobytes())
+"""
 ASKED = f"""
 import sys
 import numpy as np
@@ -46,6 +56,26 @@ def here() -> np.ndarray:
             for law in (("exact", None), ("exact", 1e-3), ("small", None))
         ]
     )
+
+
+@pytest.mark.parametrize("kernels", ["Prescott", "Haswell", "SkylakeX"])
+def test_the_constants_of_the_method_do_not_depend_on_the_kernels_that_the_linear_algebra_chooses(kernels: str) -> None:
+    words = [sys.executable, "-c", CONSTANTS]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "OPENBLAS_CORETYPE": kernels}
+    other = subprocess.run(words, cwd=ROOT, env=environment, check=True, capture_output=True).stdout
+    here = [getattr(collocation, name).tobytes() for name in NAMES]
+    here += [getattr(chain, name).tobytes() for name in NAMES_OF_CHAIN]
+    assert other == b"".join(here)
+
+
+def test_the_constants_of_the_method_are_accurate_to_rounding() -> None:
+    again = (collocation.FROM_CHANNELS * collocation.EIGENVALUES) @ collocation.TO_CHANNELS
+    np.testing.assert_allclose(again.real, collocation.A, rtol=0.0, atol=2e-14)
+    np.testing.assert_allclose((collocation.FROM_CHANNELS @ collocation.TO_CHANNELS).real, np.eye(7), atol=1e-13)
+    np.testing.assert_allclose(collocation.A.sum(axis=1), collocation.NODES, rtol=0.0, atol=1e-15)
+    powers = np.arange(1, 13)  # the quadrature of the last stage has order 13
+    moments = (collocation.NODES[:, None] ** (powers - 1)).T @ collocation.A[-1]
+    np.testing.assert_allclose(moments, 1.0 / powers, rtol=0.0, atol=1e-15)
 
 
 @pytest.mark.long
