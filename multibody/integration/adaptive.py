@@ -41,9 +41,10 @@ Array = NDArray[np.float64]
 FIRST_DIVISIONS = 2  # of the largest step in the first chunk: the contact settles
 MIN_CHUNK_STEPS, MAX_CHUNK_STEPS = 32, 256  # steps in a chunk at the largest step
 # steps in a chunk at smaller steps, times the allowed change of the slip velocity: the chunks of all levels then end,
-# and their steps grow, at the same instants
+# and their steps grow, at the same instants; within bounds for levels that no model has by itself
 DIVIDED_CHUNK_CHANGE = 4.48
-CHUNK_GROWTH = 2  # of the steps in a chunk over those of the chunk before
+MIN_DIVIDED_CHUNK_STEPS, MAX_DIVIDED_CHUNK_STEPS = 8, 4096
+CHUNK_GROWTH = 2  # of the steps in a chunk at the largest step over those of the one before
 FREE_ITERATIONS = 2  # of Newton's method in a step; further ones count as steps
 GAP_RATE_STEPS = 4  # over which the rate of a gap is taken
 KINK_STEP_RATIO = 4.0  # first step behind a kink of the loading over slip_change times the relaxation of friction
@@ -158,7 +159,7 @@ def go_on(
     while time < min(end, result.stop) * (1.0 - 1e-12) and not pause(time):
         divisions = max(divisions, level.min_divisions(time))
         step = level.step / STEP_RATIO**divisions
-        count = next_count if divisions == 0 else round(DIVIDED_CHUNK_CHANGE / level.slip_change)
+        count = next_count if divisions == 0 else _divided_steps(level)
         count = min(count, math.ceil((end - time) / step * (1.0 - 1e-12)))
         step = min(step, (end - time) / count)
         if len(model.ground.knots):
@@ -207,10 +208,11 @@ def go_on(
             divisions += 1 if step_ratio[failing] < STEP_RATIO else 2
             divisions = min(divisions, level.max_divisions)
         else:
+            before = last if divisions == 0 else min(last, MIN_CHUNK_STEPS)
             if divisions > 0 and step_ratio[-RECENT_ROWS:].max() * STEP_RATIO < 1.0:
                 divisions -= 1
             if divisions == 0:
-                next_count = min(_steps_ahead(motion, engine, level), CHUNK_GROWTH * last)
+                next_count = min(_steps_ahead(motion, engine, level), CHUNK_GROWTH * before)
     return Place(state, time, divisions, next_count)
 
 
@@ -366,6 +368,12 @@ def _gap_rate(motion: Motion) -> Array:
         return np.zeros(motion.gap.shape[1])
     rate: Array = (motion.gap[-1] - motion.gap[-1 - rows]) / (motion.time[-1] - motion.time[-1 - rows])
     return rate
+
+
+def _divided_steps(level: Level) -> int:
+    """Steps in a chunk of smaller steps than the largest."""
+    steps = DIVIDED_CHUNK_CHANGE / level.slip_change
+    return round(min(max(steps, MIN_DIVIDED_CHUNK_STEPS), MAX_DIVIDED_CHUNK_STEPS))
 
 
 def _steps_ahead(motion: Motion, engine: Engine, level: Level) -> int:
