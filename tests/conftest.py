@@ -6,7 +6,6 @@ Property tests draw the same examples in every run, so that a gate gives one ans
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from threading import RLock
@@ -17,6 +16,7 @@ from hypothesis import settings
 from numba.core.dispatcher import Dispatcher
 
 from comparison.execution.executors import cores
+from comparison.execution.processes import one_thread_each
 
 try:
     import fcntl
@@ -29,8 +29,7 @@ settings.register_profile("new", deadline=None)
 
 def pytest_configure(config: pytest.Config) -> None:
     settings.load_profile("new" if config.getoption("markexpr") == "long" else "same")
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(name, "1")  # of the processes that start from here; threads would wait for each other
+    one_thread_each()  # more of them would wait for each other
     if hasattr(config, "workerinput"):  # one of several processes
         compile_in_turn()
 

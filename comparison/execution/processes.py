@@ -57,9 +57,14 @@ def process_pool(jobs: int) -> Executor:
     -------
     Executor
     """
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(name, "1")  # read by the libraries of the worker when it starts
+    one_thread_each()
     return Workers(jobs)
+
+
+def one_thread_each() -> None:
+    """Let the libraries of processes that start from here use one thread, unless the user has said otherwise."""
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
 
 
 class Workers(Executor):

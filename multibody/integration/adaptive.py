@@ -161,9 +161,7 @@ def go_on(
         step = level.step / STEP_RATIO**divisions
         count = next_count if divisions == 0 else _divided_steps(level)
         count = min(count, math.ceil((end - time) / step * (1.0 - 1e-12)))
-        step = min(step, (end - time) / count)
-        if len(model.ground.knots):
-            step, count = align_steps(model.ground.knots, model.ground.near, time, step, count)
+        step, count = align_steps(model.ground.knots, model.ground.near, time, min(step, (end - time) / count), count)
         motion = engine.run(state, time, step, count)
         result.steps += count if motion is None else len(motion.time) - 1
         budget.left -= max(count, engine.iterations / FREE_ITERATIONS)

@@ -76,12 +76,9 @@ class Openings:
 
     def first_event(self, motion: Motion) -> Event | None:
         """The first opening or closing in the rows of `motion` behind its first one."""
-        gap, largest, any_open = motion.gap[1:], OPENING_GAP * self.penetration, bool(self.is_open.any())
-        if not any_open and gap.max(initial=-math.inf) <= largest:
-            return None
-        opens = (gap > largest) & ~self.is_open
+        opens = (motion.gap[1:] > OPENING_GAP * self.penetration) & ~self.is_open
         closes = np.zeros_like(opens)
-        if any_open:
+        if self.is_open.any():
             gaps = self.gaps(motion.coordinates)
             closes = (gaps[1:] < 0.0) & (gaps[1:] < gaps[:-1]) & self.is_open
         rows = np.flatnonzero((opens | closes).any(axis=1))

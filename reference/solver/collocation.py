@@ -113,6 +113,3 @@ EIGENVALUES, TO_CHANNELS, FROM_CHANNELS = (np.ascontiguousarray(part) for part i
 
 # where peaks and events are looked for inside a step
 DENSE = np.linspace(0.0, 1.0, 15)
-DENSE_VALUES = _weights(DENSE, False)
-DENSE_FIRST = _weights(DENSE, True)
-DENSE_SECOND = product(DENSE_FIRST, A)  # position as the integral of the velocity through the stages

@@ -18,7 +18,7 @@ from reference.solver import chain, collocation
 ROOT = Path(__file__).parents[2]
 SCENES = ("fig3-I", "fig4-dry", "fig4-viscous")
 TOLERANCE = 1e-7
-NAMES = ("NODES", "A", "A2", "AT_START", "MONOMIALS", "EIGENVALUES", "TO_CHANNELS", "FROM_CHANNELS", "DENSE_SECOND")
+NAMES = ("NODES", "A", "A2", "AT_START", "MONOMIALS", "EIGENVALUES", "TO_CHANNELS", "FROM_CHANNELS")
 NAMES_OF_CHAIN = ("ONES_IN_CHANNELS", "NODES_IN_CHANNELS", "THROUGH_REAL", "THROUGH_IMAGINARY")
 CONSTANTS = f"""
 import sys

@@ -28,7 +28,7 @@ FAMILIES = (
     ("entered", "#b3124b", "#ec7aa2"),
 )
 MARKERS = "osD^v<>PX*"
-MAX_TICKS = 6
+MAX_TICKS = 6  # labels of the axis of times that do not touch
 
 
 def draw_tradeoff(path: Path, trade: Trade) -> None:
@@ -81,14 +81,14 @@ def _panel(axes: Axes, trade: Trade, question: Answered, body: int) -> None:
 
 
 def round_ticks(low: float, high: float) -> list[float]:
-    """At least three round numbers between the two, and few enough that their labels do not touch."""
+    """Three to MAX_TICKS round numbers between the two, if they are not closer than such numbers are."""
     decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
     ticks: list[float] = []
     for parts in ((10,), (10, 20, 50), (10, 15, 20, 30, 50, 70), range(10, 100)):
         ticks = [tick for k in decades for part in parts if low <= (tick := float(f"{part}e{k - 1}")) <= high]
         if len(ticks) >= 3:
             break
-    return ticks[:: -(-len(ticks) // MAX_TICKS)] if ticks else []
+    return ticks[:: max(1, math.ceil(len(ticks) / MAX_TICKS))]
 
 
 def _curve(axes: Axes, method: str, entries: list[Entry], body: int, color: str, marker: str) -> None:
