@@ -4,10 +4,16 @@ from __future__ import annotations
 
 from math import cos, exp, sin
 
-from reference.solver.collocation import NODES, STAGES
+import numpy as np
+
+from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
 from reference.solver.system import Array, Ground, System
-from reference.solver.work import Work
+from reference.solver.work import SERIES_TERMS, Work
+
+MAX_SERIES_ANGLE = 2.0  # by which a harmonic turns and decays in a step: beyond it its series would lose digits
+SERIES_ROUNDING = 1e-17  # of the harmonic: a term this small ends its series
+RECIPROCALS = 1.0 / np.arange(1.0, SERIES_TERMS + 1.0)
 
 
 @compiled
@@ -49,19 +55,26 @@ def ground_at(system: System, work: Work, t: float) -> Ground:
 
 
 @compiled
-def start_waves(system: System, work: Work, t: float, h: float) -> None:
-    """Prepare `next_ground`: the harmonics at t, and by what they turn and decay within h."""
+def start_waves(system: System, work: Work, t: float) -> None:
+    """Prepare `ground_at_stages`, or `next_ground` from t on: the harmonics at t."""
     for m in range(2):
         e = system.exponents[m]
         angle, size = e.imag * t + work.phase[m], exp(e.real * t)
-        turn, growth = e.imag * h, exp(e.real * h)
         work.waves[m] = complex(size * cos(angle), size * sin(angle))
-        work.turns[m] = complex(growth * cos(turn), growth * sin(turn))
+
+
+@compiled
+def start_turns(system: System, work: Work, h: float) -> None:
+    """Prepare `next_ground` for steps of h: by what the harmonics turn and decay."""
+    for m in range(2):
+        e = system.exponents[m]
+        angle, growth = e.imag * h, exp(e.real * h)
+        work.turns[m] = complex(growth * cos(angle), growth * sin(angle))
 
 
 @compiled
 def next_ground(system: System, work: Work, t: float) -> Ground:
-    """The ground at t, a step of `start_waves` after the last call."""
+    """The ground at t, that of `start_waves` or a step of `start_turns` after the last call."""
     if system.record.shape[0] > 0:
         return recorded_at(system.record, t)
     z0, z1, a = work.waves[0], work.waves[1], system.amplitudes
@@ -74,8 +87,49 @@ def next_ground(system: System, work: Work, t: float) -> Ground:
 
 
 @compiled
-def ground_at_stages(system: System, work: Work, h: float) -> None:
-    """Fill work.ground for a step of length h."""
+def ground_at_stages(system: System, work: Work, elapsed: Array) -> None:
+    """
+    Fill work.ground at the times `elapsed` (S,), s, from the start of the step to its stages, the last one its end.
+
+    `start_waves` at the start of the step comes before. A harmonic is summed from its Taylor series there, which takes
+    less time than a sine at every stage.
+    """
+    longest = elapsed[STAGES - 1]
+    e0, e1 = system.exponents[0] * longest, system.exponents[1] * longest
+    if system.record.shape[0] > 0 or square(e0) + square(e1) > MAX_SERIES_ANGLE * MAX_SERIES_ANGLE:
+        for k in range(STAGES):
+            here = ground_at(system, work, work.time + elapsed[k])
+            work.ground[0, k], work.ground[1, k], work.ground[2, k] = here.x, here.y, here.z
+        return
+    terms = expand_waves(work, e0, e1)
+    series, a, ground = work.series, system.amplitudes, work.ground
     for k in range(STAGES):
-        ground = ground_at(system, work, work.time + NODES[k] * h)
-        work.ground[0, k], work.ground[1, k], work.ground[2, k] = ground.x, ground.y, ground.z
+        share = elapsed[k] / longest if longest > 0.0 else 0.0
+        z0 = z1 = 0.0
+        for n in range(terms - 1, -1, -1):
+            z0 = z0 * share + series[n, 0]
+            z1 = z1 * share + series[n, 1]
+        ground[0, k] = a[0, 0] * z0 + a[0, 1] * z1
+        ground[1, k] = a[1, 0] * z0 + a[1, 1] * z1
+        ground[2, k] = a[2, 0] * z0 + a[2, 1] * z1
+
+
+@compiled
+def expand_waves(work: Work, e0: complex, e1: complex) -> int:
+    """Fill work.series for a time in which the harmonics change by exp(e0) and exp(e1); how many terms count."""
+    series, z0, z1 = work.series, work.waves[0], work.waves[1]
+    enough = SERIES_ROUNDING * SERIES_ROUNDING * min(square(z0), square(z1))
+    for n in range(SERIES_TERMS):
+        series[n, 0], series[n, 1] = z0.real, z1.real
+        if max(square(z0), square(z1)) <= enough:
+            return n
+        z0, z1 = z0 * e0, z1 * e1
+        z0 = complex(z0.real * RECIPROCALS[n], z0.imag * RECIPROCALS[n])
+        z1 = complex(z1.real * RECIPROCALS[n], z1.imag * RECIPROCALS[n])
+    return SERIES_TERMS
+
+
+@compiled
+def square(z: complex) -> float:
+    """|z|^2."""
+    return z.real * z.real + z.imag * z.imag

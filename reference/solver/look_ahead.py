@@ -15,7 +15,7 @@ from reference.solver.chain import chain_acceleration
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import coefficient, sliding_speed2
 from reference.solver.contact.platform import acceleration, load_in_state, rest_excess, slip_factor
-from reference.solver.ground import next_ground, start_waves
+from reference.solver.ground import next_ground, start_turns, start_waves
 from reference.solver.steps import lifted
 from reference.solver.system import (
     CREEPING,
@@ -75,7 +75,8 @@ def next_large(system: System, work: Work, h: float) -> float:
         for axis in range(2):
             work.x1[i, axis], work.v1[i, axis] = work.x[i, axis], work.v[i, axis]
     time, large = work.time, False
-    start_waves(system, work, time + 0.5 * h, h)
+    start_waves(system, work, time + 0.5 * h)
+    start_turns(system, work, h)
     while time < system.duration and not large:
         large = rough_step(system, work, time, h)
         time += h

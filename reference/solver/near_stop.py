@@ -16,7 +16,7 @@ from reference.solver.compiled import compiled
 from reference.solver.contact.friction import heading
 from reference.solver.contact.platform import directed, load_at_stage
 from reference.solver.events import lowest
-from reference.solver.ground import ground_at
+from reference.solver.ground import ground_at_stages, start_waves
 from reference.solver.linear_solve import factorize, solve
 from reference.solver.steps import absolute_accelerations, beyond_rim
 from reference.solver.system import OPEN, SLIDING, SOLVED, UNSOLVED, System
@@ -58,6 +58,7 @@ def near_stop_step(system: System, work: Work, h: float, tolerance: float) -> in
     Fills a, total and `turning` at the stages and x1, v1 at the end; `tolerance` bounds the last change of the angle.
     """
     guess_turning(system, work, h)
+    start_waves(system, work, work.time)
     before, fresh = 0.0, True
     for iteration in range(MAX_ITERATIONS):
         move_bodies(system, work, h)
@@ -109,7 +110,8 @@ def move_bodies(system: System, work: Work, h: float) -> None:
         elapsed = 0.0
         for m in range(STAGES):
             elapsed += A[k, m] * speeds[m]
-        turning[CLOCK, k] = work.time + h * elapsed
+        work.elapsed[k] = h * elapsed
+        turning[CLOCK, k] = work.time + work.elapsed[k]
     for i in range(x.shape[0]):
         for axis in range(system.axes):
             velocity, position = work.velocity[i, axis], work.chain[i, axis]
@@ -138,9 +140,8 @@ def pull_bodies(system: System, work: Work, h: float) -> float:
     place, velocity, stage, ground = work.chain, work.velocity, work.stage, work.ground
     bodies = work.x.shape[0]
     change = 0.0
+    ground_at_stages(system, work, work.elapsed)
     for k in range(STAGES):
-        here = ground_at(system, work, work.turning[CLOCK, k])
-        ground[0, k], ground[1, k], ground[2, k] = here.x, here.y, here.z
         duration = work.turning[SPEED, k] * h
         for axis in range(system.axes):
             for i in range(1, bodies):

@@ -19,7 +19,7 @@ from reference.solver.contact.platform import load_at_stage, moving
 from reference.solver.contact.slopes import slopes
 from reference.solver.equations import vertical_acceleration
 from reference.solver.events import lowest
-from reference.solver.ground import ground_at_stages
+from reference.solver.ground import ground_at_stages, start_waves
 from reference.solver.linear_solve import factorize, solve
 from reference.solver.system import OPEN, PAINLEVE, REST, RIM, SOLVED, UNSOLVED, System
 from reference.solver.work import (
@@ -45,7 +45,10 @@ RIM_SQUARED_FRACTION = 0.99  # of the squared radius: an iteration that starts b
 @compiled
 def load_step(system: System, work: Work, h: float) -> None:
     """The ground at the stages, and what it and the state do to the platform through the eliminated chain."""
-    ground_at_stages(system, work, h)
+    for k in range(STAGES):
+        work.elapsed[k] = h * NODES[k]
+    start_waves(system, work, work.time)
+    ground_at_stages(system, work, work.elapsed)
     eliminate_chain(system, work, h)
     load_chain(system, work, h)
 
@@ -104,7 +107,7 @@ def moving_step(system: System, work: Work, contact: int, h: float, tolerance: f
 @compiled
 def set_residual(system: System, work: Work, contact: int) -> tuple[int, float]:
     """What the accelerations of the platform miss at the stages; (what stands in the way, their size in m/s^2)."""
-    a, stage = work.a, work.stage
+    a, stage, residual = work.a, work.stage, work.residual
     size = 0.0
     for k in range(STAGES):
         load = load_at_stage(work, k)
@@ -116,19 +119,20 @@ def set_residual(system: System, work: Work, contact: int) -> tuple[int, float]:
         if not stage[DETERMINANT, k] > 0.0:
             return PAINLEVE, size
         size = max(size, abs(ax) + abs(ay))
-        work.residual[k] = ax - a[0, 0, k]
-        work.residual[STAGES + k] = ay - a[0, 1, k]
+        residual[k] = ax - a[0, 0, k]
+        residual[STAGES + k] = ay - a[0, 1, k]
     return SOLVED, size
 
 
 @compiled
 def correct(work: Work, axes: int) -> float:
     """Add Newton's correction, in `residual`, to the stage accelerations of the platform; its largest entry."""
+    a, residual = work.a, work.residual
     change = 0.0
     for axis in range(axes):
         for k in range(STAGES):
-            correction = work.residual[axis * STAGES + k]
-            work.a[0, axis, k] += correction
+            correction = residual[axis * STAGES + k]
+            a[0, axis, k] += correction
             change = max(change, abs(correction))
             if not np.isfinite(correction):
                 return np.nan
@@ -138,7 +142,7 @@ def correct(work: Work, axes: int) -> float:
 @compiled
 def place_platform(work: Work, h: float, axes: int) -> None:
     """Position, velocity and drive of the platform at the stages, from its stage accelerations."""
-    a, stage, free, feedback = work.a, work.stage, work.free, work.feedback
+    a, stage, free, feedback, x, v = work.a, work.stage, work.free, work.feedback, work.x, work.v
     for axis in range(axes):
         for k in range(STAGES):
             velocity = 0.0
@@ -148,8 +152,8 @@ def place_platform(work: Work, h: float, axes: int) -> None:
                 velocity += A[k, m] * a[0, axis, m]
                 position += A2[k, m] * a[0, axis, m]
                 drive += feedback[axis, k, m] * a[0, axis, m]
-            stage[POSITION + axis, k] = work.x[0, axis] + h * (NODES[k] * work.v[0, axis] + h * position)
-            stage[VELOCITY + axis, k] = work.v[0, axis] + h * velocity
+            stage[POSITION + axis, k] = x[0, axis] + h * (NODES[k] * v[0, axis] + h * position)
+            stage[VELOCITY + axis, k] = v[0, axis] + h * velocity
             stage[DRIVE + axis, k] = drive
 
 
@@ -213,12 +217,12 @@ def step_error(system: System, work: Work, tolerance: float) -> float:
     `tolerance`: it falls with no step. On a plane the platform's acceleration relative to the plate counts as well:
     without a restoring force no absolute acceleration shows a wrong way.
     """
-    total, total0 = work.total, work.total0
+    total, total0, stage, a = work.total, work.total0, work.stage, work.a
     load = abs(total0[0, 2])
     for k in range(STAGES):
-        load = max(load, abs(work.stage[DRIVE, k]) + abs(work.stage[DRIVE + 1, k]))
+        load = max(load, abs(stage[DRIVE, k]) + abs(stage[DRIVE + 1, k]))
         # friction may decelerate a platform that nothing drives
-        load = max(load, abs(work.a[0, 0, k]) + abs(work.a[0, 1, k]))
+        load = max(load, abs(a[0, 0, k]) + abs(a[0, 1, k]))
     noise = FORCE_ROUNDING * load
     channels = noise + (CHANNEL_ROUNDING * load if work.x.shape[0] > 1 else 0.0)
     worst = 0.0

@@ -23,6 +23,7 @@ BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
     DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, RATIO, SPEED, COSINE, SINE, ALONG_BY_SIGMA,
 ) = range(12)  # fmt: skip
 MAX_PARTS = 3  # of a step, apart from each other, that count for the peaks
+SERIES_TERMS = 32  # of the harmonics of the ground: more than a step takes
 POWERS = STAGES + 2  # coefficients of a polynomial: a position is the second integral of one through the stages
 
 
@@ -72,6 +73,7 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     # the next step
     length: float  # s
     stretched: float  # length near a stop, in stretched time
+    fitting: float  # length near a stop with which the step before would have met the tolerance, in stretched time
     growth: float  # bound on the growth of the length
     held: float  # s, for which rest or creep is held whatever the force; 0 where nothing holds it
     # the phase of the contact
@@ -105,8 +107,10 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     # the step before
     old_length: float  # s; 0 where its polynomial is no guess for the next step
     guess: Array  # (2, S) coefficients of the platform's acceleration in it
-    waves: Complex  # (2,) the harmonics in a rough run
-    turns: Complex  # (2,) by what they change in a step of it
+    waves: Complex  # (2,) the harmonics of the ground at the start of the step
+    turns: Complex  # (2,) by what they change in a step of a rough run
+    elapsed: Array  # (S,) s, from the start of the step to its stages
+    series: Array  # (SERIES_TERMS, 2) of the harmonics in a step
     # the run
     end: float  # s, at most the duration
     steps: float
@@ -138,6 +142,7 @@ def workspace(bodies: int) -> Work:
         start2=0.0,
         length=0.0,
         stretched=0.0,
+        fitting=0.0,
         growth=0.0,
         held=0.0,
         entered=0.0,
@@ -170,6 +175,8 @@ def workspace(bodies: int) -> Work:
         guess=np.zeros((2, s)),
         waves=np.zeros(2, np.complex128),
         turns=np.zeros(2, np.complex128),
+        elapsed=np.zeros(s),
+        series=np.zeros((SERIES_TERMS, 2)),
         end=0.0,
         steps=0.0,
         best=np.zeros(n),

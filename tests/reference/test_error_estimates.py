@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from chains import chain
+from oracle import set_valued_run
 
 import reference
 from reference.problem import phase_grid
@@ -45,6 +46,15 @@ def test_mu_is_within_its_error_and_its_tolerance_of_a_run_a_hundred_times_tight
     assert np.all(gap <= 1e-5 * fine.mu[both])
     # the error is stated to hold for 99 % of the points: of these fifty or so values, one may be beyond it
     assert np.mean(gap <= (coarse.error + fine.error)[both]) >= 0.98
+
+
+@pytest.mark.parametrize("name", ["fig3-II", "fig4-dry"])
+def test_a_peak_at_the_start_of_rest_is_that_of_an_independent_code(name):
+    """The ground's acceleration falls as the platform stops: the peak is the ground's at the instant of the stop."""
+    phase = (0.885, 5.598)
+    found = reference.amplification(SCENES[name], [phase], cutoff=1e-3)
+    expected = set_valued_run(SCENES[name], phase, "exact", [1e-3], 1e-9).mu[0]
+    assert np.all(np.abs(found.mu[0] - expected) <= found.error[0])
 
 
 def test_the_error_holds_for_99_percent_and_is_not_far_too_large():

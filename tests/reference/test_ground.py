@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from reference.problem import ground_acceleration, load_scene
-from reference.solver.ground import ground_at, next_ground, start_waves
+from reference.solver.ground import ground_at, next_ground, start_turns, start_waves
 from reference.solver.system import pack
 
 PHASE = np.array([0.3, 1.1])
@@ -20,7 +20,8 @@ def test_the_harmonics_turned_step_by_step_stay_those_of_the_scene(name: str) ->
     system = pack(scene, small=False, v_reg=None)
     work = SimpleNamespace(phase=PHASE, waves=np.zeros(2, complex), turns=np.zeros(2, complex))
     times = 0.7 + 0.03 * np.arange(500)
-    start_waves.py_func(system, work, times[0], 0.03)
+    start_waves.py_func(system, work, times[0])
+    start_turns.py_func(system, work, 0.03)
     turned = [next_ground.py_func(system, work, t) for t in times]
     single = [ground_at.py_func(system, work, t) for t in times]
     of_the_scene = ground_acceleration(scene, PHASE, times)

@@ -101,7 +101,7 @@ def follow(system: System, work: Work, contact: int, demand: Demand, record: Rec
             set_length(work, contact, end)
             following = contact
             continue
-        parts = counted(system, work, contact, demand, h)
+        parts = counted(system, work, contact, demand, h, since)
         reached = travel_reached(system, work, contact, end)
         commit(work, record, end, contact, parts)
         if reached < inf:
@@ -185,12 +185,13 @@ def event_within(system: System, work: Work, contact: int, demand: Demand, h: fl
 
 
 @compiled
-def counted(system: System, work: Work, contact: int, demand: Demand, h: float) -> int:
+def counted(system: System, work: Work, contact: int, demand: Demand, h: float, since: float) -> int:
     """
     Number of parts of the step that count for the peaks, with their ends in work.edges.
 
-    These are rest, creep below v_reg, and sliding faster than the cutoff. A creep that begins or ends a little above
-    v_reg, as far as events are located, would have more friction than a slide.
+    These are rest, which is entered a little early, from `since` on, creep below v_reg, and sliding faster than the
+    cutoff. A creep that begins or ends a little above v_reg, as far as events are located, would have more friction
+    than a slide.
     """
     if contact == CREEPING:
         level, start2 = system.v_reg * system.v_reg, speed2(system, work)
@@ -206,6 +207,8 @@ def counted(system: System, work: Work, contact: int, demand: Demand, h: float) 
         expand_level(work, work.levels, level)
         return parts_beyond(system, work, LEVEL, 1.0, work.log_speed + work.log_ratio - level)
     work.edges[0], work.edges[1] = 0.0, 1.0
+    if contact == REST:
+        work.edges[0] = min(max(since - work.time, 0.0) / h, 1.0)
     return 1
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2, log, sqrt
+from math import atan2, inf, log, sqrt
 
 from reference.solver.collocation import NODES, STAGES
 from reference.solver.compiled import compiled
@@ -13,6 +13,7 @@ from reference.solver.events import first_crossing, lowest
 from reference.solver.ground import ground_at
 from reference.solver.peaks import take_limit
 from reference.solver.step_control import (
+    ERROR_ORDER,
     MAX_LENGTH_FACTOR,
     MIN_STEP,
     begin,
@@ -33,10 +34,11 @@ from reference.solver.system import (
 )
 from reference.solver.work import SPEED2, VELOCITY, Work
 
-MAX_FIRST_STEP = 0.2  # of the period (Demand.period): longest first step of a slide
+MAX_FIRST_STEP = 0.57  # of the period (Demand.period): longest first step of a slide at a tolerance of 1 in a step
 CAUTIOUS_GROWTH = 2.0  # largest growth of a step that had to be shortened
 STOP_WITHIN_STEPS = 1.5  # steps: a slide that would stop within them is followed in stretched time,
 STOP_WITHIN_TIME = 0.05  # of the period: or within this time
+MAX_WAY_TO_STOP = 0.55  # of the time to the stop: a longer step comes too close to where the direction turns fast
 MAX_CHAIN_ANGLE = 0.5  # rad: most that the chain's fastest vibration may turn in the time that is left then
 MIN_TURN_COSINE = 0.3  # cosine of the largest turn of the velocity between two stages
 LEVEL_TOLERANCE = 1e-9  # of the squared speed: a slide this close to v_reg has come down to it
@@ -67,7 +69,7 @@ def begin_sliding(system: System, work: Work, demand: Demand) -> None:
     work.start2 = speed2(system, work)
     if work.start2 > 0.0:
         return
-    work.length = min(work.length, MAX_FIRST_STEP * demand.period)
+    work.length = min(work.length, MAX_FIRST_STEP * demand.period * demand.tolerance ** (1.0 / ERROR_ORDER))
     ground = ground_at(system, work, work.time)
     load = load_in_state(system, work, ground)
     reaction = system.mass_ratio * (system.gravity + ground.z)
@@ -90,12 +92,24 @@ def sliding_length(system: System, work: Work, demand: Demand) -> float:
         return h
     work.angle = atan2(vy, vx)
     braking = -(vx * work.a0[0, 0] + vy * work.a0[0, 1]) / speed
-    if braking > 0.0 and speed < max(STOP_WITHIN_STEPS * h, STOP_WITHIN_TIME * demand.period) * braking:
-        if system.fastest * speed <= MAX_CHAIN_ANGLE * braking:
-            work.log_speed = log(speed)
-            return 0.0
-        h = min(h, max(0.5 * speed / braking, MIN_STEP * demand.period))
-    return h
+    soon = speed < max(STOP_WITHIN_STEPS * h, STOP_WITHIN_TIME * demand.period) * braking
+    if soon and system.fastest * speed <= MAX_CHAIN_ANGLE * braking:
+        work.log_speed = log(speed)
+        return 0.0
+    return min(h, max(MAX_WAY_TO_STOP * time_to_stop(work, speed, braking), MIN_STEP * demand.period))
+
+
+@compiled
+def time_to_stop(work: Work, speed: float, braking: float) -> float:
+    """Time to the stop, s, if the deceleration, m/s^2, goes on changing as at the end of the step before."""
+    change = 0.0
+    if work.old_length > 0.0:
+        for k in range(1, STAGES):
+            change -= k * (work.v[0, 0] * work.guess[0, k] + work.v[0, 1] * work.guess[1, k]) / work.old_length
+    square = braking * braking + 2.0 * change
+    if square < 0.0 or braking + sqrt(square) <= 0.0:
+        return inf
+    return 2.0 * speed / (braking + sqrt(square))
 
 
 @compiled

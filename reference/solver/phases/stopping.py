@@ -18,19 +18,22 @@ from reference.solver.step_control import MIN_STEP, begin_with, next_break
 from reference.solver.system import CREEPING, REGULARIZED, REST, SLIDING, STOPPING, Demand, System
 from reference.solver.work import ACROSS, ALONG, CLOCK, DIRECTION, RATIO, SIGMA, Work
 
-FIRST_STEP = 0.5  # change of direction or logarithm of the speed in the first step
+FIRST_STEP = 1.0  # change of direction or logarithm of the speed in the first step
+MAX_GROWTH = 2.0  # of the length beyond what fits the step before
 MIN_FIRST_ACCELERATION = 1e-3  # of the loading: the first step is no longer than it makes with this acceleration
 MAX_CHAIN_ANGLE = 0.7  # rad: most that the chain's fastest vibration may turn during one step
 # of the length of a plain step: time scale at which a slide that gathers speed leaves stretched time,
 LEAVING_TIME_FRACTION = 0.3
 MIN_LEAVING_TIME = 0.05  # of the period (Demand.period): and its lower bound
-MAX_STOPPED_SPEED = 1e-5  # of the loading's velocity: below it a platform that friction can hold has stopped
+# of the loading's velocity times the root of the tolerance: below it a platform that friction can hold has stopped
+MAX_STOPPED_SPEED = 0.03
 MAX_DAMPED_JUMP = 0.01  # of the tolerance, in dampers: what rest may change in an acceleration by taking this speed
 MIN_FOLLOWED_SPEED = 1e-10  # of the loading's velocity: a stop whose arc decides the peak is followed down to it
 DECISIVE_ARC_FRACTION = 0.97  # of the peak so far: an arc that stays below it decides nothing
 LEVEL_TOLERANCE = 1e-9  # of ln v: a slide this close to v_reg has come down to it
 EARLY_CROSSING = 1e-9  # of a step: a crossing this early means that the phase begins on the level
-MAX_FROZEN_TIME = 1e-4  # of the period: time left at a stop within which forces count as constant
+# of the period times the root of the tolerance: time left at a stop within which forces count as constant
+MAX_FROZEN_TIME = 0.01
 MAX_FRICTION_CHANGE = 1e-12  # of the rise of friction: while it changes by less down to rest, it counts as constant
 MIN_STEADY_TIMES = 2.0  # a slide at almost constant speed lasts: times those within which a slide counts as stopping
 MAX_STRAIGHT_TURN = 1e-6  # of the friction: a slide with a smaller sideways acceleration turns back on its own line
@@ -53,7 +56,7 @@ def begin_stopping(system: System, work: Work, demand: Demand) -> None:
     ex, ey = heading(work.angle, system.axes)
     ax, ay, _, ratio = directed(system, load, exp(work.log_speed), ex, ey)
     begin_with(system, work, ground, ax, ay, STOPPING)
-    work.log_ratio, work.entered = log(ratio), work.log_speed
+    work.log_ratio, work.entered, work.fitting = log(ratio), work.log_speed, 0.0
     work.stretched = FIRST_STEP / max(sqrt(ax * ax + ay * ay), MIN_FIRST_ACCELERATION * demand.unit)
 
 
@@ -100,7 +103,10 @@ def after_stopping_step(system: System, work: Work, demand: Demand, h: float, fa
     last = STAGES - 1
     work.time, work.angle = work.turning[CLOCK, last], work.turning[DIRECTION, last]
     work.log_speed, work.log_ratio = work.turning[SIGMA, last], log(work.turning[RATIO, last])
-    work.stretched = h * factor
+    # the motion becomes smoother towards the stop: what fits grows on as it did
+    growth = h * factor / work.fitting if work.fitting > 0.0 else 1.0
+    work.fitting = h * factor
+    work.stretched = work.fitting * min(max(growth, 1.0), MAX_GROWTH)
     if work.time >= work.end - 10.0 * MIN_STEP * demand.period:
         return STOPPING
     if system.law != REGULARIZED:
@@ -127,7 +133,7 @@ def after_stop(system: System, work: Work, demand: Demand) -> int:
     work.left = 0.0
     unit = demand.unit * demand.period / (2.0 * pi)
     speed = exp(work.log_speed)
-    if speed > MAX_STOPPED_SPEED * unit:
+    if speed > MAX_STOPPED_SPEED * sqrt(demand.tolerance) * unit:
         return STOPPING
     if speed * system.damping_rate > MAX_DAMPED_JUMP * demand.tolerance * demand.unit:
         return STOPPING
@@ -144,7 +150,7 @@ def after_stop(system: System, work: Work, demand: Demand) -> int:
     if along < 0.0:
         work.left = -speed / along
     changing = system.rate * speed > MAX_FRICTION_CHANGE
-    if along >= 0.0 or speed > MAX_FROZEN_TIME * demand.period * -along or changing:
+    if along >= 0.0 or speed > MAX_FROZEN_TIME * sqrt(demand.tolerance) * demand.period * -along or changing:
         return STOPPING if speed > SMALLEST_SPEED else REST
     if demand.cutoff == 0.0:
         arc = arc_peak(system, load, work.angle, SETTLED_FRACTION**2 * work.best[0])
