@@ -58,7 +58,10 @@ def largest_square(work: Work, rows: int, low: float, high: float) -> tuple[floa
             best, place = value, theta
         if not curvature < 0.0:
             break
-        theta = min(max(theta - slope / curvature, left), right)
+        next_theta = min(max(theta - slope / curvature, left), right)
+        if next_theta == theta:
+            break
+        theta = next_theta
     return best, place
 
 

@@ -108,9 +108,10 @@ def rest_excess_printed(system: System, load: Load) -> float:
 @compiled
 def heading(angle: float, axes: int) -> tuple[float, float]:
     """Cosine and sine of a slip direction; along x exactly where the motion stays in that plane."""
+    cosine, sine = cos(angle), sin(angle)  # one call of the library
     if axes == 1:
-        return (1.0 if cos(angle) > 0.0 else -1.0), 0.0
-    return cos(angle), sin(angle)
+        return (1.0 if cosine > 0.0 else -1.0), 0.0
+    return cosine, sine
 
 
 @compiled
