@@ -279,8 +279,7 @@ def _record(
         result.max_displacement = max(result.max_displacement, displacement)
     time, slip = motion.time, motion.slip
     if result.undisturbed > time[0]:
-        first = int(np.searchsorted(time, result.undisturbed))
-        time, slip, size, distance = time[first:], slip[first:], size[first:], distance[first:]
+        time, slip, size, distance = _from(result.undisturbed, time, slip, size, distance)
     if read and len(time):
         result.peaks.add(time, size, slip)
         _record_settling(result, time, size, distance)
@@ -289,6 +288,17 @@ def _record(
     if not model.allows_liftoff:
         result.min_load = min(result.min_load, -gap / level.penetration)
     return True
+
+
+def _from(instant: float, time: Array, *columns: Array) -> list[Array]:
+    """Times (T,) and columns from `instant` on, interpolated there: it is behind the first row and seldom a row."""
+    first = int(np.searchsorted(time, instant))
+    if first == len(time):
+        return [time[first:], *(column[first:] for column in columns)]
+    share = (instant - time[first - 1]) / (time[first] - time[first - 1])
+    begin = [column[first - 1] + share * (column[first] - column[first - 1]) for column in columns]
+    rows = [np.concatenate([value[None], column[first:]]) for value, column in zip(begin, columns)]
+    return [np.append(instant, time[first:]), *rows]
 
 
 def _record_settling(result: EngineRun, time: Array, size: Array, displacement: Array) -> None:

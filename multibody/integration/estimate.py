@@ -4,7 +4,7 @@ Error of a run's peaks, from the same run at coarser levels.
 Peaks in smooth motion converge by a factor of four from level to level. Those at stops converge by two to four. Where
 the contact is slower than friction relaxes (see `level`) a level removes at most 1 / (2 + x) of the error, x being that
 of the coarser level. A difference that is smaller than convergence by four explains is accidental: errors cancel. It
-does not count.
+does not count. Two changes of opposite sign show no rate.
 """
 
 from __future__ import annotations
@@ -55,7 +55,8 @@ def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> 
         safety, earlier = SAFETY_THREE_LEVELS, np.abs(before - peaks[-3].value)
         rate = earlier / np.maximum(change, SMALLEST_CHANGE)
         change = np.where(rate > MAX_CREDIBLE_RATE, earlier / MIN_RATE, change)
-        rate = np.where(rate > MAX_CREDIBLE_RATE, MIN_RATE, np.clip(rate, MIN_RATE, MAX_RATE))
+        turned = np.sign(last - before) != np.sign(before - peaks[-3].value)
+        rate = np.where(turned | (rate > MAX_CREDIBLE_RATE), MIN_RATE, np.clip(rate, MIN_RATE, MAX_RATE))
     change = safety * change * (1.0 + lag(levels[-2], model)) / (rate - 1.0)
     level_error: Array = np.maximum(change, levels[-1].error_floor * last)
     unsolved = levels[-1].newton * levels[-1].load

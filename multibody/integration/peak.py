@@ -79,8 +79,10 @@ class Peaks:
         row = int(size.argmax())
         if size[row] <= CANDIDATE_FRACTION * self.value[body]:
             return
+        unresolved = _unresolved(time, size, row, corners)
         for stretch in _neighbors(row, len(size), corners, bends):
-            self._offer(body, *_smooth(time, size, row, *stretch))
+            value, error, instant = _smooth(time, size, row, *stretch)
+            self._offer(body, value, max(error, unresolved), instant)
         for left in ready:
             if max(size[left], size[left + 1]) > CANDIDATE_FRACTION * self.value[body]:
                 self._offer(body, *_corner(time, size, slip, left, self._threshold, corners))
@@ -128,6 +130,24 @@ def _smooth(
             third = (float(size[extra] - size[row]) - (slope + curvature * s) * s) / (s * (s - t[0]) * (s - t[1]))
             error = max(error, abs(third * summit * (summit - t[0]) * (summit - t[1])))
     return float(size[row]) + rise, error, float(time[row]) + summit
+
+
+def _unresolved(time: Array, size: Array, row: int, corners: Rows) -> float:
+    """
+    Error of a sample alone between two corners: what the corners before it have changed, from the samples before those.
+
+    Supports that pass v_reg one by one make corners closer than the steps, which are too long for all that they change.
+    """
+    if row - 1 not in corners or row not in corners:
+        return 0.0
+    last = row - 1
+    while last - 1 in corners:
+        last -= 1
+    first = max(_side(last, len(size), corners)[0], last - 2)
+    if first == last:  # the begin of the motion, or seen before with more samples
+        return 0.0
+    before = slice(first, last + 1)
+    return abs(_extrapolated(time[before], size[before], float(time[row])) - float(size[row]))
 
 
 def _corner(

@@ -7,9 +7,9 @@ normal forces follow. Constraints are the three moments of the vertical gaps tha
 supports that is every gap by itself. A link keeps the distance of its
 two ends along the bars and the tilt between its bodies; shear and twist are elastic. All its forces act at the middle
 between the two ends, on both bodies. Bars with an axial stiffness are elastic in tension and bending, too; where they
-shorten the bodies are held apart by a leaning rod. Dry friction is linear in the slip velocity below v_reg. Supports
-and centers of mass are anywhere in the plane; the links stand on the axis through its origin. Boxes and links may be
-at an angle.
+shorten the bodies are held apart by a leaning rod. At rest they are straight under what stands on them. Dry friction is
+linear in the slip velocity below v_reg. Supports and centers of mass are anywhere in the plane; the links stand on the
+axis through its origin. Boxes and links may be at an angle.
 """
 
 from __future__ import annotations
@@ -176,7 +176,8 @@ def _solved(
         if tension > 0.0:
             for k in range(row, row + 3):
                 matrix[k, k] = 1.0
-            wring = wring - bending * (relative[0] * axes[:, 0] + relative[1] * axes[:, 1])
+            for k in range(2):
+                wring = wring - (bending * relative[k] - bars[i, 4 + k]) * axes[:, k]
             if rod == 0.0:
                 pull = pull + axes[:, 2] * (load - tension * ends[2])
             else:
@@ -244,8 +245,12 @@ class SpatialMotion:
     drift: float  # m, largest distance of a mean gap from zero
 
 
-def _beams(scene: Scene, link: int, bars: Bars) -> tuple[Array, float, tuple[float, float, float, float]]:
-    """Shear (2, 2) and twist of clamped beams; tension, bending, length of the rod or 0, and load, in SI units."""
+def _beams(scene: Scene, link: int, bars: Bars) -> tuple[Array, float, tuple[float, ...]]:
+    """
+    Shear (2, 2) and twist of clamped beams, in SI units.
+
+    Then tension, bending, length of the rod or 0, load, and the two moments that hold centers of mass off the axis.
+    """
     load = GRAVITY * scene.masses[link + 1 :].sum()
     each, beam, length = load / bars.count, bars.bending_stiffness, bars.length
     k, bent, slope = 12.0 * beam / length**3, beam / length, 1.2 / length
@@ -263,7 +268,8 @@ def _beams(scene: Scene, link: int, bars: Bars) -> tuple[Array, float, tuple[flo
     bending = bars.count * bent + 0.5 * tension * bars.spread**2 + 0.25 * load * (length - rod)
     shear = bars.count * k + (load / rod if rod else 0.0)
     twist = bars.count * (k * bars.spread**2 + (bars.torsional_stiffness or 0.0) / length)
-    return shear * np.eye(2), twist, (tension, bending, rod, load)
+    along_x, along_y = GRAVITY * scene.masses[link + 1 :] @ scene.offsets[link + 1 :]
+    return shear * np.eye(2), twist, (tension, bending, rod, load, along_y, -along_x)
 
 
 def spatial_motion(scene: Scene, phase: ArrayLike, regularization: float, tolerance: float = 1e-8) -> SpatialMotion:
@@ -282,7 +288,7 @@ def spatial_motion(scene: Scene, phase: ArrayLike, regularization: float, tolera
     shear = [r[:2, :2] @ np.diag(k) @ r[:2, :2].T for r, k in zip(angled[1:], scene.stiffness)]
     shear = np.array(shear).reshape(-1, 2, 2)
     twist = (ring**2).sum(axis=1).mean() * scene.stiffness.mean(axis=1)
-    bars = np.zeros((bodies - 1, 4))
+    bars = np.zeros((bodies - 1, 6))
     for link, body in enumerate(scene.bodies[1:]):
         if body.bars is not None and body.bars.axial_stiffness is not None:
             shear[link], twist[link], bars[link] = _beams(scene, link, body.bars)

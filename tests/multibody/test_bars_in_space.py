@@ -162,6 +162,16 @@ def test_factors_agree_with_newton_euler_equations(name: str) -> None:
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("name", ["softened", "shortening"])
+def test_a_body_off_the_axis_of_its_bars_agrees_with_newton_euler_equations(name: str) -> None:
+    scene = building(name, **{"bodies.1.offset": [0.1, -0.05], "bodies.1.yaw": 0.5})
+    engine = multibody.amplification(scene, [(2.0, 0.7)], model="spatial")
+    independent = spatial_motion(scene, (2.0, 0.7), 1e-3, tolerance=1e-6)
+    assert engine.status[0] == Outcome.OK
+    assert (np.abs(engine.mu[0] - independent.mu) <= engine.error[0]).all(), (engine.mu, independent.mu, engine.error)
+
+
+@pytest.mark.long
 def test_three_storeys_on_bars_and_a_stiff_link_agree_with_newton_euler_equations() -> None:
     platform, first = building("shortening").bodies
     second = {"mass": 0.5, "height": 2.2, "size": SIZE, "stiffness": [30.0, 20.0]}

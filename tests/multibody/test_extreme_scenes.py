@@ -13,10 +13,16 @@ import reference
 from multibody.integration import candidate, one_run
 from multibody.integration.adaptive import EngineRun, run_adaptively
 from multibody.integration.constant_step import Engine
-from multibody.integration.estimate import ERROR_PER_WARPING_LOAD, MIN_ERROR_PER_WARPING_LOAD, measured_per_load
+from multibody.integration.estimate import (
+    ERROR_PER_WARPING_LOAD,
+    MIN_ERROR_PER_WARPING_LOAD,
+    from_levels,
+    measured_per_load,
+)
 from multibody.integration.level import REAL_WARPING_COMPLIANCE, Level, for_small_peaks
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import Peaks
+from multibody.models.assembly import assemble
 from reference.problem import Outcome, Scene, load_scene
 
 PHASE = [(0.3, 1.1)]
@@ -236,3 +242,15 @@ def test_the_error_covers_what_supports_that_open_do(supports: int) -> None:
     strict = multibody.amplification(scene, PHASE, "spatial", V_REG, 1e-3)
     assert [loose.status[0], strict.status[0]] == [Outcome.OK] * 2
     assert (np.abs(loose.mu - strict.mu) <= loose.error + strict.error).all()
+
+
+def test_changes_of_opposite_sign_show_no_rate_of_convergence() -> None:
+    scene = load_scene("fig3-I")
+    model, levels = assemble(scene, "translational", V_REG), multibody.levels(scene)[:3]
+    errors = []
+    for last in (0.9, 1.1):  # by a quarter of the change before
+        peaks = [Peaks(1, V_REG) for _ in levels]
+        for each, value in zip(peaks, (0.6, 1.0, last)):
+            each.value[:] = value
+        errors.append(float(from_levels(peaks, levels, model)[0]))
+    assert errors[0] == pytest.approx(3.0 * errors[1], rel=1e-3)

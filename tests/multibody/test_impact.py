@@ -12,10 +12,10 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import multibody
-from multibody.integration.adaptive import EngineRun
+from multibody.integration.adaptive import Budget, EngineRun
 from multibody.integration.constant_step import Engine, Motion
 from multibody.integration.one_run import PhasePair
-from multibody.integration.openings import GAP_TOLERANCE, Openings
+from multibody.integration.openings import GAP_TOLERANCE, IMPACT_TIME, Openings
 from multibody.integration.peak import Peaks
 from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation
@@ -152,6 +152,28 @@ def test_without_restitution_the_first_landing_is_the_last() -> None:
         intervals = motion.extra["liftoff"][motion.extra["liftoff"][:, 0] == support][:, 1:]
         assert len(intervals) == 1
         assert (np.abs(intervals[0] - [begin, end]) < [2e-4, 3e-5]).all()
+
+
+def test_the_largest_value_where_counting_begins_behind_an_impact_converges_by_a_factor_of_four() -> None:
+    """A body lands on a plate whose acceleration falls: nothing counted before or later is as large."""
+    push, phase, pace = 20.0, 0.5 * math.pi, 2.0 * math.pi / 0.4
+    scene = bouncing(0.0).with_values({"duration": 0.5, "excitation.amplitudes": [[0.0, 0.0], [0.0, 0.0], [push, 0.0]]})
+    begin = (math.acos(-GRAVITY / push) - phase) / pace
+
+    def height(t: float) -> float:
+        rise, speed = push * math.cos(pace * begin + phase), push * math.sin(pace * begin + phase)
+        swing = push * math.cos(pace * t + phase) - rise + pace * speed * (t - begin)
+        return swing / pace**2 - 0.5 * GRAVITY * (t - begin) ** 2
+
+    landing = float(brentq(height, begin + 0.2, begin + 0.5, xtol=1e-13))
+    counted = landing + IMPACT_TIME * math.sqrt(scene.radius / GRAVITY)
+    model = assemble(scene, "spatial", 1e-3)
+    pair = PhasePair(scene, model, np.array([phase, 0.0]), whole=True)
+    runs = [pair.at_level(level, Budget(1e6)) for level in multibody.levels(scene, "spatial")[:3]]
+    peaks = np.array([run.peaks.value[0] for run in runs]) * model.units.acceleration
+    errors = np.abs(peaks / (push * math.cos(pace * counted + phase)) - 1.0)
+    assert errors[0] < 1e-3
+    assert (errors[1:] < errors[:-1] / 3.5).all(), errors
 
 
 def tower(ring: float) -> Scene:

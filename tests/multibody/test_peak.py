@@ -62,6 +62,23 @@ def test_the_rate_of_slip_may_jump_at_the_corner(chunks: int, corner: float) -> 
     assert peaks.sampling[0] < 5e-4
 
 
+@pytest.mark.parametrize("chunks", [1, 2, 7])
+def test_a_sample_between_two_corners_has_what_the_corner_before_it_changed_as_error(chunks: int) -> None:
+    """Steps that are longer than corners are apart resolve neither: levels then agree by accident."""
+    time, corners = np.arange(0.0, 1.0, 0.02), np.array([0.511, 0.529])
+
+    def signal(t: np.ndarray) -> np.ndarray:
+        return 1.0 + np.where(t < corners[0], 2.0, np.where(t < corners[1], 0.5, -3.0)) * (t - corners[0])
+
+    peaks = Peaks(1, 1.0)
+    edges = np.linspace(0, len(time) - 1, chunks + 1).astype(int)
+    for begin, end in pairwise(edges):
+        t = time[begin : end + 1]
+        peaks.add(t, signal(t)[:, None], 1.0 + t[:, None] - corners)
+    assert peaks.instant[0] == pytest.approx(0.52)
+    assert peaks.sampling[0] == pytest.approx((2.0 - 0.5) * (0.52 - corners[0]))
+
+
 def test_a_corner_that_is_not_looked_for_is_misread() -> None:
     def signal(t: np.ndarray) -> np.ndarray:
         return np.where(t < 0.511, 1.0 + 2.0 * (t - 0.511), np.exp(-9.0 * (t - 0.511)))
