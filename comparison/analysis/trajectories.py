@@ -243,7 +243,7 @@ def thinned(time: Array, values: Array, peaks: NDArray[np.intp], share: float = 
     """
     if len(time) < 3:
         return np.arange(len(time))
-    scaled = values / swing(values)
+    scaled = np.ascontiguousarray((values / swing(values)).T)  # several times as fast as row by row
     kept = np.unique(np.concatenate([[0, len(time) - 1], peaks]))
     spans = list(zip(kept[:-1].tolist(), kept[1:].tolist()))
     indices = set(kept.tolist())
@@ -252,7 +252,8 @@ def thinned(time: Array, values: Array, peaks: NDArray[np.intp], share: float = 
         if b - a < 2:
             continue
         part = (time[a + 1 : b] - time[a]) / (time[b] - time[a])
-        missed = np.abs(scaled[a + 1 : b] - scaled[a] - part[:, None] * (scaled[b] - scaled[a])).max(axis=1)
+        start, end = scaled[:, a, None], scaled[:, b, None]
+        missed = np.abs(scaled[:, a + 1 : b] - start - part * (end - start)).max(axis=0)
         worst = int(np.argmax(missed))
         if missed[worst] > share:
             middle = a + 1 + worst

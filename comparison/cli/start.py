@@ -43,6 +43,7 @@ def start(module: str) -> NoReturn:
         Full name of the module whose `main()` is the command.
     """
     gc.set_threshold(*COLLECTIONS)
+    sys.modules["__main__"].__spec__ = __spec__  # what worker processes load again: not the whole command
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:

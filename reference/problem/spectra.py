@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.problem.build_cache import cached_on_disk
-from reference.problem.compiled_parts import compiled_part
 from reference.problem.demands import ANSWERED
 from reference.problem.ranges import Range, checked_array, checked_number
 from reference.problem.result import Trajectory
@@ -102,12 +101,16 @@ def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damp
         nothing = np.full((trajectory.position.shape[1], 2, len(period)), np.nan)
         return FloorSpectra(period, damping, nothing, nothing.copy())
 
+    series = _power_series(damping)
+
     def spectra(motion: Trajectory, first: int = 0, every: int = 1) -> Array:
         last = len(motion.time) - 1
-        kept = np.unique([0, *range(first, last, every), last])
-        floors = np.moveaxis(motion.absolute_acceleration[kept, :, :2], 0, -1).reshape(-1, len(kept))
-        largest = _largest_displacements(motion.time[kept], np.ascontiguousarray(floors.T), period, damping)
-        return (2.0 * math.pi / period) ** 2 * largest.reshape(-1, 2, len(period))
+        kept = np.arange(last + 1) % every == first
+        kept[[0, last]] = True
+        floors = motion.absolute_acceleration[kept, :, :2]
+        floors = np.ascontiguousarray(floors.reshape(len(floors), -1))
+        largest: Array = _largest_accelerations(motion.time[kept], floors, period, damping, series)
+        return largest.reshape(-1, 2, len(period))
 
     value, accuracy = spectra(trajectory), trajectory.accuracy
     if accuracy is None:
@@ -120,63 +123,57 @@ def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damp
 
 
 @cached_on_disk(__file__, nogil=True)
-def _largest_displacements(time: Array, floor: Array, period: Array, damping: float) -> Array:
-    """Largest displacement (C, P), m, of oscillators on floors (T, C), m/s^2, relative to these."""
+def _largest_accelerations(time: Array, floor: Array, period: Array, damping: float, series: Array) -> Array:
+    """
+    Largest pseudo-acceleration (C, P), m/s^2, of oscillators on floors (T, C), m/s^2.
+
+    y'' + 2 damping y' + y = -floor, with y the displacement times the square of the natural frequency and derivatives
+    by the angle. series: as `_power_series`.
+    """
     count = floor.shape[1]
     largest = np.zeros((count, period.shape[0]))
-    place, speed = np.zeros(count), np.zeros(count)  # speed over the natural frequency
+    place, speed = np.zeros(count), np.zeros(count)
     for p in range(period.shape[0]):
         frequency = 2.0 * math.pi / period[p]
         place[:], speed[:] = 0.0, 0.0
-        before, steps = -1.0, 1
-        a = b = c = d = from_start = from_change = speed_start = speed_change = 0.0
         for n in range(time.shape[0] - 1):
             angle = frequency * (time[n + 1] - time[n])
-            if angle != before:
-                before = angle
-                steps = max(1, math.ceil(angle / MAX_ANGLE))
-                a, b, c, d, from_start, from_change, speed_start, speed_change = _transition(angle / steps, damping)
+            steps = max(1, math.ceil(angle / MAX_ANGLE))
+            angle /= steps
+            b = f = r = 0.0
+            for k in range(TERMS - 1, -1, -1):
+                b, f, r = b * angle + series[k, 0], f * angle + series[k, 1], r * angle + series[k, 2]
+            b, f, r = b * angle, f * angle, r * angle**2
+            s = f * angle
+            d = 1.0 - s - 2.0 * damping * b
             for k in range(steps):
                 for i in range(count):
-                    change = (floor[n + 1, i] - floor[n, i]) / (steps * frequency**2)
-                    start = floor[n, i] / frequency**2 + k * change
-                    x, v = place[i], speed[i]
-                    x1 = a * x + b * v - from_start * start - from_change * change
-                    v1 = c * x + d * v - speed_start * start - speed_change * change
-                    top = abs(x1)
+                    change = (floor[n + 1, i] - floor[n, i]) / steps
+                    y, v = place[i], speed[i]
+                    pulled = y + floor[n, i] + k * change
+                    y1 = y - s * pulled + b * v - r * change
+                    v1 = d * v - b * pulled - f * change
+                    top = abs(y1)
                     if v * v1 < 0.0:  # it turns: its speed is taken as linear
-                        top = max(top, abs(x + 0.5 * v * v / (v - v1) * (angle / steps)))
+                        top = max(top, abs(y + 0.5 * v * v / (v - v1) * angle))
                     largest[i, p] = max(largest[i, p], top)
-                    place[i], speed[i] = x1, v1
+                    place[i], speed[i] = y1, v1
     return largest
 
 
-@compiled_part(nogil=True)
-def _transition(angle: float, damping: float) -> tuple[float, float, float, float, float, float, float, float]:
+def _power_series(damping: float) -> Array:
     """
-    One step of x'' + 2 damping x' + x = -(start + change s / angle), over the angle s: power series of what is added.
+    Coefficients (TERMS, 3) of the motion from rest as power series in the angle, from the lowest power on.
 
-    x1 = a x + b v - from_start start - from_change change, and v1 likewise. The functions are sums of
-    angle^k f_k / k!, with f_k the k-th derivative at the start; of the forcing, those of a unit ramp over the step.
+    Columns: under a unit impulse, over the angle; under a constant 1, over the square of the angle; under a ramp up to
+    1, over the same. All motions of a step are sums of these. The k-th derivative at the start, of the motion under a
+    constant, is f_k: 0, 0, 1, and from there on -2 damping f_(k-1) - f_(k-2). The impulse is the derivative of the
+    constant, the ramp its integral over the angle.
     """
-    a, b, c, d = 1.0, 0.0, 0.0, 1.0
-    from_start = from_change = speed_start = speed_change = 0.0
-    # derivatives (k, k + 1) at the start of the free motion from x = 1, from v = 1, under a constant, under a ramp
-    x0, x1 = 1.0, 0.0
-    v0, v1 = 0.0, 1.0
-    s0, s1 = 0.0, 0.0
-    r0, r1 = 0.0, 0.0
-    power = 1.0
-    for k in range(1, TERMS + 2):
-        power *= angle / k
-        constant = 1.0 if k == 1 else 0.0
-        ramp = 1.0 / angle if k == 2 and angle > 0.0 else 0.0
-        x0, x1 = x1, -2.0 * damping * x1 - x0
-        v0, v1 = v1, -2.0 * damping * v1 - v0
-        s0, s1 = s1, constant - 2.0 * damping * s1 - s0
-        r0, r1 = r1, ramp - 2.0 * damping * r1 - r0
-        a, c = a + power * x0, c + power * x1
-        b, d = b + power * v0, d + power * v1
-        from_start, speed_start = from_start + power * s0, speed_start + power * s1
-        from_change, speed_change = from_change + power * r0, speed_change + power * r1
-    return a, b, c, d, from_start, from_change, speed_start, speed_change
+    derivatives = [0.0, 1.0]
+    for _ in range(TERMS - 1):
+        derivatives.append(-2.0 * damping * derivatives[-1] - derivatives[-2])
+    power = np.arange(1.0, TERMS + 1.0)
+    impulse = np.array(derivatives[1:]) / np.cumprod(power)
+    constant = impulse / (power + 1.0)
+    return np.column_stack([impulse, constant, constant / (power + 2.0)])

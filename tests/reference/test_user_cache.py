@@ -86,7 +86,7 @@ def test_every_function_that_is_kept_on_disk_is_kept_in_the_user_s_cache() -> No
     ]
     places = {dispatcher.__name__: dispatcher.stats.cache_path for dispatcher in dispatchers}
     kept = {name: Path(place) for name, place in places.items() if place is not None}
-    assert {"runs", "_largest", "_ground_peaks", "_largest_displacements"} <= set(kept)
+    assert {"runs", "_largest", "_ground_peaks", "_largest_accelerations"} <= set(kept)
     parent = Path(os.environ["NUMBA_CACHE_DIR"]) if "NUMBA_CACHE_DIR" in os.environ else user_cache()
     assert parent is not None
     assert [name for name, place in kept.items() if parent not in place.parents] == []

@@ -26,6 +26,7 @@ HEIGHT_COLORS = "cividis"  # read alike with and without color vision deficiency
 SIGN_COLORS = "RdBu_r"
 QUARTERS = np.arange(5) * np.pi / 2.0
 QUARTER_NAMES = ["0", "π/2", "π", "3π/2", "2π"]
+PNG = {"compress_level": 3}  # of the dense surfaces: smaller than with the usual 6, in 0.6 of the time
 
 
 def figure_name(scene: Scene, body: int, pair: Pair) -> str:
@@ -51,7 +52,7 @@ def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: P
         _surface(axes, *closed(data["alpha1"].values, data["mu"].values), low, high)
         axes.set_title(f"$\\mu_{{{body}}}$, {mathtext(model.title)}", fontsize=11, pad=0)
     _map(figure, figure.add_axes((0.70, 0.14, 0.22, 0.65)), pair_step(surfaces, scene.name, pair, body))
-    figure.savefig(path)
+    figure.savefig(path, pil_kwargs=PNG)
 
 
 def save(figure: Figure, path: Path) -> None:

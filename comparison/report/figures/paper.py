@@ -15,7 +15,7 @@ from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
 from comparison.analysis.surfaces import common_phases
 from comparison.report.figures.file_names import figure_file, with_ending
-from comparison.report.figures.pairs import QUARTER_NAMES, QUARTERS, closed
+from comparison.report.figures.pairs import PNG, QUARTER_NAMES, QUARTERS, closed
 from comparison.study.study import Study
 from comparison.wording import mathtext
 from reference.problem import Scene
@@ -57,7 +57,7 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
                 draw_surface(axes, phase, height, (low, high), rf"$\mu_{{{row + 1}}}$")
                 axes.set_title(f"({letter}) $\\mu_{{{row + 1}}}$, {mathtext(model.title)}", y=1.0, fontsize=9.0)
         figure.savefig(with_ending(path, ".pdf"), metadata={"CreationDate": None})
-        figure.savefig(path, dpi=RESOLUTION)
+        figure.savefig(path, dpi=RESOLUTION, pil_kwargs=PNG)
 
 
 def draw_surface(axes: Axes, phase: np.ndarray, height: np.ndarray, limits: tuple[float, float], name: str) -> None:
