@@ -82,7 +82,8 @@ def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool 
     after = peaks_at(system, phases, demand, tolerance)
     known = demand.early & (after.code == SOLVED)
     until = np.where(known, after.peaked + EVENT_MARGIN * demand.period, system.duration)
-    before = peaks_at(system, phases, demand._replace(early=False), TOLERANCE_RATIO * tolerance, until)
+    coarser = demand._replace(early=False, damped_weight=1.0)
+    before = peaks_at(system, phases, coarser, TOLERANCE_RATIO * tolerance, until)
     peaks, disagree = _judged(before, after, tolerance, system, demand)
     unfinished = np.flatnonzero(disagree)
     while len(unfinished) and tolerance > MIN_STEP_TOLERANCE:

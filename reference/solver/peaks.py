@@ -97,18 +97,18 @@ def take_peaks(work: Work, low: float, high: float) -> bool:
         large = large or top >= SETTLED_FRACTION**2 * work.best[i]
         if top > work.best[i]:
             work.best[i] = top
-            work.reading_error[i] = interpolation_error(place) * work.defect[i]
+            work.reading_error[i] = interpolation_error(place) * work.defect[i] + work.damped[i]
     return large
 
 
 @compiled
 def take_limit(work: Work, squared: float) -> None:
-    """Raises the platform's largest acceleration by a one-sided limit, which is read without an error."""
+    """Raises the platform's largest acceleration by a one-sided limit, which is read without an error of its own."""
     if squared >= SETTLED_FRACTION**2 * work.best[0]:
         work.peaked = work.settled = work.time
     if squared > work.best[0]:
         work.best[0] = squared
-        work.reading_error[0] = 0.0
+        work.reading_error[0] = work.damped[0]
 
 
 @compiled

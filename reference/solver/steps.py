@@ -208,9 +208,9 @@ def absolute_accelerations(system: System, work: Work, contact: int) -> None:
 
 
 @compiled
-def step_error(system: System, work: Work, tolerance: float) -> float:
+def step_error(system: System, work: Work, tolerance: float, weight: float) -> float:
     """
-    Error of the absolute accelerations inside the step over `scale` (N,), the largest over the bodies.
+    Error of the absolute accelerations inside the step, times `weight`, over `scale` (N,), the largest over the bodies.
 
     The interpolating polynomial, evaluated at the start of the step, misses the acceleration known there by the
     interpolation error of the step, which falls like h^7. What rounding in the chain's channels may do is at most
@@ -234,7 +234,7 @@ def step_error(system: System, work: Work, tolerance: float) -> float:
                 defect += AT_START[k] * total[i, axis, k]
             squared += defect * defect
         work.defect[i] = sqrt(squared)
-        error = (work.defect[i] - noise) / work.scale[i]
+        error = weight * (work.defect[i] - noise) / work.scale[i]
         worst = max(worst, min(error, tolerance) if work.defect[i] <= channels else error)
     if system.radius == inf:
         error = (relative_defect(work) - channels) / work.scale[0]

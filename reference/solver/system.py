@@ -98,6 +98,7 @@ class Demand(NamedTuple):
     cutoff: float  # m/s, v_c of the resolved peak; 0 for the supremum
     step_limit: int
     early: bool  # whether a run ends where nothing asked for can come any more (look_ahead.py)
+    damped_weight: float = 30.0  # of the error of a step that damps a vibration, over that of a step that follows it
 
 
 def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = False, axes: int = 2) -> System:

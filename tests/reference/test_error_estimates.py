@@ -8,7 +8,7 @@ from chains import chain
 from oracle import set_valued_run
 
 import reference
-from reference.problem import phase_grid
+from reference.problem import Scene, phase_grid
 
 SCENES = {
     "fig3-I": reference.load_scene("fig3-I"),
@@ -55,6 +55,32 @@ def test_a_peak_at_the_start_of_rest_is_that_of_an_independent_code(name):
     found = reference.amplification(SCENES[name], [phase], cutoff=1e-3)
     expected = set_valued_run(SCENES[name], phase, "exact", [1e-3], 1e-9).mu[0]
     assert np.all(np.abs(found.mu[0] - expected) <= found.error[0])
+
+
+def test_the_error_counts_a_vibration_that_both_runs_damp():
+    """The stiff link on top of four bodies vibrates undamped, by less than the tolerance inside a step."""
+    scene = Scene.model_validate(
+        {
+            "title": "stiff link on top",
+            "duration": 3.9,
+            "isolator": {"radius": 0.79, "friction": 0.29},
+            "bodies": [
+                {"mass": 2.9},
+                {"mass": 0.46, "period": [0.18, 0.13]},
+                {"mass": 0.58, "period": [1.2, 1.7]},
+                {"mass": 2.1, "period": [0.055, 0.047]},
+            ],
+            "excitation": {
+                "amplitudes": [[-0.4, -0.18], [0.64, -1.3], [-0.15, 0.39]],
+                "periods": [1.0, 0.77],
+                "decay": [0.0, 0.058],
+            },
+        }
+    )
+    phase = (3.7, 0.4)
+    found = reference.amplification(scene, [phase], cutoff=1e-3)
+    truth = reference.amplification(scene, [phase], cutoff=1e-3, tolerance=1e-8)
+    assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error)
 
 
 def test_the_error_holds_for_99_percent_and_is_not_far_too_large():

@@ -62,6 +62,7 @@ from reference.solver.travel import travel_reached
 from reference.solver.work import REACTION, SPEED2, Work
 
 FRICTION_ROUNDING = 1e-14  # of the friction limit: no acceleration is closer, a difference of such forces
+MAX_VIBRATION_ANGLE = 5.0  # rad, by which the chain's fastest vibration turns in a step that follows it
 VARYING_NEWTON_FRACTION = 1e-3  # of that change otherwise, where friction depends on the speed
 
 
@@ -89,7 +90,8 @@ def follow(system: System, work: Work, contact: int, demand: Demand, record: Rec
             if following == contact:
                 set_length(work, contact, FAILURE_SHORTENING * h)
             continue
-        error = step_error(system, work, demand.tolerance)
+        damps = damps_vibration(system, contact, h)
+        error = step_error(system, work, demand.tolerance, demand.damped_weight if damps else 1.0)
         factor = length_factor(error, demand.tolerance)
         if not error <= demand.tolerance:
             set_length(work, contact, min(MAX_SHORTENING, factor) * h)
@@ -103,6 +105,8 @@ def follow(system: System, work: Work, contact: int, demand: Demand, record: Rec
             continue
         parts = counted(system, work, contact, demand, h, since)
         reached = travel_reached(system, work, contact, end)
+        if damps:
+            note_damped(work)
         commit(work, record, end, contact, parts)
         if reached < inf:
             work.time = reached
@@ -113,6 +117,19 @@ def follow(system: System, work: Work, contact: int, demand: Demand, record: Rec
     if contact in (REST, CREEPING):
         note_stick(record, since, work.time)
     return SOLVED, following
+
+
+@compiled
+def damps_vibration(system: System, contact: int, h: float) -> bool:
+    """Whether a step is so long that the method damps the chain's fastest vibration, which nothing else may damp."""
+    return contact != STOPPING and system.fastest * h > MAX_VIBRATION_ANGLE
+
+
+@compiled
+def note_damped(work: Work) -> None:
+    """A vibration that a step damps is as large as the step's defect at most: two runs that damp it agree."""
+    for i in range(work.x.shape[0]):
+        work.damped[i] = max(work.damped[i], work.defect[i])
 
 
 @compiled
