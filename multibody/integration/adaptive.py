@@ -291,8 +291,8 @@ def _record(
 
 
 def _from(instant: float, time: Array, *columns: Array) -> list[Array]:
-    """Times (T,) and columns from `instant` on, interpolated there: it is behind the first row and seldom a row."""
-    first = int(np.searchsorted(time, instant))
+    """Times (T,) and columns from `instant` on, interpolated there: it is behind the first row."""
+    first = int(np.searchsorted(time, instant, side="right"))
     if first == len(time):
         return [time[first:], *(column[first:] for column in columns)]
     share = (instant - time[first - 1]) / (time[first] - time[first - 1])

@@ -23,10 +23,9 @@ from reference.solver.collocation import (
     product,
 )
 from reference.solver.compiled import compiled
-from reference.solver.system import Array, Ground, System
+from reference.solver.system import PLATFORM, Array, Ground, System
 from reference.solver.work import Work
 
-PLATFORM = np.int64(0)  # its number; no literal (system.py)
 TO_CHANNELS_REAL, TO_CHANNELS_IMAGINARY = TO_CHANNELS.real.copy(), TO_CHANNELS.imag.copy()
 ONES_IN_CHANNELS, NODES_IN_CHANNELS = product(TO_CHANNELS, np.stack([np.ones(STAGES), NODES], axis=1)).T.copy()
 # from stage m through channel j to stage k

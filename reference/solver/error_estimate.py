@@ -47,7 +47,9 @@ class Peaks(NamedTuple):
 
 def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float, until: Array | None = None) -> Peaks:
     """
-    One run from rest for every phase pair (M, 2), this tolerance inside the steps; errors are those of reading.
+    One run from rest for every phase pair (M, 2), this tolerance inside the steps.
+
+    Errors are those of reading a peak, with the vibrations damped before it.
 
     until: (M,) s, beyond which runs that do not end early make no step; the end of the motion by default.
     """

@@ -102,13 +102,13 @@ def take_peaks(work: Work, low: float, high: float) -> bool:
 
 
 @compiled
-def take_limit(work: Work, squared: float) -> None:
-    """Raises the platform's largest acceleration by a one-sided limit, which is read without an error of its own."""
-    if squared >= SETTLED_FRACTION**2 * work.best[0]:
+def take_limit(work: Work, body: int, squared: float) -> None:
+    """Raises a body's largest acceleration by a one-sided limit, which is read without an error of its own."""
+    if squared >= SETTLED_FRACTION**2 * work.best[body]:
         work.peaked = work.settled = work.time
-    if squared > work.best[0]:
-        work.best[0] = squared
-        work.reading_error[0] = work.damped[0]
+    if squared > work.best[body]:
+        work.best[body] = squared
+        work.reading_error[body] = work.damped[body]
 
 
 @compiled

@@ -34,7 +34,9 @@ def record_step(work: Work, record: Record, h: float, contact: int) -> None:
 
 @compiled
 def note_stick(record: Record, start: float, end: float) -> None:
-    """One interval of rest; intervals that touch are one."""
+    """One interval of rest, if the motion does not end before it begins; intervals that touch are one."""
+    if end <= start:
+        return
     n = record.made[1]
     if 0 < n <= record.sticks.shape[0] and record.sticks[n - 1, 1] == start:
         record.sticks[n - 1, 1] = end

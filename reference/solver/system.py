@@ -18,6 +18,7 @@ SET_VALUED, REGULARIZED, LUBRICATED = 0, 1, 2
 # conditions for rest
 CONSISTENT, PRINTED = 0, 1
 # numpy integers below: numba would build a function once more for every literal it is called with
+PLATFORM = np.int64(0)  # its number among the bodies
 # what the contact does
 REST, SLIDING, CREEPING, LUBRICATED_SLIDING, STOPPING = cast("tuple[int, ...]", tuple(map(np.int64, range(5))))
 # how the equations of one step, or a whole run, ended

@@ -2,7 +2,8 @@
 The one-sided limits at a stop, closed: every acceleration the platform takes on the way into rest.
 
 As |v| goes to zero forces are frozen, but the slip direction still turns, theta' = a . e_perp(theta), until its
-acceleration points along it. The supremum of (5.1) runs over that whole arc of directions.
+acceleration points along it. The supremum of (5.1) runs over that whole arc of directions. The bodies above the
+platform share its vertical acceleration.
 """
 
 from __future__ import annotations
@@ -28,13 +29,17 @@ def sideways(system: System, load: Load, angle: float) -> float:
 
 
 @compiled
-def squared_total(system: System, load: Load, angle: float) -> float:
-    """Squared absolute acceleration of the platform sliding in the direction `angle` at vanishing speed."""
+def squared_total(system: System, load: Load, angle: float, horizontal: float) -> float:
+    """
+    Squared absolute acceleration of the platform sliding in the direction `angle` at vanishing speed, m^2/s^4.
+
+    horizontal: share of the horizontal part, 0 for the vertical part alone.
+    """
     ax, ay, _, _ = directed(system, load, 0.0, cos(angle), sin(angle))
     az = load.uz
     if not system.small:
         az += (load.px * ax + load.py * ay) / sqrt(system.radius**2 - load.px * load.px - load.py * load.py)
-    return (ax + load.ux) ** 2 + (ay + load.uy) ** 2 + az * az
+    return horizontal * ((ax + load.ux) ** 2 + (ay + load.uy) ** 2) + az * az
 
 
 @compiled
@@ -80,9 +85,9 @@ def turning_ends(system: System, load: Load, inside: float, outside: float) -> f
 
 
 @compiled
-def arc_peak(system: System, load: Load, angle: float, floor: float) -> float:
+def arc_peak(system: System, load: Load, angle: float, floor: float, horizontal: float) -> float:
     """
-    Largest squared absolute acceleration of the platform over the arc that begins at `angle`, m^2/s^4.
+    Largest `squared_total` over the arc that begins at `angle`, m^2/s^4.
 
     Where that stays below `floor`, the largest sample.
     """
@@ -91,7 +96,7 @@ def arc_peak(system: System, load: Load, angle: float, floor: float) -> float:
     stride = (end - angle) / samples
     best, top = -1.0, 0
     for n in range(samples + 1):
-        value = squared_total(system, load, angle + n * stride)
+        value = squared_total(system, load, angle + n * stride, horizontal)
         if value > best:
             best, top = value, n
     if (1.0 + MAX_RISE_BETWEEN_SAMPLES) * best < floor:
@@ -100,15 +105,16 @@ def arc_peak(system: System, load: Load, angle: float, floor: float) -> float:
     high = angle + min(top + 1, samples) * stride
     golden = 0.5 * (sqrt(5.0) - 1.0)
     left, right = high - golden * (high - low), low + golden * (high - low)
-    at_left, at_right = squared_total(system, load, left), squared_total(system, load, right)
+    at_left = squared_total(system, load, left, horizontal)
+    at_right = squared_total(system, load, right, horizontal)
     for _ in range(GOLDEN_SECTIONS):
         best = max(best, max(at_left, at_right))
         if at_left > at_right:
             high, right, at_right = right, left, at_left
             left = high - golden * (high - low)
-            at_left = squared_total(system, load, left)
+            at_left = squared_total(system, load, left, horizontal)
         else:
             low, left, at_left = left, right, at_right
             right = low + golden * (high - low)
-            at_right = squared_total(system, load, right)
+            at_right = squared_total(system, load, right, horizontal)
     return best

@@ -103,7 +103,7 @@ def follow(system: System, work: Work, contact: int, demand: Demand, record: Rec
             set_length(work, contact, end)
             following = contact
             continue
-        parts = counted(system, work, contact, demand, h, since)
+        parts = counted(system, work, contact, demand, end, since)
         reached = travel_reached(system, work, contact, end)
         if damps:
             note_damped(work)
@@ -223,10 +223,9 @@ def counted(system: System, work: Work, contact: int, demand: Demand, h: float, 
         level = log(demand.cutoff)
         expand_level(work, work.levels, level)
         return parts_beyond(system, work, LEVEL, 1.0, work.log_speed + work.log_ratio - level)
-    work.edges[0], work.edges[1] = 0.0, 1.0
-    if contact == REST:
-        work.edges[0] = min(max(since - work.time, 0.0) / h, 1.0)
-    return 1
+    early = max(since - work.time, 0.0) if contact == REST else 0.0
+    work.edges[0], work.edges[1] = early / h, 1.0
+    return 1 if early < h else 0
 
 
 @compiled

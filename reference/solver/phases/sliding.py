@@ -23,6 +23,7 @@ from reference.solver.step_control import (
 )
 from reference.solver.system import (
     CREEPING,
+    PLATFORM,
     REGULARIZED,
     REST,
     SLIDING,
@@ -76,7 +77,7 @@ def begin_sliding(system: System, work: Work, demand: Demand) -> None:
     gx, gy = load.fx - reaction * load.px / system.radius, load.fy - reaction * load.py / system.radius
     work.angle = settled_direction(system, load, atan2(gy, gx), 0.0)
     if demand.cutoff == 0.0:
-        take_limit(work, squared_total(system, load, work.angle))
+        take_limit(work, PLATFORM, squared_total(system, load, work.angle, 1.0))
     ex, ey = heading(work.angle, system.axes)
     ax, ay, _, _ = directed(system, load, 0.0, ex, ey)
     begin_with(system, work, ground, ax, ay, SLIDING)

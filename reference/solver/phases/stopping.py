@@ -15,7 +15,7 @@ from reference.solver.ground import ground_at
 from reference.solver.peaks import SETTLED_FRACTION, take_limit
 from reference.solver.phases.sliding import STOP_WITHIN_STEPS, STOP_WITHIN_TIME
 from reference.solver.step_control import MIN_STEP, begin_with, next_break
-from reference.solver.system import CREEPING, REGULARIZED, REST, SLIDING, STOPPING, Demand, System
+from reference.solver.system import CREEPING, PLATFORM, REGULARIZED, REST, SLIDING, STOPPING, Demand, Load, System
 from reference.solver.work import ACROSS, ALONG, CLOCK, DIRECTION, RATIO, SIGMA, Work
 
 FIRST_STEP = 1.0  # change of direction or logarithm of the speed in the first step
@@ -30,6 +30,9 @@ MAX_STOPPED_SPEED = 0.03
 MAX_DAMPED_JUMP = 0.01  # of the tolerance, in dampers: what rest may change in an acceleration by taking this speed
 MIN_FOLLOWED_SPEED = 1e-10  # of the loading's velocity: a stop whose arc decides the peak is followed down to it
 DECISIVE_ARC_FRACTION = 0.97  # of the peak so far: an arc that stays below it decides nothing
+# likewise for the bodies above, of their squared peaks: they feel the arc by its vertical acceleration alone
+DECISIVE_RISE_FRACTION = 0.999
+NEGLIGIBLE_RISE = 1e-9  # of a squared peak: what the arc adds to the end of the last step
 LEVEL_TOLERANCE = 1e-9  # of ln v: a slide this close to v_reg has come down to it
 EARLY_CROSSING = 1e-9  # of a step: a crossing this early means that the phase begins on the level
 # of the period times the root of the tolerance: time left at a stop within which forces count as constant
@@ -124,6 +127,30 @@ def after_stopping_step(system: System, work: Work, demand: Demand, h: float, fa
 
 
 @compiled
+def take_arc(system: System, work: Work, load: Load, followed: bool) -> bool:
+    """
+    Raise the peaks by the accelerations on the arc of directions that is left; True if they are known well enough.
+
+    `followed`: the slide may be followed further, so an arc that decides a peak is not yet taken.
+    """
+    bodies, total, best = work.x.shape[0], work.total0, work.best
+    arc = arc_peak(system, load, work.angle, SETTLED_FRACTION**2 * best[0], 1.0)
+    if followed and arc > DECISIVE_ARC_FRACTION * DECISIVE_ARC_FRACTION * best[0]:
+        return False
+    take_limit(work, PLATFORM, arc)
+    if bodies == 1 or system.small:
+        return True
+    vertical = arc_peak(system, load, work.angle, 0.0, 0.0)
+    for i in range(1, bodies):
+        squared = total[i, 0] ** 2 + total[i, 1] ** 2
+        rises = vertical - total[i, 2] ** 2 > NEGLIGIBLE_RISE * best[i]
+        if followed and rises and squared + vertical > DECISIVE_RISE_FRACTION * best[i]:
+            return False
+        take_limit(work, i, squared + vertical)
+    return True
+
+
+@compiled
 def after_stop(system: System, work: Work, demand: Demand) -> int:
     """
     REST or SLIDING (a straight slide turns back) if the motion is at a stop, STOPPING if it goes on.
@@ -147,16 +174,13 @@ def after_stop(system: System, work: Work, demand: Demand) -> int:
             ax, ay, _, _ = directed(system, load, 0.0, ex, ey)
             along = ax * ex + ay * ey
         return SLIDING if straight and along < 0.0 and speed < MAX_TURNING_POINT_SPEED * unit else STOPPING
-    if along < 0.0:
-        work.left = -speed / along
     changing = system.rate * speed > MAX_FRICTION_CHANGE
     if along >= 0.0 or speed > MAX_FROZEN_TIME * sqrt(demand.tolerance) * demand.period * -along or changing:
         return STOPPING if speed > SMALLEST_SPEED else REST
     if demand.cutoff == 0.0:
-        arc = arc_peak(system, load, work.angle, SETTLED_FRACTION**2 * work.best[0])
-        if speed > MIN_FOLLOWED_SPEED * unit and arc > DECISIVE_ARC_FRACTION * DECISIVE_ARC_FRACTION * work.best[0]:
+        if not take_arc(system, work, load, speed > MIN_FOLLOWED_SPEED * unit):
             return STOPPING
-        take_limit(work, arc)
     elif speed > demand.cutoff:
         return STOPPING
+    work.left = -speed / along
     return REST
