@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from math import cos, exp, sin
 
-import numpy as np
-
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
 from reference.solver.system import Array, Ground, System
@@ -13,7 +11,6 @@ from reference.solver.work import SERIES_TERMS, Work
 
 MAX_SERIES_ANGLE = 2.0  # by which a harmonic turns and decays in a step: beyond it its series would lose digits
 SERIES_ROUNDING = 1e-17  # of the harmonic: a term this small ends its series
-RECIPROCALS = 1.0 / np.arange(1.0, SERIES_TERMS + 1.0)
 
 
 @compiled
@@ -87,13 +84,13 @@ def next_ground(system: System, work: Work, t: float) -> Ground:
 
 
 @compiled
-def ground_at_stages(system: System, work: Work, elapsed: Array) -> None:
+def ground_at_stages(system: System, work: Work) -> None:
     """
-    Fill work.ground at the times `elapsed` (S,), s, from the start of the step to its stages, the last one its end.
+    Fill work.ground, after work.elapsed and `start_waves` at the start of the step.
 
-    `start_waves` at the start of the step comes before. A harmonic is summed from its Taylor series there, which takes
-    less time than a sine at every stage.
+    A harmonic is summed from its Taylor series there, which takes less time than a sine at every stage.
     """
+    elapsed = work.elapsed
     longest = elapsed[STAGES - 1]
     e0, e1 = system.exponents[0] * longest, system.exponents[1] * longest
     if system.record.shape[0] > 0 or square(e0) + square(e1) > MAX_SERIES_ANGLE * MAX_SERIES_ANGLE:
@@ -124,8 +121,8 @@ def expand_waves(work: Work, e0: complex, e1: complex) -> int:
         if max(square(z0), square(z1)) <= enough:
             return n
         z0, z1 = z0 * e0, z1 * e1
-        z0 = complex(z0.real * RECIPROCALS[n], z0.imag * RECIPROCALS[n])
-        z1 = complex(z1.real * RECIPROCALS[n], z1.imag * RECIPROCALS[n])
+        share = 1.0 / (n + 1.0)
+        z0, z1 = complex(z0.real * share, z0.imag * share), complex(z1.real * share, z1.imag * share)
     return SERIES_TERMS
 
 

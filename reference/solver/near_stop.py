@@ -140,7 +140,7 @@ def pull_bodies(system: System, work: Work, h: float) -> float:
     place, velocity, stage, ground = work.chain, work.velocity, work.stage, work.ground
     bodies = work.x.shape[0]
     change = 0.0
-    ground_at_stages(system, work, work.elapsed)
+    ground_at_stages(system, work)
     for k in range(STAGES):
         duration = work.turning[SPEED, k] * h
         for axis in range(system.axes):

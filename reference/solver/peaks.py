@@ -58,10 +58,9 @@ def largest_square(work: Work, rows: int, low: float, high: float) -> tuple[floa
             best, place = value, theta
         if not curvature < 0.0:
             break
-        next_theta = min(max(theta - slope / curvature, left), right)
-        if next_theta == theta:
+        before, theta = theta, min(max(theta - slope / curvature, left), right)
+        if theta == before:
             break
-        theta = next_theta
     return best, place
 
 

@@ -48,7 +48,7 @@ def load_step(system: System, work: Work, h: float) -> None:
     for k in range(STAGES):
         work.elapsed[k] = h * NODES[k]
     start_waves(system, work, work.time)
-    ground_at_stages(system, work, work.elapsed)
+    ground_at_stages(system, work)
     eliminate_chain(system, work, h)
     load_chain(system, work, h)
 

@@ -41,15 +41,16 @@ def test_the_harmonics_at_the_stages_of_a_step_are_those_of_the_scene(
         monkeypatch.setattr(ground, name, getattr(ground, name).py_func)
     scene = load_scene("fig4-dry")
     system = pack(scene, small=False, v_reg=None)
+    elapsed = angle / float(np.sqrt((np.abs(system.exponents) ** 2).sum())) * NODES
     work = SimpleNamespace(
         phase=PHASE,
         time=0.7,
+        elapsed=elapsed,
         waves=np.zeros(2, complex),
         series=np.zeros((SERIES_TERMS, 2)),
         ground=np.zeros((3, STAGES)),
     )
-    elapsed = angle / float(np.sqrt((np.abs(system.exponents) ** 2).sum())) * NODES
     start_waves.py_func(system, work, work.time)
-    ground.ground_at_stages.py_func(system, work, elapsed)
+    ground.ground_at_stages.py_func(system, work)
     of_the_scene = ground_acceleration(scene, PHASE, work.time + elapsed)
     np.testing.assert_allclose(work.ground.T, of_the_scene, rtol=0.0, atol=1e-14)

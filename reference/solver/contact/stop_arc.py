@@ -85,13 +85,12 @@ def turning_ends(system: System, load: Load, inside: float, outside: float) -> f
 
 
 @compiled
-def arc_peak(system: System, load: Load, angle: float, floor: float, horizontal: float) -> float:
+def arc_peak(system: System, load: Load, angle: float, end: float, floor: float, horizontal: float) -> float:
     """
-    Largest `squared_total` over the arc that begins at `angle`, m^2/s^4.
+    Largest `squared_total` over the arc from `angle` to `end`, m^2/s^4.
 
     Where that stays below `floor`, the largest sample.
     """
-    end = settled_direction(system, load, angle, MAX_ROUNDING_TURN)
     samples = 4 + int(abs(end - angle) * SAMPLES_PER_TURN / (2.0 * pi))
     stride = (end - angle) / samples
     best, top = -1.0, 0

@@ -9,7 +9,7 @@ from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import heading
 from reference.solver.contact.platform import directed, load_in_state, rest_excess
-from reference.solver.contact.stop_arc import arc_peak
+from reference.solver.contact.stop_arc import MAX_ROUNDING_TURN, arc_peak, settled_direction
 from reference.solver.events import first_crossing, lowest
 from reference.solver.ground import ground_at
 from reference.solver.peaks import SETTLED_FRACTION, take_limit
@@ -134,13 +134,14 @@ def take_arc(system: System, work: Work, load: Load, followed: bool) -> bool:
     `followed`: the slide may be followed further, so an arc that decides a peak is not yet taken.
     """
     bodies, total, best = work.x.shape[0], work.total0, work.best
-    arc = arc_peak(system, load, work.angle, SETTLED_FRACTION**2 * best[0], 1.0)
+    end = settled_direction(system, load, work.angle, MAX_ROUNDING_TURN)
+    arc = arc_peak(system, load, work.angle, end, SETTLED_FRACTION**2 * best[0], 1.0)
     if followed and arc > DECISIVE_ARC_FRACTION * DECISIVE_ARC_FRACTION * best[0]:
         return False
     take_limit(work, PLATFORM, arc)
     if bodies == 1 or system.small:
         return True
-    vertical = arc_peak(system, load, work.angle, 0.0, 0.0)
+    vertical = arc_peak(system, load, work.angle, end, 0.0, 0.0)
     for i in range(1, bodies):
         squared = total[i, 0] ** 2 + total[i, 1] ** 2
         rises = vertical - total[i, 2] ** 2 > NEGLIGIBLE_RISE * best[i]
@@ -157,7 +158,6 @@ def after_stop(system: System, work: Work, demand: Demand) -> int:
 
     Leaves the time that is left of the slide at its deceleration in work.left: rest is entered so much early.
     """
-    work.left = 0.0
     unit = demand.unit * demand.period / (2.0 * pi)
     speed = exp(work.log_speed)
     if speed > MAX_STOPPED_SPEED * sqrt(demand.tolerance) * unit:
