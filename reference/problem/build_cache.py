@@ -7,17 +7,33 @@ files. A build that belongs to all of these sources together cannot go stale.
 
 from __future__ import annotations
 
+import gc
 import hashlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numba
+from numba.core.compiler import Compiler
 
 from reference.problem.user_cache import user_cache
 
 njit: Any = numba.njit
 config: Any = numba.config
+
+
+class _Uncollected(Compiler):  # type: ignore[misc]
+    """Numba's compiler while Python does not search for garbage: nearly all that it makes is in use to its end."""
+
+    def compile_extra(self, func: Any) -> Any:
+        """Compile a Python function."""
+        if not gc.isenabled():
+            return super().compile_extra(func)
+        gc.disable()
+        try:
+            return super().compile_extra(func)
+        finally:
+            gc.enable()
 
 
 def build_folder(sources: Path) -> Path | None:
@@ -65,7 +81,8 @@ def cached_on_disk(sources: str | Path, **options: Any) -> Callable[[Callable[..
         before = config.CACHE_DIR
         config.CACHE_DIR = str(folder or "")
         try:
-            return njit(cache=folder is not None, **options)(function)
+            decorate = njit(cache=folder is not None, pipeline_class=_Uncollected, no_cfunc_wrapper=True, **options)
+            return decorate(function)
         finally:
             config.CACHE_DIR = before
 

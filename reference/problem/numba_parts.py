@@ -6,6 +6,8 @@ All of this is numba's inside, which may change with any version.
 
 from __future__ import annotations
 
+import operator
+from functools import cache
 from typing import Any, ClassVar
 
 from numba.core.codegen import JITCodeLibrary
@@ -13,11 +15,13 @@ from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
 from numba.core.compiler_machinery import LoweringPass, register_pass
 from numba.core.runtime.context import NRTContext
 from numba.core.typed_passes import AnnotateTypes, InlineOverloads, IRLegalization, NopythonRewrites
+from numba.core.typing import Context
 from numba.core.untyped_passes import DeadBranchPrune, InlineClosureLikes
 
 # Passes that change nothing in a part: it has no expressions of whole arrays, functions within, branches on None
 # or functions that numba inlines before their types are known, and needs no end of a variable's life to be marked.
 UNNEEDED = {NopythonRewrites, InlineClosureLikes, DeadBranchPrune, InlineOverloads, IRLegalization}
+OPERATORS = {each for each in vars(operator).values() if callable(each)} | {bool, max, min}
 
 
 class _NoEnvironment:
@@ -81,12 +85,32 @@ class _SharedFlags(Flags):  # type: ignore[misc]
         return self._known.setdefault(repr(self), self)
 
 
+class _RememberedOperators(Context):  # type: ignore[misc]
+    """Numba's lookup of what functions return, which asks once for an operator and the types that it is applied to."""
+
+    def __init__(self, context: Context) -> None:
+        self.__dict__ = context.__dict__
+        self._known: dict[Any, Any] = {}
+
+    def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
+        """Return the signature."""
+        if kws or getattr(func, "typing_key", func) not in OPERATORS:
+            return super().resolve_function_type(func, args, kws)
+        if (func, args) not in self._known:
+            self._known[func, args] = super().resolve_function_type(func, args, kws)
+        return self._known[func, args]
+
+
+remembered_operators = cache(_RememberedOperators)
+
+
 class PartCompiler(CompilerBase):  # type: ignore[misc]
     """Numba's own passes but those that a part does not need, and `_AsPart` among them."""
 
     def compile_extra(self, func: Any) -> Any:
         """Compile a Python function."""
         self.state.flags = _SharedFlags(self.state.flags)
+        self.state.typingctx = remembered_operators(self.state.typingctx)
         return super().compile_extra(func)
 
     def define_pipelines(self) -> list[Any]:

@@ -7,9 +7,9 @@ Compiled code passes them by reference: as a tuple, every call would copy and co
 from __future__ import annotations
 
 import numpy as np
-from numba import types
 from numba.experimental import structref
 
+from reference.solver.by_reference import ByReference
 from reference.solver.collocation import CHANNELS, STAGES
 from reference.solver.compiled import allocating, compiled
 from reference.solver.system import Array, Complex, Record, System
@@ -27,8 +27,7 @@ SERIES_TERMS = 32  # of the harmonics of the ground: more than a step takes
 POWERS = STAGES + 2  # coefficients of a polynomial: a position is the second integral of one through the stages
 
 
-@structref.register
-class _SystemType(types.StructRef):  # type: ignore[misc]
+class _SystemType(ByReference):
     """Numba's type of SystemReference."""
 
 
@@ -39,8 +38,7 @@ class SystemReference(structref.StructRefProxy):  # type: ignore[misc]
 structref.define_proxy(SystemReference, _SystemType, list(System._fields))
 
 
-@structref.register
-class _RecordType(types.StructRef):  # type: ignore[misc]
+class _RecordType(ByReference):
     """Numba's type of RecordReference."""
 
 
@@ -51,8 +49,7 @@ class RecordReference(structref.StructRefProxy):  # type: ignore[misc]
 structref.define_proxy(RecordReference, _RecordType, list(Record._fields))
 
 
-@structref.register
-class _WorkType(types.StructRef):  # type: ignore[misc]
+class _WorkType(ByReference):
     """Numba's type of Work."""
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import subprocess
 import sys
@@ -9,10 +10,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numba import njit
+from numba import config, njit
+from numba.core.errors import TypingError
+from numba.extending import overload
 
 import reference
+from reference.problem.build_cache import cached_on_disk
 from reference.problem.compiled_parts import compiled_part
+
+
+def gc_is_on():
+    """Stands for what a compiled function calls."""
 
 
 @compiled_part()
@@ -54,6 +62,58 @@ def test_a_part_can_be_shared_by_entry_points() -> None:
 
     assert entry(3) == 2.0 * 3.0 + 2.0
     assert other(np.array([1.0, 2.0])) == 4.0
+
+
+def test_python_searches_for_garbage_again_after_compiling(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(config, "CACHE_DIR", str(tmp_path))
+
+    @cached_on_disk(__file__)
+    def sound(x):
+        return x + 1.0, gc_is_on()
+
+    @cached_on_disk(__file__)
+    def unsound(x):
+        return x + "1"
+
+    seen = []
+
+    @overload(gc_is_on)
+    def _gc_is_on():
+        seen.append(gc.isenabled())
+        return lambda: True
+
+    assert sound(1.0) == (2.0, True)
+    assert seen
+    assert not any(seen)
+    assert gc.isenabled()
+    with pytest.raises(TypingError):
+        unsound(1.0)
+    assert gc.isenabled()
+
+
+def test_operators_give_a_part_what_they_give_python_whatever_was_asked_before() -> None:
+    @compiled_part()
+    def mixed(x, y):
+        return x * y + x, x < y, max(x, y), x**2
+
+    @njit
+    def applied(x, y):
+        return mixed(x, y)
+
+    for x, y in [(2.0, 3.0), (2, 3), (2.0, 3), (2, 3.5), (2.0, 3.0 + 0.0)]:
+        assert applied(x, y) == (x * y + x, x < y, max(x, y), x**2)
+
+    @compiled_part()
+    def wrong(x):
+        return x * "2"
+
+    @njit
+    def entry_of_wrong(x):
+        return wrong(x)
+
+    for _ in range(2):
+        with pytest.raises(TypingError):
+            entry_of_wrong(1.0)
 
 
 BUILDS = """

@@ -1,0 +1,81 @@
+"""
+Numba's types of structures that compiled code passes by reference.
+
+Numba can do this itself (`structref.register`). It spells out all fields of a structure in the name of every function
+with such an argument, and again wherever a field is read: thousands of characters each time, to write and to read.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+from numba.core import types
+from numba.core.datamodel import default_manager
+from numba.core.datamodel.models import StructRefModel
+from numba.core.extending import infer_getattr, lower_getattr_generic, lower_setattr_generic
+from numba.core.imputils import impl_ret_borrowed
+from numba.core.typing.templates import AttributeTemplate
+
+
+class ByReference(types.StructRef):  # type: ignore[misc, name-defined]
+    """A structure passed by reference, with one set of fields per subclass."""
+
+    def __init_subclass__(cls) -> None:
+        default_manager.register(cls, StructRefModel)
+
+    @property
+    def mangling_args(self) -> tuple[str, tuple[()]]:
+        """The type in the names of functions."""
+        return self._typename, ()
+
+    @cached_property
+    def field_dict(self) -> dict[str, Any]:
+        """The type of every field."""
+        return dict(self._fields)
+
+    @cached_property
+    def places(self) -> dict[str, tuple[int, Any]]:
+        """Bytes before every field, and the type of a pointer to it; filled by `pointer`."""
+        return {}
+
+    def pointer(self, context: Any, builder: Any, reference: Any, name: str) -> Any:
+        """Write code for the pointer to a field."""
+        if name not in self.places:
+            model = context.data_model_manager[self.get_data_type()]
+            whole, position = model.get_value_type(), model.get_field_position(name)
+            offset = whole.get_element_offset(context.target_data, position)
+            self.places[name] = offset, whole.elements[position].as_pointer()
+        offset, kind = self.places[name]
+        data = context.nrt.meminfo_data(builder, builder.extract_value(reference, 0))
+        place = builder.gep(data, [context.get_constant(types.intp, offset)], inbounds=True)
+        return builder.bitcast(place, kind)
+
+
+@infer_getattr
+class _Fields(AttributeTemplate):  # type: ignore[misc]
+    key = ByReference
+
+    def generic_resolve(self, kind: ByReference, name: str) -> Any:
+        """Return the type of a field, None if there is none of this name."""
+        return kind.field_dict.get(name)
+
+
+@lower_getattr_generic(ByReference)
+def _read(context: Any, builder: Any, kind: ByReference, reference: Any, name: str) -> Any:
+    """Write code that reads a field, whose reference stays with the structure."""
+    value = builder.load(kind.pointer(context, builder, reference, name))
+    return impl_ret_borrowed(context, builder, kind.field_dict[name], value)
+
+
+@lower_setattr_generic(ByReference)
+def _write(context: Any, builder: Any, signature: Any, arguments: Any, name: str) -> None:
+    """Write code that sets a field, with the references to an array in it."""
+    kind, given = signature.args
+    reference, value = arguments
+    field = kind.field_dict[name]
+    pointer = kind.pointer(context, builder, reference, name)
+    new, old = context.cast(builder, value, given, field), builder.load(pointer)
+    context.nrt.incref(builder, field, new)
+    context.nrt.decref(builder, field, old)
+    builder.store(new, pointer)
