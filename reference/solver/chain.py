@@ -20,17 +20,25 @@ from reference.solver.collocation import (
     STAGES,
     TO_CHANNELS,
     A,
+    columns,
     product,
 )
 from reference.solver.compiled import compiled
-from reference.solver.system import PLATFORM, Array, Ground, System
+from reference.solver.polynomial import NODES_ROW
+from reference.solver.rows import Row, put, row
+from reference.solver.system import PLATFORM, Ground, System
 from reference.solver.work import Work
 
-TO_CHANNELS_REAL, TO_CHANNELS_IMAGINARY = TO_CHANNELS.real.copy(), TO_CHANNELS.imag.copy()
+# a number in every channel as a row: the real parts of all channels, the imaginary parts behind them
+TO_CHANNELS_COLUMNS = columns(np.vstack([TO_CHANNELS.real, TO_CHANNELS.imag]))
+FROM_CHANNELS_COLUMNS = columns(np.hstack([FROM_CHANNELS.real, -FROM_CHANNELS.imag]))
 ONES_IN_CHANNELS, NODES_IN_CHANNELS = product(TO_CHANNELS, np.stack([np.ones(STAGES), NODES], axis=1)).T.copy()
-# from stage m through channel j to stage k
-_THROUGH = np.array([product(FROM_CHANNELS[:, j : j + 1], TO_CHANNELS[j : j + 1]) for j in range(CHANNELS)])
-THROUGH_REAL, THROUGH_IMAGINARY = _THROUGH.real.copy(), _THROUGH.imag.copy()
+# from stage m through channel j: to all stages, by its real and its imaginary part
+_THROUGH = [product(FROM_CHANNELS[:, j : j + 1], TO_CHANNELS[j : j + 1]) for j in range(CHANNELS)]
+THROUGH_REAL, THROUGH_IMAGINARY = (
+    np.array([columns(part) for part in parts])
+    for parts in zip(*((through.real, through.imag) for through in _THROUGH))
+)
 # of the loads: what rounding on the way through the channels leaves in an acceleration, at the worst stage (3e-13)
 CHANNEL_ROUNDING = float(np.finfo(float).eps * product(np.abs(FROM_CHANNELS), np.abs(TO_CHANNELS)).sum(axis=1).max())
 
@@ -75,47 +83,47 @@ def feed_back(system: System, work: Work, h: float) -> None:
     """What the platform's stage accelerations do to its own drive through the eliminated chain."""
     feedback = work.feedback
     for axis in range(system.axes):
-        for k in range(STAGES):
-            for m in range(STAGES):
-                feedback[axis, k, m] = 0.0
+        for m in range(STAGES):
+            put(feedback, (axis, m), 0.0)
         if work.x.shape[0] == 1:
             continue
         for j in range(CHANNELS):
             gain = -work.gain[axis, j]
-            real, imaginary = gain.real, gain.imag
-            for k in range(STAGES):
-                for m in range(STAGES):
-                    feedback[axis, k, m] += real * THROUGH_REAL[j, k, m] - imaginary * THROUGH_IMAGINARY[j, k, m]
+            for m in range(STAGES):
+                through = gain.real * row(THROUGH_REAL, (j, m)) - gain.imag * row(THROUGH_IMAGINARY, (j, m))
+                put(feedback, (axis, m), row(feedback, (axis, m)) + through)
 
 
 @compiled
-def in_channel(values: Array, j: int) -> complex:
-    """The stage values (S,) in channel j of the eigenbasis."""
-    real = imaginary = 0.0
-    for k in range(STAGES):
-        real += TO_CHANNELS_REAL[j, k] * values[k]
-        imaginary += TO_CHANNELS_IMAGINARY[j, k] * values[k]
-    return complex(real, imaginary)
+def to_channels(values: Row) -> Row:
+    """The numbers at the stages in the eigenbasis."""
+    total = row(TO_CHANNELS_COLUMNS, 0) * values[0]
+    for k in range(1, STAGES):
+        total += row(TO_CHANNELS_COLUMNS, k) * values[k]
+    return total
+
+
+@compiled
+def from_channels(values: Row) -> Row:
+    """The numbers at the stages, from those in the channels and their conjugates."""
+    total = row(FROM_CHANNELS_COLUMNS, 0) * values[0]
+    for j in range(1, 2 * CHANNELS):
+        total += row(FROM_CHANNELS_COLUMNS, j) * values[j]
+    return total
 
 
 @compiled
 def load_chain(system: System, work: Work, h: float) -> None:
     """The loads of the eliminated chain from the state and the ground; fills `free`."""
-    x, v, free, ground, loads, inverse = work.x, work.v, work.free, work.ground, work.load, work.inverse
+    x, v, loads, inverse, channels = work.x, work.v, work.load, work.inverse, work.channels
     bodies = work.x.shape[0]
     for axis in range(system.axes):
-        for k in range(STAGES):
-            free[axis, k] = -ground[axis, k]
+        ground = row(work.ground, axis)
         if bodies == 1:
+            put(work.free, axis, -ground)
             continue
-        stretch = x[1, axis] - x[0, axis]
-        rate = h * (v[1, axis] - v[0, axis])
-        c0 = system.above[0, axis]
-        damped = system.damping_above[0, axis] * (v[1, axis] - v[0, axis])
-        for k in range(STAGES):
-            free[axis, k] += c0 * (stretch + NODES[k] * rate) + damped
+        drives = to_channels(-ground)
         for j in range(CHANNELS):
-            drive = -in_channel(ground[axis], j)
             root = h * EIGENVALUES[j]
             carried = 0.0 + 0.0j
             for i in range(bodies - 1, 0, -1):
@@ -126,33 +134,35 @@ def load_chain(system: System, work: Work, h: float) -> None:
                     force += system.above[i, axis] * (x[i + 1, axis] - x[i, axis])
                     force += system.damping_above[i, axis] * (v[i + 1, axis] - v[i, axis])
                     slope += system.above[i, axis] * (v[i + 1, axis] - v[i, axis])
+                drive = complex(drives[j], drives[CHANNELS + j])
                 load = drive + force * ONES_IN_CHANNELS[j] + h * slope * NODES_IN_CHANNELS[j]
                 if i < bodies - 1:
                     load += coupling_above(system, i, axis, root) * carried
                 loads[i, axis, j] = load
                 carried = load * inverse[i, axis, j]
             gain = coupling_above(system, PLATFORM, axis, root) * carried
-            for k in range(STAGES):
-                free[axis, k] += (FROM_CHANNELS[k, j] * gain).real
+            channels[j], channels[CHANNELS + j] = gain.real, gain.imag
+        stretch = x[1, axis] - x[0, axis]
+        rate = v[1, axis] - v[0, axis]
+        spring = system.above[0, axis] * (stretch + row(NODES_ROW, ()) * (h * rate))
+        carried_down = from_channels(row(channels, ()))
+        put(work.free, axis, spring + system.damping_above[0, axis] * rate - ground + carried_down)
 
 
 @compiled
 def move_chain(system: System, work: Work, h: float) -> None:
     """Stage accelerations of the bodies from those of the platform; the state at the end of the step in x1, v1."""
-    x, v, a, load, inverse = work.x, work.v, work.a, work.load, work.inverse
+    x, v, a, load, inverse, channels = work.x, work.v, work.a, work.load, work.inverse, work.channels
     bodies = work.x.shape[0]
     for axis in range(system.axes):
+        put(channels, (), to_channels(row(a, (0, axis))))
         for i in range(1, bodies):
-            for k in range(STAGES):
-                a[i, axis, k] = 0.0
-        if bodies > 1:
             for j in range(CHANNELS):
                 root = h * EIGENVALUES[j]
-                below = in_channel(a[0, axis], j)
-                for i in range(1, bodies):
-                    below = (load[i, axis, j] + coupling_below(system, i, axis, root) * below) * inverse[i, axis, j]
-                    for k in range(STAGES):
-                        a[i, axis, k] += (FROM_CHANNELS[k, j] * below).real
+                under = complex(channels[j], channels[CHANNELS + j])
+                moved = (load[i, axis, j] + coupling_below(system, i, axis, root) * under) * inverse[i, axis, j]
+                channels[j], channels[CHANNELS + j] = moved.real, moved.imag
+            put(a, (i, axis), from_channels(row(channels, ())))
         for i in range(bodies):
             velocity = 0.0
             position = 0.0

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 STAGES = 7
+LANES = STAGES + 1  # of a row (rows.py)
 CHANNELS = (STAGES + 1) // 2  # one real eigenvalue and one of each conjugate pair
 GUESSED_DIGITS = 3
 ITERATIONS = 12  # from such a guess to rounding
@@ -113,3 +114,10 @@ EIGENVALUES, TO_CHANNELS, FROM_CHANNELS = (np.ascontiguousarray(part) for part i
 
 # where peaks and events are looked for inside a step
 DENSE = np.linspace(0.0, 1.0, 15)
+
+
+def columns(matrix: np.ndarray) -> np.ndarray:
+    """The columns of a matrix with at most LANES rows, as rows (rows.py) with zeros behind."""
+    filled = np.zeros((matrix.shape[1], LANES))
+    filled[:, : len(matrix)] = matrix.T
+    return filled

@@ -8,7 +8,8 @@ Everything is per platform mass m1. The inputs, all horizontal pairs in x, y:
   pressure  g + zeta'', m/s^2
   speed2    squared sliding speed v-bar^2 of (3.8), m^2/s^2
   sx, sy    slip vector: friction coefficient times the horizontal part of the slip direction, mu v_h / v-bar
-Both are linear in the slip vector, which is all that the friction law contributes (see friction.py).
+Both are linear in the slip vector, which is all that the friction law contributes (see friction.py). All are floats at
+one instant, or rows at all stages of a step (rows.py).
 """
 
 from __future__ import annotations
@@ -16,21 +17,22 @@ from __future__ import annotations
 from math import sqrt
 
 from reference.solver.compiled import compiled
+from reference.solver.rows import Number, as_many
 
 
 @compiled
 def exact_acceleration(
-    px: float,
-    py: float,
-    fx: float,
-    fy: float,
-    pressure: float,
-    speed2: float,
-    sx: float,
-    sy: float,
+    px: Number,
+    py: Number,
+    fx: Number,
+    fy: Number,
+    pressure: Number,
+    speed2: Number,
+    sx: Number,
+    sy: Number,
     mass_ratio: float,
     radius: float,
-) -> tuple[float, float, float, float]:
+) -> tuple[Number, Number, Number, Number]:
     """
     Equations (3.9)-(3.13), the multiplier eliminated: (ax, ay, reaction N / m1, inertia determinant).
 
@@ -52,18 +54,18 @@ def exact_acceleration(
 
 @compiled
 def small_acceleration(
-    px: float,
-    py: float,
-    fx: float,
-    fy: float,
-    ux: float,
-    uy: float,
-    pressure: float,
-    sx: float,
-    sy: float,
+    px: Number,
+    py: Number,
+    fx: Number,
+    fy: Number,
+    ux: Number,
+    uy: Number,
+    pressure: Number,
+    sx: Number,
+    sy: Number,
     mass_ratio: float,
     radius: float,
-) -> tuple[float, float, float, float]:
+) -> tuple[Number, Number, Number, Number]:
     """
     Equations (4.3) as printed: (ax, ay, reaction N / m1, 1).
 
@@ -76,14 +78,14 @@ def small_acceleration(
         fx - reaction * (px / radius + sx) + ux * lever,
         fy - reaction * (py / radius + sy) + uy * lever,
         reaction,
-        1.0,
+        as_many(1.0, reaction),
     )
 
 
 @compiled
 def vertical_acceleration(
-    px: float, py: float, vx: float, vy: float, ax: float, ay: float, radius: float
-) -> tuple[float, float, float]:
+    px: Number, py: Number, vx: Number, vy: Number, ax: Number, ay: Number, radius: float
+) -> tuple[Number, Number, Number]:
     """Height above the lowest point z1, vertical velocity and acceleration on the sphere (2.1), (3.4)-(3.5)."""
     depth = sqrt(radius * radius - px * px - py * py)  # -Delta of (3.3)
     vz = (px * vx + py * vy) / depth

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from reference.solver.collocation import DENSE, MONOMIALS, STAGES
+from reference.solver.collocation import DENSE, STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.platform import load_at_stage, rest_excess
-from reference.solver.system import Array, Load, System
-from reference.solver.work import MAX_PARTS, POWERS, REACTION, SPEED2, VELOCITY, Work
+from reference.solver.contact.platform import load_at_stages, rest_excess
+from reference.solver.polynomial import expand, value_at
+from reference.solver.rows import Row, highest, put, row, where_positive
+from reference.solver.system import Load, System
+from reference.solver.work import MAX_PARTS, REACTION, SPEED2, VELOCITY, Work
 
 # What is passed: a level by the polynomial in powers[0], the friction limit at rest, a sliding speed.
 # No literals (system.py).
@@ -23,52 +25,14 @@ NEAR_LIMIT = 0.5  # of the squared friction limit: between two stages of a step 
 
 
 @compiled
-def lowest(values: Array) -> float:
-    """The smallest of the stage values (S,)."""
-    least = values[0]
-    for k in range(1, STAGES):
-        least = min(least, values[k])
-    return least
-
-
-@compiled
-def highest(values: Array) -> float:
-    """The largest of the stage values (S,)."""
-    most = values[0]
-    for k in range(1, STAGES):
-        most = max(most, values[k])
-    return most
-
-
-@compiled
-def expand(values: Array, coefficients: Array) -> None:
-    """Coefficients (POWERS,) of the powers of theta of the polynomial through the stage values (S,)."""
-    for k in range(STAGES):
-        coefficients[k] = 0.0
-        for m in range(STAGES):
-            coefficients[k] += MONOMIALS[k, m] * values[m]
-    for k in range(STAGES, POWERS):
-        coefficients[k] = 0.0
-
-
-@compiled
-def value_at(coefficients: Array, theta: float) -> float:
-    """The polynomial through stage values at theta."""
-    value = 0.0
-    for k in range(STAGES - 1, -1, -1):
-        value = value * theta + coefficients[k]
-    return value
-
-
-@compiled
-def first_crossing(system: System, work: Work, values: Array, start: float, target: float) -> float:
+def first_crossing(system: System, work: Work, values: Row, start: float, target: float) -> float:
     """First theta at which the polynomial through `values` has passed `target`, seen from `start` at theta = 0."""
     expand_level(work, values, target)
     return first_passage(system, work, LEVEL, 1.0 if start < target else -1.0, 0.0, start - target)
 
 
 @compiled
-def expand_level(work: Work, values: Array, target: float) -> None:
+def expand_level(work: Work, values: Row, target: float) -> None:
     """Powers of theta of the polynomial through `values` less `target`, in powers[0]."""
     expand(values, work.powers[0])
     work.powers[0, 0] -= target
@@ -77,11 +41,10 @@ def expand_level(work: Work, values: Array, target: float) -> None:
 @compiled
 def first_onset(system: System, work: Work) -> float:
     """First theta of a step at rest at which friction can no longer hold the platform; fills the reaction."""
-    most = -1.0e300
-    for k in range(STAGES):
-        excess, reaction = rest_excess(system, load_at_stage(work, k))
-        work.stage[REACTION, k] = reaction
-        most = max(most, excess + NEAR_LIMIT * (system.friction * reaction) ** 2)
+    excess, reaction = rest_excess(system, load_at_stages(work))
+    put(work.stage, REACTION, reaction)
+    limit = system.friction * reaction
+    most = highest(excess + NEAR_LIMIT * (limit * limit))
     if most < 0.0:  # only a step that comes near the limit is looked at closely
         return NEVER
     expand_drive(work)
@@ -92,9 +55,9 @@ def first_onset(system: System, work: Work) -> float:
 def expand_drive(work: Work) -> None:
     """Powers of theta of the drive and the ground acceleration of a step at rest, in `powers`."""
     for axis in range(2):
-        expand(work.free[axis], work.powers[axis])
+        expand(row(work.free, axis), work.powers[axis])
     for axis in range(3):
-        expand(work.ground[axis], work.powers[2 + axis])
+        expand(row(work.ground, axis), work.powers[2 + axis])
 
 
 @compiled
@@ -122,10 +85,9 @@ def expand_speed(work: Work, h: float, target: float) -> None:
     """
     for axis in range(2):
         expand_velocity(work, h, axis)
-    for k in range(STAGES):
-        horizontal = work.stage[VELOCITY, k] ** 2 + work.stage[VELOCITY + 1, k] ** 2
-        work.levels[k] = work.stage[SPEED2, k] / horizontal if horizontal > 0.0 else 1.0
-    expand(work.levels, work.powers[2])
+    vx, vy = row(work.stage, VELOCITY), row(work.stage, VELOCITY + 1)
+    horizontal = vx * vx + vy * vy
+    expand(where_positive(horizontal, row(work.stage, SPEED2) / horizontal, 1.0 + 0.0 * horizontal), work.powers[2])
     work.powers[3, 0] = target
 
 
@@ -133,7 +95,7 @@ def expand_speed(work: Work, h: float, target: float) -> None:
 def expand_velocity(work: Work, h: float, axis: int) -> None:
     """Powers of theta of the platform's velocity: the integral of its acceleration."""
     powers = work.powers[axis]
-    expand(work.a[0, axis], powers)
+    expand(row(work.a, (0, axis)), powers)
     for k in range(STAGES - 1, -1, -1):
         powers[k + 1] = h * powers[k] / (k + 1.0)
     powers[0] = work.v[0, axis]

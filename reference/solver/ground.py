@@ -6,6 +6,7 @@ from math import cos, exp, sin
 
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
+from reference.solver.rows import as_many, put, row
 from reference.solver.system import Array, Ground, System
 from reference.solver.work import SERIES_TERMS, Work
 
@@ -100,15 +101,13 @@ def ground_at_stages(system: System, work: Work) -> None:
         return
     terms = expand_waves(work, e0, e1)
     series, a, ground = work.series, system.amplitudes, work.ground
-    for k in range(STAGES):
-        share = elapsed[k] / longest if longest > 0.0 else 0.0
-        z0 = z1 = 0.0
-        for n in range(terms - 1, -1, -1):
-            z0 = z0 * share + series[n, 0]
-            z1 = z1 * share + series[n, 1]
-        ground[0, k] = a[0, 0] * z0 + a[0, 1] * z1
-        ground[1, k] = a[1, 0] * z0 + a[1, 1] * z1
-        ground[2, k] = a[2, 0] * z0 + a[2, 1] * z1
+    share = row(elapsed, ()) / longest if longest > 0.0 else as_many(0.0, row(elapsed, ()))
+    z0 = z1 = as_many(0.0, share)
+    for n in range(terms - 1, -1, -1):
+        z0 = z0 * share + series[n, 0]
+        z1 = z1 * share + series[n, 1]
+    for axis in range(3):
+        put(ground, axis, a[axis, 0] * z0 + a[axis, 1] * z1)
 
 
 @compiled

@@ -1,80 +1,144 @@
 """
 Gaussian elimination with row pivoting for the small dense systems of one step, without allocation.
 
-A matrix is kept by columns: row i of column j is `columns[j, i]`. Every inner loop goes along a column, and the sizes
-are known when the solver is compiled: the processor does several entries at once.
+A system has one or two blocks of STAGES rows. Its matrix is kept by columns, each with one row (rows.py) per block:
+entry k of block b of column j is `columns[j, b, k]`.
 """
 
 from __future__ import annotations
 
-from reference.solver.collocation import STAGES
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.solver.collocation import LANES, STAGES
 from reference.solver.compiled import compiled
+from reference.solver.rows import highest, put, row
 from reference.solver.system import Array
+
+MOST_BLOCKS = 2
+MIN_PIVOT = 0.1  # of the largest entry below
+_PLACES = np.arange(MOST_BLOCKS * STAGES)
+
+
+def _ones_where(chosen: NDArray[np.bool_]) -> Array:
+    """1 in the chosen places of every column, 0 elsewhere: (n, blocks, LANES)."""
+    ones = np.zeros((len(_PLACES), MOST_BLOCKS, LANES))
+    ones[:, :, :STAGES] = chosen.reshape(-1, MOST_BLOCKS, STAGES)
+    return ones
+
+
+# places of every column, by the one on the diagonal
+BEFORE = _ones_where(_PLACES[:, None] > _PLACES)
+AT = _ones_where(_PLACES[:, None] == _PLACES)
+UP_TO = _ones_where(_PLACES[:, None] >= _PLACES)
+BEHIND = _ones_where(_PLACES[:, None] < _PLACES)
 
 
 @compiled
 def factorize(columns: Array, pivots: Array) -> bool:
     """
-    Overwrites a matrix (n, n) by its factors, pivots (n,) by rows; False if it is singular or not finite.
+    Overwrites a matrix (n, blocks, LANES) by its factors; False if it is singular or not finite.
 
-    n is STAGES, or twice as much.
+    pivots (n,): places of the pivots, LANES times the block and the row in it. n is STAGES or twice as much.
     """
-    if pivots.shape[0] == STAGES:
-        return factorize_order(columns, pivots, STAGES)
-    return factorize_order(columns, pivots, 2 * STAGES)
+    return factorize_blocks(columns, pivots, 1) if pivots.shape[0] == STAGES else factorize_blocks(columns, pivots, 2)
 
 
 @compiled
-def solve(factors: Array, pivots: Array, rhs: Array) -> None:
-    """Overwrites rhs (n,) by the solution, with what `factorize` left."""
-    if pivots.shape[0] == STAGES:
-        solve_order(factors, pivots, rhs, STAGES)
-    else:
-        solve_order(factors, pivots, rhs, 2 * STAGES)
-
-
-@compiled
-def factorize_order(columns: Array, pivots: Array, n: int) -> bool:
-    """`factorize` for n rows."""
-    for i in range(n):
-        pivot = columns[i]
-        best = abs(pivot[i])
-        row = i
-        for k in range(i + 1, n):
-            if abs(pivot[k]) > best:
-                best = abs(pivot[k])
-                row = k
-        if not best > 0.0:
-            return False
-        pivots[i] = row
-        if row != i:
-            for j in range(n):
-                columns[j, i], columns[j, row] = columns[j, row], columns[j, i]
-        inverse = 1.0 / pivot[i]
-        for k in range(i + 1, n):
-            pivot[k] *= inverse
-        for j in range(i + 1, n):
-            column = columns[j]
-            factor = column[i]
-            for k in range(i + 1, n):
-                column[k] -= factor * pivot[k]
+def factorize_blocks(columns: Array, pivots: Array, blocks: int) -> bool:
+    """`factorize` for so many blocks."""
+    n = blocks * STAGES
+    for block in range(blocks):
+        for k in range(STAGES):
+            i = block * STAGES + k
+            place = block * LANES + k
+            if abs(columns[i, block, k]) < MIN_PIVOT * largest_behind(columns, i, block, blocks):
+                place = largest_place(columns[i], block, k, blocks)
+                for j in range(n):
+                    exchange(columns[j], block, k, place)
+            pivots[i] = place
+            inverse = 1.0 / columns[i, block, k]
+            if not abs(inverse) < np.inf:
+                return False
+            near, far = inverse * (row(BEHIND, (i, 0)) * row(columns, (i, 0))), 0.0 * row(BEHIND, (i, 0))
+            if block == 0:
+                put(columns, (i, 0), row(columns, (i, 0)) * row(UP_TO, (i, 0)) + near)
+            if blocks == MOST_BLOCKS:
+                far = inverse * (row(BEHIND, (i, 1)) * row(columns, (i, 1)))
+                put(columns, (i, 1), row(columns, (i, 1)) * row(UP_TO, (i, 1)) + far)
+            for j in range(i + 1, n):
+                factor = columns[j, block, k]
+                if block == 0:
+                    put(columns, (j, 0), row(columns, (j, 0)) - factor * near)
+                if blocks == MOST_BLOCKS:
+                    put(columns, (j, 1), row(columns, (j, 1)) - factor * far)
+            columns[i, block, k] = inverse
     return True
 
 
 @compiled
-def solve_order(factors: Array, pivots: Array, rhs: Array, n: int) -> None:
-    """`solve` for n rows."""
-    for i in range(n):
-        row = int(pivots[i])
-        rhs[i], rhs[row] = rhs[row], rhs[i]
-    for j in range(n):
-        column = factors[j]
-        known = rhs[j]
-        for i in range(j + 1, n):
-            rhs[i] -= known * column[i]
-    for j in range(n - 1, -1, -1):
-        column = factors[j]
-        known = rhs[j] / column[j]
-        rhs[j] = known
-        for i in range(j):
-            rhs[i] -= known * column[i]
+def largest_behind(columns: Array, i: int, block: int, blocks: int) -> float:
+    """The largest size of an entry of column i behind the diagonal, which is in `block`."""
+    sizes = abs(row(columns, (i, block))) * row(BEHIND, (i, block))
+    if block + 1 < blocks:
+        sizes = max(sizes, abs(row(columns, (i, block + 1))))
+    largest: float = highest(sizes)
+    return largest
+
+
+@compiled
+def largest_place(column: Array, block: int, first: int, blocks: int) -> int:
+    """Where the largest entry of a column (blocks, LANES) is, from a row of a block on: LANES times block and row."""
+    best, place = 0.0, block * LANES + first
+    for b in range(block, blocks):
+        for k in range(first if b == block else 0, STAGES):
+            if abs(column[b, k]) > best:
+                best, place = abs(column[b, k]), b * LANES + k
+    return place
+
+
+@compiled
+def exchange(column: Array, block: int, k: int, place: int) -> None:
+    """Exchange two entries of a column (blocks, LANES)."""
+    other, m = place // LANES, place % LANES
+    column[block, k], column[other, m] = column[other, m], column[block, k]
+
+
+@compiled
+def solve(factors: Array, pivots: Array, rhs: Array) -> None:
+    """Overwrites rhs (blocks, LANES) by the solution, with what `factorize` left."""
+    if pivots.shape[0] == STAGES:
+        solve_blocks(factors, pivots, rhs, 1)
+    else:
+        solve_blocks(factors, pivots, rhs, 2)
+
+
+@compiled
+def solve_blocks(factors: Array, pivots: Array, rhs: Array, blocks: int) -> None:
+    """`solve` for so many blocks."""
+    for block in range(blocks):
+        for k in range(STAGES):
+            place = int(pivots[block * STAGES + k])
+            if place != block * LANES + k:
+                exchange(rhs, block, k, place)
+    for block in range(blocks):
+        for k in range(STAGES):
+            subtract(factors, BEHIND, block * STAGES + k, rhs, rhs[block, k], block, blocks)
+    near = far = 0.0 * row(rhs, 0)
+    for block in range(blocks - 1, -1, -1):
+        for k in range(STAGES - 1, -1, -1):
+            j = block * STAGES + k
+            known = rhs[block, k] * factors[j, block, k]
+            subtract(factors, BEFORE, j, rhs, known, 0, block + 1)
+            near += known * row(AT, (j, 0))
+            far += known * row(AT, (j, 1))
+    put(rhs, 0, near)
+    if blocks == MOST_BLOCKS:
+        put(rhs, 1, far)
+
+
+@compiled
+def subtract(factors: Array, part: Array, j: int, rhs: Array, known: float, first: int, end: int) -> None:
+    """Take a known number times a part of column j from some blocks of the right side."""
+    for b in range(first, end):
+        put(rhs, b, row(rhs, b) - known * (row(part, (j, b)) * row(factors, (j, b))))

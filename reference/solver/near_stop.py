@@ -11,13 +11,14 @@ from __future__ import annotations
 
 from math import exp, inf, log
 
-from reference.solver.collocation import NODES, STAGES, A
+from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import heading
-from reference.solver.contact.platform import directed, load_at_stage
-from reference.solver.events import lowest
+from reference.solver.contact.platform import directed, load_at_stages
 from reference.solver.ground import ground_at_stages, start_waves
-from reference.solver.linear_solve import factorize, solve
+from reference.solver.linear_solve import AT, factorize, solve
+from reference.solver.polynomial import A_COLUMNS, NODES_ROW, integral
+from reference.solver.rows import finite, highest, lowest, put, row
 from reference.solver.steps import absolute_accelerations, beyond_rim
 from reference.solver.system import OPEN, SLIDING, SOLVED, UNSOLVED, System
 from reference.solver.work import (
@@ -76,10 +77,9 @@ def near_stop_step(system: System, work: Work, h: float, tolerance: float) -> in
                 for axis in range(system.axes):
                     work.x1[i, axis] = work.chain[i, axis, STAGES - 1]
                     work.v1[i, axis] = work.velocity[i, axis, STAGES - 1]
-            for k in range(STAGES):
-                work.levels[k] = work.turning[SIGMA, k] + log(work.turning[RATIO, k])
+            put(work.levels, (), row(work.turning, SIGMA) + log(row(work.turning, RATIO)))
             absolute_accelerations(system, work, SLIDING)
-            return SOLVED if lowest(work.stage[REACTION]) > 0.0 else OPEN
+            return SOLVED if lowest(row(work.stage, REACTION)) > 0.0 else OPEN
     return UNSOLVED
 
 
@@ -89,45 +89,34 @@ def guess_turning(system: System, work: Work, h: float) -> None:
     ex, ey = heading(work.angle, system.axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
     across = work.a0[0, 1] * ex - work.a0[0, 0] * ey
-    for k in range(STAGES):
-        turn = max(-MAX_GUESSED_TURN, min(MAX_GUESSED_TURN, h * NODES[k] * across))
-        work.turning[DIRECTION, k] = work.angle + turn
-        work.turning[SIGMA, k] = work.log_speed + h * NODES[k] * along
-        for i in range(work.x.shape[0]):
-            for axis in range(system.axes):
-                work.a[i, axis, k] = work.a0[i, axis]
+    elapsed = h * row(NODES_ROW, ())
+    turn = max(-MAX_GUESSED_TURN, min(MAX_GUESSED_TURN, elapsed * across))
+    put(work.turning, DIRECTION, work.angle + turn)
+    put(work.turning, SIGMA, work.log_speed + elapsed * along)
+    for i in range(work.x.shape[0]):
+        for axis in range(system.axes):
+            put(work.a, (i, axis), work.a0[i, axis])
 
 
 @compiled
 def move_bodies(system: System, work: Work, h: float) -> None:
     """Speed, time, velocities and positions at the stages."""
     x, v, a, turning = work.x, work.v, work.a, work.turning
-    speeds = turning[SPEED]
     for k in range(STAGES):
-        speeds[k] = exp(turning[SIGMA, k])
         turning[COSINE, k], turning[SINE, k] = heading(turning[DIRECTION, k], system.axes)
-    for k in range(STAGES):
-        elapsed = 0.0
-        for m in range(STAGES):
-            elapsed += A[k, m] * speeds[m]
-        work.elapsed[k] = h * elapsed
-        turning[CLOCK, k] = work.time + work.elapsed[k]
+    speeds = exp(row(turning, SIGMA))
+    elapsed = h * integral(speeds)
+    put(turning, SPEED, speeds)
+    put(turning, CLOCK, work.time + elapsed)
+    put(work.elapsed, (), elapsed)
     for i in range(x.shape[0]):
         for axis in range(system.axes):
-            velocity, position = work.velocity[i, axis], work.chain[i, axis]
-            for k in range(STAGES):
-                if i == 0:
-                    velocity[k] = speeds[k] * turning[COSINE + axis, k]
-                else:
-                    gained = 0.0
-                    for m in range(STAGES):
-                        gained += A[k, m] * speeds[m] * a[i, axis, m]
-                    velocity[k] = v[i, axis] + h * gained
-            for k in range(STAGES):
-                shift = 0.0
-                for m in range(STAGES):
-                    shift += A[k, m] * speeds[m] * velocity[m]
-                position[k] = x[i, axis] + h * shift
+            if i == 0:
+                velocity = speeds * row(turning, COSINE + axis)
+            else:
+                velocity = v[i, axis] + h * integral(speeds * row(a, (i, axis)))
+            put(work.velocity, (i, axis), velocity)
+            put(work.chain, (i, axis), x[i, axis] + h * integral(speeds * velocity))
 
 
 @compiled
@@ -137,40 +126,38 @@ def pull_bodies(system: System, work: Work, h: float) -> float:
 
     Returns the largest change of the chain's accelerations, as a change of velocity over the speed.
     """
-    place, velocity, stage, ground = work.chain, work.velocity, work.stage, work.ground
+    place, velocity, stage = work.chain, work.velocity, work.stage
     bodies = work.x.shape[0]
     change = 0.0
     ground_at_stages(system, work)
-    for k in range(STAGES):
-        duration = work.turning[SPEED, k] * h
-        for axis in range(system.axes):
-            for i in range(1, bodies):
-                pull = system.below[i, axis] * (place[i - 1, axis, k] - place[i, axis, k])
-                pull += system.damping_below[i, axis] * (velocity[i - 1, axis, k] - velocity[i, axis, k])
-                if i < bodies - 1:
-                    pull += system.above[i, axis] * (place[i + 1, axis, k] - place[i, axis, k])
-                    pull += system.damping_above[i, axis] * (velocity[i + 1, axis, k] - velocity[i, axis, k])
-                pull -= ground[axis, k]
-                change = max(change, abs(pull - work.a[i, axis, k]) * duration)
-                work.a[i, axis, k] = pull
-        for axis in range(2):
-            drive = -ground[axis, k]
-            if bodies > 1:
-                drive += system.above[0, axis] * (place[1, axis, k] - place[0, axis, k])
-                drive += system.damping_above[0, axis] * (velocity[1, axis, k] - velocity[0, axis, k])
-            stage[POSITION + axis, k] = place[0, axis, k]
-            stage[VELOCITY + axis, k] = velocity[0, axis, k]
-            stage[DRIVE + axis, k] = drive
+    duration = row(work.turning, SPEED) * h
+    for axis in range(system.axes):
+        for i in range(1, bodies):
+            pull = system.below[i, axis] * (row(place, (i - 1, axis)) - row(place, (i, axis)))
+            pull += system.damping_below[i, axis] * (row(velocity, (i - 1, axis)) - row(velocity, (i, axis)))
+            if i < bodies - 1:
+                pull += system.above[i, axis] * (row(place, (i + 1, axis)) - row(place, (i, axis)))
+                pull += system.damping_above[i, axis] * (row(velocity, (i + 1, axis)) - row(velocity, (i, axis)))
+            pull -= row(work.ground, axis)
+            change = max(change, highest(abs(pull - row(work.a, (i, axis))) * duration))
+            put(work.a, (i, axis), pull)
+    for axis in range(2):
+        drive = -row(work.ground, axis)
+        if bodies > 1:
+            drive += system.above[0, axis] * (row(place, (1, axis)) - row(place, (0, axis)))
+            drive += system.damping_above[0, axis] * (row(velocity, (1, axis)) - row(velocity, (0, axis)))
+        put(stage, POSITION + axis, row(place, (0, axis)))
+        put(stage, VELOCITY + axis, row(velocity, (0, axis)))
+        put(stage, DRIVE + axis, drive)
     return change
 
 
 @compiled
 def inside_rim(system: System, work: Work) -> bool:
     """Whether the platform is within the cap at every stage (4.1)."""
-    for k in range(STAGES):
-        if not work.stage[POSITION, k] ** 2 + work.stage[POSITION + 1, k] ** 2 < system.radius**2:
-            return False
-    return True
+    x, y = row(work.stage, POSITION), row(work.stage, POSITION + 1)
+    inside: bool = highest(x * x + y * y) < system.radius**2
+    return inside
 
 
 @compiled
@@ -180,25 +167,26 @@ def turn_platform(system: System, work: Work, fresh: bool) -> None:
 
     Where friction depends on the speed, also the slope of that along the direction by the speed's logarithm.
     """
-    turning, stage = work.turning, work.stage
-    for k in range(STAGES):
-        speed, ex, ey = turning[SPEED, k], turning[COSINE, k], turning[SINE, k]
-        load = load_at_stage(work, k)
-        ax, ay, reaction, ratio = directed(system, load, speed, ex, ey)
-        work.a[0, 0, k], work.a[0, 1, k] = ax, ay
-        turning[ALONG, k] = ax * ex + ay * ey
-        turning[ACROSS, k] = ay * ex - ax * ey
-        turning[RATIO, k] = ratio
-        stage[REACTION, k], stage[SPEED2, k] = reaction, (speed * ratio) ** 2
-        if not fresh:
-            continue
-        gx, gy = ex - DIRECTION_DIFFERENCE * ey, ey + DIRECTION_DIFFERENCE * ex
-        bx, by, _, _ = directed(system, load, speed, gx, gy)
-        turning[ALONG_SLOPE, k] = (bx * gx + by * gy - turning[ALONG, k]) / DIRECTION_DIFFERENCE
-        turning[ACROSS_SLOPE, k] = (by * gx - bx * gy - turning[ACROSS, k]) / DIRECTION_DIFFERENCE
-        if system.rate > 0.0:
-            cx, cy, _, _ = directed(system, load, (1.0 + SPEED_DIFFERENCE) * speed, ex, ey)
-            turning[ALONG_BY_SIGMA, k] = (cx * ex + cy * ey - turning[ALONG, k]) / SPEED_DIFFERENCE
+    turning, stage, load = work.turning, work.stage, load_at_stages(work)
+    speed, ex, ey = row(turning, SPEED), row(turning, COSINE), row(turning, SINE)
+    ax, ay, reaction, ratio = directed(system, load, speed, ex, ey)
+    along, across, full = ax * ex + ay * ey, ay * ex - ax * ey, speed * ratio
+    put(work.a, (0, 0), ax)
+    put(work.a, (0, 1), ay)
+    put(turning, ALONG, along)
+    put(turning, ACROSS, across)
+    put(turning, RATIO, ratio)
+    put(stage, REACTION, reaction)
+    put(stage, SPEED2, full * full)
+    if not fresh:
+        return
+    gx, gy = ex - DIRECTION_DIFFERENCE * ey, ey + DIRECTION_DIFFERENCE * ex
+    bx, by, _, _ = directed(system, load, speed, gx, gy)
+    put(turning, ALONG_SLOPE, (bx * gx + by * gy - along) / DIRECTION_DIFFERENCE)
+    put(turning, ACROSS_SLOPE, (by * gx - bx * gy - across) / DIRECTION_DIFFERENCE)
+    if system.rate > 0.0:
+        cx, cy, _, _ = directed(system, load, (1.0 + SPEED_DIFFERENCE) * speed, ex, ey)
+        put(turning, ALONG_BY_SIGMA, (cx * ex + cy * ey - along) / SPEED_DIFFERENCE)
 
 
 @compiled
@@ -208,50 +196,40 @@ def correct_turning(system: System, work: Work, h: float, fresh: bool) -> float:
 
     fresh: with slopes of this iteration, not with the factors of the one before.
     """
-    turning, residual = work.turning, work.residual[:STAGES]
+    turning, residual = work.turning, work.residual
     matrix, pivots = work.turn_matrix, work.pivots[:STAGES]
-    for k in range(STAGES):
-        residual[k] = work.angle - turning[DIRECTION, k]
-        for m in range(STAGES):
-            residual[k] += h * A[k, m] * turning[ACROSS, m]
+    put(residual, 0, work.angle - row(turning, DIRECTION) + h * integral(row(turning, ACROSS)))
     if fresh:
-        for k in range(STAGES):
-            for m in range(STAGES):
-                matrix[m, k] = -h * A[k, m] * turning[ACROSS_SLOPE, m]
-            matrix[k, k] += 1.0
+        for m in range(STAGES):
+            put(matrix, (m, 0), row(AT, (m, 0)) - row(A_COLUMNS, m) * (h * turning[ACROSS_SLOPE, m]))
         if not factorize(matrix, pivots):
             return inf
     solve(matrix, pivots, residual)
-    change, levels = 0.0, work.levels
-    for k in range(STAGES):
-        level = work.log_speed
-        for m in range(STAGES):
-            level += h * A[k, m] * (turning[ALONG, m] + turning[ALONG_SLOPE, m] * residual[m])
-        levels[k] = level
+    turn = row(residual, 0)
+    put(work.levels, (), work.log_speed + h * integral(row(turning, ALONG) + row(turning, ALONG_SLOPE) * turn))
     if system.rate > 0.0 and not correct_levels(work, h):
         return inf
-    for k in range(STAGES):
-        change = max(change, max(abs(residual[k]), abs(levels[k] - turning[SIGMA, k])))
-        turning[DIRECTION, k] += residual[k]
-        turning[SIGMA, k] = levels[k]
-        if not change < DIVERGED:
-            return inf
+    rise = row(work.levels, ()) - row(turning, SIGMA)
+    if not (finite(turn) and finite(rise)):
+        return inf
+    put(turning, DIRECTION, row(turning, DIRECTION) + turn)
+    put(turning, SIGMA, row(work.levels, ()))
+    change: float = highest(max(abs(turn), abs(rise)))
     return change
 
 
 @compiled
 def correct_levels(work: Work, h: float) -> bool:
     """Newton's method in place of iteration for the logarithms of the speed in `levels`; False if it has no step."""
-    turning, levels = work.turning, work.levels
+    turning, levels, residual = work.turning, work.levels, work.residual
     matrix, pivots = work.turn_matrix, work.pivots[:STAGES]
-    for k in range(STAGES):
-        levels[k] -= turning[SIGMA, k]
-        for m in range(STAGES):
-            matrix[m, k] = -h * A[k, m] * turning[ALONG_BY_SIGMA, m]
-        matrix[k, k] += 1.0
+    turn = row(residual, 0)
+    put(residual, 0, row(levels, ()) - row(turning, SIGMA))
+    for m in range(STAGES):
+        put(matrix, (m, 0), row(AT, (m, 0)) - row(A_COLUMNS, m) * (h * turning[ALONG_BY_SIGMA, m]))
     if not factorize(matrix, pivots):
         return False
-    solve(matrix, pivots, levels)
-    for k in range(STAGES):
-        levels[k] += turning[SIGMA, k]
+    solve(matrix, pivots, residual)
+    put(levels, (), row(turning, SIGMA) + row(residual, 0))
+    put(residual, 0, turn)
     return True

@@ -6,10 +6,11 @@ from math import sqrt
 
 import numpy as np
 
-from reference.solver.collocation import DENSE, NODES, STAGES
+from reference.solver.collocation import DENSE, LANES, NODES, STAGES
 from reference.solver.compiled import compiled
-from reference.solver.events import expand
-from reference.solver.work import POWERS, Work
+from reference.solver.polynomial import POWERS, expand
+from reference.solver.rows import as_many, highest, put, row
+from reference.solver.work import Work
 
 # A step resolved to the tolerance turns by a small part of a wave between two stages: a peak between them stands less
 # than this share above the higher one.
@@ -17,19 +18,20 @@ MAX_RISE_BETWEEN_STAGES = 0.2
 MAX_WAY_FACTOR = 1.5  # bound on the way within a step, times the larger speed at its ends and its length
 NEWTON_ITERATIONS = 6
 IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # components of a vector; no literals (system.py)
+DENSE_ROWS = np.resize(DENSE, (-(-len(DENSE) // LANES), LANES))
 SETTLED_FRACTION = 0.9  # of the largest so far: smaller values count as over
 
 
 @compiled
-def squares(work: Work, rows: int, theta: float) -> tuple[float, float, float]:
-    """Sum of the squares of the polynomials in the first `rows` of `powers` at theta, and its two derivatives."""
+def squares(work: Work, components: int, theta: float) -> tuple[float, float, float]:
+    """Sum of the squares of the first polynomials in `powers` at theta, and its two derivatives."""
     value = slope = curvature = 0.0
-    for row in range(rows):
+    for n in range(components):
         p = dp = ddp = 0.0
         for k in range(POWERS - 1, -1, -1):
             ddp = ddp * theta + 2.0 * dp
             dp = dp * theta + p
-            p = p * theta + work.powers[row, k]
+            p = p * theta + work.powers[n, k]
         value += p * p
         slope += 2.0 * p * dp
         curvature += 2.0 * (dp * dp + p * ddp)
@@ -37,23 +39,26 @@ def squares(work: Work, rows: int, theta: float) -> tuple[float, float, float]:
 
 
 @compiled
-def largest_square(work: Work, rows: int, low: float, high: float) -> tuple[float, float]:
-    """Largest sum of the squares of the polynomials in `powers` over [low, high], and where it is: Newton's method."""
+def largest_square(work: Work, components: int, low: float, high: float) -> tuple[float, float]:
+    """Largest sum of the squares of the first polynomials in `powers` over [low, high], and where: Newton's method."""
+    for block in range(DENSE_ROWS.shape[0]):
+        thetas = min(max(row(DENSE_ROWS, block), low), high)
+        values = as_many(0.0, thetas)
+        for n in range(components):
+            p = as_many(0.0, thetas)
+            for k in range(POWERS - 1, -1, -1):
+                p = p * thetas + work.powers[n, k]
+            values += p * p
+        put(work.dense, block, values)
     best, place = -1.0, low
     for n in range(DENSE.shape[0]):
-        theta = min(max(DENSE[n], low), high)
-        value = 0.0
-        for row in range(rows):
-            p = 0.0
-            for k in range(POWERS - 1, -1, -1):
-                p = p * theta + work.powers[row, k]
-            value += p * p
+        value = work.dense[n // LANES, n % LANES]
         if value > best:
-            best, place = value, theta
+            best, place = value, min(max(DENSE[n], low), high)
     left, right = max(low, place - DENSE[1]), min(high, place + DENSE[1])
     theta = place
     for _ in range(NEWTON_ITERATIONS):
-        value, slope, curvature = squares(work, rows, theta)
+        value, slope, curvature = squares(work, components, theta)
         if value > best:
             best, place = value, theta
         if not curvature < 0.0:
@@ -82,16 +87,12 @@ def take_peaks(work: Work, low: float, high: float) -> bool:
     """
     large = False
     for i in range(work.x.shape[0]):
-        highest = 0.0
-        for k in range(STAGES):
-            squared = 0.0
-            for axis in range(3):
-                squared += work.total[i, axis, k] ** 2
-            highest = max(highest, squared)
-        if highest < (1.0 - MAX_RISE_BETWEEN_STAGES) * work.best[i]:
+        x, y, z = row(work.total, (i, 0)), row(work.total, (i, 1)), row(work.total, (i, 2))
+        most = highest(x * x + y * y + z * z)
+        if most < (1.0 - MAX_RISE_BETWEEN_STAGES) * work.best[i]:
             continue
         for axis in range(3):
-            expand(work.total[i, axis], work.powers[axis])
+            expand(row(work.total, (i, axis)), work.powers[axis])
         top, place = largest_square(work, IN_SPACE, low, high)
         large = large or top >= SETTLED_FRACTION**2 * work.best[i]
         if top > work.best[i]:
@@ -125,8 +126,8 @@ def take_reach(work: Work, h: float, stretched: bool) -> bool:
     end = work.x1[0, 0] ** 2 + work.x1[0, 1] ** 2
     far = max(start, end)
     if stretched:
-        for k in range(STAGES):
-            far = max(far, work.chain[0, 0, k] ** 2 + work.chain[0, 1, k] ** 2)
+        x, y = row(work.chain, (0, 0)), row(work.chain, (0, 1))
+        far = max(far, highest(x * x + y * y))
     elif sqrt(max(start, end)) + MAX_WAY_FACTOR * h * sqrt(speed2) > sqrt(work.reach2):
         for axis in range(2):
             expand_place(work, h, axis)
@@ -140,7 +141,7 @@ def take_reach(work: Work, h: float, stretched: bool) -> bool:
 def expand_place(work: Work, h: float, axis: int) -> None:
     """Powers of theta of the platform's position: the second integral of its acceleration."""
     powers = work.powers[axis]
-    expand(work.a[0, axis], powers)
+    expand(row(work.a, (0, axis)), powers)
     for k in range(STAGES - 1, -1, -1):
         powers[k + 2] = h * h * powers[k] / ((k + 1.0) * (k + 2.0))
     powers[0] = work.x[0, axis]

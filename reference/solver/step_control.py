@@ -5,13 +5,14 @@ from __future__ import annotations
 from math import exp, sqrt
 
 from reference.solver.chain import chain_acceleration
-from reference.solver.collocation import NODES, STAGES
+from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.platform import load_in_state, moving
-from reference.solver.events import expand
 from reference.solver.ground import ground_at, knot_after
 from reference.solver.peaks import take_peaks, take_reach
+from reference.solver.polynomial import NODES_ROW, expand
 from reference.solver.record import record_step
+from reference.solver.rows import as_many, put, row
 from reference.solver.steps import lifted
 from reference.solver.system import REST, SLIDING, STOPPING, UNSOLVED, Demand, Ground, Record, System
 from reference.solver.work import CLOCK, Work
@@ -97,15 +98,16 @@ def plain_length(system: System, work: Work, demand: Demand) -> float:
 def first_guess(work: Work, h: float) -> None:
     """Stage accelerations of the platform to start Newton's method: the last step's polynomial where it reaches."""
     old = work.old_length
+    theta = row(NODES_ROW, ())
+    near = 0.0 < h <= MAX_EXTRAPOLATION * old
+    if near:
+        theta = 1.0 + theta * h / old
     for axis in range(2):
-        for k in range(STAGES):
-            guess = work.a0[0, axis]
-            if 0.0 < h <= MAX_EXTRAPOLATION * old:
-                theta = 1.0 + NODES[k] * h / old
-                guess = 0.0
-                for m in range(STAGES - 1, -1, -1):
-                    guess = guess * theta + work.guess[axis, m]
-            work.a[0, axis, k] = guess
+        guess = as_many(0.0 if near else work.a0[0, axis], theta)
+        if near:
+            for m in range(STAGES - 1, -1, -1):
+                guess = guess * theta + work.guess[axis, m]
+        put(work.a, (0, axis), guess)
 
 
 @compiled
@@ -157,9 +159,7 @@ def commit(work: Work, record: Record, h: float, contact: int, parts: int) -> No
         peaking = take_peaks(work, work.edges[2 * part], work.edges[2 * part + 1]) or peaking
     far = contact != REST and take_reach(work, h, contact == STOPPING)
     for axis in range(2):
-        expand(work.a[0, axis], work.powers[axis])
-        for k in range(STAGES):
-            work.guess[axis, k] = work.powers[axis, k]
+        expand(row(work.a, (0, axis)), work.guess[axis])
     for i in range(work.x.shape[0]):
         for axis in range(2):
             work.x[i, axis] = work.x1[i, axis]

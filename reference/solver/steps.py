@@ -13,14 +13,15 @@ from math import inf, sqrt
 import numpy as np
 
 from reference.solver.chain import CHANNEL_ROUNDING, eliminate_chain, feed_back, load_chain, move_chain
-from reference.solver.collocation import A2, AT_START, NODES, STAGES, A
+from reference.solver.collocation import AT_START, STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.platform import load_at_stage, moving
+from reference.solver.contact.platform import load_at_stages, moving
 from reference.solver.contact.slopes import slopes
 from reference.solver.equations import vertical_acceleration
-from reference.solver.events import lowest
 from reference.solver.ground import ground_at_stages, start_waves
-from reference.solver.linear_solve import factorize, solve
+from reference.solver.linear_solve import AT, factorize, solve
+from reference.solver.polynomial import A2_COLUMNS, A_COLUMNS, NODES_ROW
+from reference.solver.rows import Number, as_many, finite, highest, lowest, put, row
 from reference.solver.system import OPEN, PAINLEVE, REST, RIM, SOLVED, UNSOLVED, System
 from reference.solver.work import (
     BY_DRIVE,
@@ -45,8 +46,7 @@ RIM_SQUARED_FRACTION = 0.99  # of the squared radius: an iteration that starts b
 @compiled
 def load_step(system: System, work: Work, h: float) -> None:
     """The ground at the stages, and what it and the state do to the platform through the eliminated chain."""
-    for k in range(STAGES):
-        work.elapsed[k] = h * NODES[k]
+    put(work.elapsed, (), h * row(NODES_ROW, ()))
     start_waves(system, work, work.time)
     ground_at_stages(system, work)
     eliminate_chain(system, work, h)
@@ -58,11 +58,10 @@ def rest_step(system: System, work: Work, h: float) -> None:
     """The platform stays; the chain above it vibrates (4.4)."""
     load_step(system, work, h)
     for axis in range(system.axes):
-        for k in range(STAGES):
-            work.a[0, axis, k] = 0.0
-            work.stage[POSITION + axis, k] = work.x[0, axis]
-            work.stage[VELOCITY + axis, k] = 0.0
-            work.stage[DRIVE + axis, k] = work.free[axis, k]
+        put(work.a, (0, axis), 0.0)
+        put(work.stage, POSITION + axis, work.x[0, axis])
+        put(work.stage, VELOCITY + axis, 0.0)
+        put(work.stage, DRIVE + axis, row(work.free, axis))
     move_chain(system, work, h)
     absolute_accelerations(system, work, REST)
 
@@ -98,7 +97,7 @@ def moving_step(system: System, work: Work, contact: int, h: float, tolerance: f
             place_platform(work, h, system.axes)
             move_chain(system, work, h)
             absolute_accelerations(system, work, contact)
-            return SOLVED if lowest(work.stage[REACTION]) > 0.0 else OPEN
+            return SOLVED if lowest(row(work.stage, REACTION)) > 0.0 else OPEN
         fresh = iteration > 0 and change > SLOW_CONVERGENCE * before
         before = change
     return UNSOLVED
@@ -108,71 +107,66 @@ def moving_step(system: System, work: Work, contact: int, h: float, tolerance: f
 def set_residual(system: System, work: Work, contact: int) -> tuple[int, float]:
     """What the accelerations of the platform miss at the stages; (what stands in the way, their size in m/s^2)."""
     a, stage, residual = work.a, work.stage, work.residual
-    size = 0.0
-    for k in range(STAGES):
-        load = load_at_stage(work, k)
-        if load.px**2 + load.py**2 >= system.radius**2:
-            return beyond_rim(system, work), size
-        ax, ay, stage[REACTION, k], stage[DETERMINANT, k], stage[SPEED2, k] = moving(
-            system, contact, load, stage[VELOCITY, k], stage[VELOCITY + 1, k]
-        )
-        if not stage[DETERMINANT, k] > 0.0:
-            return PAINLEVE, size
-        size = max(size, abs(ax) + abs(ay))
-        residual[k] = ax - a[0, 0, k]
-        residual[STAGES + k] = ay - a[0, 1, k]
-    return SOLVED, size
+    load = load_at_stages(work)
+    if highest(load.px * load.px + load.py * load.py) >= system.radius**2:
+        return beyond_rim(system, work), 0.0
+    ax, ay, reaction, determinant, speed2 = moving(
+        system, contact, load, row(stage, VELOCITY), row(stage, VELOCITY + 1)
+    )
+    put(stage, REACTION, reaction)
+    put(stage, DETERMINANT, determinant)
+    put(stage, SPEED2, speed2)
+    put(residual, 0, ax - row(a, (0, 0)))
+    put(residual, 1, ay - row(a, (0, 1)))
+    return (SOLVED if lowest(determinant) > 0.0 else PAINLEVE), highest(abs(ax) + abs(ay))
 
 
 @compiled
 def correct(work: Work, axes: int) -> float:
-    """Add Newton's correction, in `residual`, to the stage accelerations of the platform; its largest entry."""
-    a, residual = work.a, work.residual
+    """
+    Add Newton's correction, in `residual`, to the stage accelerations of the platform.
+
+    Returns its largest entry, infinity if one is not finite.
+    """
     change = 0.0
     for axis in range(axes):
-        for k in range(STAGES):
-            correction = residual[axis * STAGES + k]
-            a[0, axis, k] += correction
-            change = max(change, abs(correction))
-            if not np.isfinite(correction):
-                return np.nan
+        correction = row(work.residual, axis)
+        put(work.a, (0, axis), row(work.a, (0, axis)) + correction)
+        change = max(change, highest(abs(correction)) if finite(correction) else inf)
     return change
 
 
 @compiled
 def place_platform(work: Work, h: float, axes: int) -> None:
     """Position, velocity and drive of the platform at the stages, from its stage accelerations."""
-    a, stage, free, feedback, x, v = work.a, work.stage, work.free, work.feedback, work.x, work.v
+    a, stage, feedback, x, v = work.a, work.stage, work.feedback, work.x, work.v
     for axis in range(axes):
-        for k in range(STAGES):
-            velocity = 0.0
-            position = 0.0
-            drive = free[axis, k]
-            for m in range(STAGES):
-                velocity += A[k, m] * a[0, axis, m]
-                position += A2[k, m] * a[0, axis, m]
-                drive += feedback[axis, k, m] * a[0, axis, m]
-            stage[POSITION + axis, k] = x[0, axis] + h * (NODES[k] * v[0, axis] + h * position)
-            stage[VELOCITY + axis, k] = v[0, axis] + h * velocity
-            stage[DRIVE + axis, k] = drive
+        velocity = position = as_many(0.0, row(NODES_ROW, ()))
+        drive = row(work.free, axis)
+        for m in range(STAGES):
+            acceleration = a[0, axis, m]
+            velocity += row(A_COLUMNS, m) * acceleration
+            position += row(A2_COLUMNS, m) * acceleration
+            drive += row(feedback, (axis, m)) * acceleration
+        put(stage, POSITION + axis, x[0, axis] + h * (row(NODES_ROW, ()) * v[0, axis] + h * position))
+        put(stage, VELOCITY + axis, v[0, axis] + h * velocity)
+        put(stage, DRIVE + axis, drive)
 
 
 @compiled
 def set_matrix(work: Work, h: float, axes: int) -> None:
     """Derivative of the stage equations a - acceleration(a) = 0 by the stage accelerations of the platform."""
     matrix, feedback, slope = work.matrix, work.feedback, work.slopes
-    for row in range(axes):
+    for axis in range(axes):
         for column in range(axes):
-            for k in range(STAGES):
-                by_position = h * h * slope[BY_POSITION + 2 * column + row, k]
-                by_velocity = h * slope[BY_VELOCITY + 2 * column + row, k]
-                by_drive = slope[BY_DRIVE + 2 * column + row, k]
-                for m in range(STAGES):
-                    matrix[column * STAGES + m, row * STAGES + k] = -(
-                        by_position * A2[k, m] + by_velocity * A[k, m] + by_drive * feedback[column, k, m]
-                    )
-    for k in range(axes * STAGES):
-        matrix[k, k] += 1.0
+            by_position = h * h * row(slope, BY_POSITION + 2 * column + axis)
+            by_velocity = h * row(slope, BY_VELOCITY + 2 * column + axis)
+            by_drive = row(slope, BY_DRIVE + 2 * column + axis)
+            for m in range(STAGES):
+                answer = by_position * row(A2_COLUMNS, m) + by_velocity * row(A_COLUMNS, m)
+                answer += by_drive * row(feedback, (column, m))
+                own = row(AT, (column * STAGES + m, axis))
+                put(matrix, (column * STAGES + m, axis), own - answer)
 
 
 @compiled
@@ -182,10 +176,10 @@ def beyond_rim(system: System, work: Work) -> int:
 
 
 @compiled
-def lifted(system: System, px: float, py: float, vx: float, vy: float, ax: float, ay: float) -> float:
+def lifted(system: System, px: Number, py: Number, vx: Number, vy: Number, ax: Number, ay: Number) -> Number:
     """Vertical acceleration of all bodies relative to the plate (2.2); none in the small equations."""
     if system.small:
-        return 0.0
+        return as_many(0.0, px)
     _, _, az = vertical_acceleration(px, py, vx, vy, ax, ay, system.radius)
     return az
 
@@ -194,17 +188,16 @@ def lifted(system: System, px: float, py: float, vx: float, vy: float, ax: float
 def absolute_accelerations(system: System, work: Work, contact: int) -> None:
     """Relative plus ground acceleration at the stages."""
     a, ground, stage, total = work.a, work.ground, work.stage, work.total
-    for k in range(STAGES):
-        vertical = ground[2, k]
-        if contact != REST:
-            vertical += lifted(
-                system, stage[POSITION, k], stage[POSITION + 1, k], stage[VELOCITY, k], stage[VELOCITY + 1, k],
-                a[0, 0, k], a[0, 1, k],
-            )  # fmt: skip
-        for i in range(work.x.shape[0]):
-            total[i, 0, k] = a[i, 0, k] + ground[0, k]
-            total[i, 1, k] = a[i, 1, k] + ground[1, k]
-            total[i, 2, k] = vertical
+    vertical = row(ground, 2)
+    if contact != REST:
+        vertical += lifted(
+            system, row(stage, POSITION), row(stage, POSITION + 1), row(stage, VELOCITY), row(stage, VELOCITY + 1),
+            row(a, (0, 0)), row(a, (0, 1)),
+        )  # fmt: skip
+    for i in range(work.x.shape[0]):
+        for axis in range(2):
+            put(total, (i, axis), row(a, (i, axis)) + row(ground, axis))
+        put(total, (i, 2), vertical)
 
 
 @compiled
@@ -219,10 +212,9 @@ def step_error(system: System, work: Work, tolerance: float, weight: float) -> f
     """
     total, total0, stage, a = work.total, work.total0, work.stage, work.a
     load = abs(total0[0, 2])
-    for k in range(STAGES):
-        load = max(load, abs(stage[DRIVE, k]) + abs(stage[DRIVE + 1, k]))
-        # friction may decelerate a platform that nothing drives
-        load = max(load, abs(a[0, 0, k]) + abs(a[0, 1, k]))
+    load = max(load, highest(abs(row(stage, DRIVE)) + abs(row(stage, DRIVE + 1))))
+    # friction may decelerate a platform that nothing drives
+    load = max(load, highest(abs(row(a, (0, 0))) + abs(row(a, (0, 1)))))
     noise = FORCE_ROUNDING * load
     channels = noise + (CHANNEL_ROUNDING * load if work.x.shape[0] > 1 else 0.0)
     worst = 0.0

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from reference.problem import GRAVITY, Scene, exponents
 from reference.solver.collocation import STAGES
+from reference.solver.rows import Number
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -61,15 +62,15 @@ class Ground(NamedTuple):
 
 
 class Load(NamedTuple):
-    """Where the platform is and what acts on it at one instant (equations.py)."""
+    """Where the platform is and what acts on it, at one instant or at all stages of a step (equations.py)."""
 
-    px: float  # m
-    py: float
-    fx: float  # driving acceleration, m/s^2
-    fy: float
-    ux: float  # acceleration of the ground, m/s^2
-    uy: float
-    uz: float
+    px: Number  # m
+    py: Number
+    fx: Number  # driving acceleration, m/s^2
+    fy: Number
+    ux: Number  # acceleration of the ground, m/s^2
+    uy: Number
+    uz: Number
 
 
 class Record(NamedTuple):

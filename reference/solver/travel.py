@@ -6,8 +6,9 @@ from math import inf
 
 from reference.solver.collocation import DENSE
 from reference.solver.compiled import compiled
-from reference.solver.events import expand, value_at
 from reference.solver.peaks import IN_THE_PLANE, expand_place, largest_square, squares
+from reference.solver.polynomial import expand, value_at
+from reference.solver.rows import row
 from reference.solver.system import REST, STOPPING, System
 from reference.solver.work import CLOCK, Work
 
@@ -21,7 +22,7 @@ def travel_reached(system: System, work: Work, contact: int, h: float) -> float:
         return inf
     for axis in range(2):
         if contact == STOPPING:
-            expand(work.chain[0, axis], work.powers[axis])
+            expand(row(work.chain, (0, axis)), work.powers[axis])
         else:
             expand_place(work, h, axis)
     limit = system.travel * system.travel
@@ -31,7 +32,7 @@ def travel_reached(system: System, work: Work, contact: int, h: float) -> float:
     theta = first_beyond(work, limit, place)
     if contact != STOPPING:
         return work.time + h * theta
-    expand(work.turning[CLOCK], work.powers[2])
+    expand(row(work.turning, CLOCK), work.powers[2])
     return value_at(work.powers[2], theta)
 
 

@@ -10,8 +10,9 @@ import numpy as np
 from numba.experimental import structref
 
 from reference.solver.by_reference import ByReference
-from reference.solver.collocation import CHANNELS, STAGES
+from reference.solver.collocation import CHANNELS, LANES, STAGES
 from reference.solver.compiled import allocating, compiled
+from reference.solver.polynomial import POWERS
 from reference.solver.system import Array, Complex, Record, System
 
 # rows of Work.stage: position, velocity, drive, reaction / m1, squared speed, inertia determinant; y behind x
@@ -24,7 +25,6 @@ BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
 ) = range(12)  # fmt: skip
 MAX_PARTS = 3  # of a step, apart from each other, that count for the peaks
 SERIES_TERMS = 32  # of the harmonics of the ground: more than a step takes
-POWERS = STAGES + 2  # coefficients of a polynomial: a position is the second integral of one through the stages
 
 
 class _SystemType(ByReference):
@@ -79,34 +79,36 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     # the step
     x1: Array  # (N, 2) at its end
     v1: Array
-    a: Array  # (N, 2, S) acceleration at the stages
-    ground: Array  # (3, S) ground acceleration at the stages
-    total: Array  # (N, 3, S) absolute acceleration at the stages
-    free: Array  # (2, S) driving acceleration of the platform if it kept its velocity
-    feedback: Array  # (2, S, S) what its own stage accelerations add to that
+    a: Array  # (N, 2, L) acceleration at the stages
+    ground: Array  # (3, L) ground acceleration at the stages
+    total: Array  # (N, 3, L) absolute acceleration at the stages
+    free: Array  # (2, L) driving acceleration of the platform if it kept its velocity
+    feedback: Array  # (2, S, L) what its own stage accelerations add to that
     inverse: Complex  # (N, 2, CHANNELS) of the pivots of the eliminated chain
     load: Complex  # (N, 2, CHANNELS)
+    channels: Array  # (L,) a number in every channel: real parts, imaginary parts
     gain: Complex  # (2, CHANNELS) what the platform's acceleration takes from its own drive through the chain
-    stage: Array  # (9, S) the platform at the stages
-    slopes: Array  # (12, S) derivative of its acceleration
-    matrix: Array  # (2 S, 2 S) by columns (linear_solve.py)
-    residual: Array  # (2 S,)
-    turn_matrix: Array  # (S, S) of the directions near a stop, by columns
-    pivots: Array  # (2 S,) rows of the factorized matrix
-    chain: Array  # (N, 2, S) position of the bodies at the stages of a step near a stop
-    velocity: Array  # (N, 2, S)
-    turning: Array  # (12, S) direction, speed and time there
-    levels: Array  # (S,) a quantity at the stages whose passage of a level ends the step
+    stage: Array  # (9, L) the platform at the stages
+    slopes: Array  # (12, L) derivative of its acceleration
+    matrix: Array  # (2 S, 2, L) by columns (linear_solve.py)
+    residual: Array  # (2, L)
+    turn_matrix: Array  # (S, 1, L) of the directions near a stop
+    pivots: Array  # (2 S,) of the factorized matrix
+    chain: Array  # (N, 2, L) position of the bodies at the stages of a step near a stop
+    velocity: Array  # (N, 2, L)
+    turning: Array  # (12, L) direction, speed and time there
+    levels: Array  # (L,) a quantity at the stages whose passage of a level ends the step
     edges: Array  # (2 MAX_PARTS,) theta where the parts of the step that count for the peaks begin and end
     powers: Array  # (5, POWERS) coefficients of the powers of theta where a step is looked at closely
+    dense: Array  # (2, L) a quantity at the places of collocation.DENSE
     scale: Array  # (N,) m/s^2, what errors are measured against
     defect: Array  # (N,) m/s^2, interpolation error of the step at its start
     # the step before
     old_length: float  # s; 0 where its polynomial is no guess for the next step
-    guess: Array  # (2, S) coefficients of the platform's acceleration in it
+    guess: Array  # (2, POWERS) coefficients of the platform's acceleration in it
     waves: Complex  # (2,) the harmonics of the ground at the start of the step
     turns: Complex  # (2,) by what they change in a step of a rough run
-    elapsed: Array  # (S,) s, from the start of the step to its stages
+    elapsed: Array  # (L,) s, from the start of the step to its stages
     series: Array  # (SERIES_TERMS, 2) of the harmonics in a step
     # the run
     end: float  # s, at most the duration
@@ -126,7 +128,7 @@ structref.define_proxy(Work, _WorkType, list(Work.__annotations__))
 @allocating
 def workspace(bodies: int) -> Work:
     """For runs with this many bodies."""
-    n, s, c = bodies, STAGES, CHANNELS
+    n, s, c, lanes = bodies, STAGES, CHANNELS, LANES
     return Work(
         phase=np.zeros(2),
         time=0.0,
@@ -147,33 +149,35 @@ def workspace(bodies: int) -> Work:
         left=0.0,
         x1=np.zeros((n, 2)),
         v1=np.zeros((n, 2)),
-        a=np.zeros((n, 2, s)),
-        ground=np.zeros((3, s)),
-        total=np.zeros((n, 3, s)),
-        free=np.zeros((2, s)),
-        feedback=np.zeros((2, s, s)),
+        a=np.zeros((n, 2, lanes)),
+        ground=np.zeros((3, lanes)),
+        total=np.zeros((n, 3, lanes)),
+        free=np.zeros((2, lanes)),
+        feedback=np.zeros((2, s, lanes)),
         inverse=np.zeros((n, 2, c), np.complex128),
         load=np.zeros((n, 2, c), np.complex128),
+        channels=np.zeros(lanes),
         gain=np.zeros((2, c), np.complex128),
-        stage=np.zeros((9, s)),
-        slopes=np.zeros((12, s)),
-        matrix=np.zeros((2 * s, 2 * s)),
-        residual=np.zeros(2 * s),
-        turn_matrix=np.zeros((s, s)),
+        stage=np.zeros((9, lanes)),
+        slopes=np.zeros((12, lanes)),
+        matrix=np.zeros((2 * s, 2, lanes)),
+        residual=np.zeros((2, lanes)),
+        turn_matrix=np.zeros((s, 1, lanes)),
         pivots=np.zeros(2 * s),
-        chain=np.zeros((n, 2, s)),
-        velocity=np.zeros((n, 2, s)),
-        turning=np.zeros((12, s)),
-        levels=np.zeros(s),
+        chain=np.zeros((n, 2, lanes)),
+        velocity=np.zeros((n, 2, lanes)),
+        turning=np.zeros((12, lanes)),
+        levels=np.zeros(lanes),
         edges=np.zeros(2 * MAX_PARTS),
         powers=np.zeros((5, POWERS)),
+        dense=np.zeros((2, lanes)),
         scale=np.zeros(n),
         defect=np.zeros(n),
         old_length=0.0,
-        guess=np.zeros((2, s)),
+        guess=np.zeros((2, POWERS)),
         waves=np.zeros(2, np.complex128),
         turns=np.zeros(2, np.complex128),
-        elapsed=np.zeros(s),
+        elapsed=np.zeros(lanes),
         series=np.zeros((SERIES_TERMS, 2)),
         end=0.0,
         steps=0.0,

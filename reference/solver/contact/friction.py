@@ -15,19 +15,20 @@ from __future__ import annotations
 from math import cos, exp, expm1, sin, sqrt
 
 from reference.solver.compiled import compiled
+from reference.solver.rows import Number, as_many, where_positive
 from reference.solver.system import Load, System
 
 
 @compiled
-def coefficient(system: System, speed: float) -> float:
+def coefficient(system: System, speed: Number) -> Number:
     """Dry friction coefficient mu at the sliding speed (3.8), m/s."""
     if system.rate == 0.0:
-        return system.friction
+        return as_many(system.friction, speed)
     return system.friction - system.rise * expm1(-system.rate * speed)
 
 
 @compiled
-def coefficient_slope(system: System, speed: float) -> float:
+def coefficient_slope(system: System, speed: Number) -> Number:
     """Derivative of mu by the sliding speed, s/m."""
     return system.rise * system.rate * exp(-system.rate * speed)
 
@@ -39,7 +40,7 @@ def rising_rate(system: System, speed: float) -> float:
 
 
 @compiled
-def sliding_speed2(system: System, px: float, py: float, vx: float, vy: float) -> float:
+def sliding_speed2(system: System, px: Number, py: Number, vx: Number, vy: Number) -> Number:
     """Squared sliding speed: v-bar^2 of (3.8), or the horizontal one in the small equations (4.3)."""
     planar = vx * vx + vy * vy
     if system.small:
@@ -49,7 +50,7 @@ def sliding_speed2(system: System, px: float, py: float, vx: float, vy: float) -
 
 
 @compiled
-def rest_excess_exact(system: System, load: Load) -> tuple[float, float]:
+def rest_excess_exact(system: System, load: Load) -> tuple[Number, Number]:
     """
     Consistent condition for rest of the exact equations: (excess, reaction / m1).
 
@@ -69,7 +70,7 @@ def rest_excess_exact(system: System, load: Load) -> tuple[float, float]:
 
 
 @compiled
-def rest_excess_small(system: System, load: Load) -> tuple[float, float]:
+def rest_excess_small(system: System, load: Load) -> tuple[Number, Number]:
     """
     Consistent condition for rest of (4.3): (excess, reaction / m1); rest while |Mf^-1 F_3| <= 1 (4.6, corrected).
 
@@ -88,11 +89,11 @@ def rest_excess_small(system: System, load: Load) -> tuple[float, float]:
     hy = a * gy - c * gx
     det = a * d - b * c
     scale = friction * friction * reaction * reaction  # the unit of the exact excess
-    return (hx * hx + hy * hy - det * det) / scale if scale > 0.0 else gx * gx + gy * gy, reaction
+    return where_positive(scale, (hx * hx + hy * hy - det * det) / scale, gx * gx + gy * gy), reaction
 
 
 @compiled
-def rest_excess_printed(system: System, load: Load) -> float:
+def rest_excess_printed(system: System, load: Load) -> Number:
     """
     |F_3|^2 - |F_F|^2 of (4.6) as printed: the components of F_F are mu N each, so the limit is sqrt(2) mu N at the
     origin, and F_3 carries gravity and spring with the printed signs. Kept to measure what the slip costs.
@@ -115,7 +116,9 @@ def heading(angle: float, axes: int) -> tuple[float, float]:
 
 
 @compiled
-def slip_vector(system: System, px: float, py: float, speed: float, ex: float, ey: float) -> tuple[float, float, float]:
+def slip_vector(
+    system: System, px: Number, py: Number, speed: Number, ex: Number, ey: Number
+) -> tuple[Number, Number, Number]:
     """
     Slip vector of dry sliding in the horizontal direction (ex, ey), and the ratio of full to horizontal speed.
 

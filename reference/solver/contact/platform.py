@@ -14,6 +14,7 @@ from reference.solver.contact.friction import (
     slip_vector,
 )
 from reference.solver.equations import exact_acceleration, small_acceleration
+from reference.solver.rows import Number, as_many, row
 from reference.solver.system import CREEPING, PRINTED, SLIDING, Ground, Load, System
 from reference.solver.work import DRIVE, POSITION, Work
 
@@ -33,28 +34,30 @@ def load_in_state(system: System, work: Work, ground: Ground) -> Load:
 
 
 @compiled
-def load_at_stage(work: Work, k: int) -> Load:
-    """What acts on the platform at stage k, from `stage` and `ground`."""
+def load_at_stages(work: Work) -> Load:
+    """What acts on the platform at the stages, in rows, from `stage` and `ground`."""
     stage, ground = work.stage, work.ground
     return Load(
-        stage[POSITION, k], stage[POSITION + 1, k], stage[DRIVE, k], stage[DRIVE + 1, k],
-        ground[0, k], ground[1, k], ground[2, k],
+        row(stage, POSITION), row(stage, POSITION + 1), row(stage, DRIVE), row(stage, DRIVE + 1),
+        row(ground, 0), row(ground, 1), row(ground, 2),
     )  # fmt: skip
 
 
 @compiled
-def slip_factor(system: System, contact: int, speed2: float) -> float:
+def slip_factor(system: System, contact: int, speed2: Number) -> Number:
     """Slip vector over horizontal velocity (friction.py), s/m."""
     if contact == SLIDING:
         speed = sqrt(speed2)
         return coefficient(system, speed) / speed
     if contact == CREEPING:
         return coefficient(system, sqrt(speed2)) / system.v_reg
-    return system.friction
+    return as_many(system.friction, speed2)
 
 
 @compiled
-def acceleration(system: System, load: Load, speed2: float, sx: float, sy: float) -> tuple[float, float, float, float]:
+def acceleration(
+    system: System, load: Load, speed2: Number, sx: Number, sy: Number
+) -> tuple[Number, Number, Number, Number]:
     """(ax, ay, reaction / m1, inertia determinant) by the system's own equations (equations.py)."""
     px, py, fx, fy, ux, uy, pressure = (
         load.px, load.py, load.fx, load.fy, load.ux, load.uy, system.gravity + load.uz
@@ -65,7 +68,9 @@ def acceleration(system: System, load: Load, speed2: float, sx: float, sy: float
 
 
 @compiled
-def moving(system: System, contact: int, load: Load, vx: float, vy: float) -> tuple[float, float, float, float, float]:
+def moving(
+    system: System, contact: int, load: Load, vx: Number, vy: Number
+) -> tuple[Number, Number, Number, Number, Number]:
     """(ax, ay, reaction / m1, inertia determinant, speed2) at a velocity that is not zero while sliding."""
     speed2 = sliding_speed2(system, load.px, load.py, vx, vy)
     factor = slip_factor(system, contact, speed2)
@@ -74,15 +79,17 @@ def moving(system: System, contact: int, load: Load, vx: float, vy: float) -> tu
 
 
 @compiled
-def directed(system: System, load: Load, speed: float, ex: float, ey: float) -> tuple[float, float, float, float]:
+def directed(
+    system: System, load: Load, speed: Number, ex: Number, ey: Number
+) -> tuple[Number, Number, Number, Number]:
     """(ax, ay, reaction / m1, full over horizontal speed) when sliding in the direction (ex, ey) at any speed >= 0."""
     sx, sy, ratio = slip_vector(system, load.px, load.py, speed, ex, ey)
-    ax, ay, reaction, _ = acceleration(system, load, (speed * ratio) ** 2, sx, sy)
+    ax, ay, reaction, _ = acceleration(system, load, (speed * ratio) * (speed * ratio), sx, sy)
     return ax, ay, reaction, ratio
 
 
 @compiled
-def rest_excess(system: System, load: Load) -> tuple[float, float]:
+def rest_excess(system: System, load: Load) -> tuple[Number, Number]:
     """(excess, reaction / m1): rest is possible while the excess is not positive (friction.py)."""
     if system.small:
         excess, reaction = rest_excess_small(system, load)
@@ -91,4 +98,5 @@ def rest_excess(system: System, load: Load) -> tuple[float, float]:
     if system.rest_condition == PRINTED:
         # where (4.6) lets go of a platform that friction can hold, no motion begins all the same
         excess = min(excess, rest_excess_printed(system, load))
-    return excess - ROUNDING_EXCESS * (system.friction * reaction) ** 2, reaction
+    limit = system.friction * reaction
+    return excess - ROUNDING_EXCESS * (limit * limit), reaction

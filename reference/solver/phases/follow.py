@@ -6,7 +6,7 @@ from math import inf, log, sqrt
 
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import rising_rate
-from reference.solver.events import LEVEL, SPEED, expand_level, expand_speed, highest, lowest, parts_beyond
+from reference.solver.events import LEVEL, SPEED, expand_level, expand_speed, parts_beyond
 from reference.solver.look_ahead import end_early
 from reference.solver.near_stop import near_stop_step
 from reference.solver.phases.rest import begin_rest, onset_within, set_reaction
@@ -29,6 +29,7 @@ from reference.solver.phases.stopping import (
     stretched_length,
 )
 from reference.solver.record import note_stick
+from reference.solver.rows import highest, lowest, row
 from reference.solver.step_control import (
     FAILURE_SHORTENING,
     MAX_SHORTENING,
@@ -167,7 +168,7 @@ def made(system: System, work: Work, contact: int, demand: Demand, h: float) -> 
     if contact == REST:
         rest_step(system, work, h)
         set_reaction(system, work)
-        return OPEN if lowest(work.stage[REACTION]) <= 0.0 else SOLVED
+        return OPEN if lowest(row(work.stage, REACTION)) <= 0.0 else SOLVED
     load_step(system, work, h)
     enough = NEWTON_FRACTION * demand.tolerance * work.scale[0]
     if contact == SLIDING:
@@ -212,7 +213,7 @@ def counted(system: System, work: Work, contact: int, demand: Demand, h: float, 
     """
     if contact == CREEPING:
         level, start2 = system.v_reg * system.v_reg, speed2(system, work)
-        if max(start2, highest(work.stage[SPEED2])) > level:
+        if max(start2, highest(row(work.stage, SPEED2))) > level:
             expand_speed(work, h, level)
             return parts_beyond(system, work, SPEED, -1.0, start2 - level)
     if demand.cutoff > 0.0 and contact == SLIDING:
@@ -221,7 +222,7 @@ def counted(system: System, work: Work, contact: int, demand: Demand, h: float, 
         return parts_beyond(system, work, SPEED, 1.0, work.start2 - level)
     if demand.cutoff > 0.0 and contact == STOPPING:
         level = log(demand.cutoff)
-        expand_level(work, work.levels, level)
+        expand_level(work, row(work.levels, ()), level)
         return parts_beyond(system, work, LEVEL, 1.0, work.log_speed + work.log_ratio - level)
     early = max(since - work.time, 0.0) if contact == REST else 0.0
     work.edges[0], work.edges[1] = early / h, 1.0

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.platform import load_at_stage, rest_excess
+from reference.solver.contact.platform import load_at_stages, rest_excess
 from reference.solver.events import excess_at, expand_drive, first_onset
+from reference.solver.rows import put
 from reference.solver.step_control import begin
 from reference.solver.steps import rest_step
 from reference.solver.system import REST, SLIDING, System
@@ -53,5 +54,5 @@ def onset_within(system: System, work: Work, h: float) -> tuple[float, int]:
 @compiled
 def set_reaction(system: System, work: Work) -> None:
     """The reaction at the stages of a step at rest."""
-    for k in range(STAGES):
-        _, work.stage[REACTION, k] = rest_excess(system, load_at_stage(work, k))
+    _, reaction = rest_excess(system, load_at_stages(work))
+    put(work.stage, REACTION, reaction)

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from math import atan2, inf, log, sqrt
 
-from reference.solver.collocation import NODES, STAGES
+from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import coefficient_slope, heading, rising_rate, sliding_speed2
 from reference.solver.contact.platform import directed, load_in_state, rest_excess
 from reference.solver.contact.stop_arc import settled_direction, squared_total
-from reference.solver.events import first_crossing, lowest
+from reference.solver.events import first_crossing
 from reference.solver.ground import ground_at
 from reference.solver.peaks import take_limit
+from reference.solver.polynomial import NODES_ROW
+from reference.solver.rows import as_many, lowest, put, row
 from reference.solver.step_control import (
     ERROR_ORDER,
     MAX_LENGTH_FACTOR,
@@ -126,16 +128,17 @@ def guess_slide(system: System, work: Work, h: float) -> None:
         first_guess(work, h)
         return
     ex, ey = heading(work.angle, system.axes)
-    ground, free = work.ground, work.free
+    nodes, ground = row(NODES_ROW, ()), work.ground
     start = speed if system.rate > 0.0 else 0.0
     damping = rising_rate(system, start)
-    for k in range(STAGES):
-        load = Load(work.x[0, 0], work.x[0, 1], free[0, k], free[1, k], ground[0, k], ground[1, k], ground[2, k])
-        ax, ay, _, _ = directed(system, load, start, ex, ey)
-        along = max(ax * ex + ay * ey, MIN_ACCELERATION_FRACTION * (abs(load.fx) + abs(load.fy)))
-        along /= 1.0 + NODES[k] * h * damping
-        work.a[0, 0, k] = along * ex
-        work.a[0, 1, k] = along * ey
+    fx, fy = row(work.free, 0), row(work.free, 1)
+    px, py = as_many(work.x[0, 0], nodes), as_many(work.x[0, 1], nodes)
+    load = Load(px, py, fx, fy, row(ground, 0), row(ground, 1), row(ground, 2))
+    ax, ay, _, _ = directed(system, load, as_many(start, nodes), as_many(ex, nodes), as_many(ey, nodes))
+    along = max(ax * ex + ay * ey, MIN_ACCELERATION_FRACTION * (abs(fx) + abs(fy)))
+    along = along / (1.0 + nodes * (h * damping))
+    put(work.a, (0, 0), along * ex)
+    put(work.a, (0, 1), along * ey)
 
 
 @compiled
@@ -181,9 +184,9 @@ def slowing_within(system: System, work: Work, h: float) -> tuple[float, int]:
     if system.law != REGULARIZED:
         return h, SLIDING
     floor2 = (system.v_reg * (1.0 - LEVEL_TOLERANCE)) ** 2
-    if lowest(work.stage[SPEED2]) < NEAR_LEVEL_FACTOR * floor2:
+    if lowest(row(work.stage, SPEED2)) < NEAR_LEVEL_FACTOR * floor2:
         start = max(work.start2, floor2 * (1.0 + LEVEL_TOLERANCE))
-        slowed = first_crossing(system, work, work.stage[SPEED2], start, floor2)
+        slowed = first_crossing(system, work, row(work.stage, SPEED2), start, floor2)
         if slowed < NEGLIGIBLE_STEP:
             return 0.0, CREEPING
         if slowed < 1.0 - NEGLIGIBLE_STEP:

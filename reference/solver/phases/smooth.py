@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.events import first_crossing, highest
+from reference.solver.events import first_crossing
 from reference.solver.phases.sliding import speed2
+from reference.solver.rows import highest, row
 from reference.solver.step_control import begin
 from reference.solver.system import CREEPING, SLIDING, System
 from reference.solver.work import SPEED2, Work
@@ -39,9 +40,9 @@ def speeding_within(system: System, work: Work, contact: int, h: float) -> tuple
     level = system.v_reg * system.v_reg
     if contact != CREEPING:
         return h, contact
-    if highest(work.stage[SPEED2]) > NEAR_LEVEL_FRACTION * level:
+    if highest(row(work.stage, SPEED2)) > NEAR_LEVEL_FRACTION * level:
         start = min(speed2(system, work), level * (1.0 - LEVEL_TOLERANCE))
-        crossing = first_crossing(system, work, work.stage[SPEED2], start, level)
+        crossing = first_crossing(system, work, row(work.stage, SPEED2), start, level)
         if crossing < EARLY_CROSSING and work.held == 0.0:
             return 0.0, SLIDING
         if EARLY_CROSSING <= crossing < 1.0 - EARLY_CROSSING:

@@ -10,10 +10,11 @@ from reference.solver.compiled import compiled
 from reference.solver.contact.friction import heading
 from reference.solver.contact.platform import directed, load_in_state, rest_excess
 from reference.solver.contact.stop_arc import MAX_ROUNDING_TURN, arc_peak, settled_direction
-from reference.solver.events import first_crossing, lowest
+from reference.solver.events import first_crossing
 from reference.solver.ground import ground_at
 from reference.solver.peaks import SETTLED_FRACTION, take_limit
 from reference.solver.phases.sliding import STOP_WITHIN_STEPS, STOP_WITHIN_TIME
+from reference.solver.rows import lowest, row
 from reference.solver.step_control import MIN_STEP, begin_with, next_break
 from reference.solver.system import CREEPING, PLATFORM, REGULARIZED, REST, SLIDING, STOPPING, Demand, Load, System
 from reference.solver.work import ACROSS, ALONG, CLOCK, DIRECTION, RATIO, SIGMA, Work
@@ -84,15 +85,15 @@ def break_within(system: System, work: Work, demand: Demand, h: float) -> tuple[
     """
     limit = next_break(system, work, demand)
     if work.turning[CLOCK, STAGES - 1] > limit + MIN_STEP * demand.period:
-        portion = first_crossing(system, work, work.turning[CLOCK], work.time, limit)
+        portion = first_crossing(system, work, row(work.turning, CLOCK), work.time, limit)
         if portion < 1.0 - EARLY_CROSSING:
             return h * portion, STOPPING
     if system.law != REGULARIZED:
         return h, STOPPING
     level = log(system.v_reg)
-    if lowest(work.levels) < level - LEVEL_TOLERANCE:
+    if lowest(row(work.levels, ())) < level - LEVEL_TOLERANCE:
         start = max(work.log_speed + work.log_ratio, level)
-        portion = first_crossing(system, work, work.levels, start, level - 0.5 * LEVEL_TOLERANCE)
+        portion = first_crossing(system, work, row(work.levels, ()), start, level - 0.5 * LEVEL_TOLERANCE)
         if portion < EARLY_CROSSING:
             return 0.0, CREEPING
         if portion < 1.0 - EARLY_CROSSING:

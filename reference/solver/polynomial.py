@@ -1,0 +1,41 @@
+"""The polynomial through the numbers at the stages of a step: its integrals, its coefficients, its values."""
+
+from __future__ import annotations
+
+from reference.solver.collocation import A2, MONOMIALS, NODES, STAGES, A, columns
+from reference.solver.compiled import compiled
+from reference.solver.rows import Row, put, row
+from reference.solver.system import Array
+
+A_COLUMNS, A2_COLUMNS, MONOMIALS_COLUMNS = columns(A), columns(A2), columns(MONOMIALS)
+NODES_ROW = columns(NODES[:, None])[0]
+POWERS = STAGES + 2  # coefficients of a polynomial: a position is the second integral of one through the stages
+
+
+@compiled
+def integral(values: Row) -> Row:
+    """From the start of the step to every stage, over its length."""
+    total = row(A_COLUMNS, 0) * values[0]
+    for m in range(1, STAGES):
+        total += row(A_COLUMNS, m) * values[m]
+    return total
+
+
+@compiled
+def expand(values: Row, coefficients: Array) -> None:
+    """Coefficients (POWERS,) of the powers of theta."""
+    total = row(MONOMIALS_COLUMNS, 0) * values[0]
+    for m in range(1, STAGES):
+        total += row(MONOMIALS_COLUMNS, m) * values[m]
+    put(coefficients, (), total)
+    for k in range(STAGES, POWERS):
+        coefficients[k] = 0.0
+
+
+@compiled
+def value_at(coefficients: Array, theta: float) -> float:
+    """The polynomial at theta."""
+    value = 0.0
+    for k in range(STAGES - 1, -1, -1):
+        value = value * theta + coefficients[k]
+    return value

@@ -1,0 +1,237 @@
+"""
+Eight numbers as one value of compiled code, a row: the processor computes with all of them at once.
+
+A row has one number for each stage of a step, and one that is never looked at; or the real and the imaginary parts of a
+step's channels (collocation.py). The last axis of the arrays in `Work` has room for it.
+
+    values = row(work.a, (0, axis))             read
+    put(work.stage, POSITION, x + h * values)   write
+    values[k]                                   one number
+
+`+ - * /`, negation, abs, min, max and `math`'s sqrt, exp, expm1 and log do with every number what they do with a float,
+to the same bits. So one function serves an instant and all stages alike. Left to find this in loops over stages, whose
+arrays might overlap, LLVM finds nothing: docs/decisions/0014-rows-of-stages.md.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Iterable
+from typing import Any, TypeAlias
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic, lower_builtin, models, register_model, type_callable
+
+from reference.solver.collocation import LANES, STAGES
+
+Row: TypeAlias = Any  # of compiled code alone
+Number: TypeAlias = Any  # a float or a row
+
+_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+_ALIGNMENT = 8  # bytes: arrays promise no better
+Lower: TypeAlias = Callable[[Any, Any, Any, Any], Any]  # how numba asks for the code of a call
+
+
+class _RowType(types.Type):  # type: ignore[misc]
+    """Numba's type of a row."""
+
+    def __init__(self) -> None:
+        super().__init__(name="Row")
+
+
+@register_model(_RowType)
+class _RowModel(models.PrimitiveModel):  # type: ignore[misc]
+    """Its type in LLVM."""
+
+    def __init__(self, manager: Any, kind: Any) -> None:
+        super().__init__(manager, kind, _VECTOR)
+
+
+_ROW = _RowType()
+
+
+def _lane(k: int) -> Any:
+    return ir.IntType(32)(k)
+
+
+def _spread(builder: Any, number: Any) -> Any:
+    """The same number in all places."""
+    first = builder.insert_element(ir.Constant(_VECTOR, ir.Undefined), number, _lane(0))
+    return builder.shuffle_vector(first, first, ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES))
+
+
+def _as_rows(builder: Any, numbers: Iterable[Any], kinds: Iterable[Any]) -> list[Any]:
+    return [number if kind == _ROW else _spread(builder, number) for number, kind in zip(numbers, kinds)]
+
+
+def _define_pair(operation: Any, instruction: Callable[[Any, Any, Any], Any]) -> None:
+    """Make a row of two, or of a row and a float."""
+
+    def typer(context: Any) -> Callable[..., Any]:
+        def kind(left: Any, right: Any) -> Any:
+            return _ROW if _ROW in (left, right) and {left, right} <= {_ROW, types.float64} else None
+
+        return kind
+
+    def lower(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
+        return instruction(builder, *_as_rows(builder, numbers, signature.args))
+
+    type_callable(operation)(typer)
+    for kinds in ((_ROW, _ROW), (_ROW, types.float64), (types.float64, _ROW)):
+        lower_builtin(operation, *kinds)(lower)
+
+
+def _define_single(operation: Any, lower: Lower) -> None:
+    """Make a row of one."""
+    type_callable(operation)(lambda context: lambda number: _ROW if number == _ROW else None)
+    lower_builtin(operation, _ROW)(lower)
+
+
+def _by_instruction(name: str) -> Lower:
+    def lower(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
+        kind = ir.FunctionType(_VECTOR, [_VECTOR])
+        return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"{name}.v{LANES}f64"), numbers)
+
+    return lower
+
+
+def _one_by_one(operation: Any) -> Lower:
+    """For the stages alone."""
+
+    def lower(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
+        function = context.get_function(operation, types.float64(types.float64))
+        results = ir.Constant(_VECTOR, [0.0] * LANES)
+        for lane in map(_lane, range(STAGES)):
+            result = function(builder, [builder.extract_element(numbers[0], lane)])
+            results = builder.insert_element(results, result, lane)
+        return results
+
+    return lower
+
+
+def _selecting(relation: str) -> Callable[[Any, Any, Any], Any]:
+    def lower(builder: Any, left: Any, right: Any) -> Any:
+        return builder.select(builder.fcmp_ordered(relation, left, right), left, right)
+
+    return lower
+
+
+for _operations, _instruction in (
+    ((operator.add, operator.iadd), ir.IRBuilder.fadd),
+    ((operator.sub, operator.isub), ir.IRBuilder.fsub),
+    ((operator.mul, operator.imul), ir.IRBuilder.fmul),
+    ((operator.truediv, operator.itruediv), ir.IRBuilder.fdiv),
+    ((max,), _selecting(">")),
+    ((min,), _selecting("<")),
+):
+    for _operation in _operations:
+        _define_pair(_operation, _instruction)
+_define_single(operator.neg, lambda context, builder, signature, numbers: builder.fneg(numbers[0]))
+_define_single(abs, _by_instruction("llvm.fabs"))
+_define_single(math.sqrt, _by_instruction("llvm.sqrt"))
+for _function in (math.exp, math.expm1, math.log):
+    _define_single(_function, _one_by_one(_function))
+
+
+@type_callable(operator.getitem)
+def _type_of_number(context: Any) -> Callable[..., Any]:
+    return lambda values, k: types.float64 if values == _ROW and isinstance(k, types.Integer) else None
+
+
+@lower_builtin(operator.getitem, _ROW, types.Integer)
+def _number(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    return builder.extract_element(*arguments)
+
+
+def _address(context: Any, builder: Any, kinds: Any, arguments: Any) -> Any:
+    """Of the row at a place (an index, or a tuple of them) of an array."""
+    array = context.make_array(kinds[0])(context, builder, arguments[0])
+    several = isinstance(kinds[1], types.BaseTuple)
+    place = cgutils.unpack_tuple(builder, arguments[1]) if several else [arguments[1]]
+    indices = [
+        context.cast(builder, index, kind, types.intp)
+        for index, kind in zip(place, kinds[1].types if several else [kinds[1]])
+    ]
+    first = cgutils.get_item_pointer(context, builder, kinds[0], array, [*indices, context.get_constant(types.intp, 0)])
+    return builder.bitcast(first, _VECTOR.as_pointer())
+
+
+@intrinsic
+def row(context: Any, array: Any, place: Any) -> Any:
+    """The row at a place of an array, one axis fewer than it has: an index, or a tuple of them."""
+
+    def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.load(_address(context, builder, signature.args, arguments), align=_ALIGNMENT)
+
+    return _ROW(array, place), lower
+
+
+@intrinsic
+def put(context: Any, array: Any, place: Any, values: Any) -> Any:
+    """Write a row, or a float in all places of it, to a place of an array."""
+
+    def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        (written,) = _as_rows(builder, arguments[2:], signature.args[2:])
+        builder.store(written, _address(context, builder, signature.args, arguments), align=_ALIGNMENT)
+        return context.get_dummy_value()
+
+    return types.void(array, place, values), lower
+
+
+@intrinsic
+def as_many(context: Any, number: Any, pattern: Any) -> Any:
+    """A float, in all places of a row if `pattern` is one."""
+
+    def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return _spread(builder, arguments[0]) if signature.return_type == _ROW else arguments[0]
+
+    return pattern(types.float64, pattern), lower
+
+
+@intrinsic
+def where_positive(context: Any, number: Any, positive: Any, otherwise: Any) -> Any:
+    """One value where the number is above zero, the other elsewhere; all three rows, or all floats."""
+
+    def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        zero = ir.Constant(arguments[0].type, [0.0] * LANES if signature.return_type == _ROW else 0.0)
+        return builder.select(builder.fcmp_ordered(">", arguments[0], zero), *arguments[1:])
+
+    return number(number, number, number), lower
+
+
+def _reduction(relation: str) -> Callable[..., Any]:
+    """The number at a stage that is above or below all others; any of them where one is NaN."""
+
+    def reduce(context: Any, values: Any) -> Any:
+        def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            best, width = arguments[0], LANES
+            while width > 1:
+                width //= 2
+                places = [min(k + width, STAGES - 1) if k < width else k for k in range(LANES)]
+                other = builder.shuffle_vector(best, best, ir.Constant(ir.VectorType(ir.IntType(32), LANES), places))
+                best = builder.select(builder.fcmp_ordered(relation, other, best), other, best)
+            return builder.extract_element(best, _lane(0))
+
+        return types.float64(values), lower
+
+    return reduce
+
+
+lowest = intrinsic(_reduction("<"))
+highest = intrinsic(_reduction(">"))
+
+
+@intrinsic
+def finite(context: Any, values: Any) -> Any:
+    """Whether the numbers at the stages are finite."""
+
+    def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        bits = ir.IntType(LANES)
+        known = builder.fcmp_ordered("ord", *[builder.fsub(arguments[0], arguments[0])] * 2)
+        never_looked_at = bits(1 << LANES - 1)
+        return builder.icmp_signed("==", builder.or_(builder.bitcast(known, bits), never_looked_at), bits(-1))
+
+    return types.boolean(values), lower
