@@ -83,6 +83,21 @@ AT_START = _weights(np.zeros(1), False)[0]
 MONOMIALS = _solved(np.vander(NODES, increasing=True), np.eye(STAGES))
 
 
+def _missed() -> np.ndarray:
+    """Coefficients of theta^k, highest first, of the polynomial that is 1 at the start of a step, 0 at the stages."""
+    coefficients = [1.0]
+    for node in NODES.tolist():
+        coefficients = [a - b / node for a, b in zip([0.0, *coefficients], [*coefficients, 0.0])]
+    return np.array(coefficients)
+
+
+# what the polynomial through the stages misses, over that at the start of the step, and its integral
+MISSED = _missed()
+# from the accelerations: what the polynomial through the velocities at the stages misses at theta = 0, over h
+VELOCITY_AT_START = product(AT_START[None, :], A)[0]
+MISSED_INTEGRAL = np.append(MISSED / np.arange(len(MISSED), 0, -1), 0.0)
+
+
 def _channels() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     guesses = np.round(np.linalg.eigvals(A), GUESSED_DIGITS)
     kept = sorted((complex(guess) for guess in guesses if guess.imag >= 0.0), key=lambda guess: guess.imag)

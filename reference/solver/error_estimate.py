@@ -49,7 +49,7 @@ def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float, un
     """
     One run from rest for every phase pair (M, 2), this tolerance inside the steps.
 
-    Errors are those of reading a peak, with the vibrations damped before it.
+    Errors are those of reading a peak, with what the steps before it missed of vibrations.
 
     until: (M,) s, beyond which runs that do not end early make no step; the end of the motion by default.
     """

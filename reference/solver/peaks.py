@@ -6,10 +6,11 @@ from math import sqrt
 
 import numpy as np
 
-from reference.solver.collocation import DENSE, LANES, NODES, STAGES
+from reference.solver.collocation import DENSE, LANES, MISSED, MISSED_INTEGRAL, STAGES, VELOCITY_AT_START
 from reference.solver.compiled import compiled
 from reference.solver.polynomial import POWERS, expand
 from reference.solver.rows import as_many, highest, put, row
+from reference.solver.system import System
 from reference.solver.work import Work
 
 # A step resolved to the tolerance turns by a small part of a wave between two stages: a peak between them stands less
@@ -70,16 +71,51 @@ def largest_square(work: Work, components: int, low: float, high: float) -> tupl
 
 
 @compiled
-def interpolation_error(theta: float) -> float:
-    """Error at theta of the polynomial through the stages, over that at the start of the step."""
-    ratio = 1.0
+def missed_velocity(work: Work, body: int, axis: int) -> float:
+    """What the polynomial through a body's velocities at the stages misses at the start of a step, over its length."""
+    missed = 0.0
     for k in range(STAGES):
-        ratio *= 1.0 - theta / NODES[k]
-    return abs(ratio)
+        missed += VELOCITY_AT_START[k] * work.a[body, axis, k]
+    return missed
 
 
 @compiled
-def take_peaks(work: Work, low: float, high: float) -> bool:
+def returned(system: System, work: Work, h: float, body: int) -> float:
+    """
+    Rate at which the acceleration of a body goes wrong at the start of the step, m/s^3, by the links.
+
+    Positions at the stages are integrals of the polynomial through the velocities there, which misses the velocity.
+    """
+    squared, last = 0.0, work.x.shape[0] - 1
+    for axis in range(2):
+        own = missed_velocity(work, body, axis)
+        rate = 0.0
+        if body > 0:
+            rate += system.below[body, axis] * (missed_velocity(work, body - 1, axis) - own)
+        if body < last:
+            rate += system.above[body, axis] * (missed_velocity(work, body + 1, axis) - own)
+        squared += (h * rate) ** 2
+    return sqrt(squared)
+
+
+@compiled
+def interpolation_error(system: System, work: Work, h: float, body: int, theta: float) -> float:
+    """
+    Error of a body's acceleration at theta, m/s^2; `h` is the length of the step in time, 0 near a stop.
+
+    What the polynomial through the stages misses vanishes at the stages. The positions are wrong most of all there, and
+    links return them as accelerations.
+    """
+    missed = integral = 0.0
+    for k in range(STAGES + 1):
+        missed = missed * theta + MISSED[k]
+        integral = integral * theta + MISSED_INTEGRAL[k]
+    integral *= h * theta
+    return abs(missed) * work.defect[body] + (abs(integral) * returned(system, work, h, body) if h > 0.0 else 0.0)
+
+
+@compiled
+def take_peaks(system: System, work: Work, h: float, low: float, high: float) -> bool:
     """
     Raises work.best (N,) by the largest |total|^2 over the part [low, high] of the step just made.
 
@@ -97,7 +133,7 @@ def take_peaks(work: Work, low: float, high: float) -> bool:
         large = large or top >= SETTLED_FRACTION**2 * work.best[i]
         if top > work.best[i]:
             work.best[i] = top
-            work.reading_error[i] = interpolation_error(place) * work.defect[i] + work.damped[i]
+            work.reading_error[i] = interpolation_error(system, work, h, i, place) + work.drift[i]
     return large
 
 
@@ -108,7 +144,7 @@ def take_limit(work: Work, body: int, squared: float) -> None:
         work.peaked = work.settled = work.time
     if squared > work.best[body]:
         work.best[body] = squared
-        work.reading_error[body] = work.damped[body]
+        work.reading_error[body] = work.drift[body]
 
 
 @compiled

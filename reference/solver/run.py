@@ -119,8 +119,9 @@ def runs(
     Follow the motion from x, v (N, 2) for every phase pair (M, 2), rad, until (M,), s, or an early end.
 
     Fills peaks (M, N), the largest absolute accelerations, m/s^2, and reading_errors (M, N), their errors inside their
-    steps and the vibrations damped before, and ends (5, M): how (system.py), when (s) and after how many steps each run
-    ended, the platform's largest displacement (m), and from when on no acceleration comes near the largest (s).
+    steps with what the steps before missed of vibrations, and ends (5, M): how (system.py), when (s) and after how many
+    steps each run ended, the platform's largest displacement (m), and from when on no acceleration comes near the
+    largest (s).
     """
     work = workspace(peaks.shape[1])
     system_reference, record_reference = SystemReference(*system), RecordReference(*record)

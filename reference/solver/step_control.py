@@ -150,13 +150,14 @@ def adapt(work: Work, h: float, factor: float) -> None:
 
 
 @compiled
-def commit(work: Work, record: Record, h: float, contact: int, parts: int) -> None:
+def commit(system: System, work: Work, record: Record, h: float, contact: int, parts: int) -> None:
     """Make the step's end the new state; `parts` of it count for the peaks, between pairs of work.edges."""
     if record.start.shape[0] > 0:
         record_step(work, record, h, contact)
     peaking = False
     for part in range(parts):
-        peaking = take_peaks(work, work.edges[2 * part], work.edges[2 * part + 1]) or peaking
+        low, high = work.edges[2 * part], work.edges[2 * part + 1]
+        peaking = take_peaks(system, work, 0.0 if contact == STOPPING else h, low, high) or peaking
     far = contact != REST and take_reach(work, h, contact == STOPPING)
     for axis in range(2):
         expand(row(work.a, (0, axis)), work.guess[axis])

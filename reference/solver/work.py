@@ -114,8 +114,8 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     end: float  # s, at most the duration
     steps: float
     best: Array  # (N,) largest squared absolute acceleration so far
-    reading_error: Array  # (N,) m/s^2, error of reading it inside its step, with the vibration damped before
-    damped: Array  # (N,) m/s^2, largest vibration that a step has damped
+    reading_error: Array  # (N,) m/s^2, error of reading it inside its step, with the drift before
+    drift: Array  # (N,) m/s^2, what the steps have missed of the chain's fastest vibration
     reach2: float  # m^2, largest squared displacement of the platform
     peaked: float  # s, end of the last step with a large acceleration
     settled: float  # s, end of the last step with a large value of anything that is asked for
@@ -183,7 +183,7 @@ def workspace(bodies: int) -> Work:
         steps=0.0,
         best=np.zeros(n),
         reading_error=np.zeros(n),
-        damped=np.zeros(n),
+        drift=np.zeros(n),
         reach2=0.0,
         peaked=0.0,
         settled=0.0,
@@ -199,4 +199,4 @@ def start_anew(work: Work, length: float, end: float) -> None:
     work.end, work.peaked, work.settled = end, 0.0, 0.0
     work.held = work.entered = work.left = work.steps = work.reach2 = 0.0
     for i in range(work.x.shape[0]):
-        work.best[i] = work.reading_error[i] = work.damped[i] = 0.0
+        work.best[i] = work.reading_error[i] = work.drift[i] = 0.0

@@ -110,6 +110,84 @@ def test_the_error_counts_a_vibration_that_both_runs_damp():
     assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error)
 
 
+@pytest.mark.parametrize("period", [0.09, 0.12])
+def test_the_error_counts_what_equal_steps_between_the_knots_of_a_record_miss(period):
+    """Both runs step from knot to knot: they agree, however wrongly a stiff link vibrates within such steps."""
+    time = 0.05 * np.arange(81)
+    for seed in range(8):
+        frequencies, phases = np.random.default_rng(seed).uniform([[0.5], [0.0]], [[2.0], [6.0]], (2, 2))
+        waves = np.sin(np.pi * time / 4.0) ** 2 * np.sin(2.0 * np.pi * np.outer(frequencies, time) + phases[:, None])
+        scene = Scene.model_validate(
+            {
+                "title": "at rest under a record",
+                "duration": 4.0,
+                "isolator": {"radius": 0.8, "friction": 0.9},
+                "bodies": [{"mass": 1.0}, {"mass": 0.5, "period": [period, 1.3 * period]}],
+                "excitation": {"record": "waves.csv", "samples": np.column_stack([time, *waves, 0.0 * time]).tolist()},
+            }
+        )
+        found = reference.amplification(scene, [(0.0, 0.0)])
+        truth = reference.amplification(scene, [(0.0, 0.0)], tolerance=1e-9)
+        assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error), seed
+
+
+def test_the_error_of_a_peak_read_at_a_stage_is_that_of_the_places_there():
+    """At a stage the interpolating polynomial is exact, and stiff links return a wrong place as an acceleration."""
+    scene = Scene.model_validate(
+        {
+            "title": "stiff link on a plane",
+            "duration": 2.9151874635691977,
+            "isolator": {"radius": float("inf"), "friction": 0.2439118221521473},
+            "bodies": [
+                {"mass": 0.749599907571332},
+                {"mass": 2.222804077965832, "period": [0.1011706677778102, 0.062068992441822006]},
+            ],
+            "excitation": {
+                "amplitudes": [
+                    [0.3213943270276767, -0.9174033188431983],
+                    [-1.7232873793996446, 1.0913846932317521],
+                    [-1.2745928250202376, -0.9194598522227189],
+                ],
+                "periods": [1.0255153347693375, 1.078778262315151],
+                "decay": [0.0, 0.19269694617653776],
+            },
+        }
+    )
+    phase, law = (3.4142843076791825, 0.32840127542146164), {"equations": "small", "regularization": 1e-3}
+    found = reference.amplification(scene, [phase], **law)
+    truth = reference.amplification(scene, [phase], tolerance=1e-9, **law)
+    assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error)
+
+
+def test_the_error_counts_a_damped_vibration_whose_acceleration_is_zero_where_the_step_begins():
+    """The defect of the acceleration is small there, that of the velocity is not."""
+    scene = Scene.model_validate(
+        {
+            "title": "three bodies on a plane",
+            "duration": 4.202171020401759,
+            "isolator": {"radius": float("inf"), "friction": 0.2410461351714428},
+            "bodies": [
+                {"mass": 2.0334465501971253},
+                {"mass": 2.4041598998469538, "period": [1.7158223844817824, 1.1489567897578785]},
+                {"mass": 0.4065760535114943, "period": [0.03409016784258648, 0.159199130584121]},
+            ],
+            "excitation": {
+                "amplitudes": [
+                    [1.6587128332517427, -1.5793306980738033],
+                    [1.582995927447317, -1.2735503379100233],
+                    [1.0607216669910304, -0.6447819313971683],
+                ],
+                "periods": [0.5191640817131488, 1.5204245061365294],
+                "decay": [0.0, 0.0],
+            },
+        }
+    )
+    phase = (2.6065706627301535, 0.9463193827363767)
+    found = reference.amplification(scene, [phase], cutoff=0.05, tolerance=1e-5)
+    truth = reference.amplification(scene, [phase], cutoff=0.05, tolerance=1e-8)
+    assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error)
+
+
 def test_the_error_holds_for_99_percent_and_is_not_far_too_large():
     ratios = []
     for name, law in (("fig3-I", "exact"), ("fig3-II", "small"), ("fig3-II", "regularized"), ("fig4-viscous", "exact")):
