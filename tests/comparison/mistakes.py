@@ -27,14 +27,9 @@ NEWTON = 1e-5  # tolerance of the coarse engine's iteration
 PENETRATION = 1e-6  # of rho, of its contact
 SOURCES = Path(reference.__file__).parent
 IN_THE_COPY = """
-import json, sys, types
-from numba.experimental import structref
-structref.StructRefProxy = types.SimpleNamespace  # what compiled code keeps in a structure of its own
-def with_fields(proxy, of, fields):
-    def start(self, *values, **named):
-        vars(self).update(zip(fields, values), **named)
-    proxy.__init__ = start
-structref.define_proxy = with_fields
+import json, sys
+import interpreted
+interpreted.prepare()
 from reference import amplification
 from reference.problem import Scene
 asked = json.load(sys.stdin)
@@ -65,7 +60,11 @@ def misspelt(
             text=True,
             check=False,
             cwd=folder,
-            env={**os.environ, "PYTHONPATH": folder, "NUMBA_DISABLE_JIT": "1"},
+            env={
+                **os.environ,
+                "PYTHONPATH": os.pathsep.join([folder, str(Path(__file__).parent)]),
+                "NUMBA_DISABLE_JIT": "1",
+            },
         )
     assert done.returncode == 0, done.stderr
     answer = json.loads(done.stdout)
