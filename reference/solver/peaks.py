@@ -8,10 +8,11 @@ import numpy as np
 
 from reference.solver.collocation import DENSE, LANES, MISSED, MISSED_INTEGRAL, STAGES, VELOCITY_AT_START
 from reference.solver.compiled import compiled
+from reference.solver.contact.friction import decay_rate, turning_rate
 from reference.solver.polynomial import POWERS, expand
-from reference.solver.rows import as_many, highest, put, row
-from reference.solver.system import System
-from reference.solver.work import Work
+from reference.solver.rows import as_many, highest, lowest, put, row
+from reference.solver.system import PLATFORM, REST, SLIDING, STOPPING, System
+from reference.solver.work import SPEED2, Work
 
 # A step resolved to the tolerance turns by a small part of a wave between two stages: a peak between them stands less
 # than this share above the higher one.
@@ -20,6 +21,7 @@ MAX_WAY_FACTOR = 1.5  # bound on the way within a step, times the larger speed a
 NEWTON_ITERATIONS = 6
 IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # components of a vector; no literals (system.py)
 DENSE_ROWS = np.resize(DENSE, (-(-len(DENSE) // LANES), LANES))
+MAX_RATE = 60.0  # over the length of a step: an answer that is faster leaves no larger part of the defect
 SETTLED_FRACTION = 0.9  # of the largest so far: smaller values count as over
 
 
@@ -99,23 +101,38 @@ def returned(system: System, work: Work, h: float, body: int) -> float:
 
 
 @compiled
-def interpolation_error(system: System, work: Work, h: float, body: int, theta: float) -> float:
-    """
-    Error of a body's acceleration at theta, m/s^2; `h` is the length of the step in time, 0 near a stop.
+def friction_rate(system: System, work: Work, contact: int) -> float:
+    """Rate at which friction answers to a wrong velocity of the platform in the step just made, 1/s."""
+    if contact == REST:
+        return 0.0
+    if contact != SLIDING:
+        return decay_rate(system, contact)
+    return turning_rate(system, sqrt(min(work.start2, lowest(row(work.stage, SPEED2)))))
 
-    What the polynomial through the stages misses vanishes at the stages. The positions are wrong most of all there, and
-    links return them as accelerations.
+
+@compiled
+def interpolation_error(system: System, work: Work, contact: int, h: float, body: int, theta: float) -> float:
+    """
+    Error of a body's acceleration at theta, m/s^2.
+
+    What the polynomial through the stages misses vanishes at the stages. Positions and velocities are wrong most of all
+    there, and links and friction return them as accelerations.
     """
     missed = integral = 0.0
     for k in range(STAGES + 1):
         missed = missed * theta + MISSED[k]
         integral = integral * theta + MISSED_INTEGRAL[k]
-    integral *= h * theta
-    return abs(missed) * work.defect[body] + (abs(integral) * returned(system, work, h, body) if h > 0.0 else 0.0)
+    error = abs(missed) * work.defect[body]
+    if contact != STOPPING:  # its steps have no length in time, and are short
+        rate = returned(system, work, h, body)
+        if body == PLATFORM:
+            rate += min(friction_rate(system, work, contact), MAX_RATE / h) * work.defect[body]
+        error += abs(integral) * theta * h * rate
+    return error
 
 
 @compiled
-def take_peaks(system: System, work: Work, h: float, low: float, high: float) -> bool:
+def take_peaks(system: System, work: Work, contact: int, h: float, low: float, high: float) -> bool:
     """
     Raises work.best (N,) by the largest |total|^2 over the part [low, high] of the step just made.
 
@@ -133,7 +150,7 @@ def take_peaks(system: System, work: Work, h: float, low: float, high: float) ->
         large = large or top >= SETTLED_FRACTION**2 * work.best[i]
         if top > work.best[i]:
             work.best[i] = top
-            work.reading_error[i] = interpolation_error(system, work, h, i, place) + work.drift[i]
+            work.reading_error[i] = interpolation_error(system, work, contact, h, i, place) + work.drift[i]
     return large
 
 

@@ -157,7 +157,7 @@ def commit(system: System, work: Work, record: Record, h: float, contact: int, p
     peaking = False
     for part in range(parts):
         low, high = work.edges[2 * part], work.edges[2 * part + 1]
-        peaking = take_peaks(system, work, 0.0 if contact == STOPPING else h, low, high) or peaking
+        peaking = take_peaks(system, work, contact, h, low, high) or peaking
     far = contact != REST and take_reach(work, h, contact == STOPPING)
     for axis in range(2):
         expand(row(work.a, (0, axis)), work.guess[axis])

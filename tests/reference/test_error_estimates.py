@@ -188,6 +188,30 @@ def test_the_error_counts_a_damped_vibration_whose_acceleration_is_zero_where_th
     assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error)
 
 
+def test_the_error_of_a_peak_read_at_a_stage_of_a_slow_slide_is_that_of_its_velocity():
+    """Friction that depends on the velocity answers to a wrong one, which is wrong most of all at the stages."""
+    scene = Scene.model_validate(
+        {
+            "title": "friction of the velocity",
+            "duration": 5.278268500333847,
+            "isolator": {
+                "radius": 0.4055392718770014,
+                "friction": {"slow": 0.13309190933512813, "fast": 0.18536089582186507, "rate": 96.26506232767552},
+            },
+            "bodies": [{"mass": 1.5848051508005034}],
+            "excitation": {
+                "amplitudes": [[-0.6066648967154049, -0.9035527068508564], [-1.1910997411924935, -0.3475833836386375]],
+                "periods": [0.7288123599658124, 0.792461983489356],
+                "decay": [0.36665382523949813, 0.0],
+            },
+        }
+    )
+    phase = (3.96547402629501, 6.1657221400022255)
+    found = reference.amplification(scene, [phase])
+    truth = reference.amplification(scene, [phase], tolerance=1e-9)
+    assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error)
+
+
 def test_the_error_holds_for_99_percent_and_is_not_far_too_large():
     ratios = []
     for name, law in (("fig3-I", "exact"), ("fig3-II", "small"), ("fig3-II", "regularized"), ("fig4-viscous", "exact")):

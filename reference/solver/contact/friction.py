@@ -16,7 +16,9 @@ from math import cos, exp, expm1, sin, sqrt
 
 from reference.solver.compiled import compiled
 from reference.solver.rows import Number, as_many, where_positive
-from reference.solver.system import Load, System
+from reference.solver.system import CREEPING, Load, System
+
+TINY_SPEED = 1e-200  # m/s
 
 
 @compiled
@@ -127,3 +129,20 @@ def slip_vector(
     ratio = sqrt(sliding_speed2(system, px, py, ex, ey))
     friction = coefficient(system, speed * ratio) / ratio
     return friction * ex, friction * ey, ratio
+
+
+@compiled
+def decay_rate(system: System, contact: int) -> float:
+    """Of the velocity by friction alone, 1/s."""
+    largest = system.friction + max(0.0, system.rise)
+    factor = largest / system.v_reg if contact == CREEPING else largest
+    rate: float = factor * system.mass_ratio * system.gravity
+    return rate
+
+
+@compiled
+def turning_rate(system: System, speed: float) -> float:
+    """Rate at which friction answers to the velocity of a slide, 1/s: by its direction, or by its speed if faster."""
+    largest = system.friction + max(0.0, system.rise)
+    rate: float = largest * system.mass_ratio * system.gravity / max(speed, TINY_SPEED)
+    return max(rate, rising_rate(system, speed)) if system.rate > 0.0 else rate

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import inf, log, sqrt
 
 from reference.solver.compiled import compiled
-from reference.solver.contact.friction import rising_rate
+from reference.solver.contact.friction import decay_rate, rising_rate
 from reference.solver.events import LEVEL, SPEED, expand_level, expand_speed, parts_beyond
 from reference.solver.look_ahead import end_early
 from reference.solver.near_stop import near_stop_step
@@ -21,7 +21,7 @@ from reference.solver.phases.sliding import (
     speed2,
     turns_too_far,
 )
-from reference.solver.phases.smooth import begin_smooth, decay_rate, speeding_within
+from reference.solver.phases.smooth import begin_smooth, speeding_within
 from reference.solver.phases.stopping import (
     NEAR_STOP_NEWTON_FRACTION,
     after_stopping_step,

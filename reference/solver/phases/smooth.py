@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
+from reference.solver.contact.friction import decay_rate
 from reference.solver.events import first_crossing
 from reference.solver.phases.sliding import speed2
 from reference.solver.rows import highest, row
@@ -15,15 +16,6 @@ LEVEL_TOLERANCE = 1e-9  # of the squared speed: creep this close to v_reg has re
 EARLY_CROSSING = 1e-6  # of a step: a crossing this early means that the phase begins on the level
 NEAR_LEVEL_FRACTION = 0.8  # of the squared v_reg: creep above it may pass v_reg between two stages
 MAX_FIRST_DECAY = 2.0  # of the velocity's times of decay: longest first step of creep
-
-
-@compiled
-def decay_rate(system: System, contact: int) -> float:
-    """Of the velocity by friction alone, 1/s."""
-    largest = system.friction + max(0.0, system.rise)
-    factor = largest / system.v_reg if contact == CREEPING else largest
-    rate: float = factor * system.mass_ratio * system.gravity
-    return rate
 
 
 @compiled
