@@ -64,6 +64,11 @@ class Candidate:
         """Whether it meets the tolerance if a softer contact shows that rounding does nothing."""
         return self.confirmed and bool((self.level_errors <= tolerance * self.run.peaks.value).all())
 
+    def rounds_more_than(self, best: Candidate) -> bool:
+        """Whether its error is larger than that of a coarser level, whose error is less than the rounding here."""
+        larger = not self.relative_error < best.relative_error
+        return larger and bool((self.level.rounding > best.errors).any())
+
     def completed(self, pair: PhasePair, budget: Budget, keep: bool) -> Candidate:
         """With the error that the compliance leaves, from a run in which nothing but the contact is softer."""
         if not self.lacks_compliance:

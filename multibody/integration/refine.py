@@ -74,7 +74,7 @@ def refine(
     different = 0  # how many of the last levels with impacts were another motion
     candidate: Candidate | None = None
     complete: Candidate | None = None  # the last candidate whose error lacks nothing
-    best: Candidate | None = None  # the last candidate before rounding takes over
+    best: Candidate | None = None  # the complete candidate whose error is least
     while done.can_go_on():
         run = done.run_next()
         if run.outcome in UNFINISHED:
@@ -84,8 +84,10 @@ def refine(
         candidate = None
         if len(done.runs) == 1 or done.runs[-2].outcome != run.outcome:
             continue
+        answered = [] if best is None else [best.run, *(other for other, _ in best.coarser)]
         for earlier in done.runs[:-2]:
-            earlier.chunks.clear()
+            if not any(earlier is other for other in answered):
+                earlier.chunks.clear()
         if run.outcome != Outcome.OK:
             break
         candidate = done.candidate()
@@ -108,9 +110,13 @@ def refine(
                 break  # hardly more than rounding is left, and no further level rounds less or shows how little it does
             if best is not None and best.relative_error <= candidate.relative_error:
                 return _answer(model, best, Outcome.TOLERANCE_NOT_MET)  # rounding takes over at this level
-        best = candidate if candidate.is_complete else None
+        if candidate.is_complete and (best is None or candidate.relative_error < best.relative_error):
+            best = candidate
     if candidate is not None:
-        return _beyond_tolerance(pair, candidate.completed(pair, budget, keep), complete)
+        candidate = candidate.completed(pair, budget, keep)
+        if best is not None and candidate.rounds_more_than(best):
+            return _answer(model, best, Outcome.TOLERANCE_NOT_MET)
+        return _beyond_tolerance(pair, candidate, complete)
     return _unfinished(pair, done.runs)
 
 
