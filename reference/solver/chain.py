@@ -25,7 +25,7 @@ from reference.solver.collocation import (
 )
 from reference.solver.compiled import compiled
 from reference.solver.polynomial import NODES_ROW
-from reference.solver.rows import Row, put, row
+from reference.solver.rows import Row, combined, put, row
 from reference.solver.system import PLATFORM, Ground, System
 from reference.solver.work import Work
 
@@ -97,19 +97,13 @@ def feed_back(system: System, work: Work, h: float) -> None:
 @compiled
 def to_channels(values: Row) -> Row:
     """The numbers at the stages in the eigenbasis."""
-    total = row(TO_CHANNELS_COLUMNS, 0) * values[0]
-    for k in range(1, STAGES):
-        total += row(TO_CHANNELS_COLUMNS, k) * values[k]
-    return total
+    return combined(TO_CHANNELS_COLUMNS, values)
 
 
 @compiled
 def from_channels(values: Row) -> Row:
     """The numbers at the stages, from those in the channels and their conjugates."""
-    total = row(FROM_CHANNELS_COLUMNS, 0) * values[0]
-    for j in range(1, 2 * CHANNELS):
-        total += row(FROM_CHANNELS_COLUMNS, j) * values[j]
-    return total
+    return combined(FROM_CHANNELS_COLUMNS, values)
 
 
 @compiled
@@ -125,6 +119,7 @@ def load_chain(system: System, work: Work, h: float) -> None:
         drives = to_channels(-ground)
         for j in range(CHANNELS):
             root = h * EIGENVALUES[j]
+            drive = complex(drives[j], drives[CHANNELS + j])
             carried = 0.0 + 0.0j
             for i in range(bodies - 1, 0, -1):
                 force = -system.below[i, axis] * (x[i, axis] - x[i - 1, axis])
@@ -134,7 +129,6 @@ def load_chain(system: System, work: Work, h: float) -> None:
                     force += system.above[i, axis] * (x[i + 1, axis] - x[i, axis])
                     force += system.damping_above[i, axis] * (v[i + 1, axis] - v[i, axis])
                     slope += system.above[i, axis] * (v[i + 1, axis] - v[i, axis])
-                drive = complex(drives[j], drives[CHANNELS + j])
                 load = drive + force * ONES_IN_CHANNELS[j] + h * slope * NODES_IN_CHANNELS[j]
                 if i < bodies - 1:
                     load += coupling_above(system, i, axis, root) * carried
@@ -155,7 +149,8 @@ def move_chain(system: System, work: Work, h: float) -> None:
     x, v, a, load, inverse, channels = work.x, work.v, work.a, work.load, work.inverse, work.channels
     bodies = work.x.shape[0]
     for axis in range(system.axes):
-        put(channels, (), to_channels(row(a, (0, axis))))
+        if bodies > 1:
+            put(channels, (), to_channels(row(a, (0, axis))))
         for i in range(1, bodies):
             for j in range(CHANNELS):
                 root = h * EIGENVALUES[j]

@@ -8,7 +8,7 @@ from reference.solver.collocation import DENSE, STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.platform import load_at_stages, rest_excess
 from reference.solver.polynomial import expand, value_at
-from reference.solver.rows import Row, highest, put, row, where_positive
+from reference.solver.rows import Row, as_many, highest, put, row, where_positive
 from reference.solver.system import Load, System
 from reference.solver.work import MAX_PARTS, REACTION, SPEED2, VELOCITY, Work
 
@@ -87,7 +87,7 @@ def expand_speed(work: Work, h: float, target: float) -> None:
         expand_velocity(work, h, axis)
     vx, vy = row(work.stage, VELOCITY), row(work.stage, VELOCITY + 1)
     horizontal = vx * vx + vy * vy
-    expand(where_positive(horizontal, row(work.stage, SPEED2) / horizontal, 1.0 + 0.0 * horizontal), work.powers[2])
+    expand(where_positive(horizontal, row(work.stage, SPEED2) / horizontal, as_many(1.0, horizontal)), work.powers[2])
     work.powers[3, 0] = target
 
 

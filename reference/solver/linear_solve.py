@@ -30,7 +30,6 @@ def _ones_where(chosen: NDArray[np.bool_]) -> Array:
 # places of every column, by the one on the diagonal
 BEFORE = _ones_where(_PLACES[:, None] > _PLACES)
 AT = _ones_where(_PLACES[:, None] == _PLACES)
-UP_TO = _ones_where(_PLACES[:, None] >= _PLACES)
 BEHIND = _ones_where(_PLACES[:, None] < _PLACES)
 
 
@@ -60,12 +59,12 @@ def factorize_blocks(columns: Array, pivots: Array, blocks: int) -> bool:
             inverse = 1.0 / columns[i, block, k]
             if not abs(inverse) < np.inf:
                 return False
-            near, far = inverse * (row(BEHIND, (i, 0)) * row(columns, (i, 0))), 0.0 * row(BEHIND, (i, 0))
+            near = far = inverse * (row(BEHIND, (i, 0)) * row(columns, (i, 0)))
             if block == 0:
-                put(columns, (i, 0), row(columns, (i, 0)) * row(UP_TO, (i, 0)) + near)
+                put(columns, (i, 0), row(BEFORE, (i, 0)) * row(columns, (i, 0)) + near)
             if blocks == MOST_BLOCKS:
                 far = inverse * (row(BEHIND, (i, 1)) * row(columns, (i, 1)))
-                put(columns, (i, 1), row(columns, (i, 1)) * row(UP_TO, (i, 1)) + far)
+                put(columns, (i, 1), row(BEFORE, (i, 1)) * row(columns, (i, 1)) + far)
             for j in range(i + 1, n):
                 factor = columns[j, block, k]
                 if block == 0:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from reference.solver.collocation import A2, MONOMIALS, NODES, STAGES, A, columns
 from reference.solver.compiled import compiled
-from reference.solver.rows import Row, put, row
+from reference.solver.rows import Row, combined, put
 from reference.solver.system import Array
 
 A_COLUMNS, A2_COLUMNS, MONOMIALS_COLUMNS = columns(A), columns(A2), columns(MONOMIALS)
@@ -15,19 +15,13 @@ POWERS = STAGES + 2  # coefficients of a polynomial: a position is the second in
 @compiled
 def integral(values: Row) -> Row:
     """From the start of the step to every stage, over its length."""
-    total = row(A_COLUMNS, 0) * values[0]
-    for m in range(1, STAGES):
-        total += row(A_COLUMNS, m) * values[m]
-    return total
+    return combined(A_COLUMNS, values)
 
 
 @compiled
 def expand(values: Row, coefficients: Array) -> None:
     """Coefficients (POWERS,) of the powers of theta."""
-    total = row(MONOMIALS_COLUMNS, 0) * values[0]
-    for m in range(1, STAGES):
-        total += row(MONOMIALS_COLUMNS, m) * values[m]
-    put(coefficients, (), total)
+    put(coefficients, (), combined(MONOMIALS_COLUMNS, values))
     for k in range(STAGES, POWERS):
         coefficients[k] = 0.0
 

@@ -20,12 +20,15 @@ import operator
 from collections.abc import Callable, Iterable
 from typing import Any, TypeAlias
 
+import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic, lower_builtin, models, register_model, type_callable
+from numpy.typing import NDArray
 
 from reference.solver.collocation import LANES, STAGES
+from reference.solver.compiled import compiled
 
 Row: TypeAlias = Any  # of compiled code alone
 Number: TypeAlias = Any  # a float or a row
@@ -57,10 +60,15 @@ def _lane(k: int) -> Any:
     return ir.IntType(32)(k)
 
 
+def _rearranged(builder: Any, values: Any, places: list[int]) -> Any:
+    """The numbers of a row that stand at these places of it."""
+    return builder.shuffle_vector(values, values, ir.Constant(ir.VectorType(ir.IntType(32), LANES), places))
+
+
 def _spread(builder: Any, number: Any) -> Any:
     """The same number in all places."""
     first = builder.insert_element(ir.Constant(_VECTOR, ir.Undefined), number, _lane(0))
-    return builder.shuffle_vector(first, first, ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES))
+    return _rearranged(builder, first, [0] * LANES)
 
 
 def _as_rows(builder: Any, numbers: Iterable[Any], kinds: Iterable[Any]) -> list[Any]:
@@ -211,7 +219,7 @@ def _reduction(relation: str) -> Callable[..., Any]:
             while width > 1:
                 width //= 2
                 places = [min(k + width, STAGES - 1) if k < width else k for k in range(LANES)]
-                other = builder.shuffle_vector(best, best, ir.Constant(ir.VectorType(ir.IntType(32), LANES), places))
+                other = _rearranged(builder, best, places)
                 best = builder.select(builder.fcmp_ordered(relation, other, best), other, best)
             return builder.extract_element(best, _lane(0))
 
@@ -235,3 +243,12 @@ def finite(context: Any, values: Any) -> Any:
         return builder.icmp_signed("==", builder.or_(builder.bitcast(known, bits), never_looked_at), bits(-1))
 
     return types.boolean(values), lower
+
+
+@compiled
+def combined(columns: NDArray[np.float64], values: Row) -> Row:
+    """The columns of a matrix (M, LANES), each times its number, and summed."""
+    total = row(columns, 0) * values[0]
+    for m in range(1, columns.shape[0]):
+        total += row(columns, m) * values[m]
+    return total

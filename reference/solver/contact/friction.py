@@ -18,7 +18,7 @@ from reference.solver.compiled import compiled
 from reference.solver.rows import Number, as_many, where_positive
 from reference.solver.system import CREEPING, Load, System
 
-TINY_SPEED = 1e-200  # m/s
+SMALLEST_SPEED = 1e-200  # m/s
 
 
 @compiled
@@ -132,9 +132,16 @@ def slip_vector(
 
 
 @compiled
+def largest_coefficient(system: System) -> float:
+    """Of friction, at any speed."""
+    largest: float = system.friction + max(0.0, system.rise)
+    return largest
+
+
+@compiled
 def decay_rate(system: System, contact: int) -> float:
     """Of the velocity by friction alone, 1/s."""
-    largest = system.friction + max(0.0, system.rise)
+    largest = largest_coefficient(system)
     factor = largest / system.v_reg if contact == CREEPING else largest
     rate: float = factor * system.mass_ratio * system.gravity
     return rate
@@ -143,6 +150,5 @@ def decay_rate(system: System, contact: int) -> float:
 @compiled
 def turning_rate(system: System, speed: float) -> float:
     """Rate at which friction answers to the velocity of a slide, 1/s: by its direction, or by its speed if faster."""
-    largest = system.friction + max(0.0, system.rise)
-    rate: float = largest * system.mass_ratio * system.gravity / max(speed, TINY_SPEED)
-    return max(rate, rising_rate(system, speed)) if system.rate > 0.0 else rate
+    rate: float = largest_coefficient(system) * system.mass_ratio * system.gravity / max(speed, SMALLEST_SPEED)
+    return max(rate, rising_rate(system, speed))

@@ -7,7 +7,7 @@ from math import exp, log, pi, sqrt
 from reference.solver.chain import chain_acceleration
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.friction import heading
+from reference.solver.contact.friction import SMALLEST_SPEED, heading
 from reference.solver.contact.platform import directed, load_in_state, rest_excess
 from reference.solver.contact.stop_arc import MAX_ROUNDING_TURN, arc_peak, settled_direction
 from reference.solver.events import first_crossing
@@ -43,7 +43,6 @@ MIN_STEADY_TIMES = 2.0  # a slide at almost constant speed lasts: times those wi
 MAX_STRAIGHT_TURN = 1e-6  # of the friction: a slide with a smaller sideways acceleration turns back on its own line
 # of the loading's velocity: below it a straight slide that friction cannot hold is at its turning point
 MAX_TURNING_POINT_SPEED = 1e-12
-SMALLEST_SPEED = 1e-200  # m/s
 NEAR_STOP_NEWTON_FRACTION = 1e-3  # of the tolerance: change of the angle at which Newton's method ends
 # Time and place are integrals of v and v^2 over tau. Where forces stay constant no acceleration shows their error. With
 # these bounds on the change of ln v in one step it stays below 1e-8 of what is left of the slide at its start.
