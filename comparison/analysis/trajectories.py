@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from comparison.analysis.differences import pair_step
 from comparison.analysis.protocol import Analysis
+from comparison.analysis.thinning import thinned
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
@@ -27,8 +28,6 @@ Array = NDArray[np.float64]
 
 SPREAD = 5  # phase pairs (k, 2k) 2 pi/5: evenly over the square, and no two of them mirror images of each other
 SECONDS = {"reference": 0.15, "engine": 0.65}  # predicted cost of one motion, s on `study.models.RECORDED_ON`
-SHARE = 0.003  # of the swing of a component: what a thinned motion may be off by
-MIN_SWING = 0.01  # of its largest value: a component that changes less is as good as constant
 
 
 @dataclass(frozen=True)
@@ -226,40 +225,6 @@ def _stored(place: Place, model: Model, motion: Trajectory) -> StoredMotion:
     kept = thinned(whole.time, values, np.unique(np.concatenate(extremes)))
     arrays = {name: getattr(whole, name)[kept] for name in whole.blocks()}
     return replace(whole, **arrays)
-
-
-def swing(values: Array) -> Array:
-    """Half of what each component of `values` (T, C) goes through, (C,), in whose shares thinning is measured."""
-    largest = np.abs(values).max(axis=0, initial=0.0)
-    half = 0.5 * (values.max(axis=0, initial=-np.inf) - values.min(axis=0, initial=np.inf))
-    scale: Array = np.maximum(half, MIN_SWING * largest)
-    return np.where(scale > 0.0, scale, 1.0)
-
-
-def thinned(time: Array, values: Array, peaks: NDArray[np.intp], share: float = SHARE) -> NDArray[np.intp]:
-    """
-    Indices to keep of `values` (T, C) at `time` (T,): both ends, `peaks`, and as many more as it takes for straight
-    lines between them to miss no value by more than `share` of its component's `swing`.
-    """
-    if len(time) < 3:
-        return np.arange(len(time))
-    scaled = np.ascontiguousarray((values / swing(values)).T)  # several times as fast as row by row
-    kept = np.unique(np.concatenate([[0, len(time) - 1], peaks]))
-    spans = list(zip(kept[:-1].tolist(), kept[1:].tolist()))
-    indices = set(kept.tolist())
-    while spans:
-        a, b = spans.pop()
-        if b - a < 2:
-            continue
-        part = (time[a + 1 : b] - time[a]) / (time[b] - time[a])
-        start, end = scaled[:, a, None], scaled[:, b, None]
-        missed = np.abs(scaled[:, a + 1 : b] - start - part * (end - start)).max(axis=0)
-        worst = int(np.argmax(missed))
-        if missed[worst] > share:
-            middle = a + 1 + worst
-            indices.add(middle)
-            spans += [(a, middle), (middle, b)]
-    return np.array(sorted(indices))
 
 
 def _nothing(place: Place, model: str, outcome: Outcome, error_message: str) -> StoredMotion:

@@ -45,7 +45,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.analysis.trajectories import Place, StoredMotion, swing
+from comparison.analysis.thinning import swing
+from comparison.analysis.trajectories import Place, StoredMotion
 from comparison.report.findings import Findings
 from reference.problem import Demands, Estimate, Scene
 

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 import multibody
 import reference
-from comparison.analysis.trajectories import SHARE, Place, StoredMotion, moved, swing
+from comparison.analysis.thinning import SHARE, swing
+from comparison.analysis.trajectories import Place, StoredMotion, moved
 from comparison.execution.cache import Cache, Key
 from comparison.report.motion_data import ROUNDING, contact_geometry, packed_motions, places, spectrum_axis, starts_of
 from comparison.study.models import REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL, Model

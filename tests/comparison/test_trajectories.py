@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 import comparison.analysis.trajectories
 from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.trajectories import SHARE, Motions, chosen_places, moved, shown_models, thinned
+from comparison.analysis.thinning import SHARE, thinned
+from comparison.analysis.trajectories import Motions, chosen_places, moved, shown_models
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
 from reference.problem import Scene, Trajectory, load_scene
