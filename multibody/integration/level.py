@@ -134,6 +134,8 @@ class Level:
 
     def min_divisions(self, time: float) -> int:
         """How often the largest step must be divided at `time` for the decay of the loading."""
+        if not self.decays:
+            return 0
         allowed = min((step for until, step in self.decays if time < until), default=self.step)
         return min(math.ceil(math.log(self.step / allowed, STEP_RATIO) - 1e-9), self.max_divisions)
 

@@ -9,6 +9,7 @@ at samples: nothing is read across them.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator
 
 import numpy as np
@@ -60,10 +61,10 @@ class Peaks:
     def _read_between(self, time: Array, size: Array, slip: Array) -> None:
         """Read the samples, and what lies between them."""
         beyond = slip > self._threshold
-        corners = np.flatnonzero((beyond[1:] != beyond[:-1]).any(axis=1))
+        corners: list[int] = np.flatnonzero((beyond[1:] != beyond[:-1]).any(axis=1)).tolist()
         # each corner is read once, as soon as there are samples behind it
-        ready = [int(left) for left in corners if left + SAMPLES_BEHIND_CORNER < len(time) and time[left] > self._read]
-        bends = kinks(time, self._knots, self._near)
+        ready = [left for left in corners if left + SAMPLES_BEHIND_CORNER < len(time) and time[left] > self._read]
+        bends: list[int] = kinks(time, self._knots, self._near).tolist()
         for body in range(size.shape[1]):
             self._scan(body, time, size[:, body], slip, corners, bends, ready)
         if ready:
@@ -74,7 +75,7 @@ class Peaks:
         self._time, self._size, self._slip = self._time[:0], self._size[:0], self._slip[:0]
 
     def _scan(
-        self, body: int, time: Array, size: Array, slip: Array, corners: Rows, bends: Rows, ready: list[int]
+        self, body: int, time: Array, size: Array, slip: Array, corners: list[int], bends: list[int], ready: list[int]
     ) -> None:
         row = int(size.argmax())
         if size[row] <= CANDIDATE_FRACTION * self.value[body]:
@@ -132,7 +133,7 @@ def _smooth(
     return float(size[row]) + rise, error, float(time[row]) + summit
 
 
-def _unresolved(time: Array, size: Array, row: int, corners: Rows) -> float:
+def _unresolved(time: Array, size: Array, row: int, corners: list[int]) -> float:
     """
     Error of a sample alone between two corners: what the corners before it have changed, from the samples before those.
 
@@ -151,7 +152,7 @@ def _unresolved(time: Array, size: Array, row: int, corners: Rows) -> float:
 
 
 def _corner(
-    time: Array, size: Array, slip: Array, left: int, threshold: float, corners: Rows
+    time: Array, size: Array, slip: Array, left: int, threshold: float, corners: list[int]
 ) -> tuple[float, float, float]:
     """
     Value at a corner between rows `left` and `left + 1`, extrapolated from both sides.
@@ -180,24 +181,26 @@ def _corner(
     return 0.5 * (readings[0] + readings[1]), error, instant
 
 
-def _neighbors(row: int, count: int, corners: Rows, bends: Rows) -> Iterator[tuple[int, int, tuple[int, int]]]:
+def _neighbors(
+    row: int, count: int, corners: list[int], bends: list[int]
+) -> Iterator[tuple[int, int, tuple[int, int]]]:
     """First and last row of every smooth stretch that `row` belongs to, and the two rows nearest to it there."""
     first, last = _side(row, count, corners)
-    place = int(np.searchsorted(bends, row))
+    place = bisect_left(bends, row)
     before, here = [first, *bends[:place]], place < len(bends) and bends[place] == row
     after = [*bends[place + here :], last]
     if here:
-        yield max(first, int(before[-1])), row, (row - 1, row - 2)
-        yield row, min(last, int(after[0])), (row + 1, row + 2)
+        yield max(first, before[-1]), row, (row - 1, row - 2)
+        yield row, min(last, after[0]), (row + 1, row + 2)
     else:
-        yield max(first, int(before[-1])), min(last, int(after[0])), (row - 1, row + 1)
+        yield max(first, before[-1]), min(last, after[0]), (row - 1, row + 1)
 
 
-def _side(row: int, count: int, corners: Rows) -> tuple[int, int]:
+def _side(row: int, count: int, corners: list[int]) -> tuple[int, int]:
     """First and last row on the same side of all corners as `row`."""
-    place = int(np.searchsorted(corners, row))
-    first = int(corners[place - 1]) + 1 if place > 0 else 0
-    return first, int(corners[place]) if place < len(corners) else count - 1
+    place = bisect_left(corners, row)
+    first = corners[place - 1] + 1 if place > 0 else 0
+    return first, corners[place] if place < len(corners) else count - 1
 
 
 def _extrapolated(time: Array, values: Array, instant: float) -> float:

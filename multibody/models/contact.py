@@ -81,7 +81,7 @@ def platform_on_sphere(
     return place, np.array([*speed, vertical]), -pressed, slip
 
 
-def settled_contact(state: EngineState, gap_rate: float, penetration: float, normal: Array) -> EngineState:
+def settled_contact(state: EngineState, gap_rate: float, penetration: float, normal: list[float]) -> EngineState:
     """
     The same state with the same contact force, carried by the gap alone and not by a leftover of normal velocity.
 
@@ -89,10 +89,11 @@ def settled_contact(state: EngineState, gap_rate: float, penetration: float, nor
     turns that into a force which the gap makes up for. A smaller step would start with that balance upset and ring.
     """
     coordinates, velocities, contact = state.coordinates.copy(), state.velocities.copy(), state.contact.copy()
-    damping = 2.0 * DAMPING_RATIO / np.sqrt(penetration)
-    excess_speed = float(normal @ velocities[:3]) - gap_rate
+    damping = 2.0 * DAMPING_RATIO / math.sqrt(penetration)
+    excess_speed = sum(share * speed for share, speed in zip(normal, velocities[:3].tolist())) - gap_rate
     rise = -penetration * damping * excess_speed
-    velocities[:3] -= normal * excess_speed
-    coordinates[:3] -= normal * rise
+    for axis, share in enumerate(normal):
+        velocities[axis] -= share * excess_speed
+        coordinates[axis] -= share * rise
     contact[0] -= rise
     return EngineState(coordinates, velocities, contact, state.plate, state.slip_rate)

@@ -78,7 +78,7 @@ def align_steps(knots: Array, near: float, time: float, step: float, count: int)
 
     From a knot on over as many intervals of the same length as `count` reaches; from elsewhere to the next knot.
     """
-    place = int(np.searchsorted(knots, time + near, side="right"))
+    place = int(np.searchsorted(knots, time + near, side="right")) if len(knots) else 0
     if place == len(knots):
         return step, count
     gap = float(knots[place]) - time

@@ -10,6 +10,7 @@ flat slider it is a sphere on a plane.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -39,7 +40,6 @@ Array = NDArray[np.float64]
 BETWEEN_TWO = np.array([[1.0, -1.0], [-1.0, 1.0]])  # what acts between two coordinates
 HOLLOW_RADIUS = 2.0  # R in units of rho; in translation only R - r matters
 SPHERE_ON_PLANE = 1.0  # radius of the sphere under the platform of a flat slider, in units of length
-UPWARD = np.array([0.0, 0.0, 1.0])
 
 
 def translational(
@@ -100,8 +100,10 @@ def translational(
         return EngineState(coordinates, velocities, np.array([gap, slip, 0.0, 0.0]))
 
     def settle(state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
-        normal = UPWARD if scene.flat else UPWARD - state.coordinates[:3]
-        return settled_contact(state, float(gap_rate[0]), penetration, normal / np.linalg.norm(normal))
+        x, y, z = (0.0, 0.0, 0.0) if scene.flat else state.coordinates[:3].tolist()
+        inward = -x, -y, 1.0 - z  # from the middle of the hollow sphere
+        length = math.hypot(*inward)
+        return settled_contact(state, float(gap_rate[0]), penetration, [part / length for part in inward])
 
     varies = scene.dry_friction.varies
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
