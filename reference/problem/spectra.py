@@ -130,25 +130,30 @@ def _largest_accelerations(time: Array, floor: Array, period: Array, damping: fl
     y'' + 2 damping y' + y = -floor, with y the displacement times the square of the natural frequency and derivatives
     by the angle. series: as `_power_series`.
     """
-    count = floor.shape[1]
+    count, total = floor.shape[1], time.shape[0] - 1
     largest = np.zeros((count, period.shape[0]))
     place, speed = np.zeros(count), np.zeros(count)
+    steps_of, motion = np.empty(total), np.empty((total, 6))
     for p in range(period.shape[0]):
         frequency = 2.0 * math.pi / period[p]
-        place[:], speed[:] = 0.0, 0.0
-        for n in range(time.shape[0] - 1):
+        for n in range(total):  # by itself: no interval waits for the motion in the one before
             angle = frequency * (time[n + 1] - time[n])
-            steps = max(1, math.ceil(angle / MAX_ANGLE))
+            steps_of[n] = steps = max(1.0, np.ceil(angle / MAX_ANGLE))
             angle /= steps
             b = f = r = 0.0
             for k in range(TERMS - 1, -1, -1):
                 b, f, r = b * angle + series[k, 0], f * angle + series[k, 1], r * angle + series[k, 2]
             b, f, r = b * angle, f * angle, r * angle**2
             s = f * angle
-            d = 1.0 - s - 2.0 * damping * b
-            for k in range(steps):
+            motion[n, 0], motion[n, 1], motion[n, 2] = b, f, r
+            motion[n, 3], motion[n, 4], motion[n, 5] = s, 1.0 - s - 2.0 * damping * b, angle
+        place[:], speed[:] = 0.0, 0.0
+        for n in range(total):
+            b, f, r, s, d, angle = motion[n]
+            share = 1.0 / steps_of[n]
+            for k in range(int(steps_of[n])):
                 for i in range(count):
-                    change = (floor[n + 1, i] - floor[n, i]) / steps
+                    change = share * (floor[n + 1, i] - floor[n, i])
                     y, v = place[i], speed[i]
                     pulled = y + floor[n, i] + k * change
                     y1 = y - s * pulled + b * v - r * change
@@ -156,7 +161,8 @@ def _largest_accelerations(time: Array, floor: Array, period: Array, damping: fl
                     top = abs(y1)
                     if v * v1 < 0.0:  # it turns: its speed is taken as linear
                         top = max(top, abs(y + 0.5 * v * v / (v - v1) * angle))
-                    largest[i, p] = max(largest[i, p], top)
+                    if top > largest[i, p]:
+                        largest[i, p] = top
                     place[i], speed[i] = y1, v1
     return largest
 
