@@ -59,9 +59,10 @@ def literal_peaks(scene: Scene, phases: Array, step: float = STEP, spike: bool =
     above[:-1] = scene.stiffness / masses[:-1, None]
     steps = round(scene.duration / step)
     support = scene.total_mass / masses[0] * GRAVITY
+    turns, growth = np.exp(1j * np.asarray(phases, float)), np.exp(step * exponents(scene))
     square, apart, reach, swing, spikes = _motions(
-        np.ascontiguousarray(phases, dtype=float), scene.amplitudes[:2].copy(), exponents(scene), below, above,
-        support, scene.friction_coefficient, 1.0 / scene.radius, step, steps, spike,
+        turns, scene.amplitudes[:2].copy(), growth, below, above, support, scene.friction_coefficient,
+        1.0 / scene.radius, step, steps, spike,
     )  # fmt: skip
     mu = np.sqrt(square) / ground_peak(scene, phases)[:, None]
     mu[~(swing < scene.radius**2)] = np.nan
@@ -70,24 +71,24 @@ def literal_peaks(scene: Scene, phases: Array, step: float = STEP, spike: bool =
 
 @cached_entry_point
 def _motions(
-    phases: Array, amplitudes: Array, s: Any, below: Array, above: Array, support: float, friction: float,
+    turns: Any, amplitudes: Array, growth: Any, below: Array, above: Array, support: float, friction: float,
     curvature: float, h: float, steps: int, spike: bool,
 ) -> Any:  # fmt: skip
     """
     Largest squares of absolute accelerations, differences x_i - y_i, displacements, swings; numbers of first steps.
 
-    below, above: (N, 2), stiffness of the links over the mass of the body, 1/s^2. support: R_N = m_sum g / m_1.
+    turns: (M, 2), exp(i phase). growth: (2,), of the harmonics in a step. below, above: (N, 2), stiffness of the links
+    over the mass of the body, 1/s^2. support: R_N = m_sum g / m_1.
     Semi-implicit Euler: v += h a(x, v), x += h v.
     """
-    runs, n = len(phases), len(below)
+    runs, n = len(turns), len(below)
     square, apart, reach = np.zeros((runs, n)), np.zeros((runs, n)), np.zeros((runs, n))
     swing, spikes = np.zeros(runs), np.zeros(runs, np.int64)
     x, v, a = np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 2))
-    growth = np.exp(h * s)
     for run in range(runs):
         x[:] = 0.0
         v[:] = 0.0
-        z1, z2 = np.exp(1j * phases[run, 0]), np.exp(1j * phases[run, 1])
+        z1, z2 = turns[run, 0], turns[run, 1]
         for _ in range(steps):
             ux = amplitudes[0, 0] * z1.real + amplitudes[0, 1] * z2.real
             uy = amplitudes[1, 0] * z1.real + amplitudes[1, 1] * z2.real
