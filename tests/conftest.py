@@ -6,8 +6,10 @@ Property tests draw the same examples in every run, so that a gate gives one ans
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
+from pathlib import Path
 from threading import RLock
 from typing import Any
 
@@ -23,15 +25,29 @@ try:
 except ImportError:  # on Windows every process compiles for itself
     fcntl = None  # type: ignore[assignment]
 
+# Files to begin with: one compiles the solver, the others do not need it and take as long.
+FIRST = ("test_docstrings.py", "test_early_end.py", "test_page_in_a_browser.py")
+
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.register_profile("new", deadline=None)
 
 
 def pytest_configure(config: pytest.Config) -> None:
     settings.load_profile("new" if config.getoption("markexpr") == "long" else "same")
+    config.option.loadscopereorder = False  # of xdist: pytest_collection_modifyitems orders the files
     one_thread_each()  # more of them would wait for each other
     if hasattr(config, "workerinput"):  # one of several processes
         compile_in_turn()
+
+
+@pytest.hookimpl(trylast=True)  # without the deselected ones
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """In several processes: FIRST, then files with many tests, so that the last files are short ones."""
+    if not hasattr(config, "workerinput"):
+        return
+    count = Counter(item.path for item in items)
+    order = {name: k for k, name in enumerate(FIRST)}
+    items.sort(key=lambda item: (order.get(item.path.name, len(FIRST)), -count[item.path], item.path))
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -41,13 +57,13 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
 
 
 def compile_in_turn() -> None:
-    """Let processes compile one after the other: what one has compiled and kept on disk the others read."""
+    """Let processes compile a function one after the other: what one has kept on disk the others read."""
     compiled, thread = Dispatcher.compile, RLock()
     depth = 0  # a function compiles those that it calls
 
     def in_turn(dispatcher: Any, signature: Any) -> Any:
         nonlocal depth
-        with thread, nullcontext() if depth else alone():
+        with thread, nullcontext() if depth else alone(dispatcher.py_func.__code__.co_filename):
             depth += 1
             try:
                 return compiled(dispatcher, signature)
@@ -58,11 +74,11 @@ def compile_in_turn() -> None:
 
 
 @contextmanager
-def alone() -> Iterator[None]:
-    """Keep other processes out of the block, by a lock on this file."""
-    if fcntl is None:
+def alone(file: str) -> Iterator[None]:
+    """Keep other processes out of the block, by a lock on a file."""
+    if fcntl is None or not Path(file).is_file():
         yield
         return
-    with open(__file__) as stream:
+    with open(file) as stream:
         fcntl.flock(stream, fcntl.LOCK_EX)
         yield

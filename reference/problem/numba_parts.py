@@ -10,6 +10,8 @@ import operator
 from functools import cache
 from typing import Any, ClassVar
 
+from llvmlite.binding import Linkage
+from numba.core import types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
 from numba.core.compiler_machinery import LoweringPass, register_pass
@@ -21,7 +23,7 @@ from numba.core.untyped_passes import DeadBranchPrune, InlineClosureLikes
 # Passes that change nothing in a part: it has no expressions of whole arrays, functions within, branches on None
 # or functions that numba inlines before their types are known, and needs no end of a variable's life to be marked.
 UNNEEDED = {NopythonRewrites, InlineClosureLikes, DeadBranchPrune, InlineOverloads, IRLegalization}
-OPERATORS = {each for each in vars(operator).values() if callable(each)} | {bool, max, min}
+OPERATORS = {each for each in vars(operator).values() if callable(each)}
 
 
 class _NoEnvironment:
@@ -32,19 +34,34 @@ class _NoEnvironment:
 
 
 class _Part(JITCodeLibrary):  # type: ignore[misc]
-    """The code of one part, and of the parts that it calls, as numba writes it."""
+    """The code of one part as numba writes it; entry points link, optimize and translate it."""
 
     codegen = _NoEnvironment()
+    _whole: Any = None
 
     def finalize(self) -> None:
-        """Link the parts that this one calls; neither optimize nor translate them."""
+        """Neither link what this part calls, nor optimize, nor translate."""
         self._raise_if_finalized()
-        for library in dict.fromkeys(self._linking_libraries):
-            if hasattr(self, "_reload_init"):  # since numba 0.62
-                self._reload_init.update(library._reload_init)
-            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
-        self._finalize_dynamic_globals()
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage == Linkage.external:
+                function.linkage = Linkage.linkonce_odr
         self._finalized = True
+
+    def _get_module_for_linking(self) -> Any:
+        """The code with that of all parts that it calls, each once: asked for by an entry point."""
+        if self._whole is None:
+            whole = self._final_module.clone()
+            libraries = [self]
+            for library in libraries:
+                called = library._linking_libraries if isinstance(library, _Part) else ()
+                libraries += [each for each in dict.fromkeys(called) if each not in libraries]
+                if hasattr(self, "_reload_init"):  # since numba 0.62
+                    self._reload_init.update(library._reload_init)
+            for library in libraries[1:]:
+                part = isinstance(library, _Part)
+                whole.link_in(library._final_module if part else library._get_module_for_linking(), preserve=True)
+            self._whole = whole
+        return self._whole
 
     def get_pointer_to_function(self, name: str) -> int:
         """None: there is no machine code."""
@@ -85,8 +102,8 @@ class _SharedFlags(Flags):  # type: ignore[misc]
         return self._known.setdefault(repr(self), self)
 
 
-class _RememberedOperators(Context):  # type: ignore[misc]
-    """Numba's lookup of what functions return, which asks once for an operator and the types that it is applied to."""
+class _RememberedFunctions(Context):  # type: ignore[misc]
+    """Numba's lookup of what functions return, which asks once for a function of numba and types of arguments."""
 
     def __init__(self, context: Context) -> None:
         self.__dict__ = context.__dict__
@@ -94,14 +111,14 @@ class _RememberedOperators(Context):  # type: ignore[misc]
 
     def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
         """Return the signature."""
-        if kws or getattr(func, "typing_key", func) not in OPERATORS:
+        if kws or not (isinstance(func, types.Function) or func in OPERATORS):
             return super().resolve_function_type(func, args, kws)
         if (func, args) not in self._known:
             self._known[func, args] = super().resolve_function_type(func, args, kws)
         return self._known[func, args]
 
 
-remembered_operators = cache(_RememberedOperators)
+remembered_functions = cache(_RememberedFunctions)
 
 
 class PartCompiler(CompilerBase):  # type: ignore[misc]
@@ -110,7 +127,7 @@ class PartCompiler(CompilerBase):  # type: ignore[misc]
     def compile_extra(self, func: Any) -> Any:
         """Compile a Python function."""
         self.state.flags = _SharedFlags(self.state.flags)
-        self.state.typingctx = remembered_operators(self.state.typingctx)
+        self.state.typingctx = remembered_functions(self.state.typingctx)
         return super().compile_extra(func)
 
     def define_pipelines(self) -> list[Any]:

@@ -2,20 +2,30 @@
 Numba's types of structures that compiled code passes by reference.
 
 Numba can do this itself (`structref.register`). It spells out all fields of a structure in the name of every function
-with such an argument, and again wherever a field is read: thousands of characters each time, to write and to read.
+with such an argument, and again wherever a field is read: thousands of characters each time, to write and to read. Its
+constructors take every field as an argument, and its `np.zeros` is compiled for every kind of array.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any
 
-from numba.core import types
+import numpy as np
+from numba import typeof
+from numba.core import cgutils, types
 from numba.core.datamodel import default_manager
 from numba.core.datamodel.models import StructRefModel
 from numba.core.extending import infer_getattr, lower_getattr_generic, lower_setattr_generic
 from numba.core.imputils import impl_ret_borrowed
 from numba.core.typing.templates import AttributeTemplate
+from numba.experimental import structref
+from numba.extending import intrinsic
+from numba.np.arrayobj import populate_array
+
+_MEMORY: Any = types.MemInfoPointer(types.voidptr)  # type: ignore[attr-defined]
+ALIGNMENT = 64  # bytes: a row of eight numbers lies in one line of the processor's cache
 
 
 class ByReference(types.StructRef):  # type: ignore[misc, name-defined]
@@ -79,3 +89,76 @@ def _write(context: Any, builder: Any, signature: Any, arguments: Any, name: str
     context.nrt.incref(builder, field, new)
     context.nrt.decref(builder, field, old)
     builder.store(new, pointer)
+
+
+def _new(context: Any, builder: Any, kind: ByReference) -> Any:
+    """Write code for a structure without values."""
+    _, lower = structref.new._defn(context.typing_context, types.TypeRef(kind))
+    return lower(context, builder, None, None)
+
+
+def by_reference(kind: type[ByReference]) -> Any:
+    """A function of compiled code that makes such a structure from a named tuple."""
+
+    @intrinsic
+    def made(context: Any, values: Any) -> Any:
+        structure = kind(list(zip(values.fields, values.types)))
+
+        def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            reference = _new(context, builder, structure)
+            for k, (name, field) in enumerate(structure._fields):
+                value = builder.extract_value(arguments[0], k)
+                context.nrt.incref(builder, field, value)
+                builder.store(value, structure.pointer(context, builder, reference, name))
+            return reference
+
+        return structure(values), lower
+
+    return made
+
+
+def zeroed(kind: type[ByReference], fields: Callable[[int], Mapping[str, Any]]) -> Any:
+    """
+    A function of compiled code that makes such a structure of zeros for a size, all its arrays in one piece of memory.
+
+    fields: floats, and arrays of any values, by the size, which is the length of some of their axes.
+    """
+    known, longer = fields(2), fields(3)
+    arrays = {name: value for name, value in known.items() if isinstance(value, np.ndarray)}
+    structure = kind([(name, typeof(value)) for name, value in known.items()])
+
+    @intrinsic
+    def made(context: Any, size: Any) -> Any:
+        def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            def constant(number: int) -> Any:
+                return context.get_constant(types.intp, number)
+
+            size = context.cast(builder, arguments[0], signature.args[0], types.intp)
+            shapes, places, end = {}, {}, constant(0)
+            for name, array in arrays.items():
+                lengths = zip(array.shape, longer[name].shape)
+                shapes[name] = [constant(short) if short == long else size for short, long in lengths]
+                places[name], count = end, constant(array.itemsize)
+                for length in shapes[name]:
+                    count = builder.mul(count, length)
+                end = builder.and_(builder.add(end, builder.add(count, constant(ALIGNMENT - 1))), constant(-ALIGNMENT))
+            memory = context.nrt.meminfo_alloc_aligned(builder, end, ALIGNMENT)
+            data = context.nrt.meminfo_data(builder, memory)
+            cgutils.memset(builder, data, end, 0)
+            reference = _new(context, builder, structure)
+            for name in arrays:
+                field, itemsize = structure.field_dict[name], arrays[name].itemsize
+                strides = [constant(itemsize)]
+                for length in shapes[name][:0:-1]:
+                    strides.insert(0, builder.mul(strides[0], length))
+                array = context.make_array(field)(context, builder)
+                first = builder.bitcast(builder.gep(data, [places[name]]), array.data.type)
+                populate_array(array, first, shapes[name], strides, itemsize, memory)
+                context.nrt.incref(builder, field, array._getvalue())
+                builder.store(array._getvalue(), structure.pointer(context, builder, reference, name))
+            context.nrt.decref(builder, _MEMORY, memory)
+            return reference
+
+        return structure(size), lower
+
+    return made

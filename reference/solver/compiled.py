@@ -11,20 +11,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numba
-
 from reference.problem.build_cache import cached_on_disk
 from reference.problem.compiled_parts import compiled_part
 
-njit: Any = numba.njit
-
 # divisions by zero give inf or NaN as in NumPy; other threads go on meanwhile
 OPTIONS = {"error_model": "numpy", "nogil": True}
-
-
-def allocating(function: Callable[..., Any]) -> Any:
-    """A part of the solver that makes arrays."""
-    return njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)(function)
 
 
 def compiled(function: Callable[..., Any]) -> Any:

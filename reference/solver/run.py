@@ -36,7 +36,7 @@ from reference.solver.system import (
     Record,
     System,
 )
-from reference.solver.work import RecordReference, SystemReference, Work, start_anew, workspace
+from reference.solver.work import Work, record_by_reference, start_anew, system_by_reference, workspace
 
 FIRST_STEP = 0.02  # of the period (Demand.period)
 NEGLIGIBLE_REMAINDER = 1e-8  # of the period: a run that fails so shortly before its end counts as finished
@@ -124,7 +124,7 @@ def runs(
     largest (s).
     """
     work = workspace(peaks.shape[1])
-    system_reference, record_reference = SystemReference(*system), RecordReference(*record)
+    system_reference, record_reference = system_by_reference(system), record_by_reference(record)
     for m in range(phases.shape[0]):
         work.phase[0], work.phase[1] = phases[m, 0], phases[m, 1]
         for i in range(x.shape[0]):

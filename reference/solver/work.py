@@ -6,14 +6,15 @@ Compiled code passes them by reference: as a tuple, every call would copy and co
 
 from __future__ import annotations
 
-import numpy as np
-from numba.experimental import structref
+from collections.abc import Callable
 
-from reference.solver.by_reference import ByReference
+import numpy as np
+
+from reference.solver.by_reference import ByReference, by_reference, zeroed
 from reference.solver.collocation import CHANNELS, LANES, STAGES
-from reference.solver.compiled import allocating, compiled
+from reference.solver.compiled import compiled
 from reference.solver.polynomial import POWERS
-from reference.solver.system import Array, Complex, Record, System
+from reference.solver.system import Array, Complex
 
 # rows of Work.stage: position, velocity, drive, reaction / m1, squared speed, inertia determinant; y behind x
 POSITION, VELOCITY, DRIVE, REACTION, SPEED2, DETERMINANT = 0, 2, 4, 6, 7, 8
@@ -28,32 +29,18 @@ SERIES_TERMS = 32  # of the harmonics of the ground: more than a step takes
 
 
 class _SystemType(ByReference):
-    """Numba's type of SystemReference."""
-
-
-class SystemReference(structref.StructRefProxy):  # type: ignore[misc]
-    """A System, passed by reference."""
-
-
-structref.define_proxy(SystemReference, _SystemType, list(System._fields))
+    """Numba's type of a System, passed by reference."""
 
 
 class _RecordType(ByReference):
-    """Numba's type of RecordReference."""
-
-
-class RecordReference(structref.StructRefProxy):  # type: ignore[misc]
-    """A Record, passed by reference."""
-
-
-structref.define_proxy(RecordReference, _RecordType, list(Record._fields))
+    """Numba's type of a Record, passed by reference."""
 
 
 class _WorkType(ByReference):
     """Numba's type of Work."""
 
 
-class Work(structref.StructRefProxy):  # type: ignore[misc]
+class Work:
     """One run: nothing is allocated while it goes on, and nothing grows with its duration."""
 
     phase: Array  # (2,) rad, of the loading
@@ -122,73 +109,73 @@ class Work(structref.StructRefProxy):  # type: ignore[misc]
     look: float  # s, after which the run looks ahead, or ends if it may not end early by itself
 
 
-structref.define_proxy(Work, _WorkType, list(Work.__annotations__))
-
-
-@allocating
-def workspace(bodies: int) -> Work:
-    """For runs with this many bodies."""
+def _fields(bodies: int) -> dict[str, Array | Complex | float]:
+    """Of Work for so many bodies."""
     n, s, c, lanes = bodies, STAGES, CHANNELS, LANES
-    return Work(
-        phase=np.zeros(2),
-        time=0.0,
-        x=np.zeros((n, 2)),
-        v=np.zeros((n, 2)),
-        a0=np.zeros((n, 2)),
-        total0=np.zeros((n, 3)),
-        angle=0.0,
-        log_speed=0.0,
-        log_ratio=0.0,
-        start2=0.0,
-        length=0.0,
-        stretched=0.0,
-        fitting=0.0,
-        growth=0.0,
-        held=0.0,
-        entered=0.0,
-        left=0.0,
-        x1=np.zeros((n, 2)),
-        v1=np.zeros((n, 2)),
-        a=np.zeros((n, 2, lanes)),
-        ground=np.zeros((3, lanes)),
-        total=np.zeros((n, 3, lanes)),
-        free=np.zeros((2, lanes)),
-        feedback=np.zeros((2, s, lanes)),
-        inverse=np.zeros((n, 2, c), np.complex128),
-        load=np.zeros((n, 2, c), np.complex128),
-        channels=np.zeros(lanes),
-        gain=np.zeros((2, c), np.complex128),
-        stage=np.zeros((9, lanes)),
-        slopes=np.zeros((12, lanes)),
-        matrix=np.zeros((2 * s, 2, lanes)),
-        residual=np.zeros((2, lanes)),
-        turn_matrix=np.zeros((s, 1, lanes)),
-        pivots=np.zeros(2 * s),
-        chain=np.zeros((n, 2, lanes)),
-        velocity=np.zeros((n, 2, lanes)),
-        turning=np.zeros((12, lanes)),
-        levels=np.zeros(lanes),
-        edges=np.zeros(2 * MAX_PARTS),
-        powers=np.zeros((5, POWERS)),
-        dense=np.zeros((2, lanes)),
-        scale=np.zeros(n),
-        defect=np.zeros(n),
-        old_length=0.0,
-        guess=np.zeros((2, POWERS)),
-        waves=np.zeros(2, np.complex128),
-        turns=np.zeros(2, np.complex128),
-        elapsed=np.zeros(lanes),
-        series=np.zeros((SERIES_TERMS, 2)),
-        end=0.0,
-        steps=0.0,
-        best=np.zeros(n),
-        reading_error=np.zeros(n),
-        drift=np.zeros(n),
-        reach2=0.0,
-        peaked=0.0,
-        settled=0.0,
-        look=0.0,
-    )
+    return {
+        "phase": np.zeros(2),
+        "time": 0.0,
+        "x": np.zeros((n, 2)),
+        "v": np.zeros((n, 2)),
+        "a0": np.zeros((n, 2)),
+        "total0": np.zeros((n, 3)),
+        "angle": 0.0,
+        "log_speed": 0.0,
+        "log_ratio": 0.0,
+        "start2": 0.0,
+        "length": 0.0,
+        "stretched": 0.0,
+        "fitting": 0.0,
+        "growth": 0.0,
+        "held": 0.0,
+        "entered": 0.0,
+        "left": 0.0,
+        "x1": np.zeros((n, 2)),
+        "v1": np.zeros((n, 2)),
+        "a": np.zeros((n, 2, lanes)),
+        "ground": np.zeros((3, lanes)),
+        "total": np.zeros((n, 3, lanes)),
+        "free": np.zeros((2, lanes)),
+        "feedback": np.zeros((2, s, lanes)),
+        "inverse": np.zeros((n, 2, c), np.complex128),
+        "load": np.zeros((n, 2, c), np.complex128),
+        "channels": np.zeros(lanes),
+        "gain": np.zeros((2, c), np.complex128),
+        "stage": np.zeros((9, lanes)),
+        "slopes": np.zeros((12, lanes)),
+        "matrix": np.zeros((2 * s, 2, lanes)),
+        "residual": np.zeros((2, lanes)),
+        "turn_matrix": np.zeros((s, 1, lanes)),
+        "pivots": np.zeros(2 * s),
+        "chain": np.zeros((n, 2, lanes)),
+        "velocity": np.zeros((n, 2, lanes)),
+        "turning": np.zeros((12, lanes)),
+        "levels": np.zeros(lanes),
+        "edges": np.zeros(2 * MAX_PARTS),
+        "powers": np.zeros((5, POWERS)),
+        "dense": np.zeros((2, lanes)),
+        "scale": np.zeros(n),
+        "defect": np.zeros(n),
+        "old_length": 0.0,
+        "guess": np.zeros((2, POWERS)),
+        "waves": np.zeros(2, np.complex128),
+        "turns": np.zeros(2, np.complex128),
+        "elapsed": np.zeros(lanes),
+        "series": np.zeros((SERIES_TERMS, 2)),
+        "end": 0.0,
+        "steps": 0.0,
+        "best": np.zeros(n),
+        "reading_error": np.zeros(n),
+        "drift": np.zeros(n),
+        "reach2": 0.0,
+        "peaked": 0.0,
+        "settled": 0.0,
+        "look": 0.0,
+    }
+
+
+system_by_reference, record_by_reference = by_reference(_SystemType), by_reference(_RecordType)
+workspace: Callable[[int], Work] = zeroed(_WorkType, _fields)  # for runs with this many bodies
 
 
 @compiled

@@ -9,7 +9,6 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba.experimental import structref
 
 
 class Row(np.ndarray):
@@ -18,13 +17,6 @@ class Row(np.ndarray):
     __iadd__ = np.ndarray.__add__  # type: ignore[assignment]
     __isub__ = np.ndarray.__sub__  # type: ignore[assignment]
     __imul__ = np.ndarray.__mul__  # type: ignore[assignment]
-
-
-def _with_fields(proxy: type, of: object, fields: list[str]) -> None:
-    def start(self: Any, *values: Any, **named: Any) -> None:
-        vars(self).update(zip(fields, values), **named)
-
-    proxy.__init__ = start  # type: ignore[misc]
 
 
 def _also_of_rows(alone: Callable[..., Any], together: Callable[..., Any]) -> Callable[..., Any]:
@@ -37,14 +29,15 @@ def _also_of_rows(alone: Callable[..., Any], together: Callable[..., Any]) -> Ca
 def prepare() -> None:
     """Before the solver is imported, in a process of its own with NUMBA_DISABLE_JIT=1."""
     np.seterr(all="ignore")
-    structref.StructRefProxy = types.SimpleNamespace
-    structref.define_proxy = _with_fields
     for name in ("sqrt", "exp", "expm1", "log"):
         setattr(math, name, _also_of_rows(getattr(math, name), getattr(np, name)))
     builtins.max, builtins.min = _also_of_rows(max, np.maximum), _also_of_rows(min, np.minimum)  # type: ignore[assignment]
 
-    from reference.solver import rows
+    from reference.solver import by_reference, rows
     from reference.solver.collocation import LANES, STAGES
+
+    by_reference.by_reference = lambda kind: lambda values: types.SimpleNamespace(**values._asdict())
+    by_reference.zeroed = lambda kind, fields: lambda size: types.SimpleNamespace(**fields(size))
 
     def put(array: Any, place: Any, values: Any) -> None:
         array[place][:LANES] = values

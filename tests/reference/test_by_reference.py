@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
+from numba.core.runtime import _nrt_python, rtsys
 from numba.experimental import structref
 
-from reference.solver.by_reference import ByReference
+from reference.solver.by_reference import ALIGNMENT, ByReference, by_reference, zeroed
 
 
 class PairType(ByReference):
@@ -50,3 +53,73 @@ def test_the_fields_are_not_spelled_out_in_the_code_of_a_function() -> None:
     assert "PairType" in built.fndesc.mangled_name
     assert "values" not in built.fndesc.mangled_name
     assert built.fndesc.mangled_name.count("Array") == 1  # the argument
+
+
+class RoomType(ByReference):
+    """Numba's type of zeros for a size."""
+
+
+class Given(NamedTuple):
+    """A flag, which shifts the fields behind it, and an array."""
+
+    flag: bool
+    values: np.ndarray
+
+
+class GivenType(ByReference):
+    """Numba's type of Given, passed by reference."""
+
+
+room = zeroed(
+    RoomType,
+    lambda n: {"one": np.zeros(3), "number": 0.0, "many": np.zeros((n, 2, 3)), "waves": np.zeros((2, n), complex)},
+)
+given_by_reference = by_reference(GivenType)
+
+
+@njit
+def filled(size):
+    """Whether all was zero, the sums of what is written, and where the arrays begin."""
+    work = room(size)
+    zero = work.number == 0.0 and not work.one.any() and not work.many.any() and not work.waves.any()
+    work.one[:], work.many[:], work.waves[:], work.number = 1.0, 2.0, 3.0 + 1.0j, 4.0
+    sums = work.one.sum(), work.many.sum(), work.waves.sum(), work.number
+    return zero, sums, (work.one.ctypes.data, work.many.ctypes.data, work.waves.ctypes.data)
+
+
+def test_arrays_in_one_piece_of_memory_are_zero_and_apart_and_begin_where_a_row_does() -> None:
+    for size in (1, 2, 5, 1):
+        zero, sums, places = filled(size)
+        assert zero
+        assert sums == (3.0, 12.0 * size, (6.0 + 2.0j) * size, 4.0)
+        assert not any(place % ALIGNMENT for place in places)
+
+
+@njit
+def summed(given):
+    reference = given_by_reference(given)
+    return reference.values.sum() if reference.flag else -1.0
+
+
+@njit
+def kept(size):
+    """What an array holds after structures that held it, too."""
+    values = np.ones(size)
+    for _ in range(2):
+        summed(Given(True, values))
+    filled = np.full((50, size), -1.0)  # takes the memory of an array that is no longer kept
+    return values.sum() + filled[0, 0]
+
+
+def test_structures_return_their_memory_and_keep_that_of_others() -> None:
+    values = np.ones(4)
+    summed(Given(True, values)), filled(3)
+    _nrt_python.memsys_enable_stats()
+    before = rtsys.get_allocation_stats()
+    sums = [(summed(Given(True, values)), summed(Given(False, values)), filled(3)[0]) for _ in range(5)]
+    after = rtsys.get_allocation_stats()
+    _nrt_python.memsys_disable_stats()
+    assert sums == [(4.0, -1.0, True)] * 5
+    assert after.alloc - before.alloc == after.free - before.free
+    assert after.alloc > before.alloc
+    assert kept(1000) == 999.0

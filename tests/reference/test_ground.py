@@ -12,7 +12,7 @@ from reference.problem import ground_acceleration, load_scene
 from reference.solver.collocation import NODES, STAGES
 from reference.solver.ground import ground_at, ground_at_stages, next_ground, start_turns, start_waves
 from reference.solver.system import Array, System, pack
-from reference.solver.work import SystemReference, workspace
+from reference.solver.work import system_by_reference, workspace
 
 PHASE = np.array([0.3, 1.1])
 
@@ -35,10 +35,10 @@ def test_the_harmonics_turned_step_by_step_stay_those_of_the_scene(name: str) ->
 @numba.njit
 def ground_in_a_step(system: System, elapsed: Array) -> Array:
     """Ground acceleration (3, S) at the times (S,) after 0.7 s."""
-    work = workspace(1)
+    work, moving = workspace(1), system_by_reference(system)
     work.phase[:], work.time, work.elapsed[:STAGES] = PHASE, 0.7, elapsed
-    start_waves(system, work, work.time)
-    ground_at_stages(system, work)
+    start_waves(moving, work, work.time)
+    ground_at_stages(moving, work)
     return work.ground[:, :STAGES].copy()
 
 
@@ -48,6 +48,6 @@ def test_the_harmonics_at_the_stages_of_a_step_are_those_of_the_scene(angle: flo
     scene = load_scene("fig4-dry")
     system = pack(scene, small=False, v_reg=None)
     elapsed = angle / float(np.sqrt((np.abs(system.exponents) ** 2).sum())) * NODES
-    at_stages = ground_in_a_step(SystemReference(*system), elapsed)
+    at_stages = ground_in_a_step(system, elapsed)
     of_the_scene = ground_acceleration(scene, PHASE, 0.7 + elapsed)
     np.testing.assert_allclose(at_stages.T, of_the_scene, rtol=0.0, atol=1e-14)
