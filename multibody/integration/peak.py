@@ -21,6 +21,8 @@ Rows = NDArray[np.intp]
 
 NO_KNOTS, NO_ROWS = np.empty(0), np.empty(0, np.intp)
 CARRIED_SAMPLES = 6  # samples carried over to the next chunk: what the readings from both sides of an instant need
+# of a step over its neighbor, across which a parabola is laid: more than the run itself changes its steps by at once
+MAX_STEP_CHANGE = 20.0
 SAMPLES_BEHIND_CORNER = 3  # samples behind a corner, from which it is read
 CANDIDATE_FRACTION = 0.97  # of the peak: samples below it cannot be raised above it by interpolation at a resolved step
 
@@ -63,7 +65,7 @@ class Peaks:
         corners = np.flatnonzero((beyond[1:] != beyond[:-1]).any(axis=1))
         # each corner is read once, as soon as there are samples behind it
         ready = [int(left) for left in corners if left + SAMPLES_BEHIND_CORNER < len(time) and time[left] > self._read]
-        bends = kinks(time, self._knots, self._near)
+        bends = np.union1d(kinks(time, self._knots, self._near), _uneven(time))
         for body in range(size.shape[1]):
             self._scan(body, time, size[:, body], slip, corners, bends, ready)
         if ready:
@@ -101,6 +103,13 @@ def kinks(time: Array, knots: Array, near: float) -> Rows:
     if not len(knots):
         return NO_ROWS
     return np.flatnonzero(np.abs(knots[np.searchsorted(knots[:-1], time - near)] - time) <= near)
+
+
+def _uneven(time: Array) -> Rows:
+    """The rows between two steps one of which is much longer: the shorter one is not the slope of the other."""
+    steps = np.diff(time)
+    longer, shorter = np.maximum(steps[1:], steps[:-1]), np.minimum(steps[1:], steps[:-1])
+    return np.flatnonzero(longer > MAX_STEP_CHANGE * shorter) + 1
 
 
 def _smooth(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from scipy.optimize import brentq
 import multibody
 from multibody.integration.adaptive import Budget, EngineRun
 from multibody.integration.constant_step import Engine, Motion
+from multibody.integration.level import REAL_WARPING_COMPLIANCE
 from multibody.integration.one_run import PhasePair
 from multibody.integration.openings import GAP_TOLERANCE, IMPACT_TIME, Openings
 from multibody.integration.peak import Peaks
@@ -191,6 +193,33 @@ def tower(ring: float) -> Scene:
             "excitation": {"amplitudes": [[4.0, 0.0], [0.0, 4.0]], "periods": [0.9, 1.1], "decay": [0.33, 0.27]},
         }
     )
+
+
+def one_level(scene: Scene, phase: tuple[float, float], number: int, work: float, **changes: Any) -> EngineRun:
+    """The run of one level on springs of real bearings; changes: factors of the level's values."""
+    model = assemble(scene, "spatial", 1e-3)
+    level = multibody.levels(scene, "spatial")[number]
+    level = replace(level, warping_compliance=REAL_WARPING_COMPLIANCE)
+    level = replace(level, **{key: factor * getattr(level, key) for key, factor in changes.items()})
+    return PhasePair(scene, model, np.array(phase), whole=True).at_level(level, Budget(work))
+
+
+def test_a_contact_that_opens_behind_an_impact_is_asked_for_no_more_than_rounding_allows() -> None:
+    load = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [15.0, 0.0]], "decay": [0.333, 0.273]}
+    scene = changed(tower(1.0), isolator={"friction": 0.1, "supports": 4}, excitation=load, duration=0.56)
+    run = one_level(scene, (2.0, 0.7), 4, 6e4)
+    assert run.impacts > 10
+    assert run.outcome == Outcome.OK, "the engine shortened its step without end"
+
+
+def test_steps_that_the_engine_shortens_at_an_opening_grow_again() -> None:
+    isolator = {"period": None, "radius": 1.42, "ring": 0.103, "sphere_radius": 0.065, "restitution": 0.8}
+    body = {"mass": 1.58, "height": 0.195, "size": [2.0, 2.0, 0.2]}
+    load = {"amplitudes": [[4.494, 0.0], [0.0, 4.494]], "periods": [0.855, 1.057], "decay": [0.957, 1.0]}
+    tall = tower(1.0).with_values({f"isolator.{key}": value for key, value in isolator.items()})
+    scene = changed(tall, bodies=[body], excitation=load, duration=0.3)
+    runs = [one_level(scene, (4.825, 3.617), 1, 6e4, step=f, slip_change=f) for f in (1.0, 0.96, 0.93, 0.9)]
+    assert max(run.steps for run in runs) < 1.5 * min(run.steps for run in runs)
 
 
 @pytest.mark.parametrize("tilt", [0.0, 0.1, 0.3])

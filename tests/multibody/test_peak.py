@@ -86,6 +86,18 @@ def test_a_corner_that_is_not_looked_for_is_misread() -> None:
     assert abs(read(signal, lambda t: np.ones_like(t), np.inf, 1).value[0] - 1.0) > 0.02
 
 
+def test_a_rise_over_steps_much_shorter_than_the_next_one_is_not_taken_for_its_slope() -> None:
+    """Where a contact opens, the engine shortens its steps, and the next one is as long as ever."""
+    before, within, after = np.arange(0.0, 0.5, 0.02), 0.5 + 1e-6 * np.arange(8.0), np.arange(0.52, 1.0, 0.02)
+    time = np.concatenate([before, within, after])
+    since = np.maximum(time - 0.5, 0.0)
+    size = np.where(time < 0.5, 0.99, 1.0 - 0.1 * since - 0.01 * np.exp(-since / 3e-6))
+    peaks = Peaks(1, np.inf)
+    peaks.add(time, size[:, None], np.ones((len(time), 1)))
+    assert peaks.value[0] == pytest.approx(size.max(), abs=1e-9)
+    assert peaks.sampling[0] < 1e-3
+
+
 def test_the_end_of_the_record_counts() -> None:
     peaks = read(lambda t: t, lambda t: np.ones_like(t), np.inf, 3)
     assert peaks.value[0] == pytest.approx(0.98)
