@@ -204,6 +204,20 @@ def one_level(scene: Scene, phase: tuple[float, float], number: int, work: float
     return PhasePair(scene, model, np.array(phase), whole=True).at_level(level, Budget(work))
 
 
+def test_the_largest_value_just_before_an_impact_does_not_depend_on_where_the_steps_end() -> None:
+    isolator = {"period": None, "radius": 1.062, "friction": 0.0, "ring": 0.19, "sphere_radius": 0.06}
+    size, link = [0.772, 0.772, 0.2], {"period": [1.112, 0.994], "damping": [0.921, 0.921]}
+    bodies = [{"mass": 0.329, "height": 0.168, "size": size}, {"mass": 0.477, "height": 0.966, "size": size, **link}]
+    load = {"amplitudes": [[3.255, 0.0], [0.0, 3.255]], "periods": [1.296, 0.656], "decay": [0.269, 0.716]}
+    tall = tower(1.0).with_values({f"isolator.{key}": value for key, value in isolator.items()})
+    scene = changed(tall, bodies=bodies, excitation=load, duration=1.921)
+    peaks = [one_level(scene, (3.186, 1.166), 0, 6e4, step=f).peaks for f in (1.0, 0.95, 0.9)]
+    values = np.array([peak.value[1] for peak in peaks])
+    assert np.ptp(values) < 2e-4 * values[0], "the last step before the impact is left out"
+    instants = np.array([peak.instant[1] for peak in peaks])
+    assert np.ptp(instants) < 1e-4
+
+
 def test_a_contact_that_opens_behind_an_impact_is_asked_for_no_more_than_rounding_allows() -> None:
     load = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [15.0, 0.0]], "decay": [0.333, 0.273]}
     scene = changed(tower(1.0), isolator={"friction": 0.1, "supports": 4}, excitation=load, duration=0.56)

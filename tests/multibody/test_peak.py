@@ -98,6 +98,26 @@ def test_a_rise_over_steps_much_shorter_than_the_next_one_is_not_taken_for_its_s
     assert peaks.sampling[0] < 1e-3
 
 
+def test_samples_are_read_on_to_an_impact_behind_them() -> None:
+    time, last = np.arange(0.0, 0.5, 0.02), 0.493
+    peaks = Peaks(1, np.inf)
+    peaks.add(time, np.exp(2.0 * time)[:, None], np.ones((len(time), 1)))
+    peaks.read_until(last)
+    assert peaks.instant[0] == last
+    assert abs(peaks.value[0] - np.exp(2.0 * last)) <= peaks.sampling[0] < 3e-3
+
+
+@pytest.mark.parametrize("instant", [0.493, 0.6])
+def test_samples_that_alternate_or_are_far_from_an_impact_say_nothing_about_it(instant: float) -> None:
+    time = np.arange(0.0, 0.5, 0.02)
+    size = 1.0 + 0.1 * np.cos(np.pi * np.arange(len(time))) if instant < 0.5 else np.exp(time)
+    peaks = Peaks(1, np.inf)
+    peaks.add(time, size[:, None], np.ones((len(time), 1)))
+    before = float(peaks.value[0])
+    peaks.read_until(instant)
+    assert peaks.value[0] == before
+
+
 def test_the_end_of_the_record_counts() -> None:
     peaks = read(lambda t: t, lambda t: np.ones_like(t), np.inf, 3)
     assert peaks.value[0] == pytest.approx(0.98)
