@@ -184,14 +184,13 @@ def _settings(newton: float, residual: float) -> Any:
     settings.solution.sensors.writePeriod = 0.0  # every step
     integration = settings.timeIntegration
     integration.verboseMode = 0
-    # a shortened step grows again however many iterations it takes: those with an old Jacobian would keep it short
-    integration.adaptiveStepRecoveryIterations = integration.newton.maxIterations
     integration.newton.relativeTolerance = newton
     integration.newton.absoluteTolerance = residual
     integration.newton.useModifiedNewton = True
     integration.newton.modifiedNewtonContractivity = MAX_CONTRACTIVITY
     integration.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
-    # of the force by which a contact that opens is off: less than its rounding is not found in steps however small
-    integration.discontinuous.iterationTolerance = max(newton, residual)
+    integration.discontinuous.iterationTolerance = newton
     integration.discontinuous.ignoreMaxIterations = False
+    # where a contact opens or turns: the step is solved again and not shortened, which may never end
+    integration.discontinuous.useRecommendedStepSize = False
     return settings

@@ -34,8 +34,9 @@ MAX_CREDIBLE_RATE = 5.0  # a larger factor is accidental
 # 0.22, where supports come to v_reg one by one)
 ERROR_PER_WARPING_LOAD = 0.25
 MIN_ERROR_PER_WARPING_LOAD = 0.005  # likewise, where the scene itself shows less
-# relative error of level 0, halved by every level, of a motion with impacts: their order among the supports is decided
-# by rounding, and two levels agree better by chance (measured: 4e-4 between levels 1 to 4)
+# relative error of the first level of a motion with impacts, halved by every level on the same springs: the order of
+# impacts among the supports is decided by rounding, and two levels agree better by chance (measured: 1.1e-3 between
+# levels 1 to 4)
 MIN_ERROR_WITH_IMPACTS = 4e-3
 MIN_RELATIVE_ERROR = 1e-6  # of a peak: smaller errors are not measured
 MAX_CONVERGED_ERROR = 0.3  # relative: beyond it successive levels are different motions
@@ -77,11 +78,11 @@ def from_rounding(peaks: Peaks, level: Level, other: Peaks, softer: Level, safet
     return np.minimum(level.rounding, shown)
 
 
-def widened_by_impacts(errors: Array, run: EngineRun, number: int) -> Array:
-    """Errors (N,) of a run at level `number`, which impacts do not let fall below a share of the peaks."""
+def widened_by_impacts(errors: Array, run: EngineRun, before: int) -> Array:
+    """Errors (N,), which impacts do not let fall below a share of the peaks; before: levels on the same springs."""
     if not run.impacts:
         return errors
-    return np.maximum(errors, MIN_ERROR_WITH_IMPACTS / 2.0**number * run.peaks.value)
+    return np.maximum(errors, MIN_ERROR_WITH_IMPACTS / 2.0**before * run.peaks.value)
 
 
 def widened_without_convergence(errors: Array, run: EngineRun) -> Array:
