@@ -78,11 +78,22 @@ def from_rounding(peaks: Peaks, level: Level, other: Peaks, softer: Level, safet
     return np.minimum(level.rounding, shown)
 
 
-def widened_by_impacts(errors: Array, run: EngineRun, before: int) -> Array:
-    """Errors (N,), which impacts do not let fall below a share of the peaks; before: levels on the same springs."""
+def widened_by_impacts(errors: Array, peaks: list[Peaks], run: EngineRun, before: int) -> Array:
+    """
+    Errors (N,) of a run, the last of `peaks`, which impacts do not let fall below a share of the peaks.
+
+    Nor below the spread of three levels whose changes do not fall by MIN_RATE or differ in sign: they scatter. before:
+    levels on the same springs.
+    """
     if not run.impacts:
         return errors
-    return np.maximum(errors, MIN_ERROR_WITH_IMPACTS / 2.0**before * run.peaks.value)
+    widened = np.maximum(errors, MIN_ERROR_WITH_IMPACTS / 2.0**before * run.peaks.value)
+    if len(peaks) < 3:
+        return widened
+    values = np.array([each.value for each in peaks])
+    earlier, change = np.diff(values, axis=0)
+    scattered = earlier * change < MIN_RATE * change**2
+    return np.where(scattered, np.maximum(widened, np.ptp(values, axis=0)), widened)
 
 
 def widened_without_convergence(errors: Array, run: EngineRun) -> Array:

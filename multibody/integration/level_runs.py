@@ -116,8 +116,8 @@ class LevelRuns:
         errors = from_levels(finished, self.levels[: number + 1], model)
         rounding = from_rounding(run.peaks, level, self.runs[-2].peaks, before)
         alike = self._levels_on_the_same_springs()
-        rounding = widened_by_impacts(errors + rounding, run, alike)
-        errors = widened_by_impacts(errors, run, alike)
+        rounding = widened_by_impacts(errors + rounding, finished, run, alike)
+        errors = widened_by_impacts(errors, finished, run, alike)
         rounding -= errors
         if not run.lifts_off:
             errors = errors + self._sharing_error(level, run, errors)
@@ -129,7 +129,7 @@ class LevelRuns:
                 level, run = self.levels[number], self.runs[-1]
             if run.outcome != Outcome.OK:
                 return None
-            errors = widened_by_impacts(errors + change, run, self._levels_on_the_same_springs())
+            errors = widened_by_impacts(errors + change, [], run, self._levels_on_the_same_springs())
         coarser = ((self.runs[-2], share_of_change(before, model)),)
         return Candidate(run, level, self.shares_contact(number), errors, rounding, coarser, confirmed)
 

@@ -15,7 +15,9 @@ from scipy.optimize import brentq
 import multibody
 from multibody.integration.adaptive import Budget, EngineRun
 from multibody.integration.constant_step import Engine, Motion
+from multibody.integration.estimate import widened_by_impacts
 from multibody.integration.level import REAL_WARPING_COMPLIANCE
+from multibody.integration.level_runs import LevelRuns
 from multibody.integration.one_run import PhasePair
 from multibody.integration.openings import GAP_TOLERANCE, IMPACT_TIME, Openings
 from multibody.integration.peak import Peaks
@@ -310,6 +312,34 @@ def test_levels_that_impacts_take_elsewhere_are_given_up_with_a_wide_error(monke
     assert result.status.tolist() == ["tolerance not met"]
     assert (result.error >= result.mu).all()
     assert len(ran) <= 7, "four levels, three of which went to the end after all"
+
+
+def test_levels_that_impacts_scatter_have_their_spread_as_error_and_converging_ones_a_share_of_the_peak() -> None:
+    run = EngineRun(Peaks(3, math.inf), math.inf, impacts=50)
+    peaks = [Peaks(3, math.inf), Peaks(3, math.inf), run.peaks]
+    # to and fro, ever on by hardly less, and by a third of the change before
+    for each, values in zip(peaks, ([3.4600, 2.5135, 1.0090], [3.4624, 2.5115, 1.0000], [3.4582, 2.5102, 0.9970])):
+        each.value[:] = values
+    errors = widened_by_impacts(np.zeros(3), peaks, run, 2)
+    np.testing.assert_allclose(errors, [0.0042, 0.0033, 1e-3 * 0.997], rtol=1e-9)
+    run.impacts = 0
+    assert not widened_by_impacts(np.zeros(3), peaks, run, 2).any()
+
+
+def test_levels_on_other_springs_do_not_lower_the_error_of_a_motion_with_impacts() -> None:
+    """Level 0 on stiff springs is another motion: level 2 then is confirmed by one level, as is level 1 without it."""
+    scene = load_scene("fig3-I")
+    model, levels = assemble(scene, "spatial", 1e-3), multibody.levels(scene, "spatial")[:3]
+    pair = PhasePair(scene, model, np.array([0.3, 1.1]))
+    levels[1:] = [replace(level, warping_compliance=REAL_WARPING_COMPLIANCE) for level in levels[1:]]
+    runs = [EngineRun(Peaks(2, math.inf), math.inf, impacts=9, last_open=1.0) for _ in levels]
+    for run in runs:
+        run.peaks.value[:] = 1.0
+    done = LevelRuns(pair, 1e-2, Budget(1e6), levels, softens=True, whole=True, keep=False, runs=runs)
+    done.softest = REAL_WARPING_COMPLIANCE
+    candidate = done.candidate()
+    assert candidate is not None
+    np.testing.assert_allclose(candidate.errors, 2e-3, rtol=1e-2)
 
 
 @pytest.mark.parametrize("wrong", [-0.1, 1.5, math.nan, "0.5"])
