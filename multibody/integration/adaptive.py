@@ -238,6 +238,8 @@ def _pass(
     if not event.closes:
         openings.opened(event)
         return state, time
+    if time > result.undisturbed:
+        result.peaks.read_until(time)
     state = openings.after_impact(state, time, event.which)
     result.undisturbed, result.impacts = openings.settled, openings.impacts
     result.peaks.restart()

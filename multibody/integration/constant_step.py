@@ -198,4 +198,6 @@ def _settings(newton: float, residual: float) -> Any:
     integration.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
     integration.discontinuous.iterationTolerance = newton
     integration.discontinuous.ignoreMaxIterations = False
+    # where a contact opens or turns: the step is solved again and not shortened, which may never end
+    integration.discontinuous.useRecommendedStepSize = False
     return settings

@@ -34,8 +34,9 @@ MAX_CREDIBLE_RATE = 5.0  # a larger factor is accidental
 # 0.22, where supports come to v_reg one by one)
 ERROR_PER_WARPING_LOAD = 0.25
 MIN_ERROR_PER_WARPING_LOAD = 0.005  # likewise, where the scene itself shows less
-# relative error of level 0, halved by every level, of a motion with impacts: their order among the supports is decided
-# by rounding, and two levels agree better by chance (measured: 4e-4 between levels 1 to 4)
+# relative error of the first level of a motion with impacts, halved by every level on the same springs: the order of
+# impacts among the supports is decided by rounding, and two levels agree better by chance (measured: 1.1e-3 between
+# levels 1 to 4)
 MIN_ERROR_WITH_IMPACTS = 4e-3
 MIN_RELATIVE_ERROR = 1e-6  # of a peak: smaller errors are not measured
 MAX_CONVERGED_ERROR = 0.3  # relative: beyond it successive levels are different motions
@@ -77,11 +78,22 @@ def from_rounding(peaks: Peaks, level: Level, other: Peaks, softer: Level, safet
     return np.minimum(level.rounding, shown)
 
 
-def widened_by_impacts(errors: Array, run: EngineRun, number: int) -> Array:
-    """Errors (N,) of a run at level `number`, which impacts do not let fall below a share of the peaks."""
+def widened_by_impacts(errors: Array, peaks: list[Peaks], run: EngineRun, before: int) -> Array:
+    """
+    Errors (N,) of a run, the last of `peaks`, which impacts do not let fall below a share of the peaks.
+
+    Nor below the spread of three levels whose changes do not fall by MIN_RATE or differ in sign: they scatter. before:
+    levels on the same springs.
+    """
     if not run.impacts:
         return errors
-    return np.maximum(errors, MIN_ERROR_WITH_IMPACTS / 2.0**number * run.peaks.value)
+    widened = np.maximum(errors, MIN_ERROR_WITH_IMPACTS / 2.0**before * run.peaks.value)
+    if len(peaks) < 3:
+        return widened
+    values = np.array([each.value for each in peaks])
+    earlier, change = np.diff(values, axis=0)
+    scattered = earlier * change < MIN_RATE * change**2
+    return np.where(scattered, np.maximum(widened, np.ptp(values, axis=0)), widened)
 
 
 def widened_without_convergence(errors: Array, run: EngineRun) -> Array:

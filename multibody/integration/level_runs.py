@@ -115,8 +115,9 @@ class LevelRuns:
             finished = finished[-2:]
         errors = from_levels(finished, self.levels[: number + 1], model)
         rounding = from_rounding(run.peaks, level, self.runs[-2].peaks, before)
-        rounding = widened_by_impacts(errors + rounding, run, number)
-        errors = widened_by_impacts(errors, run, number)
+        alike = self._levels_on_the_same_springs()
+        rounding = widened_by_impacts(errors + rounding, finished, run, alike)
+        errors = widened_by_impacts(errors, finished, run, alike)
         rounding -= errors
         if not run.lifts_off:
             errors = errors + self._sharing_error(level, run, errors)
@@ -128,9 +129,14 @@ class LevelRuns:
                 level, run = self.levels[number], self.runs[-1]
             if run.outcome != Outcome.OK:
                 return None
-            errors = widened_by_impacts(errors + change, run, number)
+            errors = widened_by_impacts(errors + change, [], run, self._levels_on_the_same_springs())
         coarser = ((self.runs[-2], share_of_change(before, model)),)
         return Candidate(run, level, self.shares_contact(number), errors, rounding, coarser, confirmed)
+
+    def _levels_on_the_same_springs(self) -> int:
+        """How many levels before the last one have its springs: others are another motion, and confirm nothing."""
+        done = [level.warping_compliance for level in self.levels[: len(self.runs)]]
+        return len(done) - 1 - done.index(done[-1])
 
     def _at(self, level: Level, stop: float = math.inf) -> EngineRun:
         return self.pair.at_level(level, self.budget, stop, keep=self.keep)

@@ -30,6 +30,7 @@ MIN_IMPACT_SPEED = 1e-5  # of an approach, in units of velocity: slower ones are
 MAX_QUIET_FORCE = 1e-3  # of that damper, in weights: more of it is an impact, too
 IMPACT_TIME = 0.04  # units of time: as long as real bearings, which give way by 4e-4 rho, take to spring back
 SETTLING_TIME = 40.0  # of contact forces behind an impact, in square roots of the penetration
+SHARES_OF_A_FLIGHT = 2.0 ** np.arange(1, 8)  # of a step, into which a flight within it is looked for
 FIRST_STEP = 0.25  # behind an impact, likewise
 
 
@@ -110,13 +111,20 @@ class Openings:
             return values[length]
 
         tolerance = GAP_TOLERANCE * self.penetration
-        begin = values[0.0] = float((sign * self.gaps(state.coordinates[None])[0, event.which]).min())
+        first, begin = 0.0, float((sign * self.gaps(state.coordinates[None])[0, event.which]).min())
+        values[first] = begin
         if begin <= tolerance:
-            return None
+            if not event.closes:
+                return None
+            # the platform may leave, and come back within the step
+            first = next((length for length in step / SHARES_OF_A_FLIGHT if margin(length) > tolerance), 0.0)
+            if first == 0.0:
+                return None
+            begin = values[first]
         end = margin(step)
         if end >= 0.0:
             return done[step]
-        length = float(brentq(margin, 0.0, step, xtol=max(tolerance * step / (begin - end), 1e-300), rtol=1e-15))
+        length = float(brentq(margin, first, step, xtol=max(tolerance * step / (begin - end), 1e-300), rtol=1e-15))
         margin(length)
         return done.get(length)
 

@@ -22,6 +22,9 @@ Rows = NDArray[np.intp]
 
 NO_KNOTS, NO_ROWS = np.empty(0), np.empty(0, np.intp)
 CARRIED_SAMPLES = 6  # samples carried over to the next chunk: what the readings from both sides of an instant need
+# of a step over its neighbor, across which a parabola is laid: more than the run itself changes its steps by at once
+MAX_STEP_CHANGE = 20.0
+MAX_STEPS_BEYOND = 1.5  # from the last sample to an instant that is read from the samples before it
 SAMPLES_BEHIND_CORNER = 3  # samples behind a corner, from which it is read
 CANDIDATE_FRACTION = 0.97  # of the peak: samples below it cannot be raised above it by interpolation at a resolved step
 
@@ -64,11 +67,30 @@ class Peaks:
         corners: list[int] = np.flatnonzero((beyond[1:] != beyond[:-1]).any(axis=1)).tolist()
         # each corner is read once, as soon as there are samples behind it
         ready = [left for left in corners if left + SAMPLES_BEHIND_CORNER < len(time) and time[left] > self._read]
-        bends: list[int] = kinks(time, self._knots, self._near).tolist()
+        bends = sorted({*kinks(time, self._knots, self._near).tolist(), *_uneven(time).tolist()})
         for body in range(size.shape[1]):
             self._scan(body, time, size[:, body], slip, corners, bends, ready)
         if ready:
             self._read = float(time[ready[-1]])
+
+    def read_until(self, instant: float) -> None:
+        """
+        Read on from the last samples to `instant`, at most about a step behind them, where velocities jump.
+
+        Nothing is read where samples do not agree on what comes: then they do not resolve the motion.
+        """
+        time, size, last = self._time, self._size, len(self._time) - 1
+        if last < 2 or instant - time[-1] > MAX_STEPS_BEYOND * np.diff(time[-3:]).min():
+            return
+        beyond = self._slip > self._threshold
+        corners: list[int] = np.flatnonzero((beyond[1:] != beyond[:-1]).any(axis=1)).tolist()
+        bends: list[int] = kinks(time, self._knots, self._near).tolist()
+        if max(_side(last, len(time), corners)[0], *bends, 0) > last - 2:
+            return
+        for body, values in enumerate(size.T):
+            linear, curved = (_extrapolated(time[-count:], values[-count:], instant) for count in (2, 3))
+            if abs(curved - linear) < abs(linear - values[-1]):
+                self._offer(body, curved, abs(curved - linear), instant)
 
     def restart(self) -> None:
         """Read nothing across this instant: velocities jump, and the next chunk need not begin here."""
@@ -102,6 +124,13 @@ def kinks(time: Array, knots: Array, near: float) -> Rows:
     if not len(knots):
         return NO_ROWS
     return np.flatnonzero(np.abs(knots[np.searchsorted(knots[:-1], time - near)] - time) <= near)
+
+
+def _uneven(time: Array) -> Rows:
+    """The rows between two steps one of which is much longer: the shorter one is not the slope of the other."""
+    steps = np.diff(time)
+    longer, shorter = np.maximum(steps[1:], steps[:-1]), np.minimum(steps[1:], steps[:-1])
+    return np.flatnonzero(longer > MAX_STEP_CHANGE * shorter) + 1
 
 
 def _smooth(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,9 @@ from scipy.optimize import brentq
 import multibody
 from multibody.integration.adaptive import Budget, EngineRun
 from multibody.integration.constant_step import Engine, Motion
+from multibody.integration.estimate import widened_by_impacts
+from multibody.integration.level import REAL_WARPING_COMPLIANCE
+from multibody.integration.level_runs import LevelRuns
 from multibody.integration.one_run import PhasePair
 from multibody.integration.openings import GAP_TOLERANCE, IMPACT_TIME, Openings
 from multibody.integration.peak import Peaks
@@ -193,6 +197,47 @@ def tower(ring: float) -> Scene:
     )
 
 
+def one_level(scene: Scene, phase: tuple[float, float], number: int, work: float, **changes: Any) -> EngineRun:
+    """The run of one level on springs of real bearings; changes: factors of the level's values."""
+    model = assemble(scene, "spatial", 1e-3)
+    level = multibody.levels(scene, "spatial")[number]
+    level = replace(level, warping_compliance=REAL_WARPING_COMPLIANCE)
+    level = replace(level, **{key: factor * getattr(level, key) for key, factor in changes.items()})
+    return PhasePair(scene, model, np.array(phase), whole=True).at_level(level, Budget(work))
+
+
+def test_the_largest_value_just_before_an_impact_does_not_depend_on_where_the_steps_end() -> None:
+    isolator = {"period": None, "radius": 1.062, "friction": 0.0, "ring": 0.19, "sphere_radius": 0.06}
+    size, link = [0.772, 0.772, 0.2], {"period": [1.112, 0.994], "damping": [0.921, 0.921]}
+    bodies = [{"mass": 0.329, "height": 0.168, "size": size}, {"mass": 0.477, "height": 0.966, "size": size, **link}]
+    load = {"amplitudes": [[3.255, 0.0], [0.0, 3.255]], "periods": [1.296, 0.656], "decay": [0.269, 0.716]}
+    tall = tower(1.0).with_values({f"isolator.{key}": value for key, value in isolator.items()})
+    scene = changed(tall, bodies=bodies, excitation=load, duration=1.921)
+    peaks = [one_level(scene, (3.186, 1.166), 0, 6e4, step=f).peaks for f in (1.0, 0.95, 0.9)]
+    values = np.array([peak.value[1] for peak in peaks])
+    assert np.ptp(values) < 2e-4 * values[0], "the last step before the impact is left out"
+    instants = np.array([peak.instant[1] for peak in peaks])
+    assert np.ptp(instants) < 1e-4
+
+
+def test_a_contact_that_opens_behind_an_impact_does_not_end_the_run() -> None:
+    load = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [15.0, 0.0]], "decay": [0.333, 0.273]}
+    scene = changed(tower(1.0), isolator={"friction": 0.1, "supports": 4}, excitation=load, duration=0.56)
+    run = one_level(scene, (2.0, 0.7), 4, 6e4)
+    assert run.impacts > 10
+    assert run.outcome == Outcome.OK, "the engine shortened its step without end"
+
+
+def test_contacts_that_open_and_flights_within_a_step_cost_few_steps() -> None:
+    isolator = {"period": None, "radius": 1.42, "ring": 0.103, "sphere_radius": 0.065, "restitution": 0.8}
+    body = {"mass": 1.58, "height": 0.195, "size": [2.0, 2.0, 0.2]}
+    load = {"amplitudes": [[4.494, 0.0], [0.0, 4.494]], "periods": [0.855, 1.057], "decay": [0.957, 1.0]}
+    tall = tower(1.0).with_values({f"isolator.{key}": value for key, value in isolator.items()})
+    scene = changed(tall, bodies=[body], excitation=load, duration=0.3)
+    runs = [one_level(scene, (4.825, 3.617), 1, 6e4, step=f, slip_change=f) for f in (1.0, 0.96, 0.93, 0.9)]
+    assert max(run.steps for run in runs) < 1.5 * min(run.steps for run in runs)
+
+
 @pytest.mark.parametrize("tilt", [0.0, 0.1, 0.3])
 def test_a_platform_high_in_the_air_touches_no_sphere_however_it_tilts(tilt: float) -> None:
     depressions = Depressions(CORNERS, CENTER, RADIUS, np.empty(0, np.int_))
@@ -267,6 +312,34 @@ def test_levels_that_impacts_take_elsewhere_are_given_up_with_a_wide_error(monke
     assert result.status.tolist() == ["tolerance not met"]
     assert (result.error >= result.mu).all()
     assert len(ran) <= 7, "four levels, three of which went to the end after all"
+
+
+def test_levels_that_impacts_scatter_have_their_spread_as_error_and_converging_ones_a_share_of_the_peak() -> None:
+    run = EngineRun(Peaks(3, math.inf), math.inf, impacts=50)
+    peaks = [Peaks(3, math.inf), Peaks(3, math.inf), run.peaks]
+    # to and fro, ever on by hardly less, and by a third of the change before
+    for each, values in zip(peaks, ([3.4600, 2.5135, 1.0090], [3.4624, 2.5115, 1.0000], [3.4582, 2.5102, 0.9970])):
+        each.value[:] = values
+    errors = widened_by_impacts(np.zeros(3), peaks, run, 2)
+    np.testing.assert_allclose(errors, [0.0042, 0.0033, 1e-3 * 0.997], rtol=1e-9)
+    run.impacts = 0
+    assert not widened_by_impacts(np.zeros(3), peaks, run, 2).any()
+
+
+def test_levels_on_other_springs_do_not_lower_the_error_of_a_motion_with_impacts() -> None:
+    """Level 0 on stiff springs is another motion: level 2 then is confirmed by one level, as is level 1 without it."""
+    scene = load_scene("fig3-I")
+    model, levels = assemble(scene, "spatial", 1e-3), multibody.levels(scene, "spatial")[:3]
+    pair = PhasePair(scene, model, np.array([0.3, 1.1]))
+    levels[1:] = [replace(level, warping_compliance=REAL_WARPING_COMPLIANCE) for level in levels[1:]]
+    runs = [EngineRun(Peaks(2, math.inf), math.inf, impacts=9, last_open=1.0) for _ in levels]
+    for run in runs:
+        run.peaks.value[:] = 1.0
+    done = LevelRuns(pair, 1e-2, Budget(1e6), levels, softens=True, whole=True, keep=False, runs=runs)
+    done.softest = REAL_WARPING_COMPLIANCE
+    candidate = done.candidate()
+    assert candidate is not None
+    np.testing.assert_allclose(candidate.errors, 2e-3, rtol=1e-2)
 
 
 @pytest.mark.parametrize("wrong", [-0.1, 1.5, math.nan, "0.5"])

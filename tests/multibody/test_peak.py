@@ -86,6 +86,38 @@ def test_a_corner_that_is_not_looked_for_is_misread() -> None:
     assert abs(read(signal, lambda t: np.ones_like(t), np.inf, 1).value[0] - 1.0) > 0.02
 
 
+def test_a_rise_over_steps_much_shorter_than_the_next_one_is_not_taken_for_its_slope() -> None:
+    """Where a contact opens, the engine shortens its steps, and the next one is as long as ever."""
+    before, within, after = np.arange(0.0, 0.5, 0.02), 0.5 + 1e-6 * np.arange(8.0), np.arange(0.52, 1.0, 0.02)
+    time = np.concatenate([before, within, after])
+    since = np.maximum(time - 0.5, 0.0)
+    size = np.where(time < 0.5, 0.99, 1.0 - 0.1 * since - 0.01 * np.exp(-since / 3e-6))
+    peaks = Peaks(1, np.inf)
+    peaks.add(time, size[:, None], np.ones((len(time), 1)))
+    assert peaks.value[0] == pytest.approx(size.max(), abs=1e-9)
+    assert peaks.sampling[0] < 1e-3
+
+
+def test_samples_are_read_on_to_an_impact_behind_them() -> None:
+    time, last = np.arange(0.0, 0.5, 0.02), 0.493
+    peaks = Peaks(1, np.inf)
+    peaks.add(time, np.exp(2.0 * time)[:, None], np.ones((len(time), 1)))
+    peaks.read_until(last)
+    assert peaks.instant[0] == last
+    assert abs(peaks.value[0] - np.exp(2.0 * last)) <= peaks.sampling[0] < 3e-3
+
+
+@pytest.mark.parametrize("instant", [0.493, 0.6])
+def test_samples_that_alternate_or_are_far_from_an_impact_say_nothing_about_it(instant: float) -> None:
+    time = np.arange(0.0, 0.5, 0.02)
+    size = 1.0 + 0.1 * np.cos(np.pi * np.arange(len(time))) if instant < 0.5 else np.exp(time)
+    peaks = Peaks(1, np.inf)
+    peaks.add(time, size[:, None], np.ones((len(time), 1)))
+    before = float(peaks.value[0])
+    peaks.read_until(instant)
+    assert peaks.value[0] == before
+
+
 def test_the_end_of_the_record_counts() -> None:
     peaks = read(lambda t: t, lambda t: np.ones_like(t), np.inf, 3)
     assert peaks.value[0] == pytest.approx(0.98)
