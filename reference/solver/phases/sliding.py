@@ -127,18 +127,36 @@ def guess_slide(system: System, work: Work, h: float) -> None:
     if speed >= STIFF_SPEED_FRACTION * h * system.friction * system.mass_ratio * system.gravity:
         first_guess(work, h)
         return
-    ex, ey = heading(work.angle, system.axes)
     nodes, ground = row(NODES_ROW, ()), work.ground
+    head_slow_slide(system, work)
+    ex, ey = row(work.a, (0, 0)), row(work.a, (0, 1))
     start = speed if system.rate > 0.0 else 0.0
     damping = rising_rate(system, start)
     fx, fy = row(work.free, 0), row(work.free, 1)
     px, py = as_many(work.x[0, 0], nodes), as_many(work.x[0, 1], nodes)
     load = Load(px, py, fx, fy, row(ground, 0), row(ground, 1), row(ground, 2))
-    ax, ay, _, _ = directed(system, load, as_many(start, nodes), as_many(ex, nodes), as_many(ey, nodes))
+    ax, ay, _, _ = directed(system, load, as_many(start, nodes), ex, ey)
     along = max(ax * ex + ay * ey, MIN_ACCELERATION_FRACTION * (abs(fx) + abs(fy)))
     along = along / (1.0 + nodes * (h * damping))
     put(work.a, (0, 0), along * ex)
     put(work.a, (0, 1), along * ey)
+
+
+@compiled
+def head_slow_slide(system: System, work: Work) -> None:
+    """
+    Into a[0]: directions of a slow slide at the stages, that of the start for all.
+
+    Where a step has failed the light platform under a tower may turn fast: then those in which the drive does not turn.
+    """
+    free, ground, angle = work.free, work.ground, work.angle
+    for k in range(STAGES):
+        if system.axes == 2 and work.growth == CAUTIOUS_GROWTH:
+            load = Load(
+                work.x[0, 0], work.x[0, 1], free[0, k], free[1, k], ground[0, k], ground[1, k], ground[2, k]
+            )  # fmt: skip
+            angle = settled_direction(system, load, angle, 0.0)
+        work.a[0, 0, k], work.a[0, 1, k] = heading(angle, system.axes)
 
 
 @compiled
