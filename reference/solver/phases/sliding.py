@@ -116,21 +116,28 @@ def time_to_stop(work: Work, speed: float, braking: float) -> float:
 
 
 @compiled
-def guess_slide(system: System, work: Work, h: float) -> None:
+def is_slow(system: System, work: Work, h: float) -> bool:
+    """Whether the direction of the slide follows the force within the step."""
+    speed = sqrt(work.v[0, 0] ** 2 + work.v[0, 1] ** 2)
+    return speed < STIFF_SPEED_FRACTION * h * system.friction * system.mass_ratio * system.gravity
+
+
+@compiled
+def guess_slide(system: System, work: Work, h: float, turning: bool) -> None:
     """
     Stage accelerations to start with; of a slide that begins, what the drive leaves along its direction.
 
+    `turning`: that direction changes within the step, as that of a light platform under a tower does.
     Where friction rises steeply with the speed, that is what a step of the linearized law makes of it: an iteration
     that begins at a lower speed than the step's does not leave the steep part.
     """
-    speed = sqrt(work.v[0, 0] ** 2 + work.v[0, 1] ** 2)
-    if speed >= STIFF_SPEED_FRACTION * h * system.friction * system.mass_ratio * system.gravity:
+    if not is_slow(system, work, h):
         first_guess(work, h)
         return
     nodes, ground = row(NODES_ROW, ()), work.ground
-    head_slow_slide(system, work)
+    head_slow_slide(system, work, turning)
     ex, ey = row(work.a, (0, 0)), row(work.a, (0, 1))
-    start = speed if system.rate > 0.0 else 0.0
+    start = sqrt(work.v[0, 0] ** 2 + work.v[0, 1] ** 2) if system.rate > 0.0 else 0.0
     damping = rising_rate(system, start)
     fx, fy = row(work.free, 0), row(work.free, 1)
     px, py = as_many(work.x[0, 0], nodes), as_many(work.x[0, 1], nodes)
@@ -143,15 +150,11 @@ def guess_slide(system: System, work: Work, h: float) -> None:
 
 
 @compiled
-def head_slow_slide(system: System, work: Work) -> None:
-    """
-    Into a[0]: directions of a slow slide at the stages, that of the start for all.
-
-    Where a step has failed the light platform under a tower may turn fast: then those in which the drive does not turn.
-    """
+def head_slow_slide(system: System, work: Work, turning: bool) -> None:
+    """Into a[0]: directions of a slow slide, at the stages that which the drive does not turn or, else, the start's."""
     free, ground, angle = work.free, work.ground, work.angle
     for k in range(STAGES):
-        if system.axes == 2 and work.growth == CAUTIOUS_GROWTH:
+        if turning:
             load = Load(
                 work.x[0, 0], work.x[0, 1], free[0, k], free[1, k], ground[0, k], ground[1, k], ground[2, k]
             )  # fmt: skip
