@@ -5,10 +5,21 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from reference.solver.run import runs
 from reference.solver.step_control import MIN_SCALE_FRACTION
-from reference.solver.system import CONSISTENT, SOLVED, Array, Demand, Record, System, record_of
+from reference.solver.system import (
+    CONSISTENT,
+    SOLVED,
+    STEP_LIMIT,
+    UNSOLVED,
+    Array,
+    Demand,
+    Record,
+    System,
+    record_of,
+)
 
 TOLERANCE_RATIO = 30.0  # tolerance inside a step of the coarser run over that of the finer run
 # Share of the runs' difference that counts as error of the finer run. 1 / TOLERANCE_RATIO is expected.
@@ -74,6 +85,7 @@ def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool 
     Peaks to the relative tolerance of `demand`, with errors.
 
     The tolerance inside the steps is tightened until two runs agree; one that cannot be finished is tried again, too.
+    What two runs before it have left remains, with its error.
     Every run ends where nothing can come that changes them, the displacement or the outcome (look_ahead.py). The
     coarser one serves the error of the peaks alone and ends behind the last of them. `whole`: all go to the end of the
     motion.
@@ -88,16 +100,26 @@ def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool 
     before = peaks_at(system, phases, coarser, TOLERANCE_RATIO * tolerance, until)
     peaks, disagree = _judged(before, after, tolerance, system, demand)
     unfinished = np.flatnonzero(disagree)
+    known = ~_given_up(before, after)
     while len(unfinished) and tolerance > MIN_STEP_TOLERANCE:
         tolerance = max(tolerance / TOLERANCE_RATIO, MIN_STEP_TOLERANCE)
         before = Peaks(*(part[disagree] for part in after))
         after = peaks_at(system, phases[unfinished], demand, tolerance)
         finer, disagree = _judged(before, after, tolerance, system, demand)
-        for values, better in zip(peaks, finer):
-            values[unfinished] = better
+        # where the finer run cannot be finished, what is known with its error stays
+        better = ~(_given_up(before, after) & known[unfinished])
+        for values, found in zip(peaks, finer):
+            values[unfinished[better]] = found[better]
+        peaks.code[unfinished[~better]] = NOT_MET
+        known[unfinished] |= ~_given_up(before, after)
         unfinished = unfinished[disagree]
     peaks.code[unfinished[peaks.code[unfinished] == SOLVED]] = NOT_MET
     return peaks
+
+
+def _given_up(before: Peaks, after: Peaks) -> npt.NDArray[np.bool_]:
+    """At which phase pairs (M,) one of the two runs could not be finished."""
+    return np.isin(before.code, (UNSOLVED, STEP_LIMIT)) | np.isin(after.code, (UNSOLVED, STEP_LIMIT))
 
 
 def _judged(before: Peaks, after: Peaks, tolerance: float, system: System, demand: Demand) -> tuple[Peaks, Array]:

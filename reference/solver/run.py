@@ -13,7 +13,8 @@ from __future__ import annotations
 from math import pi, sqrt
 
 from reference.solver.compiled import cached_entry_point, compiled
-from reference.solver.contact.platform import load_in_state, rest_excess
+from reference.solver.contact.platform import load_in_state, moving, rest_excess
+from reference.solver.contact.stop_arc import can_begin
 from reference.solver.ground import ground_at
 from reference.solver.phases.follow import follow
 from reference.solver.phases.sliding import barely_slips, speed2
@@ -22,6 +23,7 @@ from reference.solver.system import (
     CREEPING,
     LUBRICATED,
     LUBRICATED_SLIDING,
+    PAINLEVE,
     REGULARIZED,
     REST,
     RIM,
@@ -29,6 +31,7 @@ from reference.solver.system import (
     SLIDING,
     SOLVED,
     STEP_LIMIT,
+    STOPPING,
     TRAVEL,
     UNSOLVED,
     Array,
@@ -43,6 +46,8 @@ NEGLIGIBLE_REMAINDER = 1e-8  # of the period: a run that fails so shortly before
 RIM_SQUARED_FRACTION = 0.998  # of the squared radius: a run that fails beyond it has reached the rim
 HOLDING_TIME = 1e-6  # of the period: time in rest or creep of a state on the border of two phases
 MAX_IDLE_PHASES = 4  # phases without time: beyond them the state is on the border of two that each gives to the other
+# of the inertia determinant without friction: a run that fails below it has come to Painleve's paradox
+MIN_DETERMINANT_FRACTION = 0.02
 MAX_CRAWL_SPEED = 1e-8  # of the loading's velocity: a slide that cannot go on at this speed has not moved
 
 
@@ -61,14 +66,29 @@ def first_contact(system: System, work: Work) -> int:
 
 
 @compiled
-def named(system: System, work: Work, demand: Demand, code: int) -> int:
-    """What a run that cannot go on has come to: nearly its end, the rim (4.1), or the trouble that it reports."""
+def named(system: System, work: Work, contact: int, demand: Demand, code: int) -> int:
+    """What a run that cannot go on has come to: nearly its end, the rim (4.1), a paradox, or the trouble it reports."""
     if code == TRAVEL:
         return code
     if code != STEP_LIMIT and work.end - work.time < NEGLIGIBLE_REMAINDER * demand.period:
         return SOLVED
     at_rim = work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > RIM_SQUARED_FRACTION * system.radius**2
-    return RIM if at_rim and code in (UNSOLVED, STEP_LIMIT) else code
+    if at_rim and code in (UNSOLVED, STEP_LIMIT):
+        return RIM
+    return PAINLEVE if code == UNSOLVED and contact != REST and is_paradox(system, work, contact) else code
+
+
+@compiled
+def is_paradox(system: System, work: Work, contact: int) -> bool:
+    """Whether no slide can begin in the state, or the reaction has outgrown every bound in it (Painleve)."""
+    load = load_in_state(system, work, ground_at(system, work, work.time))
+    if contact == SLIDING and speed2(system, work) == 0.0:
+        return not can_begin(system, load, work.angle)
+    moves = SLIDING if contact == STOPPING else contact
+    _, _, _, determinant, _ = moving(system, moves, load, work.v[0, 0], work.v[0, 1])
+    tilt2 = (load.px * load.px + load.py * load.py) / system.radius**2
+    without_friction: float = 1.0 + (system.mass_ratio - 1.0) * tilt2
+    return determinant < MIN_DETERMINANT_FRACTION * without_friction
 
 
 @compiled
@@ -102,7 +122,7 @@ def integrate(system: System, work: Work, demand: Demand, record: Record, until:
             work.length = max(work.length, work.held)  # the slide has shortened it to nothing
             code, contact = SOLVED, REST
         if code != SOLVED:
-            return named(system, work, demand, code)
+            return named(system, work, contact, demand, code)
         idle = idle + 1 if work.time == before else 0
         before = work.time
         if idle > MAX_IDLE_PHASES:

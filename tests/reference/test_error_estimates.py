@@ -254,3 +254,22 @@ def test_no_phases_give_an_empty_surface():
     found = reference.amplification(SCENES["fig3-I"], np.empty((0, 2)))
     assert found.mu.shape == (0, 2)
     assert found.status.shape == (0,)
+
+
+def test_what_is_known_remains_where_a_finer_run_cannot_be_finished():
+    """A platform of a millionth of the mass: rounding ends the steps of the runs that a tolerance of 1e-8 asks for."""
+    scene = chain(
+        0.25,
+        0.1,
+        [2e-6, 2.0],
+        [[35.1, 54.8]],
+        amplitudes=[[2.0, 0.0], [0.0, 2.0]],
+        decay=[1.0 / 3.0, 0.3 / 1.1],
+        duration=1.5,
+    )
+    phases = [(0.3, 1.1), (2.0, 0.7)]
+    rough, found = (reference.amplification(scene, phases, "small", tolerance=tolerance) for tolerance in (1e-6, 1e-8))
+    assert set(found.status) == {"tolerance not met"}
+    assert np.all((found.error > 1e-8 * found.mu).any(axis=1))
+    assert np.all(found.error[:, 0] < rough.error[:, 0])
+    assert np.all(np.abs(found.mu - rough.mu) <= found.error + rough.error)

@@ -11,13 +11,16 @@ from __future__ import annotations
 from math import cos, pi, sin, sqrt
 
 from reference.solver.compiled import compiled
-from reference.solver.contact.platform import directed
+from reference.solver.contact.friction import slip_vector
+from reference.solver.contact.platform import acceleration, directed
 from reference.solver.system import Load, System
 
 SAMPLES_PER_TURN = 48
+FIRST_STRIDE = 1e-3  # rad: of the search for the direction that does not turn, which may be close
 GOLDEN_SECTIONS = 20  # they leave 1e-5 of a sample, and an error of the order of its square
 MAX_RISE_BETWEEN_SAMPLES = 0.1  # of the largest squared sample: a peak between two samples is taken to be less above it
 MAX_ROUNDING_TURN = 1e-9  # of the drive: sideways acceleration that rounding may make
+MAX_ROUNDING_BRAKING = 1e-6  # of friction: deceleration of a slide that begins which rounding of its instant may make
 
 
 @compiled
@@ -50,14 +53,24 @@ def settled_direction(system: System, load: Load, angle: float, no_turn: float) 
     if abs(here) <= no_turn * drive:
         return angle
     sense = 1.0 if here > 0.0 else -1.0
-    inside = angle
-    outside = angle
-    for _ in range(SAMPLES_PER_TURN):
-        outside = inside + sense * 2.0 * pi / SAMPLES_PER_TURN
+    inside, outside, stride = angle, angle, FIRST_STRIDE
+    while abs(outside - angle) < 2.0 * pi:
+        outside = inside + sense * stride
         if sense * sideways(system, load, outside) <= 0.0:
             break
         inside = outside
+        stride = min(2.0 * stride, 2.0 * pi / SAMPLES_PER_TURN)
     return turning_ends(system, load, inside, outside)
+
+
+@compiled
+def can_begin(system: System, load: Load, angle: float) -> bool:
+    """Whether a slide from rest has an acceleration in this direction (Painleve), and is not braked by it."""
+    ex, ey = cos(angle), sin(angle)
+    sx, sy, _ = slip_vector(system, load.px, load.py, 0.0, ex, ey)
+    ax, ay, reaction, determinant = acceleration(system, load, 0.0, sx, sy)
+    gain = ax * ex + ay * ey
+    return determinant > 0.0 and reaction > 0.0 and gain >= -MAX_ROUNDING_BRAKING * system.friction * reaction
 
 
 @compiled

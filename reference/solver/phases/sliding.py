@@ -116,29 +116,50 @@ def time_to_stop(work: Work, speed: float, braking: float) -> float:
 
 
 @compiled
-def guess_slide(system: System, work: Work, h: float) -> None:
+def is_slow(system: System, work: Work, h: float) -> bool:
+    """Whether the direction of the slide follows the force within the step."""
+    speed = sqrt(work.v[0, 0] ** 2 + work.v[0, 1] ** 2)
+    return speed < STIFF_SPEED_FRACTION * h * system.friction * system.mass_ratio * system.gravity
+
+
+@compiled
+def guess_slide(system: System, work: Work, h: float, turning: bool) -> None:
     """
     Stage accelerations to start with; of a slide that begins, what the drive leaves along its direction.
 
+    `turning`: that direction changes within the step, as that of a light platform under a tower does.
     Where friction rises steeply with the speed, that is what a step of the linearized law makes of it: an iteration
     that begins at a lower speed than the step's does not leave the steep part.
     """
-    speed = sqrt(work.v[0, 0] ** 2 + work.v[0, 1] ** 2)
-    if speed >= STIFF_SPEED_FRACTION * h * system.friction * system.mass_ratio * system.gravity:
+    if not is_slow(system, work, h):
         first_guess(work, h)
         return
-    ex, ey = heading(work.angle, system.axes)
     nodes, ground = row(NODES_ROW, ()), work.ground
-    start = speed if system.rate > 0.0 else 0.0
+    head_slow_slide(system, work, turning)
+    ex, ey = row(work.a, (0, 0)), row(work.a, (0, 1))
+    start = sqrt(work.v[0, 0] ** 2 + work.v[0, 1] ** 2) if system.rate > 0.0 else 0.0
     damping = rising_rate(system, start)
     fx, fy = row(work.free, 0), row(work.free, 1)
     px, py = as_many(work.x[0, 0], nodes), as_many(work.x[0, 1], nodes)
     load = Load(px, py, fx, fy, row(ground, 0), row(ground, 1), row(ground, 2))
-    ax, ay, _, _ = directed(system, load, as_many(start, nodes), as_many(ex, nodes), as_many(ey, nodes))
+    ax, ay, _, _ = directed(system, load, as_many(start, nodes), ex, ey)
     along = max(ax * ex + ay * ey, MIN_ACCELERATION_FRACTION * (abs(fx) + abs(fy)))
     along = along / (1.0 + nodes * (h * damping))
     put(work.a, (0, 0), along * ex)
     put(work.a, (0, 1), along * ey)
+
+
+@compiled
+def head_slow_slide(system: System, work: Work, turning: bool) -> None:
+    """Into a[0]: directions of a slow slide, at the stages that which the drive does not turn or, else, the start's."""
+    free, ground, angle = work.free, work.ground, work.angle
+    for k in range(STAGES):
+        if turning:
+            load = Load(
+                work.x[0, 0], work.x[0, 1], free[0, k], free[1, k], ground[0, k], ground[1, k], ground[2, k]
+            )  # fmt: skip
+            angle = settled_direction(system, load, angle, 0.0)
+        work.a[0, 0, k], work.a[0, 1, k] = heading(angle, system.axes)
 
 
 @compiled

@@ -1,0 +1,60 @@
+"""A light platform under a heavy tower: its equations are solved where they have an answer, else that is told."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from chains import chain
+from oracle import set_valued_run
+
+import reference
+from reference.problem import GRAVITY, Outcome, Scene, State
+
+FRICTION = 0.1
+
+
+def light(share: float, **changes) -> Scene:
+    """Two bodies of 2 kg together: links of 1.5 s and 1.2 s, the platform with this share of the mass."""
+    upper = 2.0 * (1.0 - share)
+    stiffness = [[upper * (2.0 * np.pi / period) ** 2 for period in (1.5, 1.2)]]
+    given = {"amplitudes": [[2.0, 0.0], [0.0, 2.0]], "decay": [1.0 / 3.0, 0.3 / 1.1], "duration": 3.0, **changes}
+    return chain(0.25, FRICTION, [2.0 * share, upper], stiffness, **given)
+
+
+def test_a_hundredth_of_the_mass_has_the_factors_of_an_independent_code():
+    """At an onset the direction of the slide turns by 200 rad/s, and its acceleration depends on it a hundred times."""
+    scene, phase = light(0.01), (2.0, 0.7)
+    found = reference.amplification(scene, [phase])
+    assert found.status[0] == Outcome.OK
+    expected = set_valued_run(scene, phase, "exact", [0.0], 1e-9).mu[0]
+    assert np.all(np.abs(found.mu[0] - expected) <= found.error[0] + 1e-7 * expected)
+
+
+@pytest.mark.parametrize("regularization", [None, 1e-3])
+def test_every_phase_pair_has_an_answer_where_the_inertia_keeps_its_sign(regularization):
+    """D is at least 1 - (m_sum/m1 - 1) mu^2 / 4: 0.17 for a platform of 0.3 % of the mass."""
+    phases = np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, (20, 2))
+    found = reference.amplification(light(0.003), phases, regularization=regularization)
+    assert set(found.status) == {Outcome.OK}
+
+
+@pytest.mark.parametrize("regularization", [None, 1e-3])
+def test_below_a_quarter_of_the_squared_friction_the_equations_end_in_a_named_paradox(regularization):
+    phases = np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, (20, 2))
+    found = reference.amplification(light(0.001), phases, regularization=regularization)
+    assert set(found.status) <= {Outcome.PAINLEVE, Outcome.CONTACT_LOST}
+    assert np.mean(found.status == Outcome.PAINLEVE) > 0.5
+
+
+def test_a_straight_slide_that_has_no_acceleration_does_not_begin():
+    """The link pulls the platform down its slope, where D = 1 + (m_sum/m1 - 1) tilt (tilt - mu) < 0, until it slips."""
+    scene = light(0.001, amplitudes=[[1e-3, 0.0], [0.0, 0.0]])
+    place = 0.0125
+    start = State(np.array([[place, 0.0], [place, 0.0]]), np.array([[0.0, 0.0], [-0.5, 0.0]]))
+    run = reference.trajectory(scene, (0.3, 1.1), initial=start)
+    assert run.status == Outcome.PAINLEVE
+    assert np.all(run.position[:, 0, 0] == place)
+    tilt, rate = place / scene.radius, 2.0 * np.pi / 1.5
+    # at the slip: gravity and the link along the slope against friction, the ground's 1e-3 m/s^2 left out
+    pull = GRAVITY * np.tan(np.arctan(FRICTION) - np.arcsin(tilt))
+    assert run.instant == pytest.approx(np.arcsin(pull / (0.5 * rate * (1.0 - 0.001))) / rate, rel=5e-3)
