@@ -60,8 +60,9 @@ def near_stop_step(system: System, work: Work, h: float, tolerance: float) -> in
     """
     guess_turning(system, work, h)
     start_waves(system, work, work.time)
-    before, fresh = 0.0, True
+    before, slow = 0.0, True
     for iteration in range(MAX_ITERATIONS):
+        fresh = iteration < 2 or slow or system.rate > 0.0
         move_bodies(system, work, h)
         change = pull_bodies(system, work, h)
         if not inside_rim(system, work):
@@ -70,7 +71,7 @@ def near_stop_step(system: System, work: Work, h: float, tolerance: float) -> in
         change = max(change, correct_turning(system, work, h, fresh))
         if not change < DIVERGED or (iteration > 4 and change > 2.0 * before):
             return UNSOLVED
-        fresh = iteration == 0 or change > SLOW_CONVERGENCE * before or system.rate > 0.0
+        slow = change > SLOW_CONVERGENCE * before
         before = change
         if change <= max(tolerance, ROUNDING_ANGLE):
             for i in range(work.x.shape[0]):

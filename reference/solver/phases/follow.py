@@ -16,6 +16,7 @@ from reference.solver.phases.sliding import (
     after_failed_slide,
     begin_sliding,
     guess_slide,
+    guess_turning_slide,
     is_slow,
     sliding_length,
     slowing_within,
@@ -186,7 +187,7 @@ def made(system: System, work: Work, contact: int, demand: Demand, h: float) -> 
     load_step(system, work, h)
     enough = NEWTON_FRACTION * demand.tolerance * work.scale[0]
     if contact == SLIDING:
-        guess_slide(system, work, h, False)
+        guess_slide(system, work, h)
         if system.rate > 0.0:
             # slow growth and decay of the speed pass small errors on to the next step, whose direction they turn
             rounding = FRICTION_ROUNDING * system.friction * system.mass_ratio * system.gravity
@@ -198,7 +199,7 @@ def made(system: System, work: Work, contact: int, demand: Demand, h: float) -> 
         enough /= 1.0 + h * decay_rate(system, contact)
     code = moving_step(system, work, contact, h, enough)
     if code == UNSOLVED and contact == SLIDING and system.axes == 2 and is_slow(system, work, h):
-        guess_slide(system, work, h, True)
+        guess_turning_slide(system, work, h)
         code = moving_step(system, work, contact, h, enough)
     return UNSOLVED if code == SOLVED and contact == SLIDING and turns_too_far(work) else code
 

@@ -13,7 +13,7 @@ from reference.solver.events import first_crossing
 from reference.solver.ground import ground_at
 from reference.solver.peaks import take_limit
 from reference.solver.polynomial import NODES_ROW
-from reference.solver.rows import as_many, lowest, put, row
+from reference.solver.rows import Row, as_many, lowest, put, row
 from reference.solver.step_control import (
     ERROR_ORDER,
     MAX_LENGTH_FACTOR,
@@ -123,20 +123,40 @@ def is_slow(system: System, work: Work, h: float) -> bool:
 
 
 @compiled
-def guess_slide(system: System, work: Work, h: float, turning: bool) -> None:
-    """
-    Stage accelerations to start with; of a slide that begins, what the drive leaves along its direction.
-
-    `turning`: that direction changes within the step, as that of a light platform under a tower does.
-    Where friction rises steeply with the speed, that is what a step of the linearized law makes of it: an iteration
-    that begins at a lower speed than the step's does not leave the steep part.
-    """
+def guess_slide(system: System, work: Work, h: float) -> None:
+    """Stage accelerations to start with; of a slow slide, what the drive leaves along the direction of its start."""
     if not is_slow(system, work, h):
         first_guess(work, h)
         return
+    nodes = row(NODES_ROW, ())
+    ex, ey = heading(work.angle, system.axes)
+    guess_along(system, work, h, as_many(ex, nodes), as_many(ey, nodes))
+
+
+@compiled
+def guess_turning_slide(system: System, work: Work, h: float) -> None:
+    """
+    Stage accelerations to start with, along the directions in which the drive at the stages does not turn a slow slide.
+
+    A light platform under a tower turns by hundreds of rad/s.
+    """
+    free, ground, angle = work.free, work.ground, work.angle
+    for k in range(STAGES):
+        load = Load(work.x[0, 0], work.x[0, 1], free[0, k], free[1, k], ground[0, k], ground[1, k], ground[2, k])
+        angle = settled_direction(system, load, angle, 0.0)
+        work.a[0, 0, k], work.a[0, 1, k] = heading(angle, system.axes)
+    guess_along(system, work, h, row(work.a, (0, 0)), row(work.a, (0, 1)))
+
+
+@compiled
+def guess_along(system: System, work: Work, h: float, ex: Row, ey: Row) -> None:
+    """
+    Stage accelerations of a slow slide in the directions (ex, ey): what the drive leaves along them.
+
+    Where friction rises steeply with the speed, that is what a step of the linearized law makes of it: an iteration
+    that begins at a lower speed than the step's does not leave the steep part.
+    """
     nodes, ground = row(NODES_ROW, ()), work.ground
-    head_slow_slide(system, work, turning)
-    ex, ey = row(work.a, (0, 0)), row(work.a, (0, 1))
     start = sqrt(work.v[0, 0] ** 2 + work.v[0, 1] ** 2) if system.rate > 0.0 else 0.0
     damping = rising_rate(system, start)
     fx, fy = row(work.free, 0), row(work.free, 1)
@@ -147,19 +167,6 @@ def guess_slide(system: System, work: Work, h: float, turning: bool) -> None:
     along = along / (1.0 + nodes * (h * damping))
     put(work.a, (0, 0), along * ex)
     put(work.a, (0, 1), along * ey)
-
-
-@compiled
-def head_slow_slide(system: System, work: Work, turning: bool) -> None:
-    """Into a[0]: directions of a slow slide, at the stages that which the drive does not turn or, else, the start's."""
-    free, ground, angle = work.free, work.ground, work.angle
-    for k in range(STAGES):
-        if turning:
-            load = Load(
-                work.x[0, 0], work.x[0, 1], free[0, k], free[1, k], ground[0, k], ground[1, k], ground[2, k]
-            )  # fmt: skip
-            angle = settled_direction(system, load, angle, 0.0)
-        work.a[0, 0, k], work.a[0, 1, k] = heading(angle, system.axes)
 
 
 @compiled
