@@ -124,6 +124,8 @@ class Engine:
             self.settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
         if discontinuous is not None:
             self.settings.timeIntegration.discontinuous.iterationTolerance = discontinuous
+        # where contacts may open, a step in which one opens or turns is solved again: shortening it may never end
+        self.settings.timeIntegration.discontinuous.useRecommendedStepSize = not model.allows_liftoff
         self.settings.timeIntegration.generalizedAlpha.useNewmark = integrator == "trapezoidal"
         self.explicit = EXPLICIT.get(integrator)
         if self.explicit:
@@ -198,6 +200,4 @@ def _settings(newton: float, residual: float) -> Any:
     integration.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
     integration.discontinuous.iterationTolerance = newton
     integration.discontinuous.ignoreMaxIterations = False
-    # where a contact opens or turns: the step is solved again and not shortened, which may never end
-    integration.discontinuous.useRecommendedStepSize = False
     return settings

@@ -269,3 +269,10 @@ def test_changes_of_opposite_sign_show_no_rate_of_convergence() -> None:
             each.value[:] = value
         errors.append(float(from_levels(peaks, levels, model)[0]))
     assert errors[0] == pytest.approx(3.0 * errors[1], rel=1e-3)
+
+
+def test_friction_quicker_than_the_contact_is_not_taken_for_a_lost_contact() -> None:
+    found = multibody.amplification(
+        strong(duration=2.0), [(2.0, 0.7)], regularization=1e-8, tolerance=1e-3, max_work=2e5
+    )
+    assert found.status[0] in (Outcome.OK, Outcome.TOLERANCE_NOT_MET, Outcome.STEP_LIMIT)
