@@ -52,6 +52,7 @@ def adaptive_runs(monkeypatch: pytest.MonkeyPatch) -> list[EngineRun]:
     return done
 
 
+@pytest.mark.long  # half a minute of compiling the independent equations
 @pytest.mark.parametrize("tolerance", [1e-3, 3e-4])
 def test_an_answer_beyond_the_tolerance_is_that_of_the_level_that_rounding_has_not_reached(tolerance: float) -> None:
     """A link of 1000 s leaves the body 5e-5 g: stiffer contacts round by more, and the last level knew nothing."""

@@ -50,7 +50,7 @@ def test_mu_is_within_its_error_and_its_tolerance_of_a_run_a_hundred_times_tight
     assert np.mean(gap <= (coarse.error + fine.error)[both]) >= 0.98
 
 
-@pytest.mark.parametrize("name", ["fig3-II", "fig4-dry"])
+@pytest.mark.parametrize("name", [pytest.param("fig3-II", marks=pytest.mark.long), "fig4-dry"])
 def test_a_peak_at_the_start_of_rest_is_that_of_an_independent_code(name):
     """The ground's acceleration falls as the platform stops: the peak is the ground's at the instant of the stop."""
     phase = (0.885, 5.598)

@@ -57,7 +57,7 @@ def test_mu_is_within_its_error_of_a_run_a_hundred_times_tighter(name, law, scal
     ("name", "equations"),
     [
         ("synthetic-pair", "exact"),
-        ("synthetic-pair", "small"),
+        pytest.param("synthetic-pair", "small", marks=pytest.mark.long),
         pytest.param("synthetic-triple", "exact", marks=pytest.mark.long),
         pytest.param("synthetic-triple", "small", marks=pytest.mark.long),
     ],
