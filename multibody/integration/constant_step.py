@@ -136,7 +136,6 @@ class Engine:
         self.solver = kind()
         self.sensors: list[list[Any]] = [getattr(model.recorders, group.name) for group in fields(model.recorders)]
         self.iterations = 0  # of Newton's method in the last run, with those of steps that were tried again
-        self._nothing = np.empty((0, 0)), np.empty((0, 3, 3))  # force and plate of a motion that has none, as read last
 
     def run(self, state: EngineState, begin: float, step: float, count: int) -> Motion | None:
         """`count` steps from `state` at time `begin`; None if the engine could not solve one of them."""
@@ -163,21 +162,14 @@ class Engine:
         tables = [[stored(sensor) for sensor in sensors] for sensors in self.sensors]
         time = tables[0][0][:, 0]  # the engine's own instants: it halves a step that its Newton iteration cannot solve
         coordinates, velocities, accelerations, contact = [_values(group) for group in tables[:4]]
-        force, plate = self._without(len(time))
-        if tables[4]:
-            force = _values(tables[4])
+        force = _values(tables[4]) if tables[4] else np.empty((len(time), 0))
+        plate = np.zeros((len(time), 3, 3))
         if self.model.moving_plate:
             plate = _values(tables[5]).reshape(len(time), 3, -1)[:, :, :3]
             for derivative, part in enumerate((coordinates, velocities, accelerations)):
                 axes = carried_along(self.model.carried, part.shape[1])
                 part[:, axes < 3] -= plate[:, derivative, axes[axes < 3]]
         return Motion(time, coordinates, velocities, accelerations, contact, force, plate)
-
-    def _without(self, count: int) -> tuple[Array, Array]:
-        """No contact forces (count, 0), and a plate (count, 3, 3) that does not move: all chunks share the memory."""
-        if len(self._nothing[1]) < count:
-            self._nothing = np.empty((count, 0)), np.zeros((count, 3, 3))
-        return self._nothing[0][:count], self._nothing[1][:count]
 
 
 def _values(tables: list[Array]) -> Array:

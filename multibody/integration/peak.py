@@ -63,8 +63,7 @@ class Peaks:
 
     def _read_between(self, time: Array, size: Array, slip: Array) -> None:
         """Read the samples, and what lies between them."""
-        beyond = slip > self._threshold
-        corners: list[int] = np.flatnonzero((beyond[1:] != beyond[:-1]).any(axis=1)).tolist()
+        corners = self._corners(slip)
         # each corner is read once, as soon as there are samples behind it
         ready = [left for left in corners if left + SAMPLES_BEHIND_CORNER < len(time) and time[left] > self._read]
         bends = sorted({*kinks(time, self._knots, self._near).tolist(), *_uneven(time).tolist()})
@@ -72,6 +71,12 @@ class Peaks:
             self._scan(body, time, size[:, body], slip, corners, bends, ready)
         if ready:
             self._read = float(time[ready[-1]])
+
+    def _corners(self, slip: Array) -> list[int]:
+        """The rows behind which a slip speed (T, C) passes the threshold before the next row."""
+        beyond = slip > self._threshold
+        rows: list[int] = np.flatnonzero((beyond[1:] != beyond[:-1]).any(axis=1)).tolist()
+        return rows
 
     def read_until(self, instant: float) -> None:
         """
@@ -82,8 +87,7 @@ class Peaks:
         time, size, last = self._time, self._size, len(self._time) - 1
         if last < 2 or instant - time[-1] > MAX_STEPS_BEYOND * np.diff(time[-3:]).min():
             return
-        beyond = self._slip > self._threshold
-        corners: list[int] = np.flatnonzero((beyond[1:] != beyond[:-1]).any(axis=1)).tolist()
+        corners = self._corners(self._slip)
         bends: list[int] = kinks(time, self._knots, self._near).tolist()
         if max(_side(last, len(time), corners)[0], *bends, 0) > last - 2:
             return

@@ -106,12 +106,12 @@ def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool 
         before = Peaks(*(part[disagree] for part in after))
         after = peaks_at(system, phases[unfinished], demand, tolerance)
         finer, disagree = _judged(before, after, tolerance, system, demand)
-        # where the finer run cannot be finished, what is known with its error stays
-        better = ~(_given_up(before, after) & known[unfinished])
+        given_up = _given_up(before, after)
+        better = ~(given_up & known[unfinished])  # where not, what is known with its error stays
         for values, found in zip(peaks, finer):
             values[unfinished[better]] = found[better]
         peaks.code[unfinished[~better]] = NOT_MET
-        known[unfinished] |= ~_given_up(before, after)
+        known[unfinished] |= ~given_up
         unfinished = unfinished[disagree]
     peaks.code[unfinished[peaks.code[unfinished] == SOLVED]] = NOT_MET
     return peaks

@@ -112,24 +112,12 @@ class Work:
 def _fields(bodies: int) -> dict[str, Array | Complex | float]:
     """Of Work for so many bodies."""
     n, s, c, lanes = bodies, STAGES, CHANNELS, LANES
-    return {
+    arrays: dict[str, Array | Complex] = {
         "phase": np.zeros(2),
-        "time": 0.0,
         "x": np.zeros((n, 2)),
         "v": np.zeros((n, 2)),
         "a0": np.zeros((n, 2)),
         "total0": np.zeros((n, 3)),
-        "angle": 0.0,
-        "log_speed": 0.0,
-        "log_ratio": 0.0,
-        "start2": 0.0,
-        "length": 0.0,
-        "stretched": 0.0,
-        "fitting": 0.0,
-        "growth": 0.0,
-        "held": 0.0,
-        "entered": 0.0,
-        "left": 0.0,
         "x1": np.zeros((n, 2)),
         "v1": np.zeros((n, 2)),
         "a": np.zeros((n, 2, lanes)),
@@ -156,22 +144,16 @@ def _fields(bodies: int) -> dict[str, Array | Complex | float]:
         "dense": np.zeros((2, lanes)),
         "scale": np.zeros(n),
         "defect": np.zeros(n),
-        "old_length": 0.0,
         "guess": np.zeros((2, POWERS)),
         "waves": np.zeros(2, np.complex128),
         "turns": np.zeros(2, np.complex128),
         "elapsed": np.zeros(lanes),
         "series": np.zeros((SERIES_TERMS, 2)),
-        "end": 0.0,
-        "steps": 0.0,
         "best": np.zeros(n),
         "reading_error": np.zeros(n),
         "drift": np.zeros(n),
-        "reach2": 0.0,
-        "peaked": 0.0,
-        "settled": 0.0,
-        "look": 0.0,
     }
+    return {name: arrays.get(name, 0.0) for name in Work.__annotations__}
 
 
 system_by_reference, record_by_reference = by_reference(_SystemType), by_reference(_RecordType)

@@ -302,12 +302,12 @@ def _chains() -> Iterator[Row]:
     for total in (1e-6, 1e-3, 1e3, 1e9):
         yield Row("total mass, kg", f"{total:g}", scene(masses=[0.5 * total, 0.5 * total]), ALL)
     group = "platform's share of the mass"
-    for share in (1e-6, 0.999, 0.999999):
-        yield Row(group, f"{share:g}", scene(masses=[2.0 * share, 2.0 * (1.0 - share)]), ALL)
     # below mu^2 / 4 the equations come to Painleve's paradox; a contact that gives way jams and opens
-    light, right = scene(masses=[2e-3, 2.0 - 2e-3]), ("painleve paradox", "contact lost")
-    yield Row(group, "0.001", light, ("exact", "regularised", "translational"), right=right)
-    yield Row(group, "0.001", light, ("small", "spatial"))
+    paradox = ("painleve paradox", "contact lost")
+    for share, right in ((1e-6, ()), (1e-3, paradox), (0.999, ()), (0.999999, ())):
+        tower = scene(masses=[2.0 * share, 2.0 * (1.0 - share)])
+        yield Row(group, f"{share:g}", tower, ("exact", "regularised", "translational"), right=right)
+        yield Row(group, f"{share:g}", tower, ("small", "spatial"))
     yield Row(group, "1", scene(masses=[2.0]), ALL)
     stiffest = scene(link=(1e-3, 0.8e-3))  # swings for 3000 of its periods
     yield Row("link periods, s", "0.001", stiffest, PLANAR, max_work=MUCH_WORK)
