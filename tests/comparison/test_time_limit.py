@@ -35,7 +35,7 @@ def forbidden(jobs: int) -> Executor:
     raise AssertionError("nothing should have been computed")
 
 
-@pytest.mark.parametrize("hanging", [hangs, hangs_in_compiled_code])
+@pytest.mark.parametrize("hanging", [pytest.param(hangs, marks=pytest.mark.long), hangs_in_compiled_code])
 def test_a_hang_ends_at_the_limit_of_processor_time_and_costs_no_other_task(tmp_path: Path, hanging: object) -> None:
     others = [Task(doubled, str(tmp_path / f"other{number}"), "test", 0.1, timeout=60.0) for number in range(6)]
     task = Task(hanging, str(tmp_path / "hanging"), "test", 1.0, timeout=1.0)  # type: ignore[arg-type]

@@ -71,7 +71,8 @@ def test_in_a_common_pool_of_processes_the_culprit_is_found_too(tmp_path: Path) 
     assert _calls(tmp_path)["kills always"] <= 3, "once among others, then alone"
 
 
-@pytest.mark.parametrize("batch", [2, pytest.param(16, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("batch", [2, 16])
 def test_splitting_finds_the_one_point_that_kills(batch: int) -> None:
     hierarchy = [model for model in fake_hierarchy("killing", batch=batch) if model.key == "translational"]
     batches = Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy).batches()

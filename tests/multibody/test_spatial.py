@@ -94,6 +94,7 @@ def test_a_support_that_opens_while_three_carry_agrees_with_newton_euler_equatio
     assert_agrees_with_newton_and_euler(scene, phase)
 
 
+@pytest.mark.long
 def test_a_peak_between_supports_that_pass_v_reg_one_by_one_stays_within_its_error() -> None:
     """Six supports do so within two steps, by whose corners two levels are off alike."""
     size = [2.769, 2.144, 0.2]
