@@ -41,14 +41,14 @@ def test_what_a_link_does_to_two_bodies_changes_no_momentum(relative):
     accelerated, normals = rigid_chain.accelerations(
         state, ground, masses, tensors, centers, shear, twist, bars, ring, 1.0, 0.0, 0.0, 1.0
     )
-    spun, force = np.zeros(3), -masses.sum() * (ground + [0.0, 0.0, rigid_chain.GRAVITY])
-    moment = np.zeros(3)
+    field = -np.array([*ground[:2], rigid_chain.GRAVITY])
+    spun, force, moment = np.zeros(3), masses.sum() * field, np.zeros(3)
     for i, mass in enumerate(masses):
         matrix = Rotation.from_rotvec(turn[i]).as_matrix()
         tensor, omega = matrix @ tensors[i] @ matrix.T, state[3, i]
         spun += mass * np.cross(state[0, i], accelerated[i, :3])
         spun += tensor @ accelerated[i, 3:] + np.cross(omega, tensor @ omega)
-        moment -= mass * np.cross(state[0, i], ground + [0.0, 0.0, rigid_chain.GRAVITY])
+        moment += mass * np.cross(state[0, i], field)
     for point, normal in zip(ring, normals):
         support = state[0, 0] + Rotation.from_rotvec(turn[0]).apply([*point, 0.0] - centers[0])
         away = np.array([*point, 1.0]) - support
