@@ -3,7 +3,7 @@ The start of a model whose supports share the load: its stiff parts in balance w
 
 Supports that start with equal shares are out of balance by the overturning moment. They would swing for a few of the
 contact's own periods, with an acceleration that no stiffness makes smaller. So contacts and links settle first, without
-friction as at rest, under the loading just before zero. Their deflection is kept, the motion is not.
+friction as at rest, under the loading's value at zero. Their deflection is kept, the motion is not.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ def balanced_start(engine: Engine, start: EngineState, penetration: float) -> En
     stretches = math.ceil(span / MAX_STRETCH)
     state = start
     model.set_frictionless(True)
-    model.ground.set_shift(-span / stretches)
+    model.ground.hold(True)
     for _ in range(stretches):
         motion = engine.run(state, 0.0, span / SETTLING_STEPS, math.ceil(SETTLING_STEPS / stretches))
         if motion is None or not np.isfinite(motion.coordinates[-1]).all():
             state = start
             break
         state = _returned(model, start, motion.state(-1))
-    model.ground.set_shift(0.0)
+    model.ground.hold(False)
     model.set_frictionless(False)
     return state
 

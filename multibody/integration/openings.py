@@ -26,6 +26,8 @@ Mask = NDArray[np.bool_]
 GAP_TOLERANCE = 1e-4  # of the penetration, at a located closing
 OPENING_GAP = 2.0 * GAP_TOLERANCE  # likewise, beyond which a contact is open: one that has just closed stays closed
 SIMULTANEOUS = 1e-7  # units of time: contacts that close within it are hit at once
+# of the penetration, likewise: a platform leaves contacts with uneven loads at a tilt that rigid ones would not give it
+MAX_GAP_OF_COMPLIANCE = 1.0
 MIN_IMPACT_SPEED = 1e-5  # of an approach, in units of velocity: slower ones are left to the contact's damper
 MAX_QUIET_FORCE = 1e-3  # of that damper, in weights: more of it is an impact, too
 IMPACT_TIME = 0.04  # units of time: as long as real bearings, which give way by 4e-4 rho, take to spring back
@@ -139,9 +141,9 @@ class Openings:
         """The state behind the impact of `which`, and of contacts that close at the same instant."""
         gaps = self.gaps(state.coordinates[None])[0]
         leaving, relative = self.law.normal_speeds(state.coordinates, state.velocities)
-        hit = which & (gaps <= 2.0 * GAP_TOLERANCE * self.penetration) | self.is_open & (
-            gaps <= SIMULTANEOUS * np.maximum(-relative, 0.0)
-        )
+        at_once = np.maximum(SIMULTANEOUS * -relative, MAX_GAP_OF_COMPLIANCE * self.penetration)
+        hit = which & (gaps <= 2.0 * GAP_TOLERANCE * self.penetration)
+        hit |= self.is_open & (gaps <= np.where(relative < 0.0, at_once, 0.0))
         if not hit.any():
             hit = which & (gaps == gaps[which].min())
         contact = state.contact.copy()

@@ -25,7 +25,7 @@ class SymbolicGround:
     def __init__(self, scene: Scene, units: Units) -> None:
         self.amplitudes = scene.amplitudes / units.acceleration
         self.exponents = exponents(scene) * units.time
-        self.shift = exudyn.symbolic.Real("shift", 0.0)  # the engine's own time may not be negative
+        self.pace = exudyn.symbolic.Real("pace", 1.0)  # of the loading's time in the engine's
         self.phases = [exudyn.symbolic.Real(f"alpha{harmonic + 1}", 0.0) for harmonic in range(2)]
 
     def set_phase(self, phase: Any) -> None:
@@ -33,9 +33,9 @@ class SymbolicGround:
         for symbol, value in zip(self.phases, phase, strict=True):
             symbol.SetValue(float(value))
 
-    def set_shift(self, shift: float) -> None:
-        """What the runs that follow add to the engine's time, in units of time."""
-        self.shift.SetValue(shift)
+    def hold(self, held: bool) -> None:
+        """Whether the runs that follow have the first value all the time."""
+        self.pace.SetValue(0.0 if held else 1.0)
 
     def begin(self, time: float) -> None:
         """Nothing: the expression holds at any time."""
@@ -50,7 +50,7 @@ class SymbolicGround:
 
     def along(self, axis: int, time: Any) -> Any:
         """Expression of the acceleration along `axis` at the symbolic instant `time`."""
-        time = time + self.shift
+        time = self.pace * time
         terms = [  # no term that changes nothing: the engine evaluates all of them in every iteration
             (amplitude if exponent.real == 0.0 else amplitude * exudyn.symbolic.exp(exponent.real * time))
             * exudyn.symbolic.cos(exponent.imag * time + phase)

@@ -31,7 +31,7 @@ class RecordedGround:
         self.near = KNOT_TOLERANCE * float(np.diff(time).min())
         self._time, self._samples = time, samples
         self._rates = np.vstack([np.zeros(3), np.diff(samples, axis=0) / np.diff(time)[:, None], np.zeros(3)])
-        self._shift, self._interval = 0.0, -1
+        self._held, self._interval = False, -1
         self._origin = exudyn.symbolic.Real("origin", 0.0)
         self._value, self._rate = ([exudyn.symbolic.Real(f"{name}{k}", 0.0) for k in range(3)] for name in "ar")
         mbs.SetPreStepUserFunction(self.before_step)
@@ -39,14 +39,14 @@ class RecordedGround:
     def set_phase(self, phase: Any) -> None:
         """Nothing: a record has no phases."""
 
-    def set_shift(self, shift: float) -> None:
-        """What the runs that follow add to the engine's time: before the record its first sample holds."""
-        self._shift = shift
+    def hold(self, held: bool) -> None:
+        """Whether the runs that follow have the first sample all the time."""
+        self._held = held
 
     def begin(self, time: float) -> None:
         """Make ready for a run that begins at this instant."""
         self._interval = -1
-        self._enter(int(np.searchsorted(self._time, time + self._shift + self.near, side="right")))
+        self._enter(int(np.searchsorted(self._time, time + self.near, side="right")))
 
     def shakes(self, axis: int) -> bool:
         """Whether the plate is accelerated along `axis`."""
@@ -58,15 +58,16 @@ class RecordedGround:
 
     def before_step(self, mbs: Any, end: float) -> bool:
         """Enter the interval of the step that ends at this instant."""
-        self._enter(int(np.searchsorted(self._time, end + self._shift - self.near)))
+        self._enter(int(np.searchsorted(self._time, end - self.near)))
         return True
 
     def _enter(self, interval: int) -> None:
         """Interval k lies between knots k - 1 and k; 0 before the first knot, where the first sample holds."""
+        interval = 0 if self._held else interval
         if interval == self._interval:
             return
         self._interval, knot = interval, max(interval - 1, 0)
-        self._origin.SetValue(float(self._time[knot]) - self._shift)
+        self._origin.SetValue(float(self._time[knot]))
         for axis in range(3):
             self._value[axis].SetValue(float(self._samples[knot, axis]))
             self._rate[axis].SetValue(float(self._rates[interval, axis]))

@@ -24,7 +24,7 @@ from multibody.integration.level import REAL_WARPING_COMPLIANCE, Level, for_smal
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import Peaks
 from multibody.models.assembly import assemble
-from reference.problem import Outcome, Scene, load_scene
+from reference.problem import Outcome, Scene, ground_acceleration, load_scene
 
 PHASE = [(0.3, 1.1)]
 V_REG = 1e-3
@@ -258,6 +258,18 @@ def test_the_error_covers_what_supports_that_open_do(supports: int) -> None:
     strict = multibody.amplification(scene, PHASE, "spatial", V_REG, 1e-3)
     assert [loose.status[0], strict.status[0]] == [Outcome.OK] * 2
     assert (np.abs(loose.mu - strict.mu) <= loose.error + strict.error).all()
+
+
+def test_the_loading_that_would_have_been_before_the_start_throws_no_platform_off_its_supports() -> None:
+    """A plate that falls at nearly g at first, and by its decay at more than g before, takes the platform along."""
+    load = {"amplitudes": [[0.2, 0.36], [-0.39, -0.14], [-3.96, 6.52]], "periods": [0.303, 0.643], "decay": [3.0, 5.4]}
+    scene = changed(ring_that_opens(6), excitation=load, duration=0.5)
+    scene = scene.with_values({"isolator.radius": 0.85, "isolator.ring": 1.9})
+    phase = (0.665, 3.034)
+    result = multibody.amplification(scene, [phase], "spatial", 1e-2, 1e-3)
+    plate = ground_acceleration(scene, phase, np.zeros(1))[0]
+    assert result.status[0] == Outcome.OK
+    assert result.mu[0, 0] == pytest.approx(abs(plate[2]) / np.linalg.norm(plate), rel=1e-3), "at rest it slides freely"
 
 
 def test_changes_of_opposite_sign_show_no_rate_of_convergence() -> None:

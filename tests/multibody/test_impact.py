@@ -149,6 +149,15 @@ def test_flights_between_impacts_begin_and_end_when_free_fall_says() -> None:
         np.testing.assert_allclose(intervals[:, 1], [end for _, end in expected], atol=3e-5)
 
 
+@pytest.mark.parametrize("number", [0, 1])
+def test_a_platform_that_its_own_contacts_tilt_lands_on_all_supports_at_once(number: int) -> None:
+    """Uneven loads press rigid spheres in by nothing: a platform that does not turn lands as often as a ball."""
+    load = {"amplitudes": [[3.0, 0.0], [0.0, 2.1], [15.0, 0.0]]}
+    scene = changed(bouncing(0.8), isolator={"friction": 0.05}, excitation=load, duration=0.6)
+    landings = [end for _, end in flights(0.8, 3) if end < 0.6]
+    assert one_level(scene, (0.0, 0.0), number, 6e4).impacts == len(landings) == 2
+
+
 def test_without_restitution_the_first_landing_is_the_last() -> None:
     motion = multibody.trajectory(bouncing(0.0), (0.0, 0.0), model="spatial", tolerance=1e-2)
     (begin, end), *_ = flights(0.0, 1)
