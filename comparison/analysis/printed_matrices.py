@@ -24,14 +24,14 @@ Array = NDArray[np.float64]
 WRONG_SPRING = "(3.12) c_24 with k^x"
 WRONG_DAMPING = "(3.15) h_12, h_21 without rho, h_22 with xi''"
 RELATIVE, ABSOLUTE = 1e-7, 1e-10
-SAMPLES = 2e-3  # s between the instants at which peaks are read
+PARTS = 4  # of a step of the integrator, between which peaks are read: a change of friction lasts a millisecond
 
 
 def printed_amplification(scene: Scene, phases: ArrayLike, errata: Collection[str] = ()) -> Array:
     """
     mu_i (5.1), (M, N), for the phases (M, 2), rad, with the `errata` named left as printed and all others mended.
 
-    NaN where the motion leaves the sphere's lower half or grows without bound. Good to about 1e-4.
+    NaN where the motion leaves the sphere's lower half or grows without bound. Good to 1e-4.
     """
     pairs = np.asarray(phases, float)
     return np.array([_peaks(scene, phase, errata) for phase in pairs]) / ground_peak(scene, pairs)[:, None]
@@ -100,14 +100,14 @@ def _peaks(scene: Scene, phase: Array, errata: Collection[str]) -> Array:
         return float(0.999 - np.hypot(*state[:2]) / scene.radius)
 
     rim.terminal = True  # type: ignore[attr-defined]  # the way solve_ivp is told
-    times = np.linspace(0.0, scene.duration, int(np.ceil(scene.duration / SAMPLES)) + 1)
-    motion = solve_ivp(slope, (0.0, scene.duration), np.zeros(2 * count), "LSODA", times, False, rim, rtol=RELATIVE,
+    motion = solve_ivp(slope, (0.0, scene.duration), np.zeros(2 * count), "LSODA", None, True, rim, rtol=RELATIVE,
                        atol=ABSOLUTE, max_step=scene.duration / 200.0)  # fmt: skip
     if motion.status != 0:
         return np.full(bodies, np.nan)
-    total = np.empty((len(motion.t), bodies, 3))
-    grounds = ground_at(motion.t)
-    for row, (u, state) in enumerate(zip(grounds, motion.y.T)):
+    steps = np.arange(len(motion.t))
+    times = np.interp(np.linspace(0, steps[-1], PARTS * steps[-1] + 1), steps, motion.t)
+    total = np.empty((len(times), bodies, 3))
+    for row, (u, state) in enumerate(zip(ground_at(times), motion.sol(times).T)):
         q, v = state[:count], state[count:]
         a = _accelerations(fixed, q, v, u)
         delta = -math.sqrt(scene.radius**2 - q[0] ** 2 - q[1] ** 2)
