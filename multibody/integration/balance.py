@@ -3,7 +3,8 @@ The start of a model whose supports share the load: its stiff parts in balance w
 
 Supports that start with equal shares are out of balance by the overturning moment. They would swing for a few of the
 contact's own periods, with an acceleration that no stiffness makes smaller. So contacts and links settle first, without
-friction as at rest, under the loading's value at zero. Their deflection is kept, the motion is not.
+friction as at rest, under the loading's value at zero. Their deflection is kept, the motion is not. A loading that is
+gone before a contact swings is nothing they could settle under.
 """
 
 from __future__ import annotations
@@ -23,9 +24,10 @@ MAX_STRETCH = 0.1  # units of time at once: the distance covered meanwhile stays
 def balanced_start(engine: Engine, start: EngineState, penetration: float) -> EngineState:
     """`start` with its stiff coordinates and contacts settled; `start` itself if it needs no balance or gets none."""
     model = engine.model
-    if model.set_frictionless is None:
+    swing = math.sqrt(max(penetration, model.bearing_penetration))
+    if model.set_frictionless is None or model.ground.decay_time < swing:
         return start
-    span = SETTLING_TIME * math.sqrt(max(penetration, model.bearing_penetration))
+    span = SETTLING_TIME * swing
     stretches = math.ceil(span / MAX_STRETCH)
     state = start
     model.set_frictionless(True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
@@ -18,6 +19,7 @@ class SymbolicGround:
     The plate's acceleration in units of the model; its two phases can be changed between runs.
 
     knots: instants at which steps must end, none; near: how close to one is on it.
+    decay_time: in which its fastest harmonic falls by e.
     """
 
     knots, near = np.empty(0), 0.0
@@ -25,6 +27,8 @@ class SymbolicGround:
     def __init__(self, scene: Scene, units: Units) -> None:
         self.amplitudes = scene.amplitudes / units.acceleration
         self.exponents = exponents(scene) * units.time
+        fastest = float(-self.exponents.real.min())
+        self.decay_time = 1.0 / fastest if fastest > 0.0 else math.inf
         self.pace = exudyn.symbolic.Real("pace", 1.0)  # of the loading's time in the engine's
         self.phases = [exudyn.symbolic.Real(f"alpha{harmonic + 1}", 0.0) for harmonic in range(2)]
 

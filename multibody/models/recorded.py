@@ -32,6 +32,7 @@ class RecordedGround:
         self._time, self._samples = time, samples
         self._rates = np.vstack([np.zeros(3), np.diff(samples, axis=0) / np.diff(time)[:, None], np.zeros(3)])
         self._held, self._interval = False, -1
+        self.decay_time = math.inf
         self._origin = exudyn.symbolic.Real("origin", 0.0)
         self._value, self._rate = ([exudyn.symbolic.Real(f"{name}{k}", 0.0) for k in range(3)] for name in "ar")
         mbs.SetPreStepUserFunction(self.before_step)
