@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.image import imread
 from rich.console import Console
 
 import reference
@@ -209,6 +210,16 @@ def test_the_file_is_read_back_as_it_was_and_another_file_is_refused(tmp_path: P
     (tmp_path / "extremes.json").write_text(json.dumps({"rows": []}), encoding="utf-8")
     with pytest.raises(ValueError, match="not a matrix of extremes"):
         STORED.load(tmp_path)
+
+
+@pytest.mark.parametrize("models", [1, 2, 3])
+@pytest.mark.parametrize("groups", [1, 2])
+def test_the_legend_of_the_picture_lies_within_it(tmp_path: Path, models: int, groups: int) -> None:
+    columns = {f"model {number}": "an engine" for number in range(models)}
+    rows = [Extreme(f"group {number % groups}", "1", {}) for number in range(8)]
+    draw_extremes(tmp_path / "picture.png", Matrix(columns, rows, {}))
+    picture = imread(tmp_path / "picture.png")
+    assert (picture[:, [0, -1]] == 1.0).all(), "nothing goes on beyond its borders"
 
 
 def test_a_field_shows_the_error_or_the_outcome_whatever_the_reason_says():

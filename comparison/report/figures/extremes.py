@@ -23,7 +23,7 @@ COLORS = {
 }
 HEIGHT, WIDTH, LABELS, MARGIN, TOP = 0.2, 0.9, 1.75, 0.2, 1.15  # of fields, labels and borders, inches
 PANELS = 2  # side by side, so that the whole fits a screen
-MIN_WIDTH = 4.0  # inches, of the legend in one column
+LEGEND = 4.0  # inches, the width of a column of it
 
 
 def draw_extremes(file: Path, matrix: Matrix) -> None:
@@ -31,7 +31,7 @@ def draw_extremes(file: Path, matrix: Matrix) -> None:
     panels = _panels(_lines(matrix))
     longest = max(len(lines) for lines in panels)
     panel = LABELS + WIDTH * len(matrix.columns) + MARGIN
-    size = max(MARGIN + panel * len(panels), MIN_WIDTH), TOP + HEIGHT * (longest + 1)
+    size = max(MARGIN + panel * len(panels), LEGEND), TOP + HEIGHT * (longest + 1)
     figure = Figure(figsize=size)
     for number, lines in enumerate(panels):
         left = MARGIN + number * panel + LABELS
@@ -39,7 +39,8 @@ def draw_extremes(file: Path, matrix: Matrix) -> None:
         _draw_panel(figure.add_axes(place), lines, matrix.columns, longest + 1)
     counts = matrix.counts()
     handles = [Patch(color=COLORS[verdict], label=f"{counts[verdict]} {MEANING[verdict]}") for verdict in Verdict]
-    figure.legend(handles=handles, loc="upper center", ncol=len(panels), fontsize=8, frameon=False)
+    columns = 2 if size[0] >= 2.0 * LEGEND else 1
+    figure.legend(handles=handles, loc="upper center", ncol=columns, fontsize=8, frameon=False)
     figure.savefig(file, dpi=130)
 
 
