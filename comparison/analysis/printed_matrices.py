@@ -104,8 +104,8 @@ def _peaks(scene: Scene, phase: Array, errata: Collection[str]) -> Array:
                        atol=ABSOLUTE, max_step=scene.duration / 200.0)  # fmt: skip
     if motion.status != 0:
         return np.full(bodies, np.nan)
-    steps = np.arange(len(motion.t))
-    times = np.interp(np.linspace(0, steps[-1], PARTS * steps[-1] + 1), steps, motion.t)
+    steps = len(motion.t) - 1
+    times = np.interp(np.arange(PARTS * steps + 1) / PARTS, np.arange(steps + 1), motion.t)
     total = np.empty((len(times), bodies, 3))
     for row, (u, state) in enumerate(zip(ground_at(times), motion.sol(times).T)):
         q, v = state[:count], state[count:]

@@ -25,7 +25,7 @@ def balanced_start(engine: Engine, start: EngineState, penetration: float) -> En
     """`start` with its stiff coordinates and contacts settled; `start` itself if it needs no balance or gets none."""
     model = engine.model
     swing = math.sqrt(max(penetration, model.bearing_penetration))
-    if model.set_frictionless is None or model.ground.decay_time < swing:
+    if model.set_frictionless is None or model.ground.decay_rate * swing > 1.0:
         return start
     span = SETTLING_TIME * swing
     stretches = math.ceil(span / MAX_STRETCH)

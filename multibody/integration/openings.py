@@ -138,7 +138,7 @@ class Openings:
         return motion
 
     def after_impact(self, state: EngineState, time: float, which: Mask) -> EngineState:
-        """The state behind the impact of `which`, and of contacts that close at the same instant."""
+        """The state behind the impact of `which`, and of contacts that are hit at once with them."""
         gaps = self.gaps(state.coordinates[None])[0]
         leaving, relative = self.law.normal_speeds(state.coordinates, state.velocities)
         at_once = np.maximum(SIMULTANEOUS * -relative, MAX_GAP_OF_COMPLIANCE * self.penetration)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
@@ -19,7 +18,7 @@ class SymbolicGround:
     The plate's acceleration in units of the model; its two phases can be changed between runs.
 
     knots: instants at which steps must end, none; near: how close to one is on it.
-    decay_time: in which its fastest harmonic falls by e.
+    decay_rate: of its fastest harmonic, per unit of time.
     """
 
     knots, near = np.empty(0), 0.0
@@ -27,8 +26,7 @@ class SymbolicGround:
     def __init__(self, scene: Scene, units: Units) -> None:
         self.amplitudes = scene.amplitudes / units.acceleration
         self.exponents = exponents(scene) * units.time
-        fastest = float(-self.exponents.real.min())
-        self.decay_time = 1.0 / fastest if fastest > 0.0 else math.inf
+        self.decay_rate = float(-self.exponents.real.min())
         self.pace = exudyn.symbolic.Real("pace", 1.0)  # of the loading's time in the engine's
         self.phases = [exudyn.symbolic.Real(f"alpha{harmonic + 1}", 0.0) for harmonic in range(2)]
 

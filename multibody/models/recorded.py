@@ -25,6 +25,8 @@ KNOT_TOLERANCE = 1e-6  # of the shortest interval: this close to a knot is on it
 class RecordedGround:
     """The plate's acceleration in units of the model, by the interface of `SymbolicGround`; phases mean nothing."""
 
+    decay_rate = 0.0
+
     def __init__(self, mbs: Any, scene: Scene, units: Units) -> None:
         time, samples = scene.record[:, 0] / units.time, scene.record[:, 1:] / units.acceleration
         self.knots: Array = time[time < scene.duration / units.time]
@@ -32,7 +34,6 @@ class RecordedGround:
         self._time, self._samples = time, samples
         self._rates = np.vstack([np.zeros(3), np.diff(samples, axis=0) / np.diff(time)[:, None], np.zeros(3)])
         self._held, self._interval = False, -1
-        self.decay_time = math.inf
         self._origin = exudyn.symbolic.Real("origin", 0.0)
         self._value, self._rate = ([exudyn.symbolic.Real(f"{name}{k}", 0.0) for k in range(3)] for name in "ar")
         mbs.SetPreStepUserFunction(self.before_step)

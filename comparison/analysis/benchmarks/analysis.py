@@ -34,7 +34,7 @@ from reference.problem.demands import ANSWERED
 MODELS = {EQUATIONS: EXACT, SMOOTHED: REGULARIZED, ENGINE: TRANSLATIONAL}
 TOLERANCES = {EQUATIONS: 1e-8, SMOOTHED: 1e-8, ENGINE: 1e-4}
 SAMPLES = 100_001  # instants at which the equations are read
-SECONDS = {EQUATIONS: 0.1, SMOOTHED: 0.1, ENGINE: 2.0}  # predicted cost
+SECONDS = {EQUATIONS: 0.1, SMOOTHED: 0.1, ENGINE: 3.5}  # predicted cost
 LIMIT = 300.0  # s of processor time of one task
 ROUNDING = 1e-12  # relative
 
