@@ -23,8 +23,9 @@ Array = NDArray[np.float64]
 
 WRONG_SPRING = "(3.12) c_24 with k^x"
 WRONG_DAMPING = "(3.15) h_12, h_21 without rho, h_22 with xi''"
-RELATIVE, ABSOLUTE = 1e-7, 1e-10
-PARTS = 4  # of a step of the integrator, between which peaks are read: a change of friction lasts a millisecond
+RELATIVE, ABSOLUTE = 1e-6, 1e-9
+LARGE = 0.8  # of the largest acceleration at the integrator's steps: beside a smaller one no peak is looked for
+PARTS = 8  # of a step, between which peaks are read there: a change of friction lasts a millisecond
 
 
 def printed_amplification(scene: Scene, phases: ArrayLike, errata: Collection[str] = ()) -> Array:
@@ -104,17 +105,25 @@ def _peaks(scene: Scene, phase: Array, errata: Collection[str]) -> Array:
                        atol=ABSOLUTE, max_step=scene.duration / 200.0)  # fmt: skip
     if motion.status != 0:
         return np.full(bodies, np.nan)
-    steps = len(motion.t) - 1
-    times = np.interp(np.arange(PARTS * steps + 1) / PARTS, np.arange(steps + 1), motion.t)
-    total = np.empty((len(times), bodies, 3))
-    for row, (u, state) in enumerate(zip(ground_at(times), motion.sol(times).T)):
-        q, v = state[:count], state[count:]
-        a = _accelerations(fixed, q, v, u)
-        delta = -math.sqrt(scene.radius**2 - q[0] ** 2 - q[1] ** 2)
-        climb = -(a[0] * q[0] + a[1] * q[1]) / delta - _w(q[0], q[1], v[0], v[1], delta)  # (3.4)
-        total[row, :, :2] = a.reshape(-1, 2) + u[:2]
-        total[row, :, 2] = climb + u[2]
-    peaks: Array = np.linalg.norm(total, axis=2).max(axis=0)
+
+    def sizes(times: Array) -> Array:
+        """Of the absolute accelerations, (T, N), at times (T,)."""
+        total = np.empty((len(times), bodies, 3))
+        for row, (u, state) in enumerate(zip(ground_at(times), motion.sol(times).T)):
+            q, v = state[:count], state[count:]
+            a = _accelerations(fixed, q, v, u)
+            delta = -math.sqrt(scene.radius**2 - q[0] ** 2 - q[1] ** 2)
+            climb = -(a[0] * q[0] + a[1] * q[1]) / delta - _w(q[0], q[1], v[0], v[1], delta)  # (3.4)
+            total[row, :, :2] = a.reshape(-1, 2) + u[:2]
+            total[row, :, 2] = climb + u[2]
+        return np.linalg.norm(total, axis=2)
+
+    at_steps = sizes(motion.t)
+    large = (at_steps >= LARGE * at_steps.max(axis=0)).any(axis=1)
+    beside = np.flatnonzero(large[:-1] | large[1:])  # steps in which a peak may lie
+    places = beside[:, None] + np.arange(1, PARTS) / PARTS
+    between = sizes(np.interp(places.ravel(), np.arange(len(motion.t)), motion.t))
+    peaks: Array = np.concatenate([at_steps, between]).max(axis=0)
     return peaks
 
 

@@ -91,20 +91,19 @@ def _square_and_slopes(t: float, phase: Array, amplitudes: Array, s: Array) -> t
 def _refined(left: float, right: float, phase: Array, amplitudes: Array, s: Array) -> float:
     """Maximum of |u|^2 on [left, right], which holds one sample higher than both ends: Newton, bisection as a guard."""
     t = 0.5 * (left + right)
+    close = 1e-9 * (right - left)
     best = 0.0
     for _ in range(60):
         value, slope, curvature = _square_and_slopes(t, phase, amplitudes, s)
         best = max(best, value)
+        guess = t - slope / curvature if curvature < 0.0 else math.inf
+        if abs(guess - t) <= close or right - left <= close:
+            break
         if slope > 0.0:
             left = t
         else:
             right = t
-        guess = t - slope / curvature if curvature < 0.0 else left
-        if not left < guess < right:
-            guess = 0.5 * (left + right)
-        if abs(guess - t) <= 1e-9 * (right - left) or right - left <= 1e-15 * right:
-            break
-        t = guess
+        t = guess if left < guess < right else 0.5 * (left + right)
     return best
 
 
