@@ -116,7 +116,8 @@ def _peaks(scene: Scene, phase: Array, errata: Collection[str]) -> Array:
             climb = -(a[0] * q[0] + a[1] * q[1]) / delta - _w(q[0], q[1], v[0], v[1], delta)  # (3.4)
             total[row, :, :2] = a.reshape(-1, 2) + u[:2]
             total[row, :, 2] = climb + u[2]
-        return np.linalg.norm(total, axis=2)
+        size: Array = np.linalg.norm(total, axis=2)
+        return size
 
     at_steps = sizes(motion.t)
     large = (at_steps >= LARGE * at_steps.max(axis=0)).any(axis=1)
