@@ -113,7 +113,7 @@ def test_cells_compare_the_two_engine_models_of_the_ladder_in_every_scene_that_h
     for cell in cells:
         assert (np.array(cell.change) == 0.0).all(), "both fake models answer alike"
         assert np.array(cell.change).shape == (len(PHASES), 2)
-        np.testing.assert_allclose(cell.uncertainty, 1e-3 * np.sqrt(2.0))  # both claim the 1e-3 asked
+        np.testing.assert_allclose(cell.uncertainty, 2e-3 * np.sqrt(2.0))  # both claim a fifth of 1 %: enough to tell
     assert collected(Assumptions(), Study((BARE,), 2, 1e-3, fake_hierarchy())) is None
 
 

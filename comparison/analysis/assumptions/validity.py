@@ -29,8 +29,6 @@ from comparison.execution.task_results import TaskResults
 from comparison.study.study import Study
 from reference.problem import Scene
 
-TOLERANCE = 1e-3
-
 
 @dataclass(frozen=True)
 class Assumption:

@@ -29,6 +29,7 @@ PHASES = np.array([(0.0, 0.0), (0.3, 1.1), (2.0, 0.7)])  # rad; the first is whe
 DURATION = 6.0  # s: the loading is strongest in its first seconds
 SECONDS = {"translational": 0.5, "spatial": 1.1}  # predicted cost of one task, s on `study.models.RECORDED_ON`
 WITHIN = (0.01, 0.05)  # of mu_i
+CLOSE_ENOUGH = 0.2 * WITHIN[0]  # relative error of mu_i that says whether it stays within: no smaller one is asked for
 
 
 @dataclass(frozen=True)
@@ -187,8 +188,8 @@ def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> 
         engines = [model for model in models if model.side == "engine" and "softened" not in model.settings]
         if len(engines) == 2:
             plain, spatial = engines
-            asked.append((scene, plain, None, plain.tolerance(study.tolerance)))
-            tolerance = spatial.tolerance(study.tolerance)
+            asked.append((scene, plain, None, max(plain.tolerance(study.tolerance), CLOSE_ENOUGH)))
+            tolerance = max(spatial.tolerance(study.tolerance), CLOSE_ENOUGH)
             loaded = UNDER_LOAD if any(link is not None for link in bar_links(scene)) else ()
             asked += [(scene, spatial, variation, tolerance) for variation in (*variations, *loaded)]
     return asked
