@@ -22,7 +22,7 @@ from reference.solver.ground import ground_at_stages, start_waves
 from reference.solver.linear_solve import AT, factorize, solve
 from reference.solver.polynomial import A2_COLUMNS, A_COLUMNS, NODES_ROW
 from reference.solver.rows import Number, as_many, finite, highest, lowest, put, row
-from reference.solver.system import OPEN, PAINLEVE, REST, RIM, SOLVED, UNSOLVED, System
+from reference.solver.system import OPEN, PAINLEVE, REST, RIM, SLIDING, SOLVED, UNSOLVED, System
 from reference.solver.work import (
     BY_DRIVE,
     BY_POSITION,
@@ -40,6 +40,8 @@ MAX_ITERATIONS = 14  # of Newton's method
 SLOW_CONVERGENCE = 0.1  # of the change before: a larger change asks for a new derivative
 FORCE_ROUNDING = 1e-13  # of the forces: what rounding leaves of the defect at the start of a step
 ROUNDING_CHANGE = 4e-15  # of the accelerations: change by rounding alone from one iteration to the next
+# of the squared speed of a slide: beyond it a derivative understates tenfold how far the direction turns
+MAX_SPEED2_GROWTH = 100.0
 RIM_SQUARED_FRACTION = 0.99  # of the squared radius: an iteration that starts beyond it and strays has reached the rim
 
 
@@ -74,16 +76,22 @@ def moving_step(system: System, work: Work, contact: int, h: float, tolerance: f
     `load_step` comes before; `a[0]` holds the first guess on entry. `tolerance`, m/s^2: the iteration ends when the
     change is below it. A derivative serves several iterations while these converge fast, so what is left is far
     smaller. A tolerance below what rounding does to the accelerations is met at that level.
+
+    The slower a slide, the less acceleration turns it, so a derivative at a guess that is far too slow leaves a wrong
+    direction as it is and calls that settled. It serves no iteration at a much higher speed.
     """
     feed_back(system, work, h)
     pivots = work.pivots[: system.axes * STAGES]
+    known = row(work.stage, SPEED2)
     fresh, before = True, 0.0
     for iteration in range(MAX_ITERATIONS):
         place_platform(work, h, system.axes)
         code, size = set_residual(system, work, contact)
         if code != SOLVED:
             return code
-        if fresh:
+        outgrown = contact == SLIDING and highest(row(work.stage, SPEED2) - MAX_SPEED2_GROWTH * known) > 0.0
+        if fresh or outgrown:
+            known = row(work.stage, SPEED2)
             slopes(system, contact, work)
             set_matrix(work, h, system.axes)
             if not factorize(work.matrix, pivots):

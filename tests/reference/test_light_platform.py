@@ -13,10 +13,10 @@ from reference.problem import GRAVITY, Outcome, Scene, State
 FRICTION = 0.1
 
 
-def light(share: float, **changes) -> Scene:
-    """Two bodies of 2 kg together: links of 1.5 s and 1.2 s, the platform with this share of the mass."""
+def light(share: float, periods: tuple[float, float] = (1.5, 1.2), **changes) -> Scene:
+    """Two bodies of 2 kg together, on links of these periods, s; the platform with this share of the mass."""
     upper = 2.0 * (1.0 - share)
-    stiffness = [[upper * (2.0 * np.pi / period) ** 2 for period in (1.5, 1.2)]]
+    stiffness = [[upper * (2.0 * np.pi / period) ** 2 for period in periods]]
     given = {"amplitudes": [[2.0, 0.0], [0.0, 2.0]], "decay": [1.0 / 3.0, 0.3 / 1.1], "duration": 3.0, **changes}
     return chain(0.25, FRICTION, [2.0 * share, upper], stiffness, **given)
 
@@ -26,6 +26,19 @@ def test_a_hundredth_of_the_mass_has_the_factors_of_an_independent_code():
     scene, phase = light(0.01), (2.0, 0.7)
     found = reference.amplification(scene, [phase])
     assert found.status[0] == Outcome.OK
+    expected = set_valued_run(scene, phase, "exact", [0.0], 1e-9).mu[0]
+    assert np.all(np.abs(found.mu[0] - expected) <= found.error[0] + 1e-7 * expected)
+
+
+def test_a_slide_that_its_first_direction_would_brake_turns_and_goes_on():
+    """
+    A stiff link pulls the platform aside within a step from rest. Without the turn friction would stop it at once: the
+    first guess hardly moves, and a derivative at its speed forbids the turn. The slide begins at 1.736 s.
+    """
+    scene, phase = light(0.01, (0.2, 0.25), amplitudes=[[2.0, 0.0], [0.0, 2.0], [2.0, 1.5]], duration=2.2), (5.8, 1.1)
+    found = reference.amplification(scene, [phase])
+    assert found.status[0] == Outcome.OK
+    assert found.mu[0, 0] > 1.5 * reference.amplification(scene.with_values({"duration": 1.8}), [phase]).mu[0, 0]
     expected = set_valued_run(scene, phase, "exact", [0.0], 1e-9).mu[0]
     assert np.all(np.abs(found.mu[0] - expected) <= found.error[0] + 1e-7 * expected)
 
