@@ -13,12 +13,12 @@ from reference.problem import GRAVITY, Outcome, Scene, State
 FRICTION = 0.1
 
 
-def light(share: float, periods: tuple[float, float] = (1.5, 1.2), **changes) -> Scene:
+def light(share: float, periods: tuple[float, float] = (1.5, 1.2), friction: float = FRICTION, **changes) -> Scene:
     """Two bodies of 2 kg together, on links of these periods, s; the platform with this share of the mass."""
     upper = 2.0 * (1.0 - share)
     stiffness = [[upper * (2.0 * np.pi / period) ** 2 for period in periods]]
     given = {"amplitudes": [[2.0, 0.0], [0.0, 2.0]], "decay": [1.0 / 3.0, 0.3 / 1.1], "duration": 3.0, **changes}
-    return chain(0.25, FRICTION, [2.0 * share, upper], stiffness, **given)
+    return chain(0.25, friction, [2.0 * share, upper], stiffness, **given)
 
 
 def test_a_hundredth_of_the_mass_has_the_factors_of_an_independent_code():
@@ -39,6 +39,18 @@ def test_a_slide_that_its_first_direction_would_brake_turns_and_goes_on():
     found = reference.amplification(scene, [phase])
     assert found.status[0] == Outcome.OK
     assert found.mu[0, 0] > 1.5 * reference.amplification(scene.with_values({"duration": 1.8}), [phase]).mu[0, 0]
+    expected = set_valued_run(scene, phase, "exact", [0.0], 1e-9).mu[0]
+    assert np.all(np.abs(found.mu[0] - expected) <= found.error[0] + 1e-7 * expected)
+
+
+def test_a_slide_that_turns_back_high_on_the_bowl_sets_out_downhill():
+    """
+    The platform turns back at 0.44 of the radius, where the tower presses it into the bowl with 1.1 times the weight.
+    With the weight alone the force along the bowl would point uphill, where friction brakes any slide.
+    """
+    scene, phase = light(0.03, friction=0.03, amplitudes=[[5.0, 0.0], [0.0, 3.0]], duration=0.8), (5.4, 2.4)
+    found = reference.amplification(scene, [phase])
+    assert found.status[0] == Outcome.OK
     expected = set_valued_run(scene, phase, "exact", [0.0], 1e-9).mu[0]
     assert np.all(np.abs(found.mu[0] - expected) <= found.error[0] + 1e-7 * expected)
 

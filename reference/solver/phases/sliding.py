@@ -75,7 +75,7 @@ def begin_sliding(system: System, work: Work, demand: Demand) -> None:
     work.length = min(work.length, MAX_FIRST_STEP * demand.period * demand.tolerance ** (1.0 / ERROR_ORDER))
     ground = ground_at(system, work, work.time)
     load = load_in_state(system, work, ground)
-    reaction = system.mass_ratio * (system.gravity + ground.z)
+    _, reaction = rest_excess(system, load)
     gx, gy = load.fx - reaction * load.px / system.radius, load.fy - reaction * load.py / system.radius
     work.angle = settled_direction(system, load, atan2(gy, gx), 0.0)
     if demand.cutoff == 0.0:
