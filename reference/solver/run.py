@@ -72,10 +72,11 @@ def named(system: System, work: Work, contact: int, demand: Demand, code: int) -
         return code
     if code != STEP_LIMIT and work.end - work.time < NEGLIGIBLE_REMAINDER * demand.period:
         return SOLVED
-    at_rim = work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > RIM_SQUARED_FRACTION * system.radius**2
-    if at_rim and code in (UNSOLVED, STEP_LIMIT):
+    if code not in (UNSOLVED, STEP_LIMIT):
+        return code
+    if work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > RIM_SQUARED_FRACTION * system.radius**2:
         return RIM
-    return PAINLEVE if code == UNSOLVED and contact != REST and is_paradox(system, work, contact) else code
+    return PAINLEVE if contact != REST and is_paradox(system, work, contact) else code
 
 
 @compiled

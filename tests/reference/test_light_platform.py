@@ -71,6 +71,14 @@ def test_below_a_quarter_of_the_squared_friction_the_equations_end_in_a_named_pa
     assert np.mean(found.status == Outcome.PAINLEVE) > 0.5
 
 
+@pytest.mark.parametrize("regularization", [None, 1e-3])
+def test_a_slide_whose_steps_shrink_without_end_towards_a_paradox_is_named_after_it(regularization):
+    """At 0.24 % of the mass, just below a quarter of the squared friction, D falls to zero in the middle of a slide."""
+    scene = light(0.0024, amplitudes=[[2.0, 0.0], [0.0, 2.0], [2.0, 1.5]])
+    found = reference.amplification(scene, [(2.2, 4.1), (1.9, 3.8)], regularization=regularization)
+    assert set(found.status) == {Outcome.PAINLEVE}
+
+
 def test_a_straight_slide_that_has_no_acceleration_does_not_begin():
     """The link pulls the platform down its slope, where D = 1 + (m_sum/m1 - 1) tilt (tilt - mu) < 0, until it slips."""
     scene = light(0.001, amplitudes=[[1e-3, 0.0], [0.0, 0.0]])
