@@ -86,7 +86,7 @@ class EngineRun:
     stop: float  # when it was to stop, in units of time
     outcome: Outcome = Outcome.OK
     instant: float = math.nan  # of a termination, in units of time
-    steps: int = 0
+    steps: float = 0.0  # as the budget counts them
     warping_load: float = 0.0  # largest load that warping of the supports takes so far, in shares of the weight
     last_open: float = -math.inf  # the latest instant at which a support carried no load, in units of time
     max_displacement: float = 0.0  # horizontal, of the platform, in units of length
@@ -163,8 +163,9 @@ def go_on(
         count = min(count, math.ceil((end - time) / step * (1.0 - 1e-12)))
         step, count = align_steps(model.ground.knots, model.ground.near, time, min(step, (end - time) / count), count)
         motion = engine.run(state, time, step, count)
-        result.steps += count if motion is None else len(motion.time) - 1
-        budget.left -= max(count, engine.iterations / FREE_ITERATIONS)
+        taken = max(count, engine.iterations / FREE_ITERATIONS)
+        result.steps += taken
+        budget.left -= taken
         if budget.left < 0.0:
             result.terminated(Outcome.STEP_LIMIT, time)
             break

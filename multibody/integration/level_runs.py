@@ -79,7 +79,11 @@ class LevelRuns:
             return False
         # a run more completes the error of a contact that stays the same, another one that of stiff springs
         runs = 1.0 + self.shares_contact(number) + (self.change_on_real is not None)
-        return not self.runs or self.budget.left >= runs * _work_of_next(self.runs[-1], self.stop, self.pair.end)
+        if not self.runs:
+            return True
+        needed = runs * _work_of_next(self.runs[-1], self.stop, self.pair.end)
+        # one level alone has no error and is no answer: a second one is tried even if it may not end
+        return self.budget.left >= (needed / MAX_WORK_GROWTH if number == 1 else needed)
 
     def shares_contact(self, number: int) -> bool:
         """Whether the contact of a level is no stiffer than that of the level before."""

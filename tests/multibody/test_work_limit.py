@@ -57,6 +57,21 @@ def test_what_is_tried_is_not_refused() -> None:
     assert [multibody.refusal(scene, model) for model in ("translational", "spatial")] == ["", ""]
 
 
+def test_work_that_runs_out_fails_no_solver_and_leaves_enough_to_show_what_the_contact_changes() -> None:
+    """
+    With v_reg so small rounding forbids a contact that friction does not outrun: levels share one, a softer one shows
+    what it changes, and Newton iterations double the steps of a light platform.
+    """
+    floors = frame(0.3, 2, 0.2).model_dump(exclude_none=True)["bodies"]
+    bodies = [{**floors[0], "mass": 5.0}, floors[1]]
+    scene = changed(frame(0.3, 2, 0.2), bodies=bodies, isolator={"radius": 0.34, "friction": 0.02})
+    equations = reference.amplification(scene, [(1.3, 3.8)], regularization=1e-6)
+    for work, outcome in ((1e4, Outcome.STEP_LIMIT), (2.5e4, Outcome.STEP_LIMIT), (6e4, Outcome.TOLERANCE_NOT_MET)):
+        engine = multibody.amplification(scene, [(1.3, 3.8)], regularization=1e-6, max_work=work)
+        assert engine.status.tolist() == [outcome]
+    assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
+
+
 @pytest.mark.parametrize(("duration", "period"), [(30.0, 0.17), (60.0, 0.02)])
 def test_frames_of_six_and_twenty_floors_are_not_refused(duration: float, period: float) -> None:
     for count in (6, 20):
