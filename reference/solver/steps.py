@@ -22,7 +22,7 @@ from reference.solver.ground import ground_at_stages, start_waves
 from reference.solver.linear_solve import AT, factorize, solve
 from reference.solver.polynomial import A2_COLUMNS, A_COLUMNS, NODES_ROW
 from reference.solver.rows import Number, as_many, finite, highest, lowest, put, row
-from reference.solver.system import OPEN, PAINLEVE, REST, RIM, SLIDING, SOLVED, UNSOLVED, System
+from reference.solver.system import CREEPING, OPEN, PAINLEVE, REST, RIM, SLIDING, SOLVED, UNSOLVED, System
 from reference.solver.work import (
     BY_DRIVE,
     BY_POSITION,
@@ -126,7 +126,9 @@ def set_residual(system: System, work: Work, contact: int) -> tuple[int, float]:
     put(stage, SPEED2, speed2)
     put(residual, 0, ax - row(a, (0, 0)))
     put(residual, 1, ay - row(a, (0, 1)))
-    return (SOLVED if lowest(determinant) > 0.0 else PAINLEVE), highest(abs(ax) + abs(ay))
+    # creep answers within a time that may be shorter than the one to which an instant is located: its steps fall on
+    code = UNSOLVED if contact == CREEPING else PAINLEVE
+    return (SOLVED if lowest(determinant) > 0.0 else code), highest(abs(ax) + abs(ay))
 
 
 @compiled
