@@ -161,6 +161,7 @@ def go_on(
         step = level.step / STEP_RATIO**divisions
         count = next_count if divisions == 0 else _divided_steps(level)
         count = min(count, math.ceil((end - time) / step * (1.0 - 1e-12)))
+        asked = count
         step, count = align_steps(model.ground.knots, model.ground.near, time, min(step, (end - time) / count), count)
         motion = engine.run(state, time, step, count)
         taken = max(count, engine.iterations / FREE_ITERATIONS)
@@ -207,7 +208,9 @@ def go_on(
             divisions += 1 if step_ratio[failing] < STEP_RATIO else 2
             divisions = min(divisions, level.max_divisions)
         else:
-            before = last if divisions == 0 else min(last, MIN_CHUNK_STEPS)
+            # not what a knot left of it: restarts cost accuracy, and a chunk of one step up to a knot would make the
+            # next ones as short
+            before = asked if divisions == 0 else min(asked, MIN_CHUNK_STEPS)
             if divisions > 0 and step_ratio[-RECENT_ROWS:].max() * STEP_RATIO < 1.0:
                 divisions -= 1
             if divisions == 0:

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import multibody
 import reference
+from multibody.integration.adaptive import Budget
+from multibody.integration.constant_step import silence
+from multibody.integration.level import levels_of
+from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import Peaks
+from multibody.models.assembly import assemble
 from multibody.models.recorded import align_steps
 from reference.problem import Scene, ground_velocity
 
@@ -27,15 +34,7 @@ def example(name: str, scale: float = 1.0, duration: float | None = None) -> Sce
         ("synthetic-pair", 0.5),
         ("synthetic-triple", 1.0),
         *(pytest.param("synthetic-pair", scale, marks=pytest.mark.long) for scale in (0.2, 0.7, 1.0, 1.4, 2.0, 2.6)),
-        *(pytest.param("synthetic-triple", scale, marks=pytest.mark.long) for scale in (0.5, 0.7, 1.4, 2.0, 2.6)),
-        pytest.param(
-            "synthetic-triple",
-            0.2,
-            marks=[
-                pytest.mark.long,
-                pytest.mark.xfail(reason="two levels agree by chance: off by 1.12 of the errors", strict=True),
-            ],
-        ),
+        *(pytest.param("synthetic-triple", scale, marks=pytest.mark.long) for scale in (0.2, 0.5, 0.7, 1.4, 2.0, 2.6)),
     ],
 )
 def test_like_for_like_the_factors_agree_within_the_two_error_estimates(name, scale):
@@ -84,6 +83,24 @@ KNOTS = np.array([0.0, 0.1, 0.2, 0.3, 0.45, 0.6])
 def test_steps_end_at_every_knot_passed(time, step, count, expected):
     found = align_steps(KNOTS, 1e-7, time, step, count)
     assert found == (pytest.approx(expected[0]), expected[1])
+
+
+@pytest.mark.parametrize("parts", [8, 11, 15, 29])
+def test_knots_do_not_make_the_chunks_behind_them_short(parts: int) -> None:
+    """
+    A run starts anew with every chunk, which costs accuracy.
+
+    Chunks of 1, 2, 4 and 8 steps up to each knot, of 15 between two, left a weak record 2.5 stated errors off.
+    """
+    scene = example("synthetic-pair", 0.16, 3.0)
+    with silence():
+        model = assemble(scene, "translational", 1e-3)
+        interval, level = model.ground.knots[1], levels_of(scene, model, 1e-3)[0]
+        run = PhasePair(scene, model, np.array(ANY)).at_level(
+            replace(level, step=interval / (parts - 0.5)), Budget(1e5), keep=True
+        )
+    largest = [chunk for chunk in run.chunks if np.diff(chunk.time).max() > 0.9 * interval / parts]
+    assert sum(len(chunk.time) - 1 for chunk in largest) > 20 * len(largest)
 
 
 def test_a_peak_at_a_kink_is_the_sample_there_and_one_beside_it_is_read_on_its_own_side():
