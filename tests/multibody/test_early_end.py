@@ -142,7 +142,7 @@ def test_a_motion_is_integrated_again_where_a_look_ahead_finds_something_large(m
     time = STEP * np.arange(SAMPLES)
     samples = np.column_stack([time, burst(time, 1.0, 1.0) + 1.2 * burst(time, 6.0, 1.0), 0.0 * time, 0.0 * time])
     record = {"record": "two bursts.csv", "samples": samples.tolist()}
-    data = load_scene("fig4-viscous").model_dump(exclude_none=True) | {"duration": 9.0, "excitation": record}
+    data = load_scene("fig4-viscous").model_dump(exclude_none=True) | {"duration": 12.0, "excitation": record}
     scene = Scene.model_validate(data)
     model = assemble(scene, "translational", None)
     early, whole = (refine(scene, model, np.zeros(2), TOLERANCE, whole=full) for full in (False, True))
