@@ -46,6 +46,47 @@ def test_like_for_like_the_factors_agree_within_the_two_error_estimates(name, sc
     assert np.all(np.abs(found.mu - truth.mu) <= 1e-3 * truth.mu)
 
 
+def random_record() -> list[list[float]]:
+    """Filtered noise every 10 ms, up to 2.4 m/s^2."""
+    random = np.random.default_rng([2311, 100711])
+    random.integers(8)
+    step = random.choice([0.01, 0.02, 0.05, 0.1])
+    duration = random.uniform(3.0, 6.0)
+    count = int(duration / step)
+    random.uniform()
+    kept = np.exp(-2.0 * np.pi * random.uniform(1.0, 6.0) * duration / count)
+    samples = np.zeros((count, 3))
+    for k in range(1, count):
+        samples[k] = kept * samples[k - 1] + np.sqrt(1.0 - kept**2) * random.normal(size=3)
+    time = step * np.arange(count)
+    samples *= np.sqrt(np.abs(np.sin(np.pi * time / time[-1])))[:, None]
+    samples *= random.uniform(0.6, 3.0) / np.abs(samples).max()
+    samples[:, 2] *= random.choice([0.0, 0.3])
+    rows: list[list[float]] = np.column_stack([time, samples]).tolist()
+    return rows
+
+
+def test_two_levels_that_agree_by_chance_stay_within_the_floor_of_the_error() -> None:
+    """One of 1252 random scenes: mu_1 of levels 0 and 1 is off by 1.6 and 1.9e-4. A floor of 1.5e-4 is too little."""
+    samples = random_record()
+    scene = Scene.model_validate(
+        {
+            "title": "filtered noise",
+            "duration": samples[-1][0],
+            "isolator": {"period": 1.8261172448448444, "friction": 0.10260321285622623},
+            "bodies": [
+                {"mass": 1.6113566834813768},
+                {"mass": 1.0920126919745738, "period": [0.9521380267292425, 1.23368077025328]},
+            ],
+            "excitation": {"record": "noise.csv", "samples": samples},
+        }
+    )
+    found = multibody.amplification(scene, [ANY])
+    truth = reference.amplification(scene, [ANY], regularization=1e-3)
+    assert list(found.status) == list(truth.status) == ["ok"]
+    assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error)
+
+
 @pytest.mark.parametrize("model", ["translational", pytest.param("spatial", marks=pytest.mark.long)])
 def test_a_moving_plate_gives_the_factors_of_inertial_forces(model):
     """The plate is a million times as heavy as all bodies: 1e-6 of the force, and refinement's own errors."""
