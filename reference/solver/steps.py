@@ -89,8 +89,7 @@ def moving_step(system: System, work: Work, contact: int, h: float, tolerance: f
         code, size = set_residual(system, work, contact)
         if code != SOLVED:
             return code
-        outgrown = contact == SLIDING and highest(row(work.stage, SPEED2) - MAX_SPEED2_GROWTH * known) > 0.0
-        if fresh or outgrown:
+        if fresh or (contact == SLIDING and highest(row(work.stage, SPEED2) - MAX_SPEED2_GROWTH * known) > 0.0):
             known = row(work.stage, SPEED2)
             slopes(system, contact, work)
             set_matrix(work, h, system.axes)
