@@ -161,13 +161,13 @@ def _any(scene: Scene) -> bool:
 
 
 LIMITS = (
-    Limit("exact equations: regularized against resolved", REGULARIZATIONS, 1.0, _regularized, _dry, 0.13),
-    Limit("exact equations: regularized against supremum", REGULARIZATIONS, None, _to_supremum, _dry, 0.14),
-    Limit("engine against resolved", ENGINE_REGULARIZATIONS, 1.0, _by_engine, _dry, 0.7),
+    Limit("exact equations: regularized against resolved", REGULARIZATIONS, 1.0, _regularized, _dry, 0.02),
+    Limit("exact equations: regularized against supremum", REGULARIZATIONS, None, _to_supremum, _dry, 0.02),
+    Limit("engine against resolved", ENGINE_REGULARIZATIONS, 1.0, _by_engine, _dry, 0.35),
     Limit(
-        "bodies that turn: against v_reg = 1e-4 m/s", ENGINE_REGULARIZATIONS, 1.0, _with_turning, _dry_on_supports, 5.7
+        "bodies that turn: against v_reg = 1e-4 m/s", ENGINE_REGULARIZATIONS, 1.0, _with_turning, _dry_on_supports, 2.2
     ),
-    Limit("elastic contact against rigid", PENETRATIONS, 1.0, _stiffened, _any, 2.1),
+    Limit("elastic contact against rigid", PENETRATIONS, 1.0, _stiffened, _any, 1.1),
 )
 
 Arguments = tuple[Scene, int]  # and the number of the limit

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 
 PHASES = np.array([(0.3, 1.1), (4.0, 5.5)])  # rad
 DURATION = 6.0  # s
-SECONDS = 0.35  # predicted cost of one erratum in one scene, s on `study.models.RECORDED_ON`
+SECONDS = 0.12  # predicted cost of one erratum in one scene, s on `study.models.RECORDED_ON`
 
 Measure = Callable[[Scene], Array | None]  # relative change of mu (M, N), NaN where the printed form has no answer
 

@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 SCALES = (1.0, 0.5, 0.25, 0.125)
 PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad
 TOLERANCE = 1e-8  # relative: the step at the smallest scale is 1e-5
-SECONDS = 0.12  # predicted cost of one task, s on `study.models.RECORDED_ON`
+SECONDS = 0.03  # predicted cost of one task, s on `study.models.RECORDED_ON`
 CUTOFF = 1e-3  # m/s at s = 1, of the resolved peak; it scales with the motion
 STEP = "exact minus small"
 PRINTED = "small, s minus s/2"

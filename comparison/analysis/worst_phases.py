@@ -34,7 +34,7 @@ from reference.problem.hills import GRID, hills
 Array = NDArray[np.float64]
 
 TOLERANCE = 1e-5  # relative error of mu by the equations
-POINTS = 500  # of the equations that a search takes
+POINTS = 600  # of the equations that a search takes
 ENGINE_HALF_WIDTH = 0.02  # rad, of the square in which the engine is searched
 ENGINE_POINTS = 6  # of it: the middle and the corners of the square, and where it is predicted to be largest
 SOLVED_BY = "reference:amplification"  # the models that `reference.worst_phases` searches

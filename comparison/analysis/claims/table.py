@@ -25,7 +25,7 @@ from comparison.study.study import Study
 from reference.problem import builtin_scenes
 
 GRID = 16  # phases per axis: 24 change a count here and there, and none of the claims that no reading reproduces
-SECONDS = 0.15  # of one case under one reading on GRID, recorded beside `costs.seconds_per_point`
+SECONDS = 0.1  # of one case under one reading on GRID, recorded beside `costs.seconds_per_point`
 COARSE = 2  # every second phase for surfaces that are only correlated with another
 
 

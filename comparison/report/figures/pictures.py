@@ -18,7 +18,7 @@ from comparison.study.selection import EVERYTHING
 from comparison.study.study import Study
 from reference.problem import Scene
 
-SECONDS = {"pair": 0.45, "budget": 0.6, "paper": 1.0}  # of drawing one, recorded beside `costs.seconds_per_point`
+SECONDS = {"pair": 0.32, "budget": 0.4, "paper": 0.7}  # of drawing one, recorded beside `costs.seconds_per_point`
 SHOWN = ["mu", "error", "stride", "recorded"]  # of the surfaces: what pictures are made of
 
 
