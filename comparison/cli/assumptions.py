@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.table import Table
 
 from comparison.analysis.assumptions.validity import Assumptions, ValidityRanges
-from comparison.analysis.assumptions.variations import DURATION, MANY, PHASES, Cell
+from comparison.analysis.assumptions.variations import CLOSE_ENOUGH, DURATION, MANY, PHASES, Cell
 from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, jobs, writing
 from comparison.cli.computing import computed
 from comparison.execution.executors import Pool
@@ -30,7 +30,6 @@ from comparison.study.study import Study, refuse_same_names
 from reference.problem import Scene, SceneError, builtin_scenes, load_scene
 
 ENGINE = "multibody:amplification"  # what the workers ask
-TOLERANCE = 1e-3
 
 
 @command
@@ -55,7 +54,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     console = wide_console()
     about = f"{len(MANY)} variations at {len(PHASES)} phase pairs over {DURATION:g} s of motion"
     console.print(f"{about}: minutes for each scene.")
-    assumptions, study = Assumptions(MANY), Study(tuple(scenes), 1, TOLERANCE)
+    assumptions, study = Assumptions(MANY), Study(tuple(scenes), 1, CLOSE_ENOUGH)
     results = computed("assumptions", options, argv, assumptions.tasks(study), {ENGINE}, console, executor)
     validity = assumptions.collect(study, None, results)
     assert validity is not None, "every scene has both models of the engine"

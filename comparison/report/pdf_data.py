@@ -164,7 +164,7 @@ def _provenance(results: Results) -> list[list[str]]:
     return [
         ["command", run.command[:300]],
         ["computed", f"{run.began}, {run.seconds} s with {run.jobs} workers"],
-        ["accuracy", f"every value asked for a relative error of {results.tolerance:g}"],
+        ["accuracy", f"every value of the surfaces asked for a relative error of {results.tolerance:g}"],
         ["versions", versions],
         ["scenes", digests],
     ]

@@ -86,7 +86,7 @@ class EngineRun:
     stop: float  # when it was to stop, in units of time
     outcome: Outcome = Outcome.OK
     instant: float = math.nan  # of a termination, in units of time
-    steps: float = 0.0  # as the budget counts them
+    work: float = 0.0  # steps as the budget counts them
     warping_load: float = 0.0  # largest load that warping of the supports takes so far, in shares of the weight
     last_open: float = -math.inf  # the latest instant at which a support carried no load, in units of time
     max_displacement: float = 0.0  # horizontal, of the platform, in units of length
@@ -159,14 +159,13 @@ def go_on(
     while time < min(end, result.stop) * (1.0 - 1e-12) and not pause(time):
         divisions = max(divisions, level.min_divisions(time))
         step = level.step / STEP_RATIO**divisions
-        count = next_count if divisions == 0 else _divided_steps(level)
-        count = min(count, math.ceil((end - time) / step * (1.0 - 1e-12)))
-        asked = count
-        step, count = align_steps(model.ground.knots, model.ground.near, time, min(step, (end - time) / count), count)
+        asked = next_count if divisions == 0 else _divided_steps(level)
+        asked = min(asked, math.ceil((end - time) / step * (1.0 - 1e-12)))
+        step, count = align_steps(model.ground.knots, model.ground.near, time, min(step, (end - time) / asked), asked)
         motion = engine.run(state, time, step, count)
-        taken = max(count, engine.iterations / FREE_ITERATIONS)
-        result.steps += taken
-        budget.left -= taken
+        work = max(count, engine.iterations / FREE_ITERATIONS)
+        result.work += work
+        budget.left -= work
         if budget.left < 0.0:
             result.terminated(Outcome.STEP_LIMIT, time)
             break

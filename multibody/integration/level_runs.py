@@ -45,7 +45,7 @@ Array = NDArray[np.float64]
 UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
 MAX_WARPING_ERROR_SHARE = 0.2  # of the tolerance, that the load of warped supports may take as an error
 MAX_FIRST_SHARE = 0.2  # of the work of a point, that its first run may take where supports may rattle
-MAX_WORK_GROWTH = 2.0  # steps of a level over those of the level before
+MAX_WORK_GROWTH = 2.0  # work of a level over that of the level before
 STEPS_AFTER_SETTLING = 20.0  # largest steps from the last large value of a run to the end of the next
 # change between two levels over what separates later values from the largest: beyond it a run goes to the end after all
 MAX_EARLY_CHANGE = 0.2
@@ -79,11 +79,9 @@ class LevelRuns:
             return False
         # a run more completes the error of a contact that stays the same, another one that of stiff springs
         runs = 1.0 + self.shares_contact(number) + (self.change_on_real is not None)
-        if not self.runs:
-            return True
-        needed = runs * _work_of_next(self.runs[-1], self.stop, self.pair.end)
         # one level alone has no error and is no answer: a second one is tried even if it may not end
-        return self.budget.left >= (needed / MAX_WORK_GROWTH if number == 1 else needed)
+        growth = 1.0 if number == 1 else MAX_WORK_GROWTH
+        return not self.runs or self.budget.left >= runs * growth * _work_up_to(self.runs[-1], self.stop, self.pair.end)
 
     def shares_contact(self, number: int) -> bool:
         """Whether the contact of a level is no stiffer than that of the level before."""
@@ -235,11 +233,11 @@ def _sharing(level: Level, load: float, tolerance: float, softest: float) -> Lev
     return replace(level, warping_compliance=min(max(wanted, level.warping_compliance), softest))
 
 
-def _work_of_next(run: EngineRun, stop: float, end: float) -> float:
-    """Steps of the run at the level after that of `run`, up to `stop`."""
+def _work_up_to(run: EngineRun, stop: float, end: float) -> float:
+    """Work of `run`, had it stopped at `stop`."""
     own = min(run.looked_over, end)  # both runs look over what comes later
     shorter = min(stop, own) / min(run.stop, own) if run.outcome == Outcome.OK else 1.0
-    return MAX_WORK_GROWTH * shorter * run.steps
+    return shorter * run.work
 
 
 def _settled(run: EngineRun, model: EngineModel, step: float) -> float:

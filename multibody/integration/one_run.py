@@ -75,7 +75,7 @@ class PhasePair:
         model.set_contact(penetration)
         start = self._start(engine, penetration)
         motion = engine.run(start, 0.0, self.end / count, count)
-        result = EngineRun(Peaks(len(model.bodies), model.corner), math.inf, steps=count)
+        result = EngineRun(Peaks(len(model.bodies), model.corner), math.inf, work=count)
         if motion is None or not np.isfinite(motion.accelerations).all():
             return result.terminated(Outcome.SOLVER_FAILED, 0.0)
         outcome, row, instant = termination(motion, model)

@@ -128,8 +128,8 @@ def _beyond_tolerance(pair: PhasePair, finest: Candidate, complete: Candidate | 
     if complete is not None:
         answer = _answer(pair.model, complete, Outcome.TOLERANCE_NOT_MET)
         return replace(answer, finest=finest.run, coarser=finest.coarser[:1], floor=finest.level.error_floor)
-    ends = [run.outcome for run, _ in finest.coarser if run.outcome in UNFINISHED]
-    return _no_answer(pair.model, finest.run, ends[0] if ends else Outcome.SOLVER_FAILED, pair.scene.duration)
+    why = next((run.outcome for run, _ in finest.coarser if run.outcome in UNFINISHED), Outcome.SOLVER_FAILED)
+    return _no_answer(pair.model, finest.run, why, pair.scene.duration)
 
 
 def _unfinished(pair: PhasePair, runs: list[EngineRun]) -> Refinement:

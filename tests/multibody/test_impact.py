@@ -244,7 +244,7 @@ def test_contacts_that_open_and_flights_within_a_step_cost_few_steps() -> None:
     tall = tower(1.0).with_values({f"isolator.{key}": value for key, value in isolator.items()})
     scene = changed(tall, bodies=[body], excitation=load, duration=0.3)
     runs = [one_level(scene, (4.825, 3.617), 1, 6e4, step=f, slip_change=f) for f in (1.0, 0.96, 0.93, 0.9)]
-    assert max(run.steps for run in runs) < 1.5 * min(run.steps for run in runs)
+    assert max(run.work for run in runs) < 1.5 * min(run.work for run in runs)
 
 
 @pytest.mark.parametrize("tilt", [0.0, 0.1, 0.3])
@@ -311,7 +311,7 @@ def test_levels_that_impacts_take_elsewhere_are_given_up_with_a_wide_error(monke
     ran: list[EngineRun] = []
 
     def elsewhere(pair: PhasePair, *given: Any, **named: Any) -> EngineRun:
-        run = EngineRun(Peaks(2, pair.model.corner), math.inf, steps=1000, impacts=7)
+        run = EngineRun(Peaks(2, pair.model.corner), math.inf, work=1000, impacts=7)
         run.peaks.value[:] = 2.0 ** len(ran)
         ran.append(run)
         return run

@@ -47,7 +47,7 @@ def test_like_for_like_the_factors_agree_within_the_two_error_estimates(name, sc
 
 
 def random_record() -> list[list[float]]:
-    """Filtered noise every 10 ms, up to 2.4 m/s^2."""
+    """Filtered noise, drawn as in the sample that it was found in, with the numbers that other kinds of records use."""
     random = np.random.default_rng([2311, 100711])
     random.integers(8)
     step = random.choice([0.01, 0.02, 0.05, 0.1])

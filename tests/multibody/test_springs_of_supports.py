@@ -50,7 +50,7 @@ def result(
     platform: float, *, opens: bool = True, outcome: Outcome = Outcome.OK, load: float = 0.0, steps: int = STEPS
 ) -> EngineRun:
     """A run with this peak of the platform; that of the other body is always 2."""
-    run = EngineRun(Peaks(2, math.inf), math.inf, steps=steps, warping_load=load)
+    run = EngineRun(Peaks(2, math.inf), math.inf, work=steps, warping_load=load)
     run.peaks.value[:] = platform, 2.0
     run.last_open = 0.5 if opens else -math.inf
     return run if outcome == Outcome.OK else run.terminated(outcome, 0.7)
@@ -79,7 +79,7 @@ def refined(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Refined]:
             done.asked.append((number, level.warping_compliance))
             done.work.append(budget.left)
             run = runs(number, level.warping_compliance)
-            budget.left -= run.steps
+            budget.left -= run.work
             return run
 
         monkeypatch.setattr(PhasePair, "at_level", at_level)

@@ -188,8 +188,8 @@ def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> 
         engines = [model for model in models if model.side == "engine" and "softened" not in model.settings]
         if len(engines) == 2:
             plain, spatial = engines
-            asked.append((scene, plain, None, max(plain.tolerance(study.tolerance), CLOSE_ENOUGH)))
-            tolerance = max(spatial.tolerance(study.tolerance), CLOSE_ENOUGH)
+            of_plain, tolerance = (max(engine.tolerance(study.tolerance), CLOSE_ENOUGH) for engine in engines)
+            asked.append((scene, plain, None, of_plain))
             loaded = UNDER_LOAD if any(link is not None for link in bar_links(scene)) else ()
             asked += [(scene, spatial, variation, tolerance) for variation in (*variations, *loaded)]
     return asked
