@@ -70,7 +70,7 @@ ASSUMPTIONS = (
         "Bars stretch by 1e-5 rho under the weight of all bodies and bend likewise, so that every body has its own "
         "vertical motion. Real clamped bars shorten by 0.6 u^2/l when they sway by u, ten times the rise of the "
         "pendulum, and become softer by the weight. The spatial model has both where a scene states the "
-        "axial_stiffness of its bars; else it is the weakest assumption of the study.",
+        "axial stiffness of its bars; else it is the weakest assumption of the study.",
         "partly",
     ),
     Assumption(
