@@ -31,7 +31,7 @@ from comparison.analysis.targets import targets_met
 from comparison.analysis.unanswered import with_silent_models
 from comparison.cli.arguments import command, writing
 from comparison.cli.budgeted import allotment, drawings_first, spend
-from comparison.cli.closing import print_closing, print_errors
+from comparison.cli.closing import print_check, print_closing, print_faults
 from comparison.cli.computing import ending_early
 from comparison.cli.entered import Engines, as_words
 from comparison.cli.options import Options, parsed
@@ -43,7 +43,7 @@ from comparison.execution.output import atomic_replace, clear_dead, on_stderr
 from comparison.execution.processes import process_pool
 from comparison.execution.progress import wide_console
 from comparison.execution.provenance import provenance
-from comparison.execution.resume import command_line, resume_hint
+from comparison.execution.resume import changed, command_line, resume_hint
 from comparison.execution.runner import Computed, Runner, longest_first
 from comparison.execution.task_results import TaskResults
 from comparison.execution.workers import workers
@@ -88,7 +88,7 @@ def main(
     """
     with stoppable():
         try:
-            argv = [*argv, *as_words(models or {})]
+            argv = changed(argv, as_words(models or {}))
             options = parsed(argv)
             console = wide_console()
             plan = _chosen(options, hierarchy)
@@ -221,8 +221,10 @@ def _run(
     with writing(options.out), atomic_replace(options.out) as report:
         write_report(report.folder, results, findings)
     place = options.out if report.place == options.out.resolve() else report.place
-    print_errors(results, options.check)
+    print_faults(results)
     print_closing(console, results, options, words, place, time.monotonic() - begin)
+    if options.check:
+        print_check(results)
     return 1 if options.check and results.broken else 0
 
 

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from comparison.analysis.differences import pair_step
 from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.unanswered import unanswered
 from comparison.study.batches import execute_batch
-from comparison.study.models import MODEL_HIERARCHY, SPATIAL, Model, Pair, with_softened_bars
+from comparison.study.entered import entered_model
+from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, with_softened_bars
 from comparison.study.study import Study
 from reference.problem import Scene, load_scene
-from reference.problem.ranges import Range, checked_number
+from reference.problem.ranges import TOLERANCE, Range, checked_choice, checked_number, checked_whole_number
 
-LIMIT = Range(0.0, 1e6)
+LIMIT, GRID, FAILED = Range(0.0, 1e6), Range(1, 512), Range(0, 512**2)
+LAWS = [model.key for model in MODEL_HIERARCHY if model.side == "reference"]
+ENGINE = "engine"  # key and title of the user's engine
 
 
 def assert_consistent(
@@ -28,6 +33,9 @@ def assert_consistent(
     total_maximum: float | None = None,
     grid: int = 4,
     tolerance: float = 1e-3,
+    engine: Callable[..., Any] | None = None,
+    law: str = "regularised",
+    failed: int = 0,
 ) -> None:
     """
     Raise AssertionError where the equations and the engine differ by more than their errors and a limit.
@@ -45,14 +53,21 @@ def assert_consistent(
         Phases per axis.
     tolerance : float
         Relative error asked of the engine.
+    engine : callable, optional
+        A function of your own, as `--model` takes it (docs/other-engines.md). The limits like_for_like are then on its
+        difference from the equations with its law.
+    law : {"regularised", "small", "exact", "resolved"}
+        Key of that model of the equations, as after "@" in `--model`.
+    failed : int
+        Phase pairs without a value that are allowed, of the models that are compared together.
 
     Raises
     ------
     AssertionError
-        With one line for each limit that is broken: body, phase pair, both values and their errors. Also where no phase
-        pair has both values.
+        With one line for each limit that is broken: body, phase pair, both values and their errors. Also where more
+        phase pairs than allowed have no value, and where none has both.
     SceneError, ValueError
-        For a scene that cannot be used, a limit outside its range, or no limit at all.
+        For a scene that cannot be used, an argument outside its range, or no limit at all.
 
     Notes
     -----
@@ -73,21 +88,33 @@ def assert_consistent(
     stated = {name: checked_number(name, limit, LIMIT) for name, limit in limits.items() if limit is not None}
     if not stated:
         raise ValueError(f"no limit: give one of {', '.join(limits)}")
+    grid = checked_whole_number("grid", grid, GRID)
+    failed = checked_whole_number("failed", failed, FAILED)
+    tolerance = checked_number("tolerance", tolerance, TOLERANCE)
+    law = checked_choice("law", law, LAWS)
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
     with_total = any(name.startswith("total") for name in stated)
-    hierarchy = [model for model in MODEL_HIERARCHY if with_total or model is not SPATIAL]
-    if with_total:
-        hierarchy = [*with_softened_bars(hierarchy, (scene,))]
-    study = Study((scene,), grid, tolerance, hierarchy)
+    hierarchy = [*(with_softened_bars(MODEL_HIERARCHY, (scene,)) if with_total else MODEL_HIERARCHY)]
+    if engine is not None:
+        hierarchy.append(entered_model(ENGINE, {"function": engine}, law))
+    pairs = {pair.key: pair for pair in pairs_of(scene, hierarchy)}
+    alike = "like-for-like" if engine is None else ENGINE
+    asked = {name: pairs.get("total" if name.startswith("total") else alike) for name in stated}
+    needed = {model.key for pair in asked.values() if pair for model in (pair.first, pair.second)}
+    study = Study((scene,), grid, tolerance, [model for model in hierarchy if model.key in needed])
     batches = study.batches()
-    surfaces = labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
-    pairs = {pair.key: pair for pair in study.pairs(scene)}
+    answers = [execute_batch(batch) for batch in batches]
+    surfaces = labeled_surfaces(study, batches, answers)
     broken = [
         line
         for name, limit in stated.items()
         for compared, _, measure in [name.partition("_maximum")]
-        for line in _broken(surfaces, scene, pairs.get(compared.replace("_", "-")), compared, bool(measure), limit)
+        for line in _broken(surfaces, scene, asked[name], compared, bool(measure), limit)
     ]
+    gaps = unanswered(study, surfaces)
+    if sum(gap.points for gap in gaps) > failed:
+        why = dict.fromkeys(answer.error_message for answer in answers if answer.error_message)
+        broken += [f"{gap.sentence.removesuffix('.')}; {failed} allowed" for gap in gaps] + list(why)
     if broken:
         raise AssertionError("\n".join(broken))
 

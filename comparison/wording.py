@@ -18,6 +18,12 @@ GREEK = {**SMALL, "Delta": "Δ", "Phi": "Φ"}
 LETTERS = re.compile(rf"(?<![a-zA-Z^])(d?)({'|'.join(GREEK)})(?![a-zA-Z])")
 
 
+def exception_line(error: BaseException) -> str:
+    """What was raised, and what its notes say of the place, in one line."""
+    notes = "".join(f" ({note})" for note in getattr(error, "__notes__", ()))
+    return " ".join(f"{type(error).__name__}: {error}{notes}".split())
+
+
 def percent(value: float) -> str:
     """A share in percent with two digits."""
     if not math.isfinite(value):

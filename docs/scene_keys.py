@@ -49,7 +49,8 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         "Acceptance",
         "acceptance",
         "Limits for `--check`. `median`, `maximum` and `ratio` here are those of `like_for_like`; the tables `total`,"
-        " `translational` and `like_for_like` take the same three keys.",
+        " `translational` and `like_for_like` take the same three keys. So does a table with the name of an engine that"
+        " joins the study with `--model NAME=...`, as `[acceptance.mine]`: its difference from the equations.",
     ),
     (
         "`[analyses]`",

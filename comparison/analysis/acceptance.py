@@ -11,7 +11,7 @@ import xarray as xr
 from comparison.analysis.budget import closure, steps
 from comparison.analysis.differences import Difference
 from comparison.analysis.unanswered import Unanswered
-from comparison.study.models import pairs_of, steps_of
+from comparison.study.models import pairs_of
 from comparison.study.study import Study
 from reference.problem import Scene
 
@@ -69,8 +69,7 @@ def checked_limits(
     """
     limits = []
     for scene in study.scenes:
-        limited = {model.key for model in steps_of(scene, study.hierarchy)}  # a user's engine breaks no limit
-        gaps = [gap for gap in lacking if gap.scene == scene.name and gap.model in limited]
+        gaps = [gap for gap in lacking if gap.scene == scene.name]
         differences = [row for row in rows if row.scene == scene.name]
         checked = _breaches(study, surfaces, scene, differences, gaps)
         limits += [Limit(scene.name, key, allowed, tuple(breaches)) for key, allowed, breaches in checked]
@@ -85,7 +84,8 @@ def _breaches(
     for key, pair, measure, allowed in stated.differences():
         compared = [row for row in rows if row.pair == _same(study, scene, pair)]
         if any(row.asked > row.unanswered for row in compared):
-            yield key, allowed, _beyond([(row.body, getattr(row, measure)) for row in compared], allowed)
+            missing = "an error estimate is missing" if measure == "ratio" else "no phase pair to compare"
+            yield key, allowed, _beyond([(row.body, getattr(row, measure)) for row in compared], allowed, missing)
         else:
             reason = f"nothing to compare ({_why_not(study, scene, pair, gaps)})"
             yield key, allowed, [Breach(0, float("nan"), reason)]
@@ -100,13 +100,11 @@ def _breaches(
         yield "failed", allowed_points, [Breach(0, count, excess)] if count > allowed_points else []
 
 
-def _beyond(values: Sequence[tuple[int, float]], allowed: float) -> list[Breach]:
-    """The bodies whose value is not within the limit; no value is not within any."""
-    return [
-        Breach(body, value, "no phase pair to compare" if isnan(value) else "")
-        for body, value in values
-        if not value <= allowed
-    ]
+def _beyond(
+    values: Sequence[tuple[int, float]], allowed: float, missing: str = "no phase pair to compare"
+) -> list[Breach]:
+    """The bodies whose value is not within the limit; no value is not within any, for the reason `missing`."""
+    return [Breach(body, value, missing if isnan(value) else "") for body, value in values if not value <= allowed]
 
 
 def _same(study: Study, scene: Scene, pair: str) -> str:
@@ -120,6 +118,8 @@ def _same(study: Study, scene: Scene, pair: str) -> str:
 def _why_not(study: Study, scene: Scene, pair: str, gaps: Sequence[Unanswered]) -> str:
     """Why a pair of models is not compared."""
     wanted = next((known for known in pairs_of(scene, study.hierarchy) if known.key == pair), None)
+    if wanted is None and pair in scene.acceptance.of_engines:
+        return f"no engine {pair} in this study: --model {pair}=module:function enters it"
     if wanted is None:
         return "no engine in this study"
     reasons = [gap.description for gap in gaps if gap.model in (wanted.first.key, wanted.second.key)]

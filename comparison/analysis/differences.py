@@ -24,8 +24,9 @@ class Difference:
 
     median, percentile95, maximum: of its absolute value, NaN without any such phase. phases: (alpha1, alpha2) of the
     maximum, rad. beyond_error: share of these phases where it exceeds u_D = sqrt(u_A^2 + u_B^2), the two error
-    estimates together. ratio: largest |D| / u_D. Both are NaN where a model states no error. asked: phases that both
-    models were asked for; not_ok: those of them where either outcome is not ok; unanswered: where either has no value.
+    estimates together, NaN where a model states no error. ratio: largest |D| / u_D, NaN where any error is missing.
+    asked: phases that both models were asked for; not_ok: those of them where either outcome is not ok; unanswered:
+    where either has no value.
     """
 
     scene: str
@@ -78,7 +79,7 @@ def _difference(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> Diff
         maximum=float(maximum),
         phases=signed.phases,
         beyond_error=float((np.abs(signed.size) > signed.uncertainty)[stated].mean()) if stated.any() else float("nan"),
-        ratio=float(signed.ratio[stated].max()) if stated.any() else float("nan"),
+        ratio=float(signed.ratio[valid].max()) if valid.any() and (stated == valid).all() else float("nan"),
         asked=valid.size,
         not_ok=int(not_ok.sum()),
         unanswered=int((~valid).sum()),

@@ -15,7 +15,7 @@ from comparison.analysis.steps import RESOLVED
 from comparison.analysis.waterfall import NAN, Waterfall, WaterfallBar
 from comparison.study.models import Model, steps_of
 from comparison.study.study import Study
-from comparison.wording import degrees, percent
+from comparison.wording import degrees, percent, signed
 from reference.problem import Scene
 
 MAIN_CAUSE = 0.5  # of the largest real step: a step of that size is named as a cause, too
@@ -64,7 +64,7 @@ def headline(study: Study, surfaces: xr.Dataset, scene: Scene, bars: Waterfall, 
     Headline
         Its largest difference is the largest that the page shows of the first and any engine model.
     """
-    body, pair = bars.body, study.pairs(scene)[0]
+    body, pair = bars.body, next(pair for pair in study.pairs(scene) if pair.key == "total")
     total = pair_step(surfaces, scene.name, pair, body)
     known, largest = total.known, bars.largest
     alike = [row.maximum for row in rows if (row.scene, row.body, row.pair) == (scene.name, body, "like-for-like")]
@@ -89,7 +89,8 @@ def headline(study: Study, surfaces: xr.Dataset, scene: Scene, bars: Waterfall, 
         like_for_like=alike[0] if alike else NAN,
         sentence="",
     )
-    return replace(numbers, sentence=_sentence(study, scene, numbers, bars))
+    sentence = _sentence(study, scene, numbers, bars, _of_engines(study, surfaces, scene, body))
+    return replace(numbers, sentence=sentence)
 
 
 def causes(bars: Sequence[WaterfallBar]) -> tuple[str, ...]:
@@ -98,7 +99,32 @@ def causes(bars: Sequence[WaterfallBar]) -> tuple[str, ...]:
     return tuple(bar.model for bar in real if abs(bar.size) >= MAIN_CAUSE * abs(real[0].size))
 
 
-def _sentence(study: Study, scene: Scene, numbers: Headline, bars: Waterfall) -> str:
+def _of_engines(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> list[str]:
+    """How far each engine of the user is from the equations with its friction law."""
+    sentences = []
+    for pair in study.pairs(scene):
+        if pair.second.side != "entered":
+            continue
+        found = pair_step(surfaces, scene.name, pair, body)
+        size, uncertainty = found.size[found.known], found.uncertainty[found.known]
+        if not size.size:
+            sentences.append(f"{pair.second.title} and the {pair.first.title} have no value in common.")
+            continue
+        largest = percent(float(np.abs(size).max()))
+        within = (np.abs(size) <= np.nan_to_num(uncertainty)).all()  # an unknown error explains no difference
+        count = "" if size.size == found.size.size else f"{size.size} of "
+        places = f"{count}{len(found.size)} × {len(found.size)} initial phases"
+        where = ", ".join(degrees(phase) for phase in found.phases)
+        grid = (
+            f" (mean {signed(float(size.mean()))} over {places}, largest at ({where}))" if found.size.size > 1 else ""
+        )
+        how = f"agrees to {largest} with" if within else f"differs by up to {largest} from"
+        sentences.append(f"{pair.second.title} {how} the {pair.first.title}{grid}.")
+    return sentences
+
+
+def _sentence(study: Study, scene: Scene, numbers: Headline, bars: Waterfall, engines: Sequence[str]) -> str:
+    """The sentences of the user's engines come first and take the place of that of the two codes."""
     models = {model.key: model for model in study.compared(scene)}
     asked = steps_of(scene, study.hierarchy)
     first, second = models[numbers.first], models[numbers.second]
@@ -106,19 +132,23 @@ def _sentence(study: Study, scene: Scene, numbers: Headline, bars: Waterfall) ->
     engine = "the engine" if second is asked[-1] and second.side == "engine" else f"the {second.title}"
     start = f"{scene.name}, {numbers.name}: "
     if first is second:
-        return f"{start}only {paper} were computed, there is nothing to compare."
-    if not numbers.points:
-        return f"{start}{engine} and {paper} have no value in common{'' if scene.recorded else ' at any phase pair'}."
-    real = abs(numbers.maximum) > RESOLVED * numbers.maximum_error
-    parts = [start + (_difference if real else _agreement)(numbers, models, paper, engine)]
-    parts += _causes(numbers, models, bars) if real else []
-    if math.isfinite(numbers.like_for_like):
-        agree = numbers.like_for_like <= SMALL * abs(numbers.maximum) or not real
-        parts.append(
-            "Given the same equations and friction law, the two codes "
-            f"{'agree to' if agree else 'differ by up to'} {percent(numbers.like_for_like)}."
-        )
-    return " ".join(parts)
+        parts = [f"only {paper} were computed, there is nothing to compare."]
+    elif not numbers.points:
+        nowhere = "" if scene.recorded else " at any phase pair"
+        parts = [f"{engine} and {paper} have no value in common{nowhere}."]
+    else:
+        real = abs(numbers.maximum) > RESOLVED * numbers.maximum_error
+        parts = [(_difference if real else _agreement)(numbers, models, paper, engine)]
+        parts += _causes(numbers, models, bars) if real else []
+        if math.isfinite(numbers.like_for_like) and not engines:
+            agree = numbers.like_for_like <= SMALL * abs(numbers.maximum) or not real
+            parts.append(
+                "Given the same equations and friction law, the two codes "
+                f"{'agree to' if agree else 'differ by up to'} {percent(numbers.like_for_like)}."
+            )
+    if engines:
+        parts = [*engines, f"{parts[0][0].upper()}{parts[0][1:]}", *parts[1:]]
+    return start + " ".join(parts)
 
 
 def _agreement(numbers: Headline, models: Mapping[str, Model], paper: str, engine: str) -> str:

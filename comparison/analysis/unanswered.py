@@ -15,6 +15,8 @@ from comparison.study.models import Model, models_of, steps_of
 from comparison.study.study import Study
 from reference.problem import ADVICE, Outcome, Scene
 
+WORTHLESS_VALUE = "error above half of the value"
+
 
 @dataclass(frozen=True)
 class OutcomeNote:
@@ -32,7 +34,7 @@ class Unanswered:
     scene: str
     model: str
     title: str
-    points: int  # phase pairs without a value
+    points: int  # phase pairs without a value that is known to half of itself
     asked: int  # phase pairs that the model was asked for
     used: bool  # whether comparisons use the values that it has
     outcomes: tuple[OutcomeNote, ...]  # those that are not ok
@@ -87,7 +89,7 @@ def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
     for scene in study.scenes:
         silent = (study.silent or {}).get(scene.name, ())
         for model in models_of(scene, study.hierarchy):
-            lacking = int((~_answered(surfaces, scene, model)).sum())
+            lacking = int((~_usable(surfaces, scene, model)).sum())
             if lacking or model.key in silent:
                 asked = study.points(model, scene)
                 used = model.key not in silent and lacking < asked
@@ -108,11 +110,14 @@ def advice(study: Study, scene: Scene, model: Model, outcome: str) -> str:
 
 def _notes(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> tuple[OutcomeNote, ...]:
     counts = outcome_counts(surfaces, scene.name, model.key)
-    return tuple(
+    notes = [
         OutcomeNote(outcome, count, advice(study, scene, model, outcome))
         for outcome, count in counts.items()
         if outcome != Outcome.OK
-    )
+    ]
+    if unknown := int((_answered(surfaces, scene, model) & ~_usable(surfaces, scene, model)).sum()):
+        notes.append(OutcomeNote(WORTHLESS_VALUE, unknown, "a smaller tolerance may help"))
+    return tuple(notes)
 
 
 def _answered(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:

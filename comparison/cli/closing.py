@@ -12,7 +12,7 @@ from rich.console import Console
 
 from comparison.cli.options import Options
 from comparison.cli.terminal import new_table
-from comparison.execution.resume import command_line
+from comparison.execution.resume import changed, command_line
 from comparison.report.results.alerts import Alert
 from comparison.report.results.differences import Headline
 from comparison.report.results.run import Targets
@@ -31,18 +31,21 @@ LABELS = {
 }
 
 
-def print_errors(results: Results, check: bool) -> None:
-    """On standard error: what solvers reported and, with --check, the broken limits and the scenes without limits."""
-    lines = [f"{LABELS['fault']}: {line}" for line in results.faults]
-    if check:
-        lines += [f"limit broken: {alert.scene}: {alert.text}" for alert in results.broken]
-        unlimited = [scene.name for scene in results.scenes if not scene.limits]
-        if len(unlimited) == len(results.scenes):
-            lines.append("--check: no scene states [acceptance] limits: nothing was checked")
-        elif unlimited:
-            lines.append(
-                f"--check: {', '.join(unlimited)}: no limits are stated under [acceptance]: nothing was checked"
-            )
+def print_faults(results: Results) -> None:
+    """On standard error: what solvers reported."""
+    for line in results.faults:
+        print(f"{LABELS['fault']}: {line}", file=sys.stderr)
+
+
+def print_check(results: Results) -> None:
+    """On standard error, as the last lines of a run with --check: broken limits, and the scenes without limits."""
+    lines = [f"limit broken: {alert.scene}: {alert.text}" for alert in results.broken]
+    unlimited = [scene.name for scene in results.scenes if not scene.limits]
+    if len(unlimited) == len(results.scenes):
+        lines.append("--check: no scene states [acceptance] limits: nothing was checked")
+    elif unlimited:
+        lines.append(f"--check: {', '.join(unlimited)}: no limits are stated under [acceptance]: nothing was checked")
+    sys.stdout.flush()  # in a file that takes both outputs, too, these lines are the last
     for line in lines:
         print(line, file=sys.stderr)
 
@@ -96,21 +99,14 @@ def next_commands(results: Results, words: Sequence[str]) -> list[str]:
         largest, source = max(filmed, key=lambda pair: abs(pair[0].maximum))
         lines.append(f"Next: a film of the largest difference: {_film(largest, source)}")
     if results.phased and not (results.run.choice and results.run.choice.budget):
-        finer = command_line([*_without_grid(words), "--grid", str(2 * results.grid), "--plan"])
+        finer = command_line(changed(words, ["--grid", str(2 * results.grid), "--plan"], options=["--grid"]))
         lines.append(f"Next: what a finer grid costs: {finer}")
     return lines
 
 
-def _without_grid(words: Sequence[str]) -> list[str]:
-    return [
-        word
-        for before, word in zip(["", *words], words)
-        if before != "--grid" and word != "--grid" and not word.startswith("--grid=")
-    ]
-
-
 def _film(headline: Headline, source: str) -> str:
     phases = " ".join(f"{phase:.4f}" for phase in headline.maximum_phases)
+    source = f"./{source}" if source.startswith("-") else source  # else it is read as an option
     return f"python -m multibody.animate {shlex.quote(source)} --phases {phases} --model {headline.maximum_model}"
 
 

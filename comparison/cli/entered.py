@@ -11,23 +11,34 @@ import os
 import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 from comparison.cli.arguments import CommandParser, number
 from comparison.execution.environment import engine_fingerprint
 from comparison.execution.executors import TimeLimitError, WorkerDiedError
 from comparison.execution.processes import Workers
-from comparison.study.entered import LIKE, TIME_LIMIT, entered_function, entered_model, names_of, silent
+from comparison.study.entered import (
+    LIKE,
+    TIME_LIMIT,
+    entered_function,
+    entered_model,
+    names_of,
+    note_line,
+    silent,
+)
 from comparison.study.models import MODEL_HIERARCHY, Model
+from comparison.wording import exception_line
 from reference.problem import SceneError
+from reference.problem.acceptance import ENGINE_NAME, Acceptance
 
 OPTION, LIMIT_OPTION = "--model", "--model-limit"
 FORM = "NAME=module:function[@KEY]"
-NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")
 DOTTED = r"[^\W\d]\w*(?:\.[^\W\d]\w*)*"
 SPEC = re.compile(rf"(?P<name>[^=]*)=(?P<function>{DOTTED}:{DOTTED})(?:@(?P<like>.*))?")
 LAWS = [model.key for model in MODEL_HIERARCHY if model.side == "reference"]
-TAKEN = {*(model.key for model in MODEL_HIERARCHY), "total", "like-for-like"}  # keys of models and of differences
+TAKEN = {*(model.key for model in MODEL_HIERARCHY), "like-for-like", *Acceptance.model_fields}
 IMPORTING = 60.0  # s of processor time that importing an engine may take
 
 Engines = Mapping[str, str | Callable[..., Any]]
@@ -80,7 +91,9 @@ def entered_models(specs: Sequence[str], limit: str | None = None, scheduler: st
     names = [name for name, _, _ in parts]
     for spec, name in zip(specs, names):
         if name in TAKEN:
-            raise SceneError("command line", OPTION, spec, f"{name} names a model or a difference: choose another name")
+            raise SceneError(
+                "command line", OPTION, spec, f"{name} names a model, a difference or a limit: choose another name"
+            )
         if names.count(name) > 1:
             raise SceneError("command line", OPTION, spec, f"{name} is there twice: every engine needs a name")
     if specs and (folder := os.getcwd()) not in sys.path and "" not in sys.path:
@@ -128,7 +141,7 @@ def _parts(spec: str) -> tuple[str, str, str]:
     if match is None:
         raise SceneError("command line", OPTION, spec, f"must be {FORM}, as mine=my_engine:amplification")
     name, function, like = match["name"], match["function"], match["like"] or LIKE
-    if not NAME.fullmatch(name):
+    if not ENGINE_NAME.fullmatch(name):
         rule = "NAME must begin with a letter and have at most 30 letters, digits and -"
         raise SceneError("command line", OPTION, spec, rule)
     if like not in LAWS:
@@ -180,5 +193,7 @@ def look_at(path: str) -> tuple[str, dict[str, str]]:
         except TypeError as error:
             fault = f"cannot be called as {name}(scene, phases): {error}"
         except BaseException as error:
-            fault = f"importing {module} raises {type(error).__name__}: {error}"
+            spec = find_spec(module.split(".")[0])
+            note_line(error, Path(spec.origin) if spec is not None and spec.origin else None)
+            fault = f"importing {module} raises {exception_line(error)}"
     return " ".join(fault.split()), {}

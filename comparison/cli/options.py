@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 
 from comparison.analysis.taken_up import TAKEN_UP
@@ -16,6 +17,7 @@ from comparison.study.planning import DEFAULT_GRID, DEFAULT_TOLERANCE, tightest
 from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.study import refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
+from reference.problem.acceptance import Acceptance
 from reference.problem.analyses import ANALYSES, ON_REQUEST, known_analyses
 
 
@@ -90,6 +92,8 @@ def parsed(argv: Sequence[str]) -> Options:
         selection=Selection.of((scene for family in families for scene in family.scenes), only, skip, also),
         models=entered_models(words.model, words.model_limit, words.scheduler),
     )
+    if options.check:
+        _refuse_limits_of_no_engine(options.scenes, [model.key for model in options.models])
     sources = list(zip(names, options.families))
     refuse_same_names((source, family.name) for source, family in sources)
     refuse_same_names((source, scene.name) for source, family in sources for scene in family.scenes)
@@ -106,6 +110,17 @@ def parsed(argv: Sequence[str]) -> Options:
         refuse_foreign_report(options.out)
         refuse_foreign_store(options.out)
     return options
+
+
+def _refuse_limits_of_no_engine(scenes: Sequence[Scene], engines: Sequence[str]) -> None:
+    """Refuse limits of an engine that this study does not have. Raises SceneError."""
+    for scene in scenes:
+        for name, limits in scene.acceptance.of_engines.items():
+            if name not in engines:
+                near = get_close_matches(name, [*engines, *Acceptance.model_fields], n=1, cutoff=0.5)
+                hint = f"did you mean {near[0]}?" if near else f"--model {name}=module:function enters it"
+                rule = f"this study has no engine of this name; {hint}"
+                raise SceneError(scene.name, f"acceptance.{name}", limits.stated(), rule)
 
 
 def _parser() -> CommandParser:

@@ -140,5 +140,6 @@ def new_table(*headings: str) -> Table:
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for heading in headings:
         words = heading in ("scene", "model", "difference", "step", "quantity")
-        table.add_column(heading, justify="left" if words else "right", no_wrap=True)
+        long = heading == "scene"  # a name of any length is folded, numbers are never cut
+        table.add_column(heading, justify="left" if words else "right", no_wrap=not long, overflow="fold")
     return table

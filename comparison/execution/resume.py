@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from comparison.execution.cache import Cache
 from comparison.execution.keys import ANALYSIS, BATCH
@@ -34,6 +34,40 @@ def command_line(words: Sequence[str], command: str = "run") -> str:
     return shlex.join([*invocation(command), *words])
 
 
+def changed(
+    words: Sequence[str], added: Sequence[str] = (), flags: Collection[str] = (), options: Collection[str] = ()
+) -> list[str]:
+    """
+    The words of a command line with other options. What stands behind "--" is no option and stays.
+
+    Parameters
+    ----------
+    words : sequence of str
+    added : sequence of str
+        Options to add, with their values.
+    flags, options : collection of str
+        Names to leave out: of options without a value, and of options with one.
+
+    Returns
+    -------
+    list of str
+
+    Examples
+    --------
+    >>> changed(["--grid", "4", "--fresh", "--", "-a.toml"], ["--plan"], flags=["--fresh"], options=["--grid"])
+    ['--plan', '--', '-a.toml']
+    """
+    end = words.index("--") if "--" in words else len(words)
+    kept, before = [], list(words[:end])
+    while before:
+        word = before.pop(0)
+        if word in options:
+            before = before[1:]
+        elif word not in flags and word.partition("=")[0] not in options:
+            kept.append(word)
+    return [*kept, *added, *words[end:]]
+
+
 def resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batches: int | None = None) -> str:
     """
     How much is kept where, and the command for the rest: the same one, without what would throw it away.
@@ -54,7 +88,7 @@ def resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batche
     str
         Part of one line.
     """
-    rest = [word for word in words if word != "--fresh"]
+    rest = changed(words, flags=["--fresh"])
     tasks = cache.kept[ANALYSIS]
     if batches is None:
         kept = f"{tasks} results are"
@@ -80,11 +114,4 @@ def without_scheduler(words: Sequence[str]) -> list[str]:
     >>> without_scheduler(["fig3-I", "--scheduler", "tcp://a:1", "--grid", "4"])
     ['fig3-I', '--grid', '4']
     """
-    rest, words = [], list(words)
-    while words:
-        word = words.pop(0)
-        if word == "--scheduler":
-            words = words[1:]
-        elif not word.startswith("--scheduler="):
-            rest.append(word)
-    return rest
+    return changed(words, options=["--scheduler"])

@@ -30,11 +30,12 @@ def page_data(findings: Findings) -> str:
     JSON of all that is drawn; NaN is null.
 
     grid: phases per axis of the study. titles: by model. scenes, each: name, title, bodies, duration (s), recorded,
-    flat (whether it is a flat slider); pairs, each: key, title, sentence, first, second (models), contours (per body:
-    polylines [[alpha1, alpha2], ...], rad, on which |D| = u_D), uncertainty (per body: u_D relative to the first model
-    on the phases of both, or null where both are surfaces); models (by key: see `_model`); contact
-    (`contact_geometry`); places (row, column, phases or null under a record, why, and motions: see `motion_data`);
-    spectra (`spectrum_axis`). A surface is a list of rows, one per alpha1, of values, one per alpha2.
+    flat (whether it is a flat slider); pairs, each: key, title, sentence, first, second (models), entered (whether the
+    second is an engine of the user), contours (per body: polylines [[alpha1, alpha2], ...], rad, on which |D| = u_D),
+    uncertainty (per body: u_D relative to the first model on the phases of both, or null where both are surfaces);
+    models (by key: see `_model`); contact (`contact_geometry`); places (row, column, phases or null under a record,
+    why, and motions: see `motion_data`); spectra (`spectrum_axis`). A surface is a list of rows, one per alpha1, of values,
+    one per alpha2.
     """
     study = findings.study
     starts = starts_of(findings.motions or [])
@@ -78,6 +79,7 @@ def _pair(findings: Findings, scene: Scene, pair: Pair) -> dict[str, Any]:
         "sentence": pair.sentence,
         "first": pair.first.key,
         "second": pair.second.key,
+        "entered": pair.second.side == "entered",
         "contours": [crossings(step.size, step.uncertainty, step.alpha1) if surfaces else [] for step in steps],
         "uncertainty": None if surfaces else [_rows(step.uncertainty, ERROR_DIGITS) for step in steps],
     }

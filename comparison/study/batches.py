@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparison.study.models import Model
+from comparison.wording import exception_line
 from reference.problem import Outcome, Scene
 
 Array = NDArray[np.float64]
@@ -118,7 +119,7 @@ def execute_batch(batch: Batch) -> BatchResult:
         if shapes != ((points, bodies), (points, bodies), (points,), (points,), (points,)):
             raise ValueError(f"{batch.amplification} answered {mu.shape} for {points} phases and {bodies} bodies")
     except Exception as exception:
-        return unanswered(batch, Outcome.SOLVER_FAILED, f"{type(exception).__name__}: {exception}")
+        return unanswered(batch, Outcome.SOLVER_FAILED, exception_line(exception))
     named = ""
     error_may_be_unknown = bool(batch.lane)
     for index in np.flatnonzero(~(np.isfinite(mu) & (np.isfinite(error) | error_may_be_unknown)).all(axis=1)):

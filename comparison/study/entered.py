@@ -13,9 +13,11 @@ import multiprocessing
 import os
 import sys
 import time
+import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -31,6 +33,7 @@ LIKE = "regularised"  # key of the reference's model that an engine is held agai
 MOST = 8  # phases per axis, as the dearest model of the hierarchy: what a call costs is unknown
 TIME_LIMIT = 60.0  # s of processor time of one call, which is asked for one phase pair
 ALWAYS_GIVEN = ("tolerance", "regularization", "equations")  # to a function that names it
+OURS, INSTALLED = {"reference", "multibody", "comparison"}, {"site-packages", "dist-packages"}
 UNKNOWN_ERROR = np.nan  # of an engine that states none
 
 
@@ -57,7 +60,8 @@ def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **s
     Raises
     ------
     ValueError, TypeError, RuntimeError
-        If the function answers in another form, or ends the process. What it raises itself is not caught.
+        If the function answers in another form, or ends the process. What it raises itself is not caught; a note says
+        in which line of the user's files.
     """
     with silent():
         function = entered_function(engine["function"])
@@ -66,18 +70,54 @@ def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **s
             answer = function(scene, np.array(phases), **_named_by(function, settings))
         except SystemExit as ended:
             raise RuntimeError(f"the engine asked the process to end: exit code {ended.code}") from None
+        except Exception as error:
+            note_line(error, _file_of(function))
+            raise
         seconds = _processor_time() - begin
         return _read(answer, len(phases), len(scene.bodies), seconds)
 
 
-def entered_function(path: str) -> Callable[..., Any]:
+def note_line(error: BaseException, file: Path | None) -> None:
+    """
+    Add to an exception where in the user's files it arose, as a note.
+
+    Parameters
+    ----------
+    error : BaseException
+    file : Path or None
+        The file of the engine. Files of its folder and of the folders in it are the user's, but for this project and
+        for installed packages. Without one there is no note.
+    """
+    if file is None:
+        return
+    folder = file.parent
+    while (folder / "__init__.py").exists() and (folder.parent / "__init__.py").exists():
+        folder = folder.parent
+    lines = []
+    for frame, line in traceback.walk_tb(error.__traceback__):
+        place, package = Path(frame.f_code.co_filename), str(frame.f_globals.get("__name__")).split(".")[0]
+        inside = folder in place.parents and not INSTALLED & set(place.relative_to(folder.parent).parts)
+        if place == file or (inside and package not in OURS):
+            lines.append(f"{place.name}, line {line}")
+    if lines:
+        error.add_note(lines[-1])
+
+
+def _file_of(function: Callable[..., Any]) -> Path | None:
+    try:
+        return Path(inspect.getfile(inspect.unwrap(function)))
+    except TypeError:  # of a compiled function, or an object that can be called
+        return None
+
+
+def entered_function(path: str | Callable[..., Any]) -> Callable[..., Any]:
     """
     The function of an entered engine.
 
     Parameters
     ----------
-    path : str
-        "module:name".
+    path : str or callable
+        "module:name", or the function.
 
     Returns
     -------
@@ -88,10 +128,13 @@ def entered_function(path: str) -> Callable[..., Any]:
     TypeError
         If it cannot be called with a scene and phases. What the module raises on import is not caught.
     """
-    module, name = path.split(":")
-    function: Any = import_module(module)
-    for part in name.split("."):
-        function = getattr(function, part)
+    if isinstance(path, str):
+        module, name = path.split(":")
+        function: Any = import_module(module)
+        for part in name.split("."):
+            function = getattr(function, part)
+    else:
+        function, name = path, getattr(path, "__name__", type(path).__name__)
     if not callable(function):
         raise TypeError(f"{name} is {type(function).__name__}, not a function")
     with suppress(ValueError):  # some compiled functions have no signature

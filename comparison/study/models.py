@@ -154,8 +154,8 @@ def steps_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
 
 def pairs_of(scene: Scene, hierarchy: Sequence[Model], silent: Collection[str] = ()) -> list[Pair]:
     """
-    The total difference, that within the paper's assumptions, the like-for-like one, and a like-for-like one of every
-    entered engine: what the scene allows.
+    A like-for-like difference of every entered engine, then the total one, that within the paper's assumptions, and the
+    like-for-like one: what the scene allows.
 
     Parameters
     ----------
@@ -180,13 +180,14 @@ def pairs_of(scene: Scene, hierarchy: Sequence[Model], silent: Collection[str] =
         if reference in models:
             sentence = "same geometry and same friction law on both sides: this gap must close"
             pairs.append(Pair("like-for-like", "like for like", sentence, reference, engine))
+    of_users = []
     for entered in models_of(scene, hierarchy):
         if entered.side == "entered" and entered.key not in silent:
             like = next((model for model in equations if model.key == entered.like), reference)
             if like in models:
                 sentence = f"the {like.title} against an engine that the user entered: what it solves is not known here"
-                pairs.append(Pair(entered.key, f"{entered.title}, like for like", sentence, like, entered))
-    return pairs
+                of_users.append(Pair(entered.key, f"{entered.title}, like for like", sentence, like, entered))
+    return of_users + pairs
 
 
 _PEAK = "largest value the computed motion reaches"

@@ -28,9 +28,9 @@ class RecordedReduction:
     factor: float
 
     def concerns(self, model: Model) -> bool:
-        """Whether the model may leave it out of some scene."""
+        """Whether the model may leave it out of some scene: not an engine of the user, which is asked for all."""
         key, *values = self.models
-        return model.settings.get(key) in values
+        return model.side != "entered" and model.settings.get(key) in values
 
 
 def _always(_scene: Scene) -> Reduction:

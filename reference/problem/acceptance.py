@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import re
+from typing import Annotated, Any
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, ConfigDict, Field, model_validator
+from pydantic_core import PydanticCustomError
 
+from reference.problem.scene_error import MisfitError
 from reference.problem.tables import STUDY, Positive, Table, about
+
+ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # of an engine of the user
 
 
 class Limits(Table):
@@ -29,8 +34,22 @@ class Limits(Table):
         return {key: limit for key, limit in limits.items() if limit is not None}
 
 
+def _only_a_table(value: Any) -> Any:
+    """A key that is not known may be the name of an engine, whose limits are a table."""
+    if isinstance(value, dict | Limits):
+        return value
+    raise PydanticCustomError("extra_forbidden", "unknown key")
+
+
 class Acceptance(Limits):
-    """Limits for `--check`. The keys of `Limits` given here are those of `like_for_like`."""
+    """
+    Limits for `--check`. The keys of `Limits` given here are those of `like_for_like`.
+
+    Any other table has the name of an engine of the user: its limits against the equations with the same friction law.
+    """
+
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[str, Annotated[Limits, BeforeValidator(_only_a_table)]] = Field(init=False)
 
     total: Annotated[
         Limits | None,
@@ -50,14 +69,27 @@ class Acceptance(Limits):
     ] = None
     failed: Annotated[
         Annotated[int, Field(ge=0)] | None,
-        about("points without an answer that are allowed, of all models; 0 where another limit is given", "", STUDY),
+        about(
+            "points without an answer that are allowed, of all models with the user's; 0 where another limit is given",
+            "",
+            STUDY,
+        ),
     ] = None
 
     @model_validator(mode="after")
     def _once(self) -> Acceptance:
         if twice := sorted(self.stated().keys() & (self.like_for_like or Limits()).stated().keys()):
             raise ValueError(f"give {twice[0]} here or in like_for_like, which mean the same, not in both")
+        for name, limits in self.of_engines.items():
+            if not ENGINE_NAME.fullmatch(name):
+                rule = "must be total, translational, like_for_like or the name of an engine: letters, digits and -"
+                raise MisfitError(f"acceptance.{name}", limits.stated(), rule)
         return self
+
+    @property
+    def of_engines(self) -> dict[str, Limits]:
+        """The tables of limits of the user's engines, by name."""
+        return self.__pydantic_extra__
 
     def differences(self) -> list[tuple[str, str, str, float]]:
         """Key as written, pair of models, measure and limit of every difference that is limited."""
@@ -66,6 +98,7 @@ class Acceptance(Limits):
             ("like_for_like.", "like-for-like", self.like_for_like),
             ("translational.", "translational", self.translational),
             ("total.", "total", self.total),
+            *((f"{name}.", name, limits) for name, limits in self.of_engines.items()),
         )
         return [
             (f"{start}{key}", pair, key, limit)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from reference.problem.ranges import brief
-from reference.problem.scene_error import SceneError, unknown_key
+from reference.problem.scene_error import SceneError, keys_of, unknown_key
 
 
 def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapping[str, Sequence[str]]) -> None:
@@ -26,13 +26,17 @@ def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapp
             index: Any = int(part)
         else:
             table = ".".join(name for name in parts[:depth] if not name.isdecimal())
-            if part in keys.get(table, ()) and not isinstance(place, dict):
-                rule = (
-                    f"{table} is {brief(place)} and no table: give {table} = {{{' = ..., '.join(keys[table])} = ...}}"
-                )
+            valid = keys_of(table, keys)
+            if not valid:
+                raise SceneError(scene, key, value, f"{table} has no keys to set one by one: give {table} as a whole")
+            if part in valid and not isinstance(place, dict):
+                rule = f"{table} is {brief(place)} and no table: give {table} = {{{' = ..., '.join(valid)} = ...}}"
                 raise SceneError(scene, key, value, rule)
-            if not (isinstance(place, dict) and part in keys.get(table, ()) and (last or part in place)):
-                raise unknown_key(scene, ".".join(parts[: depth + 1]), value, keys.get(table, ()))
+            known = part in valid or f"{table}.*" in keys
+            if isinstance(place, dict) and known and not last and keys_of(f"{table}.{part}", keys):
+                place.setdefault(part, {})  # an optional table that is not there yet
+            if not (isinstance(place, dict) and known and (last or part in place)):
+                raise unknown_key(scene, ".".join(parts[: depth + 1]), value, valid)
             index = part
         if not last:
             place = place[index]

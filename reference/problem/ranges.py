@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from numbers import Real
+from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
@@ -104,6 +104,14 @@ def checked_number(name: str, value: Any, allowed: Range) -> float:
     if number not in allowed:
         raise ValueError(f"{name} = {brief(value)}: {allowed.rule}")
     return number
+
+
+def checked_whole_number(name: str, value: Any, allowed: Range) -> int:
+    """`value` as an int. Raises ValueError, one line, if it is not a whole number within the range."""
+    if not isinstance(value, Integral) or isinstance(value, bool) or value not in allowed:
+        rule = f"must be a whole number from {allowed.lowest:g} to {allowed.highest:g}"
+        raise ValueError(f"{name} = {brief(value)}: {rule}")
+    return int(value)
 
 
 def checked_choice(name: str, value: Any, allowed: Sequence[str]) -> str:

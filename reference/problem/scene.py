@@ -495,7 +495,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "acceptance": tuple(Acceptance.model_fields),
     "analyses": tuple(Analyses.model_fields),
     "measured": tuple(Measured.model_fields),
-    **{f"acceptance.{pair}": tuple(Limits.model_fields) for pair in ("like_for_like", "total", "translational")},
+    **{f"acceptance.{pair}": tuple(Limits.model_fields) for pair in ("like_for_like", "total", "translational", "*")},
     "excitation": (*Excitation.model_fields, "record"),
     f"excitation.{EXCITATIONS[0]}": tuple(Excitation.model_fields),
     f"excitation.{EXCITATIONS[1]}": ("record", "scale"),

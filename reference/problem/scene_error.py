@@ -57,6 +57,11 @@ def one_line(text: str) -> str:
     return text if text.isprintable() else repr(text)
 
 
+def keys_of(table: str, keys: Mapping[str, Sequence[str]]) -> Sequence[str]:
+    """The keys of a table: under its name, or under "*" where its name is free; none of what is no table."""
+    return keys.get(table) or keys.get(f"{table.rpartition('.')[0]}.*", ())
+
+
 def unknown_key(file: str, key: str, value: Any, valid: Sequence[str]) -> SceneError:
     """The error for the dotted `key` where the keys `valid` belong: it names the nearest of them."""
     nearest = get_close_matches(key.rpartition(".")[2][:MAX_LETTERS], valid, n=2, cutoff=0.5)
@@ -77,7 +82,7 @@ def first_error(file: str, invalid: ValidationError, keys: Mapping[str, Sequence
     key = ".".join(map(str, place)) or "scene"
     if error["type"] == "extra_forbidden":
         table = ".".join(str(part) for part in error["loc"][:-1] if not isinstance(part, int))
-        return unknown_key(file, key, error["input"], keys[table])
+        return unknown_key(file, key, error["input"], keys_of(table, keys))
     if error["type"] == "missing":
         return SceneError(file, key, None, "this key is required")
     rule = error["msg"].removeprefix("Value error, ")

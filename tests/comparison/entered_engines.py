@@ -30,6 +30,35 @@ def with_error(scene: Scene, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return plain(scene, phases), 1e-3 * plain(scene, phases)
 
 
+def off(scene: Scene, phases: np.ndarray) -> np.ndarray:
+    return 1.021 * plain(scene, phases)
+
+
+def off_with_error(scene: Scene, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return 1.021 * plain(scene, phases), 1e-3 * plain(scene, phases)
+
+
+def off_in_the_second_body(scene: Scene, phases: np.ndarray) -> np.ndarray:
+    return plain(scene, phases) * [1.0, 1.021]
+
+
+def with_one_error(scene: Scene, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return plain(scene, phases), np.where(phases.any(axis=1)[:, None], np.nan, 1e-3 * plain(scene, phases))
+
+
+def vague(scene: Scene, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return plain(scene, phases), plain(scene, phases)
+
+
+def without_values(scene: Scene, phases: np.ndarray) -> np.ndarray:
+    return np.full_like(plain(scene, phases), np.nan)
+
+
+def takes_all(scene: Scene, phases: np.ndarray, **settings: Any) -> np.ndarray:
+    told.update(settings)
+    return plain(scene, phases)
+
+
 def as_object(scene: Scene, phases: np.ndarray) -> SimpleNamespace:
     return SimpleNamespace(mu=plain(scene, phases))
 
@@ -57,6 +86,18 @@ def own_words(scene: Scene, phases: np.ndarray) -> SimpleNamespace:
 
 def raises(scene: Scene, phases: np.ndarray) -> None:
     raise RuntimeError("the matrix is singular")
+
+
+def raises_in_scipy(scene: Scene, phases: np.ndarray) -> None:
+    from scipy.optimize import brentq
+
+    brentq(lambda x: 1 / 0, 0.0, 1.0)
+
+
+def asks_us_wrongly(scene: Scene, phases: np.ndarray) -> None:
+    import reference
+
+    reference.amplification(scene, phases, equations="none")
 
 
 def misshapen(scene: Scene, phases: np.ndarray) -> np.ndarray:

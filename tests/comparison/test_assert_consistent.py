@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
@@ -12,9 +15,13 @@ from reference.problem import SceneError
 
 def with_engine_off_by(monkeypatch: pytest.MonkeyPatch, factor: float, error: float = 1e-6) -> None:
     """Every model answers with mu = 2, the engine's models with `factor` times that."""
-    monkeypatch.setattr(
-        "comparison.study.batches.imported", lambda path: answering(factor if "multibody" in path else 1.0, error)
-    )
+
+    def imported(path: str):  # type: ignore[no-untyped-def]
+        if path.endswith(":refusal"):
+            return lambda scene, **settings: ""
+        return answering(factor if "multibody" in path else 1.0, error)
+
+    monkeypatch.setattr("comparison.study.batches.imported", imported)
 
 
 def answering(factor: float, error: float):  # type: ignore[no-untyped-def]
@@ -52,6 +59,64 @@ def test_no_value_at_all_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     with_engine_off_by(monkeypatch, np.nan)
     with pytest.raises(AssertionError, match="no phase pair has a value"):
         assert_consistent("fig3-I", like_for_like=1.0)
+
+
+def off_by(factor: float, missing: int = 0):  # type: ignore[no-untyped-def]
+    """An engine of the user that is off from the exact equations, without a value at so many of four phase pairs."""
+    asked = []
+
+    def engine(scene, phases, regularization, tolerance):  # type: ignore[no-untyped-def]
+        asked.append(regularization)
+        result = reference.amplification(scene, phases, regularization=regularization, tolerance=1e-6)
+        return factor * result.mu if len(asked) > missing else np.full_like(result.mu, np.nan)
+
+    return engine
+
+
+@pytest.mark.parametrize("law", ["regularised", "exact"])
+def test_an_engine_of_the_user_is_held_against_the_equations_with_its_law(law: str) -> None:
+    scene = reference.load_scene("fig3-I").with_values({"duration": 2.0})
+    limits = {"like_for_like": 1e-4, "like_for_like_maximum": 1e-4, "grid": 2, "law": law}
+    assert_consistent(scene, **limits, engine=off_by(1.0))
+    with pytest.raises(AssertionError) as failure:
+        assert_consistent(scene, **limits, engine=off_by(1.021))
+    lines = str(failure.value).splitlines()
+    assert len(lines) == 4, "median and maximum of two bodies"
+    assert all("difference 0.021, allowed 0.0001" in line and "engine " in line for line in lines)
+
+
+def test_a_point_without_a_value_fails_unless_it_is_allowed() -> None:
+    scene = reference.load_scene("fig3-I").with_values({"duration": 2.0})
+    with pytest.raises(AssertionError, match=r"fig3-I: engine: no value at 1 of 4 phase pairs: .*; 0 allowed"):
+        assert_consistent(scene, like_for_like=0.1, grid=2, engine=off_by(1.0, missing=1))
+    assert_consistent(scene, like_for_like=0.1, grid=2, engine=off_by(1.0, missing=1), failed=1)
+
+
+def test_an_engine_that_raises_fails_with_file_line_and_message() -> None:
+    def broken(scene, phases):  # type: ignore[no-untyped-def]
+        raise ZeroDivisionError("a pivot vanishes")
+
+    line = broken.__code__.co_firstlineno + 1
+    with pytest.raises(AssertionError) as failure:
+        assert_consistent("fig3-I", like_for_like=0.1, grid=2, engine=broken)
+    assert str(failure.value).splitlines()[-1] == (
+        f"ZeroDivisionError: a pivot vanishes (test_assert_consistent.py, line {line})"
+    )
+
+
+@pytest.mark.parametrize(
+    ("argument", "value", "rule"),
+    [
+        ("grid", Fraction(1, 1000), "grid = Fraction(1, 1000): must be a whole number from 1 to 512"),
+        ("grid", True, "grid = True: must be a whole number from 1 to 512"),
+        ("tolerance", "1", "tolerance = '1': must be finite and positive, from 1e-10 to 0.1"),
+        ("law", "spatial", "law = 'spatial': must be one of small, exact, resolved, regularised"),
+        ("failed", -1, "failed = -1: must be a whole number from 0"),
+    ],
+)
+def test_a_wrong_argument_of_the_gate_is_one_line(argument: str, value: object, rule: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(rule)):
+        assert_consistent("fig3-I", like_for_like=0.1, **{argument: value})  # type: ignore[arg-type]
 
 
 def test_the_spatial_model_is_computed_for_the_total_difference_only(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import io
 import json
 import shlex
+import sys
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from conftest import Run
 from fake_models import errors_in, fake_hierarchy
+from rich.console import Console
 
+from comparison.cli.terminal import new_table
+from comparison.execution.keys import ANALYSIS
+from comparison.execution.resume import changed, resume_hint, without_scheduler
 from comparison.run import main
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"
@@ -60,6 +67,61 @@ def test_a_scene_of_a_file_is_filmed_from_its_file(command: Callable[..., Run], 
     place.write_text((SCENES / "fig3-I.toml").read_text(encoding="utf-8"), encoding="utf-8")
     run = command(str(place), "--grid", "2", hierarchy=errors_in({"spatial": 0.1}))
     assert f"multibody.animate '{place}' --phases" in run.out
+
+
+def test_options_of_a_printed_command_stand_before_the_scenes_of_which_one_begins_with_a_dash(
+    command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("-mine.toml").write_text((SCENES / "fig3-I.toml").read_text(encoding="utf-8"), encoding="utf-8")
+    run = command(
+        "--grid", "2", "--out", str(tmp_path / "report"), "--", "-mine.toml", hierarchy=errors_in({"spatial": 0.1})
+    )
+    film, finer = after_report(run)[2:]
+    assert shlex.split(film)[shlex.split(film).index("multibody.animate") + 1] == "./-mine.toml"
+    words = shlex.split(finer.split("costs: ")[1])[3:]
+    assert words[-5:] == ["--grid", "4", "--plan", "--", "-mine.toml"]
+    assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
+
+
+def test_a_changed_command_keeps_what_stands_behind_two_dashes() -> None:
+    words = ["--grid=4", "--grid", "8", "--fresh", "--out", "r", "--", "--grid", "--fresh", "-a.toml"]
+    assert changed(words, ["--plan"], flags=["--fresh"], options=["--grid"]) == [
+        "--out", "r", "--plan", "--", "--grid", "--fresh", "-a.toml",
+    ]  # fmt: skip
+    assert resume_hint(SimpleNamespace(kept={ANALYSIS: 0}, folder="d"), words).endswith(  # type: ignore[arg-type]
+        "comparison.run --grid=4 --grid 8 --out r -- --grid --fresh -a.toml"
+    )
+    assert without_scheduler(["--scheduler", "tcp://a:1", "--", "--scheduler", "b"]) == ["--", "--scheduler", "b"]
+
+
+def test_engines_given_in_python_are_entered_in_spite_of_two_dashes(command: Callable[..., Run]) -> None:
+    words = ["--grid", "2", "--plan", "--", "fig3-I"]
+    assert main(words, fake_hierarchy(), ThreadPoolExecutor, models={"mine": "entered_engines:plain"}) == 0
+
+
+def test_a_long_name_of_a_scene_cuts_no_number(capsys: pytest.CaptureFixture[str]) -> None:
+    table = new_table("scene", "body", "difference", "median", "95 %", "maximum", "not ok")
+    name = "building-" + "x" * 71
+    table.add_row(name, "2", "like for like", "1.2e-05", "3.4e-05", "5.6e-05", "12345")
+    for width in (80, 100, 120):
+        Console(width=width).print(table)
+        shown = capsys.readouterr().out
+        assert all(cell in shown for cell in ("like for like", "1.2e-05", "3.4e-05", "5.6e-05", "12345")), shown
+        assert "".join(line.split()[0] for line in shown.splitlines()[3:] if line.strip()) == name
+
+
+def test_a_check_without_limits_says_so_in_the_last_line(
+    command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = (SCENES / "fig3-I.toml").read_text(encoding="utf-8").split("[acceptance]")[0]
+    (tmp_path / "free.toml").write_text(text, encoding="utf-8")
+    both = io.StringIO()
+    monkeypatch.setattr(sys, "stdout", both)
+    monkeypatch.setattr(sys, "stderr", both)
+    words = [str(tmp_path / "free.toml"), "--grid", "2", "--check", "--out", str(tmp_path / "report")]
+    assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
+    assert both.getvalue().splitlines()[-1] == "--check: no scene states [acceptance] limits: nothing was checked"
 
 
 def test_a_record_has_no_grid_to_refine(command: Callable[..., Run]) -> None:

@@ -21,6 +21,7 @@ from conftest import Run
 from fake_models import fake_hierarchy, smooth
 from known_analyses import collected
 
+import reference
 from comparison.analysis.budget import budget
 from comparison.analysis.differences import differences, pair_step
 from comparison.analysis.extremes.cells import cells
@@ -48,6 +49,9 @@ from reference.problem import Outcome, SceneError, load_scene
 DOCS = Path(__file__).parents[2] / "docs/other-engines.md"
 SCENE = load_scene("fig3-I")
 PHASES = np.array([(0.0, 0.0), (1.0, 2.0)])
+RAISES = entered_engines.raises.__code__.co_firstlineno + 1
+RAISES_INSIDE = entered_engines.raises_in_scipy.__code__.co_firstlineno + 3
+ASKS = entered_engines.asks_us_wrongly.__code__.co_firstlineno + 3
 
 
 def entered(function: str, name: str = "mine", like: str = "regularised") -> Model:
@@ -110,7 +114,7 @@ def test_the_engine_of_the_documentation_appears_in_the_report(command: Callable
         ("my_name=my_engine:f", "NAME must begin with a letter"),
         ("exact=my_engine:f", "exact names a model"),
         ("spatial=my_engine:f", "spatial names a model"),
-        ("total=my_engine:f", "total names a model or a difference"),
+        ("total=my_engine:f", "total names a model, a difference or a limit"),
         ("mine=my_engine:f@spatial", "KEY must be one of small, exact, resolved, regularised"),
     ],
 )
@@ -139,7 +143,10 @@ def test_a_name_is_there_once_and_a_cluster_has_no_engine_of_this_machine(comman
         ("entered_engines:nothing", "entered_engines has no nothing"),
         ("entered_engines:NUMBER", "cannot be called as NUMBER(scene, phases): NUMBER is int, not a function"),
         ("entered_engines:with_three", "cannot be called as with_three(scene, phases): missing a required argument"),
-        ("engine_that_raises:f", "importing engine_that_raises raises ZeroDivisionError: division by zero"),
+        (
+            "engine_that_raises:f",
+            "importing engine_that_raises raises ZeroDivisionError: division by zero (engine_that_raises.py, line 2)",
+        ),
         ("engine_that_exits:f", "importing engine_that_exits raises SystemExit: 0"),
         ("engine_that_lacks:f", "there is no module no_such_package"),
     ],
@@ -147,7 +154,7 @@ def test_a_name_is_there_once_and_a_cluster_has_no_engine_of_this_machine(comman
 def test_what_cannot_be_imported_or_called_is_named(
     path: str, fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "engine_that_raises.py").write_text("1 / 0\n")
+    (tmp_path / "engine_that_raises.py").write_text("\n1 / 0\n")
     (tmp_path / "engine_that_exits.py").write_text("raise SystemExit(0)\n")
     (tmp_path / "engine_that_lacks.py").write_text("import no_such_package\n")
     monkeypatch.syspath_prepend(str(tmp_path))
@@ -190,7 +197,12 @@ def test_every_form_of_answer_is_read(form: str) -> None:
 @pytest.mark.parametrize(
     ("function", "message"),
     [
-        ("raises", "RuntimeError: the matrix is singular"),
+        ("raises", f"RuntimeError: the matrix is singular (entered_engines.py, line {RAISES})"),
+        ("raises_in_scipy", f"ZeroDivisionError: division by zero (entered_engines.py, line {RAISES_INSIDE})"),
+        (
+            "asks_us_wrongly",
+            f"ValueError: equations = 'none': must be one of exact, small (entered_engines.py, line {ASKS})",
+        ),
         ("misshapen", "ValueError: the engine's mu has shape (3,), asked: (4, 2)"),
         ("texts", "TypeError: the engine's mu has <U1 in place of real numbers"),
         ("nothing_at_all", "TypeError: the engine's mu is None"),
@@ -228,6 +240,33 @@ def test_the_function_gets_what_it_names_of_the_law_that_it_is_held_against() ->
     assert told("exact") == SimpleNamespace(tolerance=1e-3, regularization=None)
 
 
+@pytest.mark.parametrize("like", ["small", "exact", "resolved", "regularised"])
+def test_the_documentation_names_every_argument_that_is_passed(like: str) -> None:
+    text = DOCS.read_text(encoding="utf-8")
+    table = text.split("| by name | passed | value |")[1].split("\n\n")[0]
+    entered_engines.told.clear()
+    (batch, *_) = (b for b in Study((SCENE,), 1, 1e-3, [entered("takes_all", like=like)], full=True).batches())
+    execute_batch(batch)
+    rows = {line.split("`")[1]: line for line in table.splitlines()[2:]}
+    assert set(entered_engines.told) <= set(rows)
+    passed = {name for name, row in rows.items() if "| always |" in row or f"| with `@{like}` |" in row}
+    assert set(entered_engines.told) - {"full"} == passed
+    if entered_engines.told["regularization"] is None:
+        assert f"`@{like}`" in rows["regularization"].split("`None`")[1]
+
+
+@pytest.mark.parametrize("like", ["small", "exact", "resolved", "regularised"])
+def test_the_engine_of_the_documentation_answers_under_every_law(stranger: str, like: str) -> None:
+    function = stranger.removeprefix("mine=")
+    sys.path.append(".")
+    model = entered_model("mine", {"function": function}, like)
+    (batch,) = Study((SCENE.with_values({"duration": 1.0}),), 1, 1e-3, [model]).batches()
+    answer = execute_batch(batch)
+    assert (answer.error_message, answer.status) == ("", ["ok"])
+    right = reference.amplification(batch.scene, batch.phases, regularization=1e-4, tolerance=1e-4).mu
+    np.testing.assert_allclose(answer.mu, right, rtol=0.03)  # geometry left out
+
+
 def test_no_difference_to_an_unknown_error_is_real_and_one_to_a_stated_error_is() -> None:
     study, surfaces = studied(entered("plain", "silent"), entered("with_error", "open"))
     pairs = {pair.key: pair for pair in study.pairs(SCENE)}
@@ -252,15 +291,109 @@ def test_an_entered_engine_changes_no_other_number(function: str) -> None:
     theirs = [row for row in differences(study, surfaces) if row.pair != "mine"]
     assert repr(theirs) == repr(differences(alone, without))
     for body in (1, 2):
-        texts = [
-            headline(each, data, SCENE, waterfall(each, data, SCENE, body), differences(each, data)).sentence
+        numbers = [
+            replace(
+                headline(each, data, SCENE, waterfall(each, data, SCENE, body), differences(each, data)), sentence=""
+            )
             for each, data in ((alone, without), (study, surfaces))
         ]
-        assert texts[0] == texts[1]
+        assert repr(numbers[0]) == repr(numbers[1])
     keys = [batch_key(batch) for batch in study.batches() if batch.model != "mine"]
     assert keys == [batch_key(batch) for batch in alone.batches()]
     assert {gap.model for gap in unanswered(study, surfaces)} == ({"mine"} if function == "raises" else set())
     assert ("mine" in {pair.key for pair in study.pairs(SCENE)}) == (function == "plain")
+
+
+@pytest.mark.parametrize(
+    ("function", "said"),
+    [
+        ("off", "mine differs by up to 2.1 % from the exact equations, v_reg (mean +2.1 % over 4 × 4 initial phases, "),
+        ("with_error", "mine agrees to 0 % with the exact equations, v_reg (mean 0 % over 4 × 4 initial phases, "),
+    ],
+)
+def test_the_headline_and_the_first_pair_are_those_of_the_engine_of_the_user(function: str, said: str) -> None:
+    study, surfaces = studied(entered(function))
+    rows = differences(study, surfaces)
+    assert [pair.key for pair in study.pairs(SCENE)] == ["mine", "total", "translational", "like-for-like"]
+    for body in (1, 2):
+        sentence = headline(study, surfaces, SCENE, waterfall(study, surfaces, SCENE, body), rows).sentence
+        assert sentence.split(": ", 1)[1].startswith(said)
+        assert "The engine gives 1 % more than the paper's equations" in sentence
+        assert "the two codes" not in sentence, "it would be taken for the engine of the user"
+
+
+def acceptance(limits: str, folder: Path) -> str:
+    """A scene file with these limits."""
+    text = (Path(reference.problem.__file__).parent / "scenes/fig3-I.toml").read_text(encoding="utf-8")
+    (folder / "limited.toml").write_text(text.split("[acceptance]")[0] + limits, encoding="utf-8")
+    return str(folder / "limited.toml")
+
+
+def test_check_counts_the_missing_values_of_every_model(command: Callable[..., Run]) -> None:
+    engine = ("--model", "none=entered_engines:without_values")
+    run = command("fig3-I", "--grid", "2", *engine, "--check", hierarchy=fake_hierarchy(gap=5e-5))
+    assert run.code == 1
+    line = "fig3-I: acceptance.failed: 4 points without an answer (none 4 of 4), 0 allowed"
+    assert run.err.splitlines()[-1] == f"limit broken: {line}"
+    assert 'failures="1"' in (run.report / "junit.xml").read_text(encoding="utf-8")
+    page = (run.report / "index.html").read_text(encoding="utf-8")
+    assert "Every acceptance limit stated by the scenes holds" not in page
+    assert line in page
+
+
+def test_a_value_with_an_error_as_large_as_itself_is_missing(command: Callable[..., Run]) -> None:
+    engine = ("--model", "vague=entered_engines:vague")
+    run = command("fig3-I", "--grid", "2", *engine, "--check", hierarchy=fake_hierarchy(gap=5e-5))
+    assert (run.code, "4 points without an answer (vague 4 of 4)" in run.err) == (1, True)
+    assert "vague: no value at any of 4 phase pairs: error above half of the value" in run.out
+
+
+@pytest.mark.parametrize("limit", ["median", "maximum", "ratio"])
+def test_a_scene_limits_every_engine_by_its_name(command: Callable[..., Run], tmp_path: Path, limit: str) -> None:
+    engines = ("--model", "good=entered_engines:with_error", "--model", "bad=entered_engines:off_with_error")
+    tables = "".join(
+        f"[acceptance.{name}]\n{limit} = {2.0 if limit == 'ratio' else 0.02}\n" for name in ("good", "bad")
+    )
+    run = command(acceptance(tables, tmp_path), "--grid", "2", *engines, "--check")
+    found = 21.0 if limit == "ratio" else 0.021  # it claims 1e-3
+    allowed = 2 if limit == "ratio" else 0.02
+    assert run.code == 1
+    assert run.err.splitlines() == [
+        f"limit broken: limited: body {body}: acceptance.bad.{limit}: {found:g} found, {allowed} allowed"
+        for body in (1, 2)
+    ]
+    junit = (run.report / "junit.xml").read_text(encoding="utf-8")
+    assert f'name="acceptance.good.{limit} = {allowed}"' in junit
+    assert 'tests="3" failures="1"' in junit
+    summary = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))
+    assert summary["scenes"][0]["acceptance"]["bad"][limit] == allowed
+
+
+def test_one_body_beyond_a_limit_breaks_it(command: Callable[..., Run], tmp_path: Path) -> None:
+    scene = acceptance("[acceptance.mine]\nmedian = 0.02\n", tmp_path)
+    run = command(scene, "--grid", "2", "--model", "mine=entered_engines:off_in_the_second_body", "--check")
+    assert run.err == "limit broken: limited: body 2: acceptance.mine.median: 0.021 found, 0.02 allowed\n"
+
+
+def test_a_limit_in_units_of_errors_needs_all_of_them(command: Callable[..., Run], tmp_path: Path) -> None:
+    scene = acceptance("[acceptance.mine]\nratio = 2.0\n", tmp_path)
+    for function in ("plain", "with_one_error"):
+        run = command(scene, "--grid", "2", "--model", f"mine=entered_engines:{function}", "--check")
+        assert run.code == 1
+        assert "body 1: acceptance.mine.ratio: an error estimate is missing, 2 allowed" in run.err
+
+
+def test_limits_of_an_engine_that_is_not_there_are_refused_before_anything_is_computed(
+    command: Callable[..., Run], tmp_path: Path
+) -> None:
+    scene = acceptance("[acceptance.mine]\nmedian = 0.02\n", tmp_path)
+    run = command(scene, "--grid", "2", "--check", hierarchy=fake_hierarchy("forbidden"))
+    assert (run.code, run.err.count("\n")) == (2, 1)
+    assert "acceptance.mine = {'median': 0.02}: this study has no engine of this name" in run.err
+    assert "--model mine=module:function enters it" in run.err
+    unchecked = command(scene, "--grid", "2")
+    assert unchecked.code == 0
+    assert "no engine mine in this study" in (unchecked.report / "summary.md").read_text(encoding="utf-8")
 
 
 def test_it_is_held_against_the_model_of_its_law_and_where_that_does_not_apply_against_the_last_of_the_equations() -> (
@@ -272,6 +405,15 @@ def test_it_is_held_against_the_model_of_its_law_and_where_that_does_not_apply_a
     wet = load_scene("fig4-viscous")
     pairs = {pair.key: pair.first.key for pair in pairs_of(wet, [*fake_hierarchy(), entered("plain")])}
     assert pairs["mine"] == pairs["like-for-like"] == "exact"
+
+
+@pytest.mark.parametrize("like", ["small", "exact", "resolved", "regularised"])
+def test_it_is_asked_for_one_phase_pair_in_a_call(like: str) -> None:
+    linear = SCENE.with_values({"isolator.friction": 0.0})
+    study = Study(
+        (SCENE, linear.with_values({"name": "linear"})), 4, 1e-3, [*fake_hierarchy(), entered("plain", like=like)]
+    )
+    assert {len(batch.phases) for batch in study.batches() if batch.model == "mine"} == {1}
 
 
 def test_no_budget_gives_it_more_phases_than_the_dearest_model() -> None:
@@ -366,7 +508,7 @@ def test_the_measured_trade_has_the_curve_of_an_entered_engine_and_one_that_rais
     )
     good, bad = measured.trade.entries
     assert (good.answered, bad.answered) == (good.points, 0)
-    assert bad.error_message == "RuntimeError: the matrix is singular"
+    assert bad.error_message == f"RuntimeError: the matrix is singular (entered_engines.py, line {RAISES})"
     assert max(error for error in good.most if error is not None) == pytest.approx(1e-3, rel=1e-3)
     assert good.error_estimate == [None, None], "it states none"
     assert good.pareto_front == (True, True)

@@ -126,7 +126,7 @@ def test_a_check_without_limits_says_that_nothing_was_checked(command: Callable[
     ("limits", "said"),
     [
         ("[acceptance]\nmaximun = 1.0\n", "acceptance.maximun = 1.0: unknown key; did you mean maximum?"),
-        ("[acceptance.totals]\nmedian = 1.0\n", "unknown key; did you mean total?"),
+        ("[acceptance.totals]\nmedian = 1.0\n", "this study has no engine of this name; did you mean total?"),
         (
             "[acceptance.total]\nclosure = 1.0\n",
             "acceptance.total.closure = 1.0: unknown key; the keys here are median, ",
@@ -140,7 +140,7 @@ def test_a_check_without_limits_says_that_nothing_was_checked(command: Callable[
 def test_a_wrong_limit_is_one_line_with_the_nearest_key(
     command: Callable[..., Run], tmp_path: Path, limits: str, said: str
 ) -> None:
-    run = command(_limited(tmp_path, limits), hierarchy=fake_hierarchy("forbidden"))
+    run = command(_limited(tmp_path, limits), "--check", hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert said in run.err
     assert run.err.count("\n") == 1

@@ -17,6 +17,7 @@ from comparison.analysis.extremes.rows import COLUMNS, Column, Row
 from comparison.analysis.extremes.verdicts import NUMERICS, Reply, Verdict, judged
 from comparison.analysis.stored import finite_or_none
 from comparison.study.batches import imported
+from comparison.wording import exception_line
 from reference.problem import Outcome, Scene
 from reference.problem.scene import KEYS
 from reference.problem.scene_error import first_error
@@ -126,9 +127,9 @@ def _ask(row: Row, function: str, settings: Mapping[str, Any]) -> Reply:
         status = tuple(str(outcome) for outcome in result.status)
         return Reply(np.array(result.mu, dtype=float), np.array(result.error, dtype=float), status)
     except Exception as error:
-        text = f"{type(error).__name__}: {error}"
+        text = exception_line(error)
         if isinstance(error, ValueError) and not isinstance(error, np.linalg.LinAlgError):
-            return Reply(nothing, nothing, (), invalid=str(error))
+            return Reply(nothing, nothing, (), invalid=text.partition(": ")[2])
         return Reply(nothing, nothing, (), raised=text)
 
 

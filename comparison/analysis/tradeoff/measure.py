@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from comparison.analysis.tradeoff.settings import Settings
 from comparison.execution.task import TaskResult
 from comparison.study.batches import imported
+from comparison.wording import exception_line
 from reference.problem import Amplification, Scene
 
 Array = NDArray[np.float64]
@@ -108,7 +109,7 @@ def _called(scene: Scene, phases: Array, path: str, settings: Settings) -> Measu
     try:
         answer = imported(path)(scene, phases, **settings)
     except Exception as error:
-        return Measured(nothing, nothing, time.process_time() - clock, np.nan, f"{type(error).__name__}: {error}")
+        return Measured(nothing, nothing, time.process_time() - clock, np.nan, exception_line(error))
     seconds = time.process_time() - clock
     if isinstance(answer, tuple):
         answer, step = answer
