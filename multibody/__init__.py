@@ -29,6 +29,9 @@ Examples
 
 Notes
 -----
+A function that takes a scene or a motion raises TypeError, one line that says what to pass, for anything else in its
+place. Every other wrong argument is a ValueError in one line.
+
 The engine is loaded on first use, so that a command can be stopped while it loads.
 """
 

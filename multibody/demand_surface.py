@@ -8,8 +8,10 @@ from multibody.integration.refine import MAX_WORK
 from multibody.motion import trajectory
 from reference.problem import PeakDemands, Scene, Trajectory
 from reference.problem.peak_demands import demands_of_motions
+from reference.problem.scene import takes_scene
 
 
+@takes_scene
 def peak_demands(
     scene: Scene,
     phases: ArrayLike,

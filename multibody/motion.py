@@ -16,12 +16,14 @@ from multibody.models.assembly import assemble
 from multibody.models.system import EngineModel
 from reference.problem import Accuracy, Scene, State, Trajectory, checked_phase, ground_acceleration
 from reference.problem.ranges import TOLERANCE, Range, checked_choice, checked_number, checked_state
+from reference.problem.scene import takes_scene
 
 MAX_STEPS = 1e7  # of a single run, which is held in memory whole
 PENETRATION = Range(1e-14, 0.1, "of rho")
 NEWTON = Range(1e-14, 1.0)
 
 
+@takes_scene
 def trajectory(
     scene: Scene,
     phase: ArrayLike,
@@ -94,6 +96,7 @@ def trajectory(
     return replace(motion, accuracy=Accuracy(point.errors, coarser, shares, point.floor))
 
 
+@takes_scene
 def single_run(
     scene: Scene,
     phase: ArrayLike,

@@ -25,10 +25,12 @@ from reference.problem import (
     planar_chain,
 )
 from reference.problem.ranges import LEAST_ACCELERATION, TOLERANCE, checked_number
+from reference.problem.scene import takes_scene
 
 Array = NDArray[np.float64]
 
 
+@takes_scene
 def amplification(
     scene: Scene,
     phases: ArrayLike,

@@ -42,6 +42,9 @@ Examples
 
 Notes
 -----
+A function that takes a scene or a motion raises TypeError, one line that says what to pass, for anything else in its
+place. Every other wrong argument is a ValueError in one line.
+
 The solver is loaded when one of its functions is first used: `import reference.problem`, all that `multibody` shares,
 does not load it.
 """

@@ -7,9 +7,11 @@ from numpy.typing import ArrayLike
 from reference.motion import trajectory
 from reference.problem import PeakDemands, Scene, Trajectory
 from reference.problem.peak_demands import demands_of_motions
+from reference.problem.scene import takes_scene
 from reference.surface import checked_demand
 
 
+@takes_scene
 def peak_demands(
     scene: Scene,
     phases: ArrayLike,

@@ -20,6 +20,7 @@ from reference.problem import (
     loading_period,
 )
 from reference.problem.ranges import checked_array, checked_state
+from reference.problem.scene import takes_scene
 from reference.solver.error_estimate import (
     DIFFERENCE_FRACTION,
     READING_ERROR_FACTOR,
@@ -38,6 +39,7 @@ FIRST_CAPACITY, STEPS_PER_KNOT = 1024, 2  # steps, to begin with: so many, and o
 MIN_ERROR_FRACTION = 1.0  # of the tolerance: closer agreement of two runs is accidental (measured: errors up to 0.2)
 
 
+@takes_scene
 def trajectory(
     scene: Scene,
     phase: ArrayLike,

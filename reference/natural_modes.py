@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from scipy.linalg import eig, eigh_tridiagonal
 
 from reference.problem import GRAVITY, Scene
+from reference.problem.scene import takes_scene
 
 Array = NDArray[np.float64]
 
@@ -105,6 +106,7 @@ def linear_stiffness(scene: Scene) -> Array:
     return np.vstack([np.full((1, 2), pendulum), scene.stiffness])
 
 
+@takes_scene
 def modes(scene: Scene) -> Modes:
     """
     Natural frequencies, shapes and participation factors of the frictionless linearized chain.
@@ -136,6 +138,7 @@ def modes(scene: Scene) -> Modes:
     return Modes(frequency, shape, participation)
 
 
+@takes_scene
 def damped_modes(scene: Scene) -> DampedModes:
     """
     Complex modes of the frictionless linearized chain with the dampers of its links.

@@ -15,6 +15,7 @@ from reference.problem import Scene, checked_phases
 from reference.problem.climb import Climb, Surface, climb_on, follow_jump, kind_of, merged
 from reference.problem.hills import GRID, hills
 from reference.problem.ranges import checked_choice
+from reference.problem.scene import takes_scene
 from reference.problem.symmetry import distinct, half_turns
 from reference.surface import amplification
 
@@ -62,6 +63,7 @@ class PhaseMaximum:
     evaluations: int
 
 
+@takes_scene
 def worst_phases(
     scene: Scene,
     body: int = 1,

@@ -32,6 +32,7 @@ from reference.problem.ranges import (
     checked_choice,
     checked_number,
 )
+from reference.problem.scene import takes_scene
 from reference.solver.error_estimate import NOT_MET, Peaks, peaks_with_error
 from reference.solver.system import (
     OPEN,
@@ -66,6 +67,7 @@ MAX_STEPS = 3_000_000  # half a minute for two bodies
 PARTS_PER_THREAD = 8  # pieces of the surface per thread, so that none waits long for another
 
 
+@takes_scene
 def amplification(
     scene: Scene,
     phases: ArrayLike,

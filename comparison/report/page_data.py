@@ -34,8 +34,8 @@ def page_data(findings: Findings) -> str:
     second is an engine of the user), contours (per body: polylines [[alpha1, alpha2], ...], rad, on which |D| = u_D),
     uncertainty (per body: u_D relative to the first model on the phases of both, or null where both are surfaces);
     models (by key: see `_model`); contact (`contact_geometry`); places (row, column, phases or null under a record,
-    why, and motions: see `motion_data`); spectra (`spectrum_axis`). A surface is a list of rows, one per alpha1, of values,
-    one per alpha2.
+    why, and motions: see `motion_data`); spectra (`spectrum_axis`). A surface is a list of rows, one per alpha1, of
+    values, one per alpha2.
     """
     study = findings.study
     starts = starts_of(findings.motions or [])

@@ -24,6 +24,7 @@ from multibody.models.system import EngineModel
 from multibody.models.units import Units, link_stiffness
 from reference.problem import GRAVITY, Scene, exponents
 from reference.problem.ranges import TOLERANCE, checked_number
+from reference.problem.scene import takes_scene
 
 MAX_LEVELS = 8
 STEPS_PER_PERIOD = 150  # of the fastest motion that matters, at level 0
@@ -140,6 +141,7 @@ class Level:
         return min(math.ceil(math.log(self.step / allowed, STEP_RATIO) - 1e-9), self.max_divisions)
 
 
+@takes_scene
 def levels(
     scene: Scene, model: str = "translational", tolerance: float = 1e-3, regularization: float | None = 1e-3
 ) -> list[Level]:

@@ -10,14 +10,17 @@ from multibody.integration.constant_step import silence
 from multibody.integration.level import STEPS_PER_PERIOD, levels_of
 from multibody.integration.level_runs import MAX_WORK_GROWTH
 from multibody.integration.look_ahead import longest_steps
-from multibody.integration.refine import MAX_WORK
+from multibody.integration.refine import MAX_WORK, WORK
 from multibody.models.assembly import assemble, required_model
 from reference.problem import Scene, SceneError
+from reference.problem.ranges import TOLERANCE, checked_number
+from reference.problem.scene import takes_scene
 
 # work of two levels and of the compliance of the second over a first level in its largest steps: stops take as many
 WHOLE_POINT = 2.0 * (1.0 + 2.0 * MAX_WORK_GROWTH)
 
 
+@takes_scene
 def refusal(
     scene: Scene,
     model: str = "translational",
@@ -53,6 +56,8 @@ def refusal(
     >>> multibody.refusal(reference.load_scene("fig3-I"))
     ''
     """
+    tolerance = checked_number("tolerance", tolerance, TOLERANCE)
+    max_work = checked_number("max_work", max_work, WORK)
     if softened:
         try:
             scene = scene.softened()

@@ -16,7 +16,7 @@ from reference.problem.build_cache import cached_on_disk
 from reference.problem.compiled_parts import compiled_part
 from reference.problem.excitation import exponents, ground_acceleration, loading_period
 from reference.problem.phases import checked_phases
-from reference.problem.scene import Scene
+from reference.problem.scene import Scene, takes_scene
 
 Array = NDArray[np.float64]
 
@@ -24,6 +24,7 @@ SAMPLES_PER_PERIOD = 32  # of the faster harmonic; |u|^2 has twice its frequency
 CLOSE = 1.0 - 1e-9  # of the largest square of the samples: those that rounding may have made smaller
 
 
+@takes_scene
 def ground_peak(scene: Scene, phases: ArrayLike) -> Array:
     """
     Largest ground acceleration over the duration, the denominator of (5.1).

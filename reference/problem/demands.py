@@ -12,7 +12,7 @@ import numpy as np
 
 from reference.problem.energy import Energy, energy_of
 from reference.problem.outcome import Outcome
-from reference.problem.result import Array, Trajectory
+from reference.problem.result import Array, Trajectory, takes_motion
 
 ANSWERED = (Outcome.OK, Outcome.TOLERANCE_NOT_MET)  # outcomes of a motion that lasts as long as the scene
 THINNING = 5  # the sampling error is the largest change if only one of so many samples is taken
@@ -100,6 +100,7 @@ class Demands:
     energy_balance: Estimate | None
 
 
+@takes_motion
 def demands(trajectory: Trajectory) -> Demands:
     """
     Demands of one motion, with errors.

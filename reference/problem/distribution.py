@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.problem.demands import Estimate
+from reference.problem.ranges import checked_array
 
 Array = NDArray[np.float64]
 
@@ -68,7 +69,8 @@ def phase_distribution(mu: ArrayLike, error: ArrayLike) -> PhaseDistribution:
     >>> round(distribution.mean.value, 12), distribution.fractiles[2].error < 0.1
     (2.0, True)
     """
-    values, errors = np.asarray(mu, dtype=float), np.asarray(error, dtype=float)
+    rule = "must be one grid (n1, n2)"
+    values, errors = (checked_array(name, part, rule, finite=False) for name, part in (("mu", mu), ("error", error)))
     known = np.isfinite(values)
     if values.ndim != 2 or values.shape != errors.shape or not known.any():
         raise ValueError(f"mu {values.shape}, error {errors.shape}: must be one grid (n1, n2) with a finite value")

@@ -16,12 +16,15 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.problem.scene import Scene
+from reference.problem.phases import checked_phase
+from reference.problem.ranges import checked_array
+from reference.problem.scene import Scene, takes_scene
 from reference.problem.tables import Excitation
 
 Array = NDArray[np.float64]
 
 
+@takes_scene
 def exponents(scene: Scene) -> NDArray[np.complex128]:
     """
     Complex exponents s_i = -lambda_i + i nu_i of the two harmonics.
@@ -51,6 +54,7 @@ def exponents(scene: Scene) -> NDArray[np.complex128]:
     return np.array([complex(-decay, 2.0 * np.pi / period) for decay, period in zip(load.decay, load.periods)])
 
 
+@takes_scene
 def loading_period(scene: Scene) -> float:
     """
     Time in which the ground acceleration changes.
@@ -80,6 +84,7 @@ def loading_period(scene: Scene) -> float:
     return float(2.0 * np.pi * largest / rate) if rate > 0.0 and np.isfinite(rate) else scene.duration
 
 
+@takes_scene
 def ground_acceleration(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """
     Acceleration of the plate, (xi'', eta'', zeta'') of (5.3), or of the record.
@@ -101,7 +106,7 @@ def ground_acceleration(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Arra
     >>> ground_acceleration(load_scene("fig3-I"), (0.0, 0.0), [0.0])[0].tolist()
     [1.0, 1.0, 0.0]
     """
-    return acceleration_of_ground(scene, phase)(np.asarray(time, float))
+    return acceleration_of_ground(scene, phase)(_instants(time))
 
 
 def acceleration_of_ground(scene: Scene, phase: ArrayLike) -> Callable[[Array], Array]:
@@ -112,6 +117,7 @@ def acceleration_of_ground(scene: Scene, phase: ArrayLike) -> Callable[[Array], 
     return lambda time: (np.exp(time[..., None] * powers) @ amplitudes).real
 
 
+@takes_scene
 def ground_velocity(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """
     Velocity of the plate, the first integral of `ground_acceleration` from rest at t = 0.
@@ -134,11 +140,12 @@ def ground_velocity(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     [0.0, 0.0, 0.0]
     """
     if scene.recorded:
-        return _integrated(scene.record, time, 1)
+        return _integrated(scene.record, _instants(time), 1)
     s = exponents(scene)
-    return _superpose(scene, phase, np.expm1(np.multiply.outer(np.asarray(time, float), s)) / s)
+    return _superpose(scene, phase, np.expm1(np.multiply.outer(_instants(time), s)) / s)
 
 
+@takes_scene
 def ground_displacement(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """
     Displacement of the plate, the second integral of `ground_acceleration` from rest at t = 0.
@@ -161,8 +168,8 @@ def ground_displacement(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Arra
     [0.0, 0.0, 0.0]
     """
     if scene.recorded:
-        return _integrated(scene.record, time, 2)
-    t = np.asarray(time, float)
+        return _integrated(scene.record, _instants(time), 2)
+    t = _instants(time)
     s = exponents(scene)
     st = np.multiply.outer(t, s)
     # (exp(st) - 1 - st) / s^2; the series where the subtraction would cancel
@@ -177,8 +184,13 @@ def _superpose(scene: Scene, phase: ArrayLike, harmonics: NDArray[np.complex128]
 
 
 def _turns(phase: ArrayLike) -> NDArray[np.complex128]:
-    turns: NDArray[np.complex128] = np.exp(1j * np.asarray(phase, float))
+    turns: NDArray[np.complex128] = np.exp(1j * checked_phase(phase))
     return turns
+
+
+def _instants(time: ArrayLike) -> Array:
+    """Instants, s, in their shape. Raises ValueError, one line."""
+    return checked_array("time", time, "must be instants (T,), s").reshape(np.shape(time))
 
 
 def _integrated(knots: Array, time: ArrayLike, times: int) -> Array:

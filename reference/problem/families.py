@@ -15,12 +15,13 @@ import copy
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import product
+from itertools import islice, product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from reference.problem.ranges import as_float
 from reference.problem.record_suites import SuiteError, suite_motions
 from reference.problem.scene import Scene
 from reference.problem.scene_error import SceneError
@@ -30,6 +31,8 @@ RANGE, VALUES = {"range", "steps"}, {"values"}
 ALL_MOTIONS = "all"
 COMBINE = ("product", "zip")
 MAX_SCENES = 1000  # scenes of one family
+MAX_BODIES_IN_ALL = 50_000  # bodies of all scenes of a family together
+MAX_KEYS = 20  # that run
 
 Value = float | int | str
 Files = dict[str, str]  # of a record, by direction
@@ -121,13 +124,18 @@ def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) 
     name = Path(label).stem
     combine = data.get("combine")
     data = _all_motions({key: value for key, value in data.items() if key != "combine"}, label)
-    running = [_Key(label, path, table) for path, table in _running((), data)]
+    places = list(islice(_running((), data), MAX_KEYS + 1))
+    if len(places) > MAX_KEYS:
+        path, table = places[-1]
+        raise SceneError(label, ".".join(map(str, path)), table, f"at most {MAX_KEYS} keys may run")
+    running = [_Key(label, path, table) for path, table in places]
     _check_combine(label, combine, running)
     if not running:
         scene = validated_scene(data, label, name)
         return Family(name, (scene if amplitude is None else scene.with_amplitude(amplitude),))
     steps = [range(len(key.values)) for key in running]
     rows = list(product(*steps) if combine == "product" else zip(*steps))
+    _check_bodies(label, data.get("bodies"), len(rows))
     scenes = []
     for row in rows:
         tables = data
@@ -177,6 +185,16 @@ def _check_combine(label: str, combine: Any, running: Sequence[_Key]) -> None:
         raise SceneError(label, "combine", combine, f"{math.prod(counts)} scenes: must be at most {MAX_SCENES}")
 
 
+def _check_bodies(label: str, bodies: Any, scenes: int) -> None:
+    """Refuse a family with too many bodies before its scenes are made. Raises SceneError."""
+    count = len(bodies) if isinstance(bodies, list) else 0
+    if count * scenes > MAX_BODIES_IN_ALL:
+        rule = (
+            f"must be at most {MAX_BODIES_IN_ALL} bodies in all scenes of a family: take fewer values, or fewer bodies"
+        )
+        raise SceneError(label, f"bodies: {count} in each of {scenes} scenes", count * scenes, rule)
+
+
 def _all_motions(data: dict[str, Any], label: str) -> dict[str, Any]:
     """The tables with the numbers of all motions of a suite in place of `motion = "all"`. Raises SceneError."""
     excitation = data.get("excitation")
@@ -207,8 +225,9 @@ def _values(label: str, key: str, table: dict[str, Any]) -> Sequence[Value | Fil
         raise SceneError(label, key, table, rule)
     ends, steps = table["range"], table["steps"]
     numbers = isinstance(ends, list) and len(ends) == 2 and all(_is_number(end) for end in ends)
-    if not (numbers and ends[0] < ends[1]):
-        raise SceneError(label, f"{key}.range", ends, "must be two finite numbers, the smaller first")
+    if not (numbers and ends[0] < ends[1] and _is_number(ends[1] - ends[0])):
+        rule = "must be two finite numbers, the smaller first, and their difference finite"
+        raise SceneError(label, f"{key}.range", ends, rule)
     if not (isinstance(steps, int) and not isinstance(steps, bool) and 2 <= steps <= MAX_SCENES):
         raise SceneError(
             label, f"{key}.steps", steps, f"must be a whole number from 2 to {MAX_SCENES}, the ends included"
@@ -239,12 +258,7 @@ def _named(files: Files) -> str:
 
 
 def _is_number(value: Any) -> bool:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return False
-    try:
-        return math.isfinite(value)
-    except OverflowError:  # an integer beyond double precision
-        return False
+    return math.isfinite(as_float(value))
 
 
 def _texts(label: str, key: str, values: Sequence[Value]) -> list[str]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.problem.ranges import PHASE, checked_array
+from reference.problem.ranges import PHASE, Range, checked_array, checked_whole_number
 
 Array = NDArray[np.float64]
+POINTS = Range(1, 10_000)  # phases per axis
 
 
 def checked_phases(phases: ArrayLike) -> Array:
@@ -152,6 +153,11 @@ def phase_axis(points: int) -> Array:
     ndarray, (points,), rad
         2 pi k / points, from the fraction k / points in lowest terms.
 
+    Raises
+    ------
+    ValueError
+        If `points` is no whole number from 1 to 10,000, in one line.
+
     Examples
     --------
     >>> phase_axis(4).round(3).tolist()
@@ -159,7 +165,7 @@ def phase_axis(points: int) -> Array:
     >>> bool((phase_axis(48)[::6] == phase_axis(8)).all())
     True
     """
-    steps = np.arange(points)
+    steps = np.arange(checked_whole_number("points", points, POINTS))
     shared = np.gcd(steps, points)
     axis: Array = 2.0 * np.pi * (steps // shared) / (points // shared)
     return axis
@@ -178,6 +184,11 @@ def phase_grid(points: int) -> Array:
     -------
     ndarray, (points^2, 2), rad
         alpha_2 runs fastest.
+
+    Raises
+    ------
+    ValueError
+        As `phase_axis`.
 
     Examples
     --------

@@ -8,15 +8,19 @@ the range. The ranges are far wider than any isolator: they end where double pre
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import wraps
+from inspect import signature
 from numbers import Integral, Real
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Rest, Result = ParamSpec("Rest"), TypeVar("Result")
+MISSING = object()  # an argument that is not there
 
 
 @dataclass(frozen=True)
@@ -95,12 +99,39 @@ TOLERANCE = Range(1e-10, 0.1)
 LEAST_ACCELERATION = 1e-140  # m/s^2: squares of smaller accelerations lose digits; the ground is at rest
 
 
+def takes(kind: type, rule: str) -> Callable[[Callable[Rest, Result]], Callable[Rest, Result]]:
+    """
+    Have a function check its first argument, as all public functions do that take a scene or a motion.
+
+    The function raises TypeError, one line that ends with `rule`, for anything but a `kind`.
+    """
+
+    def with_check(function: Callable[Rest, Result]) -> Callable[Rest, Result]:
+        name = next(iter(signature(function).parameters))
+
+        @wraps(function)
+        def checked(*args: Rest.args, **kwargs: Rest.kwargs) -> Result:
+            first = args[0] if args else kwargs.get(name, MISSING)
+            if first is not MISSING and not isinstance(first, kind):
+                raise TypeError(f"{name} = {brief(first)}: {rule}")
+            return function(*args, **kwargs)
+
+        return checked
+
+    return with_check
+
+
+def as_float(value: Any) -> float:
+    """A number as a float: inf for one beyond double precision, NaN for what is no number."""
+    try:
+        return float(value) if isinstance(value, Real) and not isinstance(value, bool) else math.nan
+    except OverflowError:
+        return math.inf
+
+
 def checked_number(name: str, value: Any, allowed: Range) -> float:
     """`value` as a float. Raises ValueError, one line, if it is not a number within the range."""
-    try:
-        number = float(value) if isinstance(value, Real) and not isinstance(value, bool) else math.nan
-    except OverflowError:
-        number = math.inf
+    number = as_float(value)
     if number not in allowed:
         raise ValueError(f"{name} = {brief(value)}: {allowed.rule}")
     return number
@@ -121,9 +152,11 @@ def checked_choice(name: str, value: Any, allowed: Sequence[str]) -> str:
     return value
 
 
-def checked_array(name: str, values: Any, rule: str) -> Array:
+def checked_array(name: str, values: Any, rule: str, *, finite: bool = True) -> Array:
     """
     `values` as a contiguous array of finite numbers. Raises ValueError, one line that ends with `rule`.
+
+    finite: whether NaN and infinite numbers are refused.
 
     Masked entries, texts, None and nested lists of uneven length are no numbers.
     """
@@ -136,7 +169,7 @@ def checked_array(name: str, values: Any, rule: str) -> Array:
     if array.dtype.kind not in "iuf":
         raise ValueError(f"{name} = {brief(values)}: must be numbers: {rule}")
     array = np.ascontiguousarray(array, dtype=float)
-    if not np.isfinite(array).all():
+    if finite and not np.isfinite(array).all():
         raise ValueError(f"{name}: must be finite: {rule}")
     return array
 

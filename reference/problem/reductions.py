@@ -14,7 +14,7 @@ import numpy as np
 
 from reference.problem.constants import GRAVITY
 from reference.problem.excitation import exponents
-from reference.problem.scene import Scene
+from reference.problem.scene import Scene, takes_scene
 
 # rad in the whole motion: links that vibrate more often are integrated at less cost than summed
 MAX_VIBRATION_ANGLE = 2e5
@@ -44,6 +44,7 @@ class Reduction:
         return self.allowed
 
 
+@takes_scene
 def half_turn(scene: Scene) -> Reduction:
     """
     Adding pi to both phases turns the motion by half a turn about the vertical: same mu.
@@ -69,6 +70,7 @@ def half_turn(scene: Scene) -> Reduction:
     return Reduction(True, "no vertical loading: adding pi to both phases turns the motion by half a turn")
 
 
+@takes_scene
 def own_axes(scene: Scene) -> Reduction:
     """
     Adding pi to either phase alone mirrors the motion: same mu.
@@ -97,6 +99,7 @@ def own_axes(scene: Scene) -> Reduction:
     return Reduction(False, "a harmonic acts along both axes, or both along one")
 
 
+@takes_scene
 def untilted(scene: Scene) -> Reduction:
     """
     Nothing turns the body of the spatial model: assumption (vi) holds, and it moves like the translational one.
@@ -144,6 +147,7 @@ def untilted(scene: Scene) -> Reduction:
     return Reduction(True, "one body, its center level with the depressions: it does not turn")
 
 
+@takes_scene
 def planar(scene: Scene) -> Reduction:
     """
     The motion stays in one vertical plane (4.7): half of the horizontal coordinates are enough (`in_plane`).
@@ -180,6 +184,7 @@ def planar(scene: Scene) -> Reduction:
     )
 
 
+@takes_scene
 def planar_chain(scene: Scene) -> Reduction:
     """
     The bodies above the platform need no coordinates across the plane of motion.
@@ -203,6 +208,7 @@ def planar_chain(scene: Scene) -> Reduction:
     return planar(scene)
 
 
+@takes_scene
 def in_plane(scene: Scene) -> Scene:
     """
     A planar scene turned about the vertical so that its loading acts along x: the same mu for every body.
@@ -237,6 +243,7 @@ def in_plane(scene: Scene) -> Scene:
     return Scene.model_validate(table)
 
 
+@takes_scene
 def mirror_symmetric(scene: Scene) -> Reduction:
     """
     Supports and bodies of the spatial model are their own mirror images: it has the symmetries of the loading.
@@ -272,6 +279,7 @@ def mirror_symmetric(scene: Scene) -> Reduction:
     )
 
 
+@takes_scene
 def unused_harmonics(scene: Scene) -> list[int]:
     """
     Harmonics without any amplitude: their phase changes nothing. A record uses neither phase.
@@ -296,6 +304,7 @@ def unused_harmonics(scene: Scene) -> list[int]:
     return [int(harmonic) for harmonic in np.flatnonzero(~scene.amplitudes.any(axis=0))]
 
 
+@takes_scene
 def no_friction(scene: Scene) -> Reduction:
     """
     No law of friction is left to regularize or to resolve: such models repeat the exact equations.
@@ -319,6 +328,7 @@ def no_friction(scene: Scene) -> Reduction:
     return Reduction(True, "no friction: without it v_reg and v_c change nothing")
 
 
+@takes_scene
 def linear(scene: Scene) -> Reduction:
     """
     The small equations (4.3)-(4.4) are linear: their motion is a sum of one complex motion per harmonic.

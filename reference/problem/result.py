@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.problem.ranges import takes
 from reference.problem.scene import Scene
 
 if TYPE_CHECKING:
@@ -326,3 +327,7 @@ class State:
 
     position: Array
     velocity: Array
+
+
+takes_motion = takes(Trajectory, "must be a Trajectory, as reference.trajectory and multibody.trajectory return")
+"""Of functions whose first argument is a motion."""

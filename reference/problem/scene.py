@@ -21,7 +21,7 @@ from reference.problem.changed_values import put_value
 from reference.problem.constants import GRAVITY
 from reference.problem.friction import DryFriction
 from reference.problem.measured import Measured
-from reference.problem.ranges import MAX_CYCLES, SCENE
+from reference.problem.ranges import MAX_CYCLES, SCENE, as_float, takes
 from reference.problem.record_loading import with_samples
 from reference.problem.scene_error import EXCITATIONS, FRICTIONS, MisfitError, SceneError, first_error
 from reference.problem.supports import on_one_line, ring_places, static_shares
@@ -422,9 +422,10 @@ class Scene(Table):
         SceneError
             For an amplitude outside its range, or a loading that is zero throughout.
         """
-        largest = self.largest_acceleration
-        if not (isinstance(amplitude, int | float) and 0.0 < amplitude <= SCENE["excitation.amplitudes"].highest):
-            raise SceneError(self.name, "amplitude", amplitude, "must be finite and greater than 0 m/s^2")
+        largest, stated = self.largest_acceleration, amplitude
+        amplitude = as_float(stated)
+        if not 0.0 < amplitude <= SCENE["excitation.amplitudes"].highest:
+            raise SceneError(self.name, "amplitude", stated, "must be finite and greater than 0 m/s^2")
         if largest == 0.0:
             key = "record" if self.recorded else "amplitudes"
             raise SceneError(self.name, f"excitation.{key}", 0.0, "all entries are 0: nothing to scale")
@@ -474,6 +475,10 @@ class Scene(Table):
             exclude_none=True,  # a key that is not given changes no result
         )
         return hashlib.sha256(content.encode()).hexdigest()[:16]
+
+
+takes_scene = takes(Scene, 'must be a Scene, as reference.load_scene("fig3-I") returns')
+"""Of functions whose first argument is a scene."""
 
 
 def _link_stiffness(body: Body, load: float) -> list[float]:

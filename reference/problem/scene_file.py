@@ -87,7 +87,7 @@ def scene_text(source: str | Path) -> bytes:
         return (resources.files("reference.problem") / "scenes" / f"{label}.toml").read_bytes()
     try:
         return Path(source).read_bytes()
-    except (OSError, ValueError) as error:  # ValueError: no path at all, such as one with a null byte
+    except (OSError, ValueError, TypeError) as error:  # no path at all, such as one with a null byte
         reason = getattr(error, "strerror", None) or error
         rule = f"{reason}; give a TOML file or one of {', '.join(builtin_scenes() + example_scenes())}"
         raise SceneError(label, "scene", label, rule) from None

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from reference.problem.build_cache import cached_on_disk
 from reference.problem.demands import ANSWERED
 from reference.problem.ranges import Range, checked_array, checked_number
-from reference.problem.result import Trajectory
+from reference.problem.result import Trajectory, takes_motion
 
 Array = NDArray[np.float64]
 
@@ -54,6 +54,7 @@ class FloorSpectra:
     error: Array
 
 
+@takes_motion
 def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damping: float = 0.05) -> FloorSpectra:
     """
     Floor response spectra of every body of one motion, with errors.

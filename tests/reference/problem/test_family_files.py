@@ -93,6 +93,10 @@ WRONG = {
         "isolator.friction.range = [0.2, 0.1]: must be two finite numbers",
     ),
     "infinite": ("{range = [0.2, inf], steps = 3}", "isolator.friction.range = [0.2, inf]: must be two finite numbers"),
+    "without a difference": (
+        "{range = [-1e308, 1e308], steps = 5}",
+        "isolator.friction.range = [-1e+308, 1e+308]: must be two finite numbers",
+    ),
     "a flag": ("{range = [0.2, true], steps = 3}", "isolator.friction.range = [0.2, True]: must be two finite numbers"),
     "one step": (
         "{range = [0.1, 0.2], steps = 1}",
@@ -119,3 +123,30 @@ def test_what_is_no_range_is_one_line_with_file_key_value_and_rule(tmp_path: Pat
         load_family(file)
     assert str(fault.value).startswith(f"{file}: {line}")
     assert "\n" not in str(fault.value)
+
+
+@pytest.mark.filterwarnings("error")
+def test_ends_whose_difference_overflows_are_refused_without_a_warning(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match="their difference finite"):
+        load_family(_file(tmp_path, "friction = 0.1", "friction = {range = [-1e308, 1e308], steps = 5}"))
+
+
+def test_bodies_of_a_family_are_counted_before_a_scene_is_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("reference.problem.families.validated_scene", None)
+    body = "\n[[bodies]]\nmass = 1.0\nperiod = [1.0, 1.0]\n"
+    file = _file(tmp_path, "friction = 0.1", "friction = {range = [0.02, 0.2], steps = 60}")
+    file.write_text(file.read_text(encoding="utf-8") + 9_998 * body, encoding="utf-8")
+    with pytest.raises(SceneError) as fault:
+        load_family(file)
+    assert str(fault.value) == (
+        f"{file}: bodies: 10000 in each of 60 scenes = 600000: must be at most 50000 bodies in all scenes of a family: "
+        "take fewer values, or fewer bodies"
+    )
+
+
+def test_keys_that_run_are_counted(tmp_path: Path) -> None:
+    bodies = "".join(f"[[bodies]]\nmass = {{values = [1.0, 2.0]}}\nperiod = [{n}.0, 1.0]\n" for n in range(1, 22))
+    file = _file(tmp_path, "duration = 20.0", 'combine = "zip"\nduration = 20.0')
+    file.write_text(file.read_text(encoding="utf-8") + bodies, encoding="utf-8")
+    with pytest.raises(SceneError, match=r"bodies\.22\.mass = .*: at most 20 keys may run"):
+        load_family(file)

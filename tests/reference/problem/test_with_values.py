@@ -10,6 +10,7 @@ import pytest
 from scene_text import GOOD
 
 from reference.problem import Scene, SceneError, example_scenes, load_family, load_scene, parse_scene
+from reference.problem.acceptance import Acceptance
 
 
 @pytest.mark.parametrize(
@@ -23,6 +24,14 @@ from reference.problem import Scene, SceneError, example_scenes, load_family, lo
         ("duration", 3.0, lambda scene: scene.duration),
         ("name", "other", lambda scene: scene.name),
         ("acceptance.failed", 2, lambda scene: scene.acceptance.failed),
+        ("acceptance.total", {"median": 0.1}, lambda scene: (scene.acceptance.total or Acceptance()).stated()),
+        ("acceptance.total.median", 0.1, lambda scene: scene.acceptance.total and scene.acceptance.total.median),
+        (
+            "acceptance.mine",
+            {"ratio": 2.0},
+            lambda scene: scene.acceptance.of_engines.get("mine", Acceptance()).stated(),
+        ),
+        ("acceptance.mine.ratio", 2.0, lambda scene: scene.acceptance.of_engines.get("mine", Acceptance()).ratio),
     ],
 )
 def test_a_value_is_changed_by_its_dotted_key(key, value, seen):
@@ -53,6 +62,10 @@ def test_none_leaves_a_key_out_and_arrays_are_lists():
         ("isolatr.friction", 0.1, "did you mean isolator"),
         ("bodies.1.heigth", 0.1, "did you mean height"),
         ("bodies.1.colour", 0.1, "the keys here are mass, period"),
+        ("acceptance.maximun", 0.1, "did you mean maximum"),
+        ("acceptance.mine.closure", 0.1, "the keys here are median, maximum, ratio"),
+        ("acceptance.my engine.ratio", 0.1, "the name of an engine: letters, digits and -"),
+        ("title.x", 0.1, "title has no keys to set one by one: give title as a whole"),
         ("bodies.2.mass", 0.1, "bodies has the indices 0 to 1"),
         ("bodies.-1.mass", 0.1, "indices"),
         ("bodies.mass", 0.1, "indices"),
@@ -161,3 +174,19 @@ def test_tables_of_the_caller_stay_as_they_are() -> None:
     values = {"bodies.1.period": None, "bodies.1.bars": bars, "bodies.1.bars.length": 2.0}
     assert load_scene("fig3-I").with_values(values).bodies[1].bars.length == 2.0
     assert bars["length"] == 1.0
+
+
+def test_a_record_is_changed_as_a_whole():
+    with pytest.raises(SceneError) as fault:
+        load_scene("synthetic-pair").with_values({"excitation.record.motion": 4})
+    assert str(fault.value).endswith(
+        "excitation.record has no keys to set one by one: give excitation.record as a whole"
+    )
+
+
+def test_a_scene_with_limits_of_an_engine_is_written_and_read_again():
+    scene = load_scene("fig3-I").with_values({"acceptance.mine.median": 0.1})
+    assert Scene.model_validate(scene.model_dump(exclude_none=True)) == scene != load_scene("fig3-I")
+    assert scene.acceptance.differences()[-1] == ("mine.median", "mine", "median", 0.1)
+    assert pickle.loads(pickle.dumps(scene)) == scene
+    assert scene.digest() == load_scene("fig3-I").digest()

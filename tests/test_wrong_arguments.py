@@ -1,0 +1,100 @@
+"""A wrong argument of a public function is one line that names it and says what to pass."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+
+import multibody
+import reference
+import reference.problem
+
+SCENE = reference.load_scene("fig3-I")
+PACKAGES = (reference, reference.problem, multibody)
+FUNCTIONS = [
+    (package, name, str(next(iter(inspect.signature(public).parameters.values())).annotation))
+    for package in PACKAGES
+    for name in package.__all__
+    if inspect.isfunction(public := getattr(package, name)) and inspect.signature(public).parameters
+]
+OF_OBJECTS = [
+    pytest.param(getattr(package, name), kind, id=f"{package.__name__}.{name}")
+    for package, name, kind in FUNCTIONS
+    if kind in ("Scene", "Trajectory")
+]
+
+
+def rest(function: Callable[..., Any]) -> list[Any]:
+    """Arguments for all that a function requires besides the first."""
+    parameters = list(inspect.signature(function).parameters.values())[1:]
+    return [(0.0, 0.0) for parameter in parameters if parameter.default is parameter.empty]
+
+
+def test_every_function_of_a_scene_or_a_motion_is_tried() -> None:
+    assert len(OF_OBJECTS) > 30
+    assert {name for _, name, kind in FUNCTIONS if kind == "Trajectory"} == {"demands", "floor_spectra"}
+
+
+@pytest.mark.parametrize(("function", "kind"), OF_OBJECTS)
+@pytest.mark.parametrize("wrong", ["fig3-I", None, 3, SCENE.model_dump(), np.zeros((2, 3)), type(SCENE)])
+def test_a_wrong_object_is_one_line_that_says_what_to_pass(
+    function: Callable[..., Any], kind: str, wrong: object
+) -> None:
+    with pytest.raises(TypeError) as failure:
+        function(wrong, *rest(function))
+    name = next(iter(inspect.signature(function).parameters))
+    text = str(failure.value)
+    assert text.startswith(f"{name} = ")
+    assert f": must be a {kind}, as reference." in text
+    assert "\n" not in text
+    required = [one.name for one in inspect.signature(function).parameters.values() if one.default is one.empty]
+    with pytest.raises(TypeError, match=f"^{name} = .*: must be a {kind}, as"):
+        function(**dict.fromkeys(required, (0.0, 0.0)) | {name: wrong})
+
+
+MASKED = np.ma.masked_array([0.0, 1.0], mask=[True, False])
+WRONG: dict[str, tuple[Callable[[], Any], str]] = {
+    "max_work as text": (lambda: multibody.refusal(SCENE, max_work="1"), "max_work = '1': must be finite and positive"),
+    "tolerance as text": (lambda: multibody.refusal(SCENE, tolerance="1"), "tolerance = '1': must be finite"),
+    "grid as text": (lambda: reference.phase_grid("x"), "points = 'x': must be a whole number from 1 to 10000"),
+    "half a phase": (lambda: reference.phase_grid(2.5), "points = 2.5: must be a whole number"),
+    "no phase": (lambda: reference.problem.phase_axis(0), "points = 0: must be a whole number"),
+    "grid as bool": (lambda: reference.phase_grid(True), "points = True: must be a whole number"),
+    "amplitude as bool": (lambda: SCENE.with_amplitude(True), "fig3-I: amplitude = True: must be finite and greater"),
+    "of a file": (lambda: reference.load_scene("fig3-I", True), "fig3-I: amplitude = True: must be finite and greater"),
+    "amplitude as text": (lambda: SCENE.with_amplitude("1"), "fig3-I: amplitude = '1': must be finite and greater"),
+    "scene as number": (lambda: reference.load_scene(3), "3: scene = '3': "),
+    "masked phase": (
+        lambda: reference.problem.ground_acceleration(SCENE, [np.ma.masked, 1.0], [0.0]),
+        "phases: has masked entries: must be (2,)",
+    ),
+    "masked time": (lambda: reference.problem.ground_velocity(SCENE, (0.0, 0.0), MASKED), "time: has masked entries"),
+    "time as text": (
+        lambda: reference.problem.ground_displacement(SCENE, (0.0, 0.0), "x"),
+        "time = 'x': must be numbers: must be instants (T,), s",
+    ),
+    "masked grid": (
+        lambda: reference.phase_distribution(np.ma.masked_array(np.ones((2, 2)), [[1, 0], [0, 0]]), np.zeros((2, 2))),
+        "mu: has masked entries",
+    ),
+}
+
+
+@pytest.mark.parametrize(("call", "line"), WRONG.values(), ids=WRONG.keys())
+def test_a_wrong_value_is_one_line_with_the_rule(call: Callable[[], Any], line: str) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(line)}") as failure:
+        call()
+    assert "\n" not in str(failure.value)
+
+
+def test_numbers_of_other_kinds_are_numbers() -> None:
+    assert SCENE.with_amplitude(Fraction(1, 2)) == SCENE.with_amplitude(0.5) == SCENE.with_amplitude(np.float32(0.5))
+    np.testing.assert_array_equal(reference.phase_grid(np.int64(2)), reference.phase_grid(2))
+    at_once = reference.problem.ground_acceleration(SCENE, (0.3, 1.1), 0.5)
+    np.testing.assert_array_equal(at_once, reference.problem.ground_acceleration(SCENE, (0.3, 1.1), [0.5])[0])
