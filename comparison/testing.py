@@ -112,7 +112,7 @@ def assert_consistent(
         for line in _broken(surfaces, scene, asked[name], compared, bool(measure), limit)
     ]
     gaps = unanswered(study, surfaces)
-    if sum(gap.points for gap in gaps) > failed:
+    if sum(gap.points + gap.unusable for gap in gaps) > failed:
         why = dict.fromkeys(answer.error_message for answer in answers if answer.error_message)
         broken += [f"{gap.sentence.removesuffix('.')}; {failed} allowed" for gap in gaps] + list(why)
     if broken:

@@ -69,7 +69,6 @@ WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "amplitude as bool": (lambda: SCENE.with_amplitude(True), "fig3-I: amplitude = True: must be finite and greater"),
     "of a file": (lambda: reference.load_scene("fig3-I", True), "fig3-I: amplitude = True: must be finite and greater"),
     "amplitude as text": (lambda: SCENE.with_amplitude("1"), "fig3-I: amplitude = '1': must be finite and greater"),
-    "scene as number": (lambda: reference.load_scene(3), "3: scene = '3': "),
     "masked phase": (
         lambda: reference.problem.ground_acceleration(SCENE, [np.ma.masked, 1.0], [0.0]),
         "phases: has masked entries: must be (2,)",
@@ -98,3 +97,10 @@ def test_numbers_of_other_kinds_are_numbers() -> None:
     np.testing.assert_array_equal(reference.phase_grid(np.int64(2)), reference.phase_grid(2))
     at_once = reference.problem.ground_acceleration(SCENE, (0.3, 1.1), 0.5)
     np.testing.assert_array_equal(at_once, reference.problem.ground_acceleration(SCENE, (0.3, 1.1), [0.5])[0])
+
+
+@pytest.mark.parametrize("load", [reference.load_scene, reference.problem.load_family])
+@pytest.mark.parametrize("wrong", [3, None, SCENE])
+def test_what_is_no_path_of_a_scene_is_one_line(load: Callable[..., Any], wrong: object) -> None:
+    with pytest.raises(TypeError, match=r"^source = .*: must be the name of a built-in scene or the path of a scene"):
+        load(wrong)

@@ -89,14 +89,23 @@ def headline(study: Study, surfaces: xr.Dataset, scene: Scene, bars: Waterfall, 
         like_for_like=alike[0] if alike else NAN,
         sentence="",
     )
-    sentence = _sentence(study, scene, numbers, bars, _of_engines(study, surfaces, scene, body))
-    return replace(numbers, sentence=sentence)
+    return replace(numbers, sentence=_with_engines(study, surfaces, scene, numbers, bars))
 
 
 def causes(bars: Sequence[WaterfallBar]) -> tuple[str, ...]:
     """The models whose steps are real and at least half as large as the largest of them, largest first."""
     real = sorted((bar for bar in bars if bar.real), key=lambda bar: -abs(bar.size))
     return tuple(bar.model for bar in real if abs(bar.size) >= MAIN_CAUSE * abs(real[0].size))
+
+
+def _with_engines(study: Study, surfaces: xr.Dataset, scene: Scene, numbers: Headline, bars: Waterfall) -> str:
+    """The sentence; those of the user's engines come first and take the place of what it says of the two codes."""
+    engines = _of_engines(study, surfaces, scene, numbers.body)
+    if not engines:
+        return _sentence(study, scene, numbers, bars)
+    start = f"{scene.name}, {numbers.name}: "
+    rest = _sentence(study, scene, replace(numbers, like_for_like=NAN), bars).removeprefix(start)
+    return f"{start}{' '.join(engines)} {rest[0].upper()}{rest[1:]}"
 
 
 def _of_engines(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> list[str]:
@@ -123,8 +132,7 @@ def _of_engines(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> 
     return sentences
 
 
-def _sentence(study: Study, scene: Scene, numbers: Headline, bars: Waterfall, engines: Sequence[str]) -> str:
-    """The sentences of the user's engines come first and take the place of that of the two codes."""
+def _sentence(study: Study, scene: Scene, numbers: Headline, bars: Waterfall) -> str:
     models = {model.key: model for model in study.compared(scene)}
     asked = steps_of(scene, study.hierarchy)
     first, second = models[numbers.first], models[numbers.second]
@@ -132,23 +140,19 @@ def _sentence(study: Study, scene: Scene, numbers: Headline, bars: Waterfall, en
     engine = "the engine" if second is asked[-1] and second.side == "engine" else f"the {second.title}"
     start = f"{scene.name}, {numbers.name}: "
     if first is second:
-        parts = [f"only {paper} were computed, there is nothing to compare."]
-    elif not numbers.points:
-        nowhere = "" if scene.recorded else " at any phase pair"
-        parts = [f"{engine} and {paper} have no value in common{nowhere}."]
-    else:
-        real = abs(numbers.maximum) > RESOLVED * numbers.maximum_error
-        parts = [(_difference if real else _agreement)(numbers, models, paper, engine)]
-        parts += _causes(numbers, models, bars) if real else []
-        if math.isfinite(numbers.like_for_like) and not engines:
-            agree = numbers.like_for_like <= SMALL * abs(numbers.maximum) or not real
-            parts.append(
-                "Given the same equations and friction law, the two codes "
-                f"{'agree to' if agree else 'differ by up to'} {percent(numbers.like_for_like)}."
-            )
-    if engines:
-        parts = [*engines, f"{parts[0][0].upper()}{parts[0][1:]}", *parts[1:]]
-    return start + " ".join(parts)
+        return f"{start}only {paper} were computed, there is nothing to compare."
+    if not numbers.points:
+        return f"{start}{engine} and {paper} have no value in common{'' if scene.recorded else ' at any phase pair'}."
+    real = abs(numbers.maximum) > RESOLVED * numbers.maximum_error
+    parts = [start + (_difference if real else _agreement)(numbers, models, paper, engine)]
+    parts += _causes(numbers, models, bars) if real else []
+    if math.isfinite(numbers.like_for_like):
+        agree = numbers.like_for_like <= SMALL * abs(numbers.maximum) or not real
+        parts.append(
+            "Given the same equations and friction law, the two codes "
+            f"{'agree to' if agree else 'differ by up to'} {percent(numbers.like_for_like)}."
+        )
+    return " ".join(parts)
 
 
 def _agreement(numbers: Headline, models: Mapping[str, Model], paper: str, engine: str) -> str:

@@ -1,4 +1,4 @@
-"""Models that have no value at some or at every phase pair of a scene: which, why, and what helps."""
+"""Models without a usable value at some or at every phase pair of a scene: which, why, and what helps."""
 
 from __future__ import annotations
 
@@ -15,8 +15,6 @@ from comparison.study.models import Model, models_of, steps_of
 from comparison.study.study import Study
 from reference.problem import ADVICE, Outcome, Scene
 
-WORTHLESS_VALUE = "error above half of the value"
-
 
 @dataclass(frozen=True)
 class OutcomeNote:
@@ -29,12 +27,13 @@ class OutcomeNote:
 
 @dataclass(frozen=True)
 class Unanswered:
-    """A model without a value at some phase pairs of a scene."""
+    """A model without a value, or without one known to half of itself, at some phase pairs of a scene."""
 
     scene: str
     model: str
     title: str
-    points: int  # phase pairs without a value that is known to half of itself
+    points: int  # phase pairs without a value
+    unusable: int  # further phase pairs, with a value that is not known to half of itself
     asked: int  # phase pairs that the model was asked for
     used: bool  # whether comparisons use the values that it has
     outcomes: tuple[OutcomeNote, ...]  # those that are not ok
@@ -54,15 +53,18 @@ class Unanswered:
     def description(self) -> str:
         """The same without the scene."""
         rest = "" if self.used else ". Comparisons leave this model out"
-        return f"{self.title}: {self.where}: {self.why}{rest}"
+        return f"{self.title}: {self.where}{f': {self.why}' if self.why else ''}{rest}"
 
     @property
     def where(self) -> str:
-        """At how many phase pairs there is no value."""
+        """At how many phase pairs there is no value, or none known to half of itself."""
+        parts = ("no value", self.points), ("no value known to half of itself", self.unusable)
+        return ", ".join(f"{what}{self._at(count)}" for what, count in parts if count)
+
+    def _at(self, count: int) -> str:
         if self.asked == 1:
-            return "no value"
-        count = f"any of {self.asked}" if self.points == self.asked else f"{self.points} of {self.asked}"
-        return f"no value at {count} phase pairs"
+            return ""
+        return f" at {f'any of {self.asked}' if count == self.asked else f'{count} of {self.asked}'} phase pairs"
 
 
 def with_silent_models(study: Study, surfaces: xr.Dataset) -> Study:
@@ -84,17 +86,18 @@ def with_silent_models(study: Study, surfaces: xr.Dataset) -> Study:
 
 
 def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
-    """Every model of every scene that lacks a value somewhere, in the order of scenes and models."""
+    """Every model of every scene that lacks a usable value somewhere, in the order of scenes and models."""
     gaps = []
     for scene in study.scenes:
         silent = (study.silent or {}).get(scene.name, ())
         for model in models_of(scene, study.hierarchy):
-            lacking = int((~_usable(surfaces, scene, model)).sum())
-            if lacking or model.key in silent:
+            answered, usable = _answered(surfaces, scene, model), _usable(surfaces, scene, model)
+            lacking, unusable = int((~answered).sum()), int((answered & ~usable).sum())
+            if lacking or unusable:
                 asked = study.points(model, scene)
                 used = model.key not in silent and lacking < asked
                 notes = _notes(study, surfaces, scene, model)
-                gaps.append(Unanswered(scene.name, model.key, model.title, lacking, asked, used, notes))
+                gaps.append(Unanswered(scene.name, model.key, model.title, lacking, unusable, asked, used, notes))
     return gaps
 
 
@@ -110,14 +113,11 @@ def advice(study: Study, scene: Scene, model: Model, outcome: str) -> str:
 
 def _notes(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> tuple[OutcomeNote, ...]:
     counts = outcome_counts(surfaces, scene.name, model.key)
-    notes = [
+    return tuple(
         OutcomeNote(outcome, count, advice(study, scene, model, outcome))
         for outcome, count in counts.items()
         if outcome != Outcome.OK
-    ]
-    if unknown := int((_answered(surfaces, scene, model) & ~_usable(surfaces, scene, model)).sum()):
-        notes.append(OutcomeNote(WORTHLESS_VALUE, unknown, "a smaller tolerance may help"))
-    return tuple(notes)
+    )
 
 
 def _answered(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:

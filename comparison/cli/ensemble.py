@@ -45,6 +45,7 @@ from reference.problem.peak_demands import unit_of
 from reference.problem.scene_file import scene_tables, scene_text
 
 TABLE = "ensemble.csv"
+FORMULA = ("=", "+", "-", "@", "\t", "\r")  # begin formulas in a spreadsheet
 FILES = (STORED.name, TABLE, PICTURE, "ensemble.pdf")
 MODELS = {EXACT.trajectory, TRANSLATIONAL.trajectory}  # what the workers ask
 SUBSET = 2  # scenes that the engine computes, unless the command says otherwise
@@ -128,12 +129,17 @@ def asked_family(options: argparse.Namespace) -> Family:
     return family_of(data, options.scene)
 
 
+def _as_cell(value: object) -> object:
+    """A text that a spreadsheet would take for a formula behind an apostrophe; anything else as it is."""
+    return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value
+
+
 def table_text(result: EnsembleResult) -> str:
     """The content of ensemble.csv: a row for every motion, scale and model."""
     rows, stream = as_rows(result), io.StringIO()
     writer = csv.DictWriter(stream, list(rows[0]), lineterminator="\n")
     writer.writeheader()
-    writer.writerows(rows)
+    writer.writerows({key: _as_cell(value) for key, value in row.items()} for row in rows)
     return stream.getvalue()
 
 

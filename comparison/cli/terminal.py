@@ -136,10 +136,9 @@ def print_tolerance(console: Console, plan: StudyPlan, options: Options) -> None
 
 
 def new_table(*headings: str) -> Table:
-    """An empty table: words to the left, numbers to the right."""
+    """An empty table: words to the left, numbers to the right. Where it is too wide words are folded, never numbers."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for heading in headings:
         words = heading in ("scene", "model", "difference", "step", "quantity")
-        long = heading == "scene"  # a name of any length is folded, numbers are never cut
-        table.add_column(heading, justify="left" if words else "right", no_wrap=not long, overflow="fold")
+        table.add_column(heading, justify="left" if words else "right", no_wrap=not words, overflow="fold")
     return table

@@ -30,7 +30,7 @@ def alerts(findings: Findings) -> list[Alert]:
 def _gaps(findings: Findings) -> list[Alert]:
     rows = []
     for lacking in findings.unanswered:
-        refused = lacking.points == lacking.asked
+        refused = lacking.points + lacking.unusable == lacking.asked
         rest = "" if lacking.used else "; comparisons leave this model out"
         outcomes = ", ".join(
             note.outcome if note.count == lacking.asked else f"{note.count} × {note.outcome}"
@@ -41,7 +41,7 @@ def _gaps(findings: Findings) -> list[Alert]:
                 level="red" if refused else "amber",
                 kind="refused" if refused else "lacking",
                 scene=lacking.scene,
-                text=f"{lacking.title}: {lacking.where}: {outcomes}{rest}",
+                text=f"{lacking.title}: {lacking.where}{f': {outcomes}' if outcomes else ''}{rest}",
                 help="; ".join(note.advice for note in lacking.outcomes),
             )
         )

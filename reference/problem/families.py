@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from reference.problem.ranges import as_float
+from reference.problem.ranges import as_float, takes
 from reference.problem.record_suites import SuiteError, suite_motions
 from reference.problem.scene import Scene
 from reference.problem.scene_error import SceneError
@@ -70,6 +70,7 @@ class Family:
         return len(self.scenes[0].bodies)
 
 
+@takes(str | Path, "must be the name of a built-in scene or the path of a scene file")
 def load_family(source: str | Path, amplitude: float | None = None) -> Family:
     """
     Every scene of a built-in name or a TOML file in which one value may run.

@@ -13,13 +13,15 @@ from dataclasses import dataclass
 from functools import wraps
 from inspect import signature
 from numbers import Integral, Real
+from types import UnionType
 from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Rest, Result = ParamSpec("Rest"), TypeVar("Result")
+Rest = ParamSpec("Rest")
+Result = TypeVar("Result")
 MISSING = object()  # an argument that is not there
 
 
@@ -99,7 +101,7 @@ TOLERANCE = Range(1e-10, 0.1)
 LEAST_ACCELERATION = 1e-140  # m/s^2: squares of smaller accelerations lose digits; the ground is at rest
 
 
-def takes(kind: type, rule: str) -> Callable[[Callable[Rest, Result]], Callable[Rest, Result]]:
+def takes(kind: type | UnionType, rule: str) -> Callable[[Callable[Rest, Result]], Callable[Rest, Result]]:
     """
     Have a function check its first argument, as all public functions do that take a scene or a motion.
 
@@ -139,7 +141,7 @@ def checked_number(name: str, value: Any, allowed: Range) -> float:
 
 def checked_whole_number(name: str, value: Any, allowed: Range) -> int:
     """`value` as an int. Raises ValueError, one line, if it is not a whole number within the range."""
-    if not isinstance(value, Integral) or isinstance(value, bool) or value not in allowed:
+    if not isinstance(value, Integral) or isinstance(value, bool) or as_float(value) not in allowed:
         rule = f"must be a whole number from {allowed.lowest:g} to {allowed.highest:g}"
         raise ValueError(f"{name} = {brief(value)}: {rule}")
     return int(value)

@@ -9,6 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from reference.problem.ranges import takes
 from reference.problem.record_loading import EXAMPLES, with_samples
 from reference.problem.scene import KEYS, Scene
 from reference.problem.scene_error import SceneError, first_error
@@ -49,6 +50,7 @@ def example_scenes() -> list[str]:
     return sorted(entry.name.removesuffix(".toml") for entry in EXAMPLES.iterdir() if entry.name.endswith(".toml"))
 
 
+@takes(str | Path, "must be the name of a built-in scene or the path of a scene file")
 def load_scene(source: str | Path, amplitude: float | None = None) -> Scene:
     """
     Read a scene.
@@ -68,6 +70,8 @@ def load_scene(source: str | Path, amplitude: float | None = None) -> Scene:
     ------
     SceneError
         File, key, value and rule in one line, if anything in the scene is wrong.
+    TypeError
+        If `source` is neither a text nor a path.
 
     Examples
     --------
@@ -87,7 +91,7 @@ def scene_text(source: str | Path) -> bytes:
         return (resources.files("reference.problem") / "scenes" / f"{label}.toml").read_bytes()
     try:
         return Path(source).read_bytes()
-    except (OSError, ValueError, TypeError) as error:  # no path at all, such as one with a null byte
+    except (OSError, ValueError) as error:  # ValueError: no path at all, such as one with a null byte
         reason = getattr(error, "strerror", None) or error
         rule = f"{reason}; give a TOML file or one of {', '.join(builtin_scenes() + example_scenes())}"
         raise SceneError(label, "scene", label, rule) from None

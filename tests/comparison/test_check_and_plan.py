@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,7 +12,13 @@ from conftest import Run
 from fake_models import fake_hierarchy
 
 import reference
+from comparison.analysis.acceptance import checked_limits
+from comparison.analysis.differences import differences
+from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.unanswered import unanswered
+from comparison.study.batches import execute_batch
 from comparison.study.models import MODEL_HIERARCHY
+from comparison.study.study import Study
 from reference.problem import builtin_scenes
 
 SMALL = ["fig3-I", "--grid", "2"]
@@ -112,3 +120,32 @@ def test_progress_counts_every_point_of_every_model(command: Callable[..., Run])
     run = command(*SMALL)
     for title in ("small equations", "exact equations", "exact equations, v_reg", "translational engine"):
         assert f"{title}: 4 of 4 points" in run.out
+
+
+@pytest.mark.parametrize("batch", [1, 4])
+def test_the_cost_of_a_model_is_that_of_all_its_batches(command: Callable[..., Run], batch: int) -> None:
+    run = command("fig3-I", "--grid", "4", hierarchy=fake_hierarchy(batch=batch))
+    models = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))["scenes"][0]["models"]
+    assert {key: round(model["cost"], 9) for key, model in models.items()} == dict.fromkeys(models, 0.016), "1 ms each"
+
+
+@pytest.mark.parametrize("key", [model.key for model in MODEL_HIERARCHY])
+def test_check_counts_the_missing_values_of_every_model_of_ours(command: Callable[..., Run], key: str) -> None:
+    missing = {"amplification": "fake_models:failing_point", "settings": {}}
+    hierarchy = [replace(model, **missing) if model.key == key else model for model in fake_hierarchy(gap=5e-5)]
+    run = command("fig3-I", "--grid", "4", "--check", hierarchy=hierarchy)
+    assert run.code == 1
+    assert run.err.splitlines()[-1].startswith("limit broken: fig3-I: acceptance.failed: 1 points without an answer")
+
+
+@pytest.mark.parametrize("body", [1, 2])
+@pytest.mark.parametrize("limit", ["median", "maximum", "ratio"])
+def test_the_worst_body_breaks_a_limit_whichever_it_is(limit: str, body: int) -> None:
+    scene = reference.load_scene("fig3-I").with_values({"acceptance": {limit: 0.02}})
+    study = Study((scene,), 2, 1e-3, fake_hierarchy(gap=0.0))
+    batches = study.batches()
+    surfaces = labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
+    surfaces["mu"].loc[{"model": "translational", "body": body}] *= 1.021
+    rows = differences(study, surfaces)
+    found = [limit for limit in checked_limits(study, surfaces, rows, unanswered(study, surfaces)) if limit.breaches]
+    assert [(each.key, [breach.body for breach in each.breaches]) for each in found] == [(limit, [body])]

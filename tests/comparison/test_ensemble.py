@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import math
 import sys
@@ -14,7 +15,7 @@ import pytest
 
 import reference
 from comparison.analysis.ensemble import SCALE, Ensemble, curves_of, fractile
-from comparison.cli.ensemble import FILES, main
+from comparison.cli.ensemble import FILES, main, table_text
 from reference.problem import Estimate, load_family
 
 SCENE = """title = "two bodies"
@@ -195,3 +196,11 @@ def test_a_plan_says_what_it_would_cost_and_computes_nothing(folder: Path, capsy
     assert "6 motions by the equations, 1 by the engine" in out
     assert "Nothing was computed" in out
     assert not list(Path().glob("out*"))
+
+
+@pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@A1", "\tx"])
+def test_a_text_that_a_spreadsheet_would_compute_stands_behind_an_apostrophe(
+    monkeypatch: pytest.MonkeyPatch, text: str
+) -> None:
+    monkeypatch.setattr("comparison.cli.ensemble.as_rows", lambda result: [{"motion": text, "scale": -1.0}])
+    assert list(csv.reader(io.StringIO(table_text(None), newline="")))[1] == [f"'{text}", "-1.0"]  # type: ignore[arg-type]

@@ -19,7 +19,7 @@ class OutcomeNote(Part):
 
 
 class Unanswered(Part):
-    """A model without a value at some or all phase pairs of a scene."""
+    """A model without a usable value at some or all phase pairs of a scene."""
 
     scene: Text
     """name of the scene"""
@@ -29,6 +29,8 @@ class Unanswered(Part):
     """title of the model"""
     points: int
     """phase pairs without a value"""
+    unusable: int
+    """further phase pairs, with a value that is not known to half of itself"""
     asked: int
     """phase pairs that the model was asked for"""
     used: bool
