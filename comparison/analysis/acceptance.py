@@ -94,9 +94,9 @@ def _breaches(
         remainders = [(body, closure(steps(study, surfaces, scene.name, body))) for body in bodies]
         yield "closure", stated.closure, _beyond(remainders, stated.closure)
     if (allowed_points := stated.failures) is not None:
-        missing = {gap: gap.points + gap.unusable for gap in gaps}
-        count = sum(missing.values())
-        models = ", ".join(f"{gap.title} {points} of {gap.asked}" for gap, points in missing.items())
+        lacks = {gap: gap.points + gap.unusable for gap in gaps}
+        count = sum(lacks.values())
+        models = ", ".join(f"{gap.title} {points} of {gap.asked}" for gap, points in lacks.items())
         excess = f"{count} points without an answer ({models})"
         yield "failed", allowed_points, [Breach(0, count, excess)] if count > allowed_points else []
 
