@@ -38,6 +38,7 @@ STALLED = 20.0  # times the limit: wall time after which a silent process waits 
 SLOWEST, SPARE = 5.0, 60.0  # times a limit of more than a few seconds, and s: the same, on a processor that is shared
 LONGEST_WAIT = 1e6  # s: the system takes no longer one
 EXIT = 5.0  # s from the end of a pipe to the end of its process
+SAFE_PATH = "PYTHONSAFEPATH"  # set: Python does not put the working directory in front of what it searches
 
 Call = Callable[[], Any]
 
@@ -141,8 +142,9 @@ class _Process:
 
     def __init__(self) -> None:
         self._pipe, theirs = CONTEXT.Pipe()
-        self._process = CONTEXT.Process(target=_serve, args=(theirs, gc.get_threshold()), daemon=True)
-        with _processes, _deaf_to_ctrl_c():
+        with _processes, _safe_path() as before, _deaf_to_ctrl_c():
+            about = theirs, gc.get_threshold(), before
+            self._process = CONTEXT.Process(target=_serve, args=about, daemon=True)
             self._process.start()
         theirs.close()
 
@@ -178,8 +180,13 @@ class _Process:
         self._pipe.close()
 
 
-def _serve(pipe: Connection, collections: tuple[int, int, int]) -> None:
-    """What a process does until its parent closes the pipe or ends. collections: thresholds of garbage collection."""
+def _serve(pipe: Connection, collections: tuple[int, int, int], safe_path: str | None) -> None:
+    """
+    What a process does until its parent closes the pipe or ends.
+
+    collections: thresholds of garbage collection; safe_path: what SAFE_PATH is for the processes that a task starts.
+    """
+    _set_safe_path(safe_path)
     gc.set_threshold(*collections)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to the whole group; the parent alone decides
     threading.Thread(target=_end_with_parent, daemon=True).start()
@@ -231,6 +238,28 @@ def _end_with_parent() -> None:
     if parent is not None:
         parent.join()
         os._exit(1)
+
+
+@contextmanager
+def _safe_path() -> Iterator[str | None]:
+    """
+    A process started meanwhile imports nothing from the working directory, where Python would look first.
+
+    It then searches the path of this process. Yields what SAFE_PATH was.
+    """
+    before = os.environ.get(SAFE_PATH)
+    _set_safe_path("1")
+    try:
+        yield before
+    finally:
+        _set_safe_path(before)
+
+
+def _set_safe_path(value: str | None) -> None:
+    if value is None:
+        os.environ.pop(SAFE_PATH, None)
+    else:
+        os.environ[SAFE_PATH] = value
 
 
 @contextmanager

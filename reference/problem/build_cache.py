@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import gc
 import hashlib
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -50,7 +51,9 @@ def build_folder(sources: Path) -> Path | None:
     Path or None
         Below NUMBA_CACHE_DIR if the user set it, otherwise in the user's cache. None if neither can be written.
     """
-    parent = Path(config.CACHE_DIR) if config.CACHE_DIR else user_cache()
+    # not numba's own setting: a file in the working directory may have made it, and builds are run
+    named = os.environ.get("NUMBA_CACHE_DIR")
+    parent = Path(named) if named else user_cache()
     if parent is None:
         return None
     digest = hashlib.sha256()

@@ -18,6 +18,21 @@ from comparison.cli.start import COMMANDS
 
 ROOT = Path(__file__).parents[2]
 SHADOW = "raise SystemExit('a module of the user was imported')\n"
+PLANTED = ("multiprocessing", "threading", "socket", "pickle", "numpy", "numba", "typing_extensions")
+TELLING = """
+import pathlib
+pathlib.Path(__file__).with_name("imported").open("a").write(__name__ + " ")
+raise ImportError(__name__)
+"""
+ENGINE = """
+import numpy as np
+
+import beside  # another file of the user
+
+
+def amplification(scene, phases):
+    return np.full((len(phases), len(scene.bodies)), beside.MU)
+"""
 
 
 @pytest.fixture
@@ -40,7 +55,7 @@ def script(tmp_path: Path) -> Path:
 def called(script: Path, *words: str) -> subprocess.CompletedProcess[str]:
     """The script in a directory of the user whose modules have the names of this project's packages."""
     place = script.parent.parent / "work"
-    place.mkdir()
+    place.mkdir(exist_ok=True)
     for name in ("reference", "multibody", "comparison"):
         (place / f"{name}.py").write_text(SHADOW, encoding="utf-8")
     command = [sys.executable, str(script), *words]
@@ -54,6 +69,40 @@ def test_the_modules_beside_a_user_are_not_imported_by_the_script_or_its_workers
     assert run.returncode == 0, run.stderr
     matrix = json.loads((script.parent.parent / "work/report/extremes.json").read_text(encoding="utf-8"))
     assert matrix["run"]["command"].startswith("phase-resonance extremes --models small")
+
+
+def planted(script: Path) -> Path:
+    """The working directory with modules that tell when they are imported; the file in which they do."""
+    place = script.parent.parent / "work"
+    place.mkdir()
+    for name in PLANTED:
+        (place / f"{name}.py").write_text(TELLING, encoding="utf-8")
+    return place / "imported"
+
+
+def test_workers_of_the_script_import_nothing_from_the_folder(script: Path) -> None:
+    imported = planted(script)
+    (imported.parent / "rk45.py").write_text(ENGINE, encoding="utf-8")
+    (imported.parent / "beside.py").write_text("MU = 1.0\n", encoding="utf-8")
+    run = called(script, "run", "fig3-I", "--plan", "--model", "mine=rk45:amplification")  # a worker imports it
+    assert not imported.exists(), imported.read_text(encoding="utf-8")
+    assert (run.returncode, run.stderr) == (0, "")
+    assert "mine" in run.stdout
+
+
+def test_workers_of_a_program_elsewhere_import_nothing_from_there(script: Path) -> None:
+    imported = planted(script)
+    script.write_text(
+        "import os\n"
+        "from comparison.execution.processes import process_pool\n"
+        "if __name__ == '__main__':\n"
+        "    with process_pool(1) as workers:\n"
+        "        print(workers.submit(os.getenv, 'PYTHONSAFEPATH').result(), os.getenv('PYTHONSAFEPATH'))\n",
+        encoding="utf-8",
+    )
+    run = called(script)
+    assert not imported.exists(), imported.read_text(encoding="utf-8")
+    assert (run.returncode, run.stdout) == (0, "None None\n"), "what a task starts is searched as ever"
 
 
 def test_the_script_plans_a_study(script: Path) -> None:

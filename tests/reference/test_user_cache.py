@@ -92,6 +92,18 @@ def test_every_function_that_is_kept_on_disk_is_kept_in_the_user_s_cache() -> No
     assert [name for name, place in kept.items() if parent not in place.parents] == []
 
 
+def test_numbas_settings_in_the_folder_do_not_say_where_builds_are(tmp_path: Path) -> None:
+    pytest.importorskip("yaml")  # without it numba reads no such file
+    (tmp_path / ".numba_config.yaml").write_text(f"cache_dir: {tmp_path}\n", encoding="utf-8")
+    ask = "import pathlib; from reference.problem import build_cache as b; print(b.build_folder(pathlib.Path(b.__file__)))"
+    environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
+    environment |= {"PYTHONPATH": str(ROOT), "PYTHONSAFEPATH": "1"}
+    run = subprocess.run(
+        [sys.executable, "-c", ask], cwd=tmp_path, env=environment, check=True, capture_output=True, text=True
+    )
+    assert tmp_path not in Path(run.stdout.strip()).parents
+
+
 def test_a_first_call_leaves_the_package_as_it_was(tmp_path: Path) -> None:
     package = tmp_path / "site" / "reference"
     for file in sorted((ROOT / "reference").rglob("*")):
