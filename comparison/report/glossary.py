@@ -33,7 +33,7 @@ GLOSSARY = {
     "real": "Larger than five times the error estimates of both models together, and so known to a fifth of itself.",
     "limits": "Largest values that a scene file states as acceptable.",
 }  # fmt: skip
-LEAD = re.compile(r"^.*?(?= \(|\. |\.$)|\bCause: [^.]*\.")  # of a headline: how much, and why
+LEAD = re.compile(r"^.*?(?= \(|\. |\.$)|\bCause: [^.]*(?:\.|$)")  # of a headline: how much, and why
 WORDS = re.compile("|".join(rf"\b{re.escape(word)}\b" for word in sorted(GLOSSARY, key=len, reverse=True)))
 
 

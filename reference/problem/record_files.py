@@ -28,13 +28,14 @@ COLUMNS = ("time", "ax", "ay", "az")
 UNITS = {"m/s^2": 1.0, "m/s2": 1.0, "m/s²": 1.0, "m/s/s": 1.0, "g": GRAVITY, "cm/s^2": 0.01, "cm/s2": 0.01}
 UNITS |= {"cm/s²": 0.01, "gal": 0.01}
 
-COLUMN = re.compile(r"(\w+)\s*(?:[\[(]\s*(.*?)\s*[\])])?")
-NEW_HEADER = re.compile(r"NPTS\s*=\s*([^\s,]+)[\s,]+DT\s*=\s*([^\s,]+)", re.IGNORECASE)
-OLD_HEADER = re.compile(r"([^\s,]+)[\s,]+([^\s,]+)[\s,]+NPTS[\s,]+DT", re.IGNORECASE)
+LARGEST = 2**24  # bytes of a file: half an hour at 200 Hz along three directions
+MAX_LINE, MAX_CELL = 1000, 100  # letters of a line that is looked at as a whole, and of a number
+COLUMN = re.compile(r"(\w+) ?(?:[\[(]([^\[(\])]*)[\])])?")
+HEADER = "a header such as time [s], ax [m/s^2], ay [m/s^2]"
 MAX_HEADER_LINES = 20
 UNIT_LINE = re.compile(r"\bUNITS\b", re.IGNORECASE)
-UNIT_OF_G = re.compile(r"\bUNITS\s*(?:OF|ARE|:|=)?\s*(?:G|\(G\)|\[G\])\s*(?:\.(?:\s.*)?)?", re.IGNORECASE)
-NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?", re.IGNORECASE | re.ASCII)
+UNIT_OF_G = re.compile(r"UNITS ?(?:OF|ARE|:|=)? ?(?:G|\(G\)|\[G\]) ?(?:\.(?: .*)?)?", re.IGNORECASE)
+NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:e[+-]?[0-9]+)?", re.IGNORECASE | re.ASCII)
 NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE | re.ASCII)
 MAX_COUNT_DIGITS = 9  # of NPTS
 MAX_ACCELERATION = 1e300  # finite in any unit
@@ -57,9 +58,9 @@ def csv_samples(text: str) -> Array:
     lines = ((number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip())
     rows = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
     if not rows:
-        raise RecordError("empty: must have a header, as time [s], ax [m/s^2], ay [m/s^2], and samples")
+        raise RecordError(f"empty: must have {HEADER}, and samples")
     head, header = rows[0]
-    columns = [_column(head, cell) for cell in _cells(head, header)]
+    columns = _columns(head, _cells(head, header))
     names = [name for name, _ in columns]
     for name in names:
         if names.count(name) > 1:
@@ -101,15 +102,14 @@ def at2_samples(texts: Mapping[str, str]) -> Array:
 def _at2(axis: str, text: str) -> tuple[float, Array]:
     """DT, s, and the accelerations of one file, in g."""
     lines = text.splitlines()
-    counts = next(((row, match) for row, line in enumerate(lines[:MAX_HEADER_LINES]) if (match := _sizes(line))), None)
+    header = [" ".join(line[:MAX_LINE].split()) for line in lines[:MAX_HEADER_LINES]]
+    counts = next(((row, sizes) for row, line in enumerate(header) if (sizes := _sizes(line))), None)
     if counts is None:
-        _check_unit(axis, lines[:MAX_HEADER_LINES])
         raise RecordError(f"{axis}: the header must have a line 'NPTS= 1000, DT= .0100 SEC'")
-    last, sizes = counts
-    while last + 1 < min(len(lines), MAX_HEADER_LINES) and not _begins_with_a_number(lines[last + 1]):
+    last, (count, step) = counts
+    while last + 1 < len(header) and not _begins_with_a_number(header[last + 1]):
         last += 1
-    _check_unit(axis, lines[: last + 1])
-    count, step = sizes.groups()
+    _check_unit(axis, header[: last + 1])
     whole = count.isascii() and count.isdecimal() and len(count) <= MAX_COUNT_DIGITS
     if not (whole and int(count) > 0):
         rule = f"must be a whole number greater than 0 of at most {MAX_COUNT_DIGITS} digits"
@@ -127,7 +127,7 @@ def _at2(axis: str, text: str) -> tuple[float, Array]:
 
 def _check_unit(axis: str, header: list[str]) -> None:
     """Raise RecordError unless the header names g as the unit, and no other."""
-    lines = [line.strip() for line in header if UNIT_LINE.search(line)]
+    lines = [line for line in header if UNIT_LINE.search(line)]
     for line in lines or [""]:
         at = UNIT_LINE.search(line)
         if at is None or not UNIT_OF_G.fullmatch(line[at.start() :]):
@@ -135,8 +135,17 @@ def _check_unit(axis: str, header: list[str]) -> None:
             raise RecordError(f"{axis}: the header names no unit that is known{quoted}: must say 'IN UNITS OF G'")
 
 
-def _sizes(line: str) -> re.Match[str] | None:
-    return NEW_HEADER.search(line) or OLD_HEADER.search(line)
+def _sizes(line: str) -> tuple[str, str] | None:
+    """NPTS and DT of 'NPTS= 1000, DT= .0100 SEC' or '1000 .0100 NPTS, DT', if the line is one of them."""
+    words = line.replace(",", " ").replace("=", " = ").split()
+    names = [word.upper() for word in words]
+    at = names.index("NPTS") if "NPTS" in names else len(names)
+    match names[at : at + 6]:
+        case ["NPTS", "=", _, "DT", "=", _]:
+            return words[at + 2], words[at + 5]
+        case ["NPTS", "DT", *_] if at >= 2:
+            return words[at - 2], words[at - 1]
+    return None
 
 
 def _begins_with_a_number(line: str) -> bool:
@@ -145,31 +154,45 @@ def _begins_with_a_number(line: str) -> bool:
 
 
 def _cells(number: int, line: str) -> list[str]:
+    if len(line) > MAX_LINE:
+        raise RecordError(f"line {number}: {len(line)} letters: must be at most {MAX_LINE}")
     try:
         return [cell.strip() for cell in next(csv.reader(io.StringIO(line)))]
     except csv.Error as error:
-        raise RecordError(f"line {number}: {brief(line)}: {error}") from None
+        raise RecordError(f"line {number}: {error}") from None
+
+
+def _columns(line: int, cells: list[str]) -> list[tuple[str, float]]:
+    """Names of the columns and their units in SI. Nothing is quoted where none is as it must be: that is no record."""
+    columns, errors = [], []
+    for cell in cells:
+        try:
+            columns.append(_column(line, " ".join(cell.split())))
+        except RecordError as error:
+            errors.append(error)
+    if errors:
+        raise errors[0] if columns else RecordError(f"line {line}: must be {HEADER}")
+    return columns
 
 
 def _column(line: int, cell: str) -> tuple[str, float]:
-    """Name of a column and its unit in SI."""
     match = COLUMN.fullmatch(cell)
     if match is None or match[1].lower() not in COLUMNS:
         raise RecordError(f"line {line}: column {brief(cell)}: must be one of time, ax, ay, az with its unit")
-    name, unit = match[1].lower(), (match[2] or "").lower()
+    name, unit = match[1].lower(), (match[2] or "").strip()
     units = {"s": 1.0} if name == "time" else UNITS
     allowed = "time [s]" if name == "time" else f"{name} [m/s^2], {name} [g] or {name} [cm/s^2]"
-    if unit not in units:
-        quoted = f"unknown unit {brief(match[2])}" if unit else "no unit"
+    if unit.lower() not in units:
+        quoted = f"unknown unit {brief(unit)}" if unit else "no unit"
         raise RecordError(f"line {line}: column {brief(cell)}: {quoted}: write {allowed}")
-    return name, units[unit]
+    return name, units[unit.lower()]
 
 
 def _number(line: int, cell: str) -> float:
     if NOT_FINITE.fullmatch(cell):
         raise RecordError(f"line {line}: {cell}: must be finite")
-    if not NUMBER.fullmatch(cell):
-        raise RecordError(f"line {line}: {brief(cell)}: must be a number")
+    if len(cell) > MAX_CELL or not NUMBER.fullmatch(cell):
+        raise RecordError(f"line {line}: {brief(cell)}: must be a number of at most {MAX_CELL} letters")
     value = float(cell)
     if abs(value) > MAX_ACCELERATION:
         raise RecordError(f"line {line}: {brief(cell)}: must be finite, at most {MAX_ACCELERATION:g} in size")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from importlib import resources
 
 import numpy as np
@@ -31,8 +32,8 @@ def at2(values, step=0.01, count=None, unit="UNITS OF G", sizes="NPTS= {:6d}, DT
 )
 def test_csv_reads_what_was_written(rows, axes, order, brackets):
     """repr keeps every bit; columns in any order, any of the three axes absent, times from the first on."""
-    time = np.cumsum([row[0] for row in rows])
-    table = np.column_stack([time, np.array(rows)[:, 1:]])
+    times = np.cumsum([row[0] for row in rows])
+    table = np.column_stack([times, np.array(rows)[:, 1:]])
     names = ["time", "ax", "ay", "az"]
     kept = [i for i in order if names[i] in axes or i == 0]
     header = ",".join(names[i] + brackets.format("s" if i == 0 else "m/s^2") for i in kept)
@@ -40,7 +41,7 @@ def test_csv_reads_what_was_written(rows, axes, order, brackets):
     samples = csv_samples("# made up\n" + header + "\n" + "\n".join(lines))
     for i, name in enumerate(names[1:], start=1):
         assert (samples[:, i] == (table[:, i] if name in axes else 0.0)).all()
-    assert (samples[:, 0] == time - time[0]).all()
+    assert (samples[:, 0] == times - times[0]).all()
 
 
 @given(st.lists(finite, min_size=2, max_size=40), st.floats(1e-3, 0.1), st.booleans())
@@ -154,7 +155,7 @@ def test_what_no_double_holds_is_refused_in_one_short_line(read, text):
 @pytest.mark.parametrize(
     ("files", "said"),
     [
-        ({"x": ""}, "names no unit"),
+        ({"x": ""}, "must have a line 'NPTS"),
         ({"x": at2([1.0, 2.0], unit="UNITS OF CM/SEC/SEC")}, "names no unit"),
         ({"x": at2([1.0, 2.0], sizes="{} values, {} s")}, "must have a line 'NPTS"),
         ({"x": at2([1.0, 2.0], count=3)}, "2 values: the header says NPTS = 3"),
@@ -170,6 +171,52 @@ def test_at2_that_is_none_is_refused_in_one_line(files, said):
         at2_samples(files)
     assert said in str(refusal.value)
     assert "\n" not in str(refusal.value)
+
+
+def of_x(text):
+    return at2_samples({"x": text})
+
+
+@pytest.mark.parametrize(
+    ("read", "text"),
+    [
+        (csv_samples, "time [s],ax [" + 2000 * " " + "x\n0,1\n1,1\n"),
+        (csv_samples, PLAIN.replace("0.2", 32_000 * "9" + "x")),
+        (of_x, at2([1.0, 2.0]) + " " + 32_000 * "9" + "x"),
+        (of_x, at2([1.0, 2.0], unit="UNITS" + 32_000 * " " + "x")),
+        (of_x, at2([1.0, 2.0], sizes=16_000 * "x,")),
+        (of_x, at2([1.0, 2.0], sizes="NPTS=" + 16_000 * "NPTS=" + ", D")),
+        (csv_samples, 400 * "," + PLAIN),
+    ],
+    ids=["blanks in a header", "digits", "digits of AT2", "blanks of AT2", "words", "sizes", "columns"],
+)
+def test_no_text_takes_more_than_a_moment_to_refuse(read, text):
+    begin = time.process_time()
+    with pytest.raises(RecordError):
+        read(text)
+    assert time.process_time() - begin < 1.0, "7 to 23 s where work grows faster than the text"
+
+
+SECRET = "xK7-of-somebody-else"
+
+
+@pytest.mark.parametrize("read", [csv_samples, of_x])
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"{SECRET}\n",
+        f"-----BEGIN KEY-----\n{SECRET}\n",
+        f"time,{SECRET}\n0,1\n",
+        f'"{SECRET}\n',
+        f"UNITS {SECRET}\n",
+        f"{SECRET},{SECRET}\n",
+    ],
+)
+def test_of_a_file_that_is_no_record_nothing_is_quoted(read, text):
+    with pytest.raises(RecordError) as refusal:
+        read(text)
+    assert SECRET not in str(refusal.value)
+    assert "header" in str(refusal.value)
 
 
 def test_shipped_records_are_those_of_their_formula():
