@@ -11,8 +11,12 @@ from typing import Any, Generic, TypeVar
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
+from reference.problem.files import read_file
+
 # of dataclasses that are read from files: unknown keys are refused; the text below a field is its meaning
 FILE_FORMAT = ConfigDict(extra="forbid", use_attribute_docstrings=True)
+
+LARGEST = 2**26  # bytes of a file
 
 T = TypeVar("T")
 
@@ -61,21 +65,17 @@ class StoredFile(Generic[T]):
         Raises
         ------
         ValueError
-            In one line, if the file is anything else, or of another version.
+            In one line, if the file is anything else, of another version, or cannot be read, as a pipe.
         """
         file = folder / self.name
         if not file.exists():
             return None
         try:
-            return TypeAdapter(self.kind).validate_json(file.read_bytes())
+            return TypeAdapter(self.kind).validate_json(read_file(file, LARGEST))
+        except OSError as error:
+            raise ValueError(f"{file}: {error.strerror}: must be {self.what}: run {self.command}") from None
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
             place = ".".join(map(str, first["loc"]))
-            given = "" if first["type"] in ("missing", "json_invalid") else f" = {_short(first['input'])}"
-            reason = f"{place}{given}: {first['msg']}" if place else first["msg"]
+            reason = f"{place}: {first['msg']}" if place else first["msg"]  # not what it holds: it may be of anybody
             raise ValueError(f"{file}: not {self.what}: {reason}: run {self.command}") from None
-
-
-def _short(value: object, length: int = 60) -> str:
-    shown = repr(value)
-    return shown if len(shown) <= length else f"{shown[:length]}…"

@@ -25,7 +25,7 @@ from typing import Any
 
 from comparison.execution.encoding import array_bytes, array_of, decoded, encoded
 from reference.problem import SceneError
-from reference.problem.files import TEMPORARY, write_atomically
+from reference.problem.files import TEMPORARY, read_file, write_atomically
 
 MAGIC = b"phase-resonance result 1\n"
 LIMIT = 2**30  # bytes: above this, groups that the present study does not need are dropped, least recently used first
@@ -74,7 +74,7 @@ class Cache:
         The stored result to the last bit, of type `declared`; None if there is none that is whole and fits.
         """
         try:
-            value = _unpacked((self.folder / key.name).read_bytes(), key, declared)
+            value = _unpacked(read_file(self.folder / key.name, LIMIT), key, declared)
         except Exception:  # whatever is wrong with a file, the result is computed again
             return None
         self.kept[key.kind] += 1

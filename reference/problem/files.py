@@ -1,5 +1,6 @@
 """
-Files and directories that appear whole or not at all, and never in the place of what somebody else wrote.
+Files and directories that appear whole or not at all, and never in the place of what somebody else wrote; and how a
+file that somebody else may have written is read.
 
 A file is written under a temporary name beside its place and renamed. A directory is written in a staging directory
 beside its place; the staging directory carries a mark that names the place, and a lock that ends with the process,
@@ -9,10 +10,12 @@ for dead.
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import secrets
 import shutil
+import stat
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -25,7 +28,50 @@ except ImportError:
 
 TEMPORARY = ".phase-resonance-"  # how the names of temporary files and staging directories begin; no proof of anything
 MARK = "staging.json"  # file in a staging directory that says what it is and for which place
+CHUNK = 2**20  # bytes read at once
 NEW, OLD = "new", "old"  # in a staging directory: what is being written; what it replaces, for a moment
+
+
+def read_file(file: str | Path, largest: int) -> bytes:
+    """
+    The content of a regular file: a pipe or a device may block, or never end.
+
+    Parameters
+    ----------
+    file : str or Path
+        A symbolic link is followed.
+    largest : int
+        Bytes.
+
+    Returns
+    -------
+    bytes
+
+    Raises
+    ------
+    OSError
+        Also if it is no regular file, or larger; `strerror` says so.
+    ValueError
+        If it is no path at all, such as one with a null byte.
+    """
+    flags = (getattr(os, name, 0) for name in ("O_NONBLOCK", "O_NOCTTY", "O_CLOEXEC", "O_BINARY"))
+    handle = os.open(file, os.O_RDONLY | sum(flags))
+    try:
+        status = os.fstat(handle)
+        if stat.S_ISDIR(status.st_mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(file))
+        if not stat.S_ISREG(status.st_mode):
+            raise OSError(errno.EINVAL, "not a regular file", str(file))
+        content = bytearray()
+        size = status.st_size
+        while size <= largest and (part := os.read(handle, CHUNK)):  # it may grow meanwhile
+            content += part
+            size = len(content)
+        if size > largest:
+            raise OSError(errno.EFBIG, f"larger than {largest / 2**20:g} MiB", str(file))
+        return bytes(content)
+    finally:
+        os.close(handle)
 
 
 def write_atomically(file: Path, content: bytes) -> None:
@@ -152,7 +198,7 @@ def _mark(folder: Path, place: Path) -> bytes:
 
 def _is_marked(folder: Path, place: Path) -> bool:
     try:
-        return (folder / MARK).read_bytes() == _mark(folder, place)
+        return read_file(folder / MARK, CHUNK) == _mark(folder, place)
     except OSError:
         return False
 

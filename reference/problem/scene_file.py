@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from importlib import resources
 from pathlib import Path
@@ -9,12 +10,17 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from reference.problem.files import read_file
 from reference.problem.ranges import takes
 from reference.problem.record_loading import EXAMPLES, with_samples
 from reference.problem.scene import KEYS, Scene
 from reference.problem.scene_error import SceneError, first_error
 
+LARGEST = 2**22  # bytes of a scene file
 MAX_NESTING = 10  # tables and lists within one another in a scene file
+KEY = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
+# a key of so many parts is nested too deep; the parser's work grows as the square of their number
+LONG_KEY = re.compile(rf"(?<![\w-]){KEY}(?:[ \t]*+\.[ \t]*+{KEY}){{{2 * MAX_NESTING}}}", re.ASCII)
 
 
 def builtin_scenes() -> list[str]:
@@ -90,7 +96,7 @@ def scene_text(source: str | Path) -> bytes:
     if label in builtin_scenes():
         return (resources.files("reference.problem") / "scenes" / f"{label}.toml").read_bytes()
     try:
-        return Path(source).read_bytes()
+        return read_file(source, LARGEST)
     except (OSError, ValueError) as error:  # ValueError: no path at all, such as one with a null byte
         reason = getattr(error, "strerror", None) or error
         rule = f"{reason}; give a TOML file or one of {', '.join(builtin_scenes() + example_scenes())}"
@@ -139,11 +145,14 @@ def parse_scene(text: bytes, label: str) -> Scene:
 def scene_tables(text: bytes, label: str) -> dict[str, Any]:
     """The tables of a scene file, not validated. Raises SceneError if they cannot be read."""
     try:
-        data: dict[str, Any] = tomllib.loads(text.decode("utf-8-sig"))
+        decoded = text.decode("utf-8-sig")
+        data: dict[str, Any] | None = None if LONG_KEY.search(decoded) else tomllib.loads(decoded)
     except (ValueError, RecursionError) as error:
         raise SceneError(label, "file", str(error), "must be valid TOML in UTF-8") from None
-    if _deeper(data, MAX_NESTING):
+    if data is None or _deeper(data, MAX_NESTING):
         raise SceneError(label, "file", label, f"must have at most {MAX_NESTING} tables and lists within one another")
+    if data and data.keys().isdisjoint((*KEYS[""], "combine")):  # whatever it is, none of it is shown
+        raise SceneError(label, "file", label, f"is no scene: must have keys as {', '.join(KEYS[''])}")
     if "name" in data:
         raise SceneError(label, "name", data["name"], "unknown key; the scene is named after its file")
     return data

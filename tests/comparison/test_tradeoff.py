@@ -6,6 +6,7 @@ checked.
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -171,15 +172,30 @@ def test_a_wrong_command_is_one_line(words: list[str], said: str, capsys: pytest
 
 def test_a_file_that_is_no_trade_is_refused_in_one_line(tmp_path: Path) -> None:
     (tmp_path / FILE).write_text('{"schema": "another"}', encoding="utf-8")
-    with pytest.raises(ValueError, match="not a measured trade: schema = 'another'"):
+    with pytest.raises(ValueError, match="not a measured trade: schema: Input should be 'phase-resonance/tradeoff'"):
         load(tmp_path)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes with names")
+def test_a_pipe_in_place_of_a_trade_is_refused_in_one_line(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / FILE)
+    with pytest.raises(ValueError, match="not a regular file: must be a measured trade: run python -m") as refusal:
+        load(tmp_path)
+    assert "\n" not in str(refusal.value)
+
+
+def test_of_a_file_that_is_no_trade_nothing_is_quoted(tmp_path: Path) -> None:
+    (tmp_path / FILE).write_text('{"schema": "a-secret", "trades": "a-secret", "a-secret": 1}', encoding="utf-8")
+    with pytest.raises(ValueError, match="not a measured trade") as refusal:
+        load(tmp_path)
+    assert "a-secret" not in str(refusal.value)
 
 
 def test_a_trade_of_an_earlier_version_is_refused_in_one_line_that_names_the_key(trade: Trade, tmp_path: Path) -> None:
     text = STORED.as_json(TradeFile(SCHEMA, [trade])).decode().replace('"pareto_front"', '"front"')
     (tmp_path / FILE).write_text(text, encoding="utf-8")
     with pytest.raises(
-        ValueError, match=r"trades\.0\.entries\.0\.front = .*: run python -m comparison.tradeoff$"
+        ValueError, match=r"trades\.0\.entries\.0\.front: .*: run python -m comparison.tradeoff$"
     ) as error:
         load(tmp_path)
     assert "\n" not in str(error.value)

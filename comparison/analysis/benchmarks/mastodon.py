@@ -11,7 +11,8 @@ from pathlib import Path
 from comparison.analysis.benchmarks import readings
 from comparison.analysis.benchmarks.cases import Case, Published, Reading
 from reference.problem import GRAVITY, Scene, SceneError
-from reference.problem.record_files import RecordError, csv_samples
+from reference.problem.files import read_file
+from reference.problem.record_files import LARGEST, RecordError, csv_samples
 
 OPTION = "--mastodon"
 READ_TO = 3.0  # mm, from the published loops
@@ -39,7 +40,7 @@ def mastodon(path: Path) -> Case:
         One line, if the file is no such motion.
     """
     try:
-        samples = csv_samples(path.read_text(encoding="utf-8-sig"))
+        samples = csv_samples(read_file(path, LARGEST).decode("utf-8-sig"))
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "must be text in UTF-8"
         raise SceneError("command line", OPTION, str(path), reason) from None
