@@ -10,7 +10,7 @@ import numpy as np
 from comparison.execution.cache import Cache, Key
 from comparison.execution.environment import environment_fingerprint, task_environment_fingerprint
 from comparison.execution.task import Task, fingerprint, named
-from comparison.study.batches import Batch, BatchResult
+from comparison.study.batches import Batch, BatchResult, ok_without_numbers
 
 BATCH, ANALYSIS = "tile", "answer"  # kinds of results
 
@@ -69,11 +69,13 @@ def cached_batch(cache: Cache, batch: Batch) -> BatchResult | None:
     Returns
     -------
     BatchResult or None
-        None if there is none that fits its phases and bodies.
+        None if there is none that fits its phases and bodies, or if one is ok without numbers.
     """
     answer = cache.get(batch_key(batch), BatchResult)
     if answer is None:
         return None
     points, bodies = len(batch.phases), len(batch.scene.bodies)
     shapes = answer.mu.shape, answer.error.shape, (len(answer.status),), answer.instant.shape, answer.displacement.shape
-    return answer if shapes == ((points, bodies), (points, bodies), (points,), (points,), (points,)) else None
+    if shapes != ((points, bodies), (points, bodies), (points,), (points,), (points,)):
+        return None
+    return None if ok_without_numbers(batch, answer.mu, answer.error, answer.status) else answer

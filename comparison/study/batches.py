@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any
@@ -121,12 +121,17 @@ def execute_batch(batch: Batch) -> BatchResult:
     except Exception as exception:
         return unanswered(batch, Outcome.SOLVER_FAILED, exception_line(exception))
     named = ""
-    error_may_be_unknown = bool(batch.lane)
-    for index in np.flatnonzero(~(np.isfinite(mu) & (np.isfinite(error) | error_may_be_unknown)).all(axis=1)):
-        if status[index] == Outcome.OK:  # never let a number that is none pass as an answer
-            status[index] = Outcome.SOLVER_FAILED.value
-            named = f"{batch.amplification} called a non-finite answer ok"
+    for index in ok_without_numbers(batch, mu, error, status):
+        status[index] = Outcome.SOLVER_FAILED.value
+        named = f"{batch.amplification} called a non-finite answer ok"
     return BatchResult(mu, error, status, instant, float(result.cost), named, displacement)
+
+
+def ok_without_numbers(batch: Batch, mu: Array, error: Array, status: Sequence[str]) -> list[int]:
+    """The phase pairs of a batch that are ok without a number for every body: no number that is none is an answer."""
+    error_may_be_unknown = bool(batch.lane)
+    finite = (np.isfinite(mu) & (np.isfinite(error) | error_may_be_unknown)).all(axis=1)
+    return [index for index in np.flatnonzero(~finite) if status[index] == Outcome.OK]
 
 
 def unanswered(batch: Batch, outcome: Outcome, error_message: str) -> BatchResult:

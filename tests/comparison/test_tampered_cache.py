@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import pickle
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from enum import Enum
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin, get_type_hints
@@ -194,6 +195,31 @@ def test_a_tile_of_another_shape_is_computed_again(tmp_path: Path) -> None:
         assert cached_batch(cache, batch) is None, name
     cache.put(batch_key(batch), answer)
     assert cached_batch(cache, batch) is not None
+
+
+@pytest.mark.parametrize("name", ["mu", "error"])
+def test_a_tile_that_is_ok_without_numbers_is_computed_again(tmp_path: Path, name: str) -> None:
+    batch = Study((load_scene("fig3-I"),), 2, 1e-3, fake_hierarchy()).batches()[0]
+    cache, answer = Cache(tmp_path), execute_batch(batch)
+    damaged = getattr(answer, name).copy()
+    damaged[0, 0] = np.nan
+    cache.put(batch_key(batch), replace(answer, **{name: damaged}))
+    assert cached_batch(cache, batch) is None
+    status = ["step limit", *answer.status[1:]]
+    cache.put(batch_key(batch), replace(answer, **{name: damaged}, status=status))
+    assert cached_batch(cache, batch) is not None, "a point without an answer has no numbers"
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes with names")
+def test_what_is_no_regular_file_is_no_result(tmp_path: Path) -> None:
+    cache = Cache(tmp_path)
+    cache.put(KEY, VALUE)
+    (tmp_path / KEY.name).unlink()
+    os.mkfifo(tmp_path / KEY.name)
+    assert cache.get(KEY, Outer) is None
+    (tmp_path / KEY.name).unlink()
+    (tmp_path / KEY.name).symlink_to("/dev/zero")
+    assert cache.get(KEY, Outer) is None
 
 
 def test_a_motion_whose_arrays_disagree_is_none() -> None:
