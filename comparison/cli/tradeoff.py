@@ -28,7 +28,7 @@ from comparison.cli.computing import computed, run_facts
 from comparison.cli.entered import add_models, entered_models
 from comparison.cli.growth import FILES, growth_files, measured_growth, print_growth
 from comparison.execution.executors import Pool
-from comparison.execution.output import destination, made_by, publish, refuse_foreign_files
+from comparison.execution.output import destination, made_by, netcdf, publish, refuse_foreign_files
 from comparison.execution.processes import process_pool
 from comparison.execution.progress import wide_console
 from comparison.report.figures.file_names import figure_file, tradeoff_figure_name, with_ending
@@ -149,7 +149,7 @@ def _files(measured: MeasuredTrade) -> dict[str, bytes]:
 
     picture = tradeoff_figure_name(measured.trade.scene)
     return made_by(
-        lambda folder: measured.values.to_netcdf(with_ending(folder / picture, ".nc"), engine="h5netcdf"),
+        lambda folder: with_ending(folder / picture, ".nc").write_bytes(netcdf(measured.values)),
         lambda folder: draw_tradeoff(folder / picture, measured.trade),
     )
 

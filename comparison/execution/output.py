@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from comparison.execution.cache import store_beside
 from reference.problem import SceneError
@@ -31,14 +31,19 @@ from reference.problem.files import (
     dead_staging,
     locked,
     names_after,
+    read_file,
     staging,
     write_atomically,
     write_new,
 )
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 MANIFEST, SCHEMA = "manifest.json", "phase-resonance/manifest"
 REPORT = "comparison.run"  # the command whose files make up a report; those of others in the folder stay
 MOUNTS = Path("/proc/self/mountinfo")
+LARGEST = 2**30  # bytes of a file that may be the study's own
 FULL_NAME = 240  # bytes of a name: the names made from it are longer
 
 
@@ -90,6 +95,8 @@ def destination(path: Path, option: str = "--out") -> Path:
             raise refusal(f"has a name of more than {FULL_NAME} bytes: give a shorter one")
         if place.exists() and not place.is_dir():
             raise refusal("is a file: give a directory")
+        if not place.name:
+            raise refusal("is the root directory: give a directory inside it")
         parent = next(parent for parent in place.parents if parent.exists())
         if not parent.is_dir():
             raise refusal("cannot be written: Not a directory")
@@ -274,6 +281,21 @@ def _note(folder: Path, manifest: Mapping[str, Own], say: Callable[[str], None])
         say(f"{str(folder / MANIFEST)!r} is not a file of this study and stays: the next run does not know these files")
 
 
+def netcdf(values: xr.Dataset) -> bytes:
+    """
+    The content of a netCDF file, made in memory: HDF5 ends the process where it cannot write all of a file.
+
+    Parameters
+    ----------
+    values : xr.Dataset
+
+    Returns
+    -------
+    bytes
+    """
+    return bytes(values.to_netcdf(engine="h5netcdf"))
+
+
 def made_by(*writers: Callable[[Path], object]) -> dict[str, bytes]:
     """The files that the writers leave in the folder they are given."""
     with tempfile.TemporaryDirectory() as name:
@@ -300,7 +322,7 @@ def foreign(folder: Path) -> list[str]:
 def read_manifest(folder: Path) -> dict[str, Own]:
     """The files that the study wrote into a folder, by their paths below it; empty without a manifest of ours."""
     try:
-        data = json.loads((folder / MANIFEST).read_bytes())
+        data = json.loads(read_file(folder / MANIFEST, LARGEST))
         if data["schema"] != SCHEMA or data["checksum"] != _checksum(data["files"]):
             return {}
         return {name: Own(entry["command"], tuple(entry["sha256"])) for name, entry in data["files"].items()}
@@ -425,7 +447,7 @@ def _is_own(file: Path, entry: Own | None) -> bool:
     if entry is None or file.is_symlink() or not file.is_file():
         return False
     try:
-        return _hash(file.read_bytes()) in entry.hashes
+        return _hash(read_file(file, LARGEST)) in entry.hashes
     except OSError:
         return False
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from comparison.analysis.demand_surfaces import with_demands
-from comparison.execution.output import on_stderr
+from comparison.execution.output import netcdf, on_stderr
 from comparison.execution.task import Task
 from comparison.report.drawings import assumption_tasks
 from comparison.report.findings import Findings
@@ -42,7 +42,7 @@ def write_report(folder: Path, results: Results, findings: Findings) -> None:
     stamped = with_demands(findings.surfaces, findings.demands).assign_attrs(
         command=run["command"], **run["provenance"]
     )
-    stamped.to_netcdf(folder / "surfaces.nc", engine="h5netcdf")
+    (folder / "surfaces.nc").write_bytes(netcdf(stamped))
     texts = {
         "summary.json": results.as_json(),
         "summary.schema.json": schema_json(),

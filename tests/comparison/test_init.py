@@ -119,6 +119,8 @@ REFUSED: dict[str, tuple[Callable[[Path], Path], str]] = {
     "below a file": (lambda place: a_file(place) / "study", "cannot be written: Not a directory"),
     "a line break": (lambda place: place.with_name("my\nstudy"), "must be a name of printable characters"),
     "a long name": (lambda place: place.with_name(250 * "x"), "has a name of more than 240 bytes"),
+    "the root": (lambda place: Path("/"), "is the root directory: give a directory inside it"),
+    "two slashes": (lambda place: Path("//"), "is the root directory: give a directory inside it"),
     "no such place": (lambda place: Path("/proc/no/such"), "cannot be written: "),
 }
 

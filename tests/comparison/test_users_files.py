@@ -214,6 +214,15 @@ def test_a_manifest_that_was_tampered_with_proves_nothing(tmp_path: Path) -> Non
     assert (tmp_path / "report" / "notes.txt").read_text(encoding="utf-8") == "mine"
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes with names")
+@pytest.mark.parametrize("name", [MANIFEST, "index.html"])
+def test_a_pipe_among_the_files_of_a_report_is_the_users(tmp_path: Path, name: str) -> None:
+    put(tmp_path / "report")
+    (tmp_path / "report" / name).unlink()
+    os.mkfifo(tmp_path / "report" / name)
+    assert name in foreign(tmp_path / "report")
+
+
 def test_a_folder_of_24_letters_in_the_store_is_never_trimmed(tmp_path: Path) -> None:
     batches = Study((load_scene("fig3-I"),), 2, 1e-3, fake_hierarchy()).batches()
     cache = Cache(tmp_path / "e.tiles")
@@ -345,6 +354,8 @@ PLACES: Mapping[str, tuple[str, str]] = {
     "a link with another's store beside what it means": ("link", "beside it is not a store of results"),
     "a store that is a link": ("linked-store", "beside it is not the folder that keeps results"),
     "a mount point": ("mount", "is a mount point, which cannot be replaced"),
+    "the root": ("/", "is the root directory: give a directory inside it"),
+    "two slashes": ("//", "is the root directory: give a directory inside it"),
 }
 
 
@@ -362,7 +373,8 @@ def test_an_odd_place_is_refused_at_the_start_in_one_line(
     ismount = os.path.ismount
     monkeypatch.setattr(os.path, "ismount", lambda path: Path(path).name == "mount" or ismount(path))
     before = sorted(str(path) for path in tmp_path.rglob("*"))
-    run = command(*SMALL, "--out", f"{tmp_path}/{name}", hierarchy=fake_hierarchy("forbidden"))
+    place = name if name.startswith("/") else f"{tmp_path}/{name}"
+    run = command(*SMALL, "--out", place, hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert rule in run.err
     assert run.err.count("\n") == 1
