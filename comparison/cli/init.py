@@ -13,11 +13,11 @@ from importlib.resources import files
 from pathlib import Path
 
 from comparison.cli.arguments import command, writing
+from comparison.cli.requirement import requirement
 from comparison.execution.output import destination, make_parents, refuse_unwritable
 from reference.problem import SceneError
 from reference.problem.command import OneLineParser
 from reference.problem.files import NEW, staging
-from reference.problem.version import __version__
 
 PLACE = "DIRECTORY"
 TEMPLATE = {  # file of the study: file of the template
@@ -41,6 +41,10 @@ def main(argv: Sequence[str]) -> int:
     with writing(place, PLACE):
         write_directory(place, study_files(place.resolve().name))
     print(f"{place}: a study to start from; README.md in it says how: change building.toml, then python study.py")
+    if " @ file:" in requirement():
+        print(
+            "requirements.txt names a folder of this machine: continuous integration elsewhere needs another line there"
+        )
     return 0
 
 
@@ -60,8 +64,9 @@ def study_files(name: str) -> dict[str, bytes]:
     """
     folder = files("comparison.cli") / "study_template"
     texts = {file: (folder / source).read_text(encoding="utf-8") for file, source in TEMPLATE.items()}
+    source = requirement()
     return {
-        file: text.replace("@NAME@", name).replace("@VERSION@", __version__).encode() for file, text in texts.items()
+        file: text.replace("@NAME@", name).replace("@REQUIREMENT@", source).encode() for file, text in texts.items()
     }
 
 

@@ -29,18 +29,19 @@ def provenance() -> dict[str, str]:
 def _commit() -> str:
     """Commit of the checkout this package runs from; says so if it has changes, or if there is no checkout."""
     folder = Path(__file__).resolve().parents[2]
-
-    def git(*arguments: str) -> str:
-        done = subprocess.run(["git", "-C", str(folder), *arguments], capture_output=True, text=True, check=True)
-        return done.stdout.strip()
-
     try:
-        if Path(git("rev-parse", "--show-toplevel")).resolve() != folder:
+        if Path(git(folder, "rev-parse", "--show-toplevel")).resolve() != folder:
             return "installed, not a checkout"
-        changed = git("status", "--porcelain", "--untracked-files=no")
-        return git("rev-parse", "HEAD") + (" with uncommitted changes" if changed else "")
+        changed = git(folder, "status", "--porcelain", "--untracked-files=no")
+        return git(folder, "rev-parse", "HEAD") + (" with uncommitted changes" if changed else "")
     except (OSError, subprocess.CalledProcessError):
         return "installed, not a checkout"
+
+
+def git(folder: Path, *arguments: str) -> str:
+    """What git says about a folder. Raises OSError or CalledProcessError."""
+    done = subprocess.run(["git", "-C", str(folder), *arguments], capture_output=True, text=True, check=True)
+    return done.stdout.strip()
 
 
 def _processor() -> str:

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import errno
+import json
 import runpy
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
+from urllib.parse import urlsplit
+from urllib.request import url2pathname
 
 import pytest
+from packaging.requirements import Requirement
 
 import reference
+from comparison.cli import requirement as source
 from comparison.cli.init import TEMPLATE, main, study_files
 from comparison.cli.start import main as script
 
@@ -36,8 +42,67 @@ def test_it_writes_every_file_of_the_template(study: Path) -> None:
     template = ROOT / "comparison" / "cli" / "study_template"
     assert sorted(file.name for file in template.iterdir() if file.is_file()) == sorted(TEMPLATE.values())
     assert (study / "README.md").read_text(encoding="utf-8").startswith("# my-study\n")
-    assert f"phase-resonance=={reference.__version__}\n" in (study / "requirements.txt").read_text(encoding="utf-8")
-    assert [name for name, content in study_files("x").items() if b"@NAME@" in content or b"@VERSION@" in content] == []
+    assert [name for name, content in study_files("x").items() if b"@NAME@" in content or b"@REQ" in content] == []
+
+
+def test_its_continuous_integration_installs_the_version_that_made_it(study: Path) -> None:
+    lines = (study / "requirements.txt").read_text(encoding="utf-8").splitlines()
+    asked = {parsed.name: parsed for parsed in map(Requirement, (line for line in lines if not line.startswith("#")))}
+    wanted = asked["phase-resonance"]
+    if wanted.url is None:
+        assert not (ROOT / "pyproject.toml").is_file(), "nobody has put a checkout into an index"
+    elif wanted.url.startswith("file:"):
+        assert Path(url2pathname(urlsplit(wanted.url).path)) == ROOT
+    else:
+        head = subprocess.run(["git", "-C", ROOT, "rev-parse", "HEAD"], capture_output=True, text=True, check=True)
+        assert wanted.url.endswith(f"@{head.stdout.strip()}")
+
+
+COMMIT = "0123456789abcdef0123456789abcdef01234567"
+RECORDED = {
+    "an index": (None, f"phase-resonance=={reference.__version__}"),
+    "a repository": (
+        {"url": "https://me:word@host.org/a.git", "vcs_info": {"vcs": "git", "commit_id": COMMIT}},
+        f"phase-resonance @ git+https://host.org/a.git@{COMMIT}",
+    ),
+    "an archive": ({"url": "https://host.org/a.whl", "archive_info": {}}, "phase-resonance @ https://host.org/a.whl"),
+    "a folder": ({"url": "file:///no/such/folder", "dir_info": {}}, "phase-resonance @ file:///no/such/folder"),
+}
+
+
+@pytest.mark.parametrize(("recorded", "line"), RECORDED.values(), ids=RECORDED.keys())
+def test_the_requirement_is_where_pip_found_the_project(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, recorded: object, line: str
+) -> None:
+    text = None if recorded is None else json.dumps(recorded)
+    monkeypatch.setattr(source, "distribution", lambda name: SimpleNamespace(read_text=lambda file: text))
+    monkeypatch.setattr(source, "CHECKOUT", tmp_path)
+    assert source.requirement() == line
+    assert Requirement(line).name == "phase-resonance"
+
+
+@pytest.mark.parametrize(
+    ("origin", "address"),
+    [
+        ("https://me:word@host.org/a/b.git", "git+https://host.org/a/b.git@"),
+        ("git@host.org:a/b.git", "git+ssh://git@host.org/a/b.git@"),
+        ("ssh://git:word@host.org/a/b.git", "git+ssh://git@host.org/a/b.git@"),
+        ("/srv/a/b.git", "file://"),
+    ],
+)
+@pytest.mark.parametrize("pushed", [True, False])
+def test_a_checkout_is_found_by_the_commit_that_its_repository_has(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, origin: str, address: str, pushed: bool
+) -> None:
+    said = {"rev-parse": COMMIT, "branch": "origin/main" if pushed else "", "remote": origin}
+    monkeypatch.setattr(source, "git", lambda folder, verb, *rest: said[verb])
+    monkeypatch.setattr(source, "_recorded", dict)
+    monkeypatch.setattr(source, "CHECKOUT", tmp_path)
+    (tmp_path / "pyproject.toml").touch()
+    elsewhere = pushed and not origin.startswith("/")
+    line = f"phase-resonance @ {address}{COMMIT}" if elsewhere else f"phase-resonance @ {tmp_path.as_uri()}"
+    assert source.requirement() == line
+    assert "word" not in line
 
 
 def test_the_scene_loads_and_the_spatial_model_can_take_it(study: Path) -> None:

@@ -1,0 +1,79 @@
+"""Where pip finds the very version that runs here, for machines that have not installed it."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit, urlunsplit
+from urllib.request import url2pathname
+
+from comparison.execution.provenance import git
+from reference.problem.version import __version__
+
+NAME = "phase-resonance"
+CHECKOUT = Path(__file__).resolve().parents[2]
+BY_SSH = re.compile(r"([\w.-]+@[\w.-]+):/?(.+)")  # as git writes an address: user@host:path
+REMOTE = ("https", "http", "ssh", "git")
+
+
+def requirement() -> str:
+    """
+    A line of requirements.txt.
+
+    Returns
+    -------
+    str
+        The address that pip has recorded, or the commit of a checkout in the repository that it is from, or the folder
+        of the checkout, known to this machine alone; the version of a package index otherwise.
+
+    Examples
+    --------
+    >>> requirement().startswith("phase-resonance")
+    True
+    """
+    about = _recorded()
+    url = str(about.get("url", ""))
+    if "vcs_info" in about:
+        address = f"{about['vcs_info']['vcs']}+{_without_password(url)}@{about['vcs_info']['commit_id']}"
+    elif url and "dir_info" not in about:
+        address = _without_password(url)
+    elif url or (CHECKOUT / "pyproject.toml").is_file():
+        folder = Path(url2pathname(urlsplit(url).path)) if url else CHECKOUT
+        address = _commit_elsewhere(folder) or folder.as_uri()
+    else:
+        return f"{NAME}=={__version__}"
+    return f"{NAME} @ {address}"
+
+
+def _recorded() -> dict[str, Any]:
+    """What pip has recorded of the place from which it installed the package (PEP 610); empty for an index."""
+    try:
+        about: dict[str, Any] = json.loads(distribution(NAME).read_text("direct_url.json") or "{}")
+    except PackageNotFoundError:
+        return {}
+    return about
+
+
+def _commit_elsewhere(folder: Path) -> str:
+    """Where others find the commit of a checkout; empty if nobody does."""
+    try:
+        commit = git(folder, "rev-parse", "HEAD")
+        if not git(folder, "branch", "--remotes", "--contains", commit):
+            return ""
+        url = git(folder, "remote", "get-url", "origin")
+    except (OSError, subprocess.CalledProcessError):
+        return ""
+    if match := BY_SSH.fullmatch(url):
+        url = f"ssh://{match[1]}/{match[2]}"
+    return f"git+{_without_password(url)}@{commit}" if urlsplit(url).scheme in REMOTE else ""
+
+
+def _without_password(url: str) -> str:
+    parts = urlsplit(url)
+    user, at, host = parts.netloc.rpartition("@")
+    kept = f"{user.partition(':')[0]}@{host}" if at and parts.scheme == "ssh" else host
+    return urlunsplit(parts._replace(netloc=kept))
