@@ -69,7 +69,7 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
 )
 INTRODUCTION = f"""# The scene file
 
-A scene is a TOML file in UTF-8. Its name is the stem of the file. `reference/problem/scenes` has the paper's four
+A scene is a TOML file in UTF-8 of at most 4 MiB. Its name is the stem of the file. `reference/problem/scenes` has the paper's four
 cases and `reference/problem/examples` two recorded motions. An unknown key is an error that names the nearest valid
 keys; a wrong value is an error in one line with file, key, value and rule.
 
