@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numba import config, njit
+from numba import njit
 from numba.core.errors import TypingError
 from numba.extending import overload
 
@@ -65,7 +65,7 @@ def test_a_part_can_be_shared_by_entry_points() -> None:
 
 
 def test_python_searches_for_garbage_again_after_compiling(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(config, "CACHE_DIR", str(tmp_path))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
 
     @cached_on_disk(__file__)
     def sound(x):
