@@ -70,8 +70,8 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
 INTRODUCTION = f"""# The scene file
 
 A scene is a TOML file in UTF-8 of at most 4 MiB. Its name is the stem of the file. `reference/problem/scenes` has the
-paper's four cases and `reference/problem/examples` two recorded motions. An unknown key is an error that names the nearest valid
-keys; a wrong value is an error in one line with file, key, value and rule.
+paper's four cases and `reference/problem/examples` two recorded motions. An unknown key is an error that names the
+nearest valid keys; a wrong value is an error in one line with file, key, value and rule.
 
 Every optional key is off by default. "All" models are the paper's equations and the two engine models, translational
 and spatial; the spatial model needs every key of its own but `support_stiffness`, `restitution`, `offset`, `yaw` and
