@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
+from random import Random
 from threading import RLock
 from typing import Any
 
@@ -32,6 +33,10 @@ settings.register_profile("same", derandomize=True, deadline=None)
 settings.register_profile("new", deadline=None)
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--shuffle", type=int, metavar="SEED", help="files, and the tests of a file, in a random order")
+
+
 def pytest_configure(config: pytest.Config) -> None:
     settings.load_profile("new" if config.getoption("markexpr") == "long" else "same")
     config.option.loadscopereorder = False  # of xdist: pytest_collection_modifyitems orders the files
@@ -43,6 +48,12 @@ def pytest_configure(config: pytest.Config) -> None:
 @pytest.hookimpl(trylast=True)  # without the deselected ones
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """In several processes: FIRST, then files with many tests, so that the last files are short ones."""
+    seed = config.getoption("shuffle")
+    if seed is not None:
+        draw = Random(seed)
+        place = {path: draw.random() for path in dict.fromkeys(item.path for item in items)}
+        items.sort(key=lambda item: (place[item.path], draw.random()))
+        return
     if not hasattr(config, "workerinput"):
         return
     count = Counter(item.path for item in items)

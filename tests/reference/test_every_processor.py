@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy._core._multiarray_umath import __cpu_features__ as FEATURES  # of this processor, by NumPy's names
 
 import reference
 from reference.problem import load_scene, phase_grid
@@ -20,6 +23,14 @@ SCENES = ("fig3-I", "fig4-dry", "fig4-viscous")
 TOLERANCE = 1e-7
 NAMES = ("NODES", "A", "A2", "AT_START", "MONOMIALS", "EIGENVALUES", "TO_CHANNELS", "FROM_CHANNELS")
 NAMES_OF_CHAIN = ("ONES_IN_CHANNELS", "NODES_IN_CHANNELS", "THROUGH_REAL", "THROUGH_IMAGINARY")
+# kernels of OpenBLAS, and what a processor must have to run them
+KERNELS = {"Prescott": ("SSE3",), "Haswell": ("AVX2", "FMA3"), "SkylakeX": ("AVX512_SKX",)}
+# what only some processors have or know: extensions, names of processors and of OpenBLAS's kernels for them
+OF_SOME = re.compile(
+    r"CORETYPE|CPU_FEATURES|CPU_NAME(?!=['\"]?generic)|cpu_features|\b(?:avx|sse|fma|neon|sve|bmi|amx)[0-9]\w*|"
+    r"prescott|nehalem|sandybridge|haswell|skylake|cooperlake|sapphirerapids|\bzen[0-9]?\b|armv8|neoverse",
+    re.IGNORECASE,
+)
 CONSTANTS = f"""
 import sys
 from reference.solver import chain, collocation
@@ -58,14 +69,35 @@ def here() -> np.ndarray:
     )
 
 
-@pytest.mark.parametrize("kernels", ["Prescott", "Haswell", "SkylakeX"])
+def lacking(kernels: str, features: Mapping[str, bool] = FEATURES) -> list[str]:
+    """What kernels need and a processor does not have: they would end in an illegal instruction."""
+    return [feature for feature in KERNELS[kernels] if not features.get(feature)]
+
+
+@pytest.mark.parametrize("kernels", KERNELS)
 def test_the_constants_of_the_method_do_not_depend_on_the_kernels_that_the_linear_algebra_chooses(kernels: str) -> None:
+    if lacking(kernels):
+        pytest.skip(f"kernels {kernels} need {', '.join(lacking(kernels))}, which this processor does not have")
     words = [sys.executable, "-c", CONSTANTS]
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "OPENBLAS_CORETYPE": kernels}
     other = subprocess.run(words, cwd=ROOT, env=environment, check=True, capture_output=True).stdout
     here = [getattr(collocation, name).tobytes() for name in NAMES]
     here += [getattr(chain, name).tobytes() for name in NAMES_OF_CHAIN]
     assert other == b"".join(here)
+
+
+def test_kernels_are_asked_for_only_where_the_processor_has_what_they_need() -> None:
+    of_2004, of_2013 = {"SSE3": True}, {"SSE3": True, "AVX2": True, "FMA3": True, "AVX512_SKX": False}
+    assert [lacking(kernels, of_2004) for kernels in KERNELS] == [[], ["AVX2", "FMA3"], ["AVX512_SKX"]]
+    assert [lacking(kernels, of_2013) for kernels in KERNELS] == [[], [], ["AVX512_SKX"]]
+    assert all(lacking(kernels, {"ASIMD": True}) for kernels in KERNELS), "a processor of another family"
+
+
+def test_no_other_test_or_check_names_what_only_some_processors_have() -> None:
+    files = [ROOT / name for name in ("noxfile.py", "pyproject.toml", ".ci/run")]
+    files += [*(ROOT / ".github").rglob("*.yml"), *(ROOT / "tests").rglob("*.py")]
+    found = {file.relative_to(ROOT): OF_SOME.search(file.read_text(encoding="utf-8")) for file in files}
+    assert [str(file) for file, named in found.items() if named] == [str(Path(__file__).relative_to(ROOT))]
 
 
 def test_the_constants_of_the_method_are_accurate_to_rounding() -> None:
