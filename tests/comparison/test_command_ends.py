@@ -8,7 +8,6 @@ import runpy
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -36,6 +35,7 @@ def main():
     {body}
 run_command(main)
 """
+HANGS = 300.0  # s: nothing here takes that long, however busy the machine
 POSIX = pytest.mark.skipif(sys.platform == "win32", reason="pipes and devices")
 
 
@@ -92,7 +92,7 @@ def test_a_reader_that_leaves_is_no_traceback_and_no_broken_limit() -> None:
 def test_a_full_output_is_one_line_and_exit_3(words: list[str], tmp_path: Path) -> None:
     with open("/dev/full", "w") as full:
         process = begun("comparison.run", *words, stdout=full, cwd=tmp_path)
-        _, err = process.communicate(timeout=120)
+        _, err = process.communicate(timeout=HANGS)
     assert process.returncode == 3
     assert err.startswith("standard output cannot be written: No space left on device")
     assert err.count("\n") == 1
@@ -107,16 +107,13 @@ def test_a_closed_or_full_output_of_errors_does_not_hide_the_exit_code() -> None
         assert subprocess.run(["sh", "-c", command], env=environment, check=False).returncode == 3
 
 
-@pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="what a process has loaded")
+@POSIX
 @pytest.mark.parametrize("module", COMMANDS)
 def test_ctrl_c_while_modules_load_is_no_traceback(module: str, tmp_path: Path) -> None:
+    (tmp_path / "numpy.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGINT)\n", encoding="utf-8")
     process = begun(module, "--help", stdout=subprocess.DEVNULL, cwd=tmp_path, preexec_fn=_hears_ctrl_c)
-    while "numpy" not in Path(f"/proc/{process.pid}/maps").read_text(encoding="utf-8") and process.poll() is None:
-        time.sleep(0.002)  # numpy is loaded among the first
-    process.send_signal(signal.SIGINT)
-    _, err = process.communicate(timeout=120)
-    assert process.returncode in (-signal.SIGINT, 130)
-    assert err in ("", "interrupted\n")
+    _, err = process.communicate(timeout=HANGS)
+    assert (process.returncode, err) == (-signal.SIGINT, "")
 
 
 def _hears_ctrl_c() -> None:
@@ -126,7 +123,7 @@ def _hears_ctrl_c() -> None:
 @POSIX
 def test_a_word_that_is_no_text_is_refused_by_the_process(tmp_path: Path) -> None:
     process = begun(COMMANDS[0], b"caf\xe9", cwd=tmp_path, stdout=subprocess.PIPE)  # type: ignore[arg-type]
-    out, err = process.communicate(timeout=120)
+    out, err = process.communicate(timeout=HANGS)
     assert (process.returncode, out) == (2, "")
     assert "is not text in UTF-8" in err
     assert err.count("\n") == 1

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy._core._multiarray_umath import __cpu_features__ as FEATURES  # of this processor, by NumPy's names
+from numpy._core._multiarray_umath import __cpu_features__  # what this processor has, by NumPy's names
 
 import reference
 from reference.problem import load_scene, phase_grid
@@ -69,7 +69,7 @@ def here() -> np.ndarray:
     )
 
 
-def lacking(kernels: str, features: Mapping[str, bool] = FEATURES) -> list[str]:
+def lacking(kernels: str, features: Mapping[str, bool] = __cpu_features__) -> list[str]:
     """What kernels need and a processor does not have: they would end in an illegal instruction."""
     return [feature for feature in KERNELS[kernels] if not features.get(feature)]
 

@@ -82,10 +82,10 @@ def test_a_quantity_beyond_its_range_is_refused_with_the_range(key, side):
 
 @pytest.mark.parametrize("duration", [1e8, 1e9, 1e13, 1e18, 10**400])
 def test_a_duration_that_no_run_can_cover_is_refused_at_once(duration):
-    begin = time.monotonic()
+    begin = time.process_time()
     with pytest.raises(SceneError, match="duration = "):
         load_scene("fig4-viscous").with_values({"duration": duration})
-    assert time.monotonic() - begin < 1.0
+    assert time.process_time() - begin < 1.0
 
 
 @pytest.mark.parametrize("function", [reference.amplification, multibody.amplification])
