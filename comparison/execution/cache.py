@@ -121,7 +121,7 @@ class Cache:
         needed = {key.group for key in keys}
         with suppress(OSError):  # a store that cannot be looked through is not worth ending a run for
             groups = [Path(entry.path) for entry in os.scandir(self.folder) if entry.is_dir(follow_symlinks=False)]
-            groups.sort(key=lambda group: group.stat().st_mtime)
+            groups.sort(key=lambda group: (group.stat().st_mtime, group.name))
             sizes = {group: _size(group) for group in groups}
             for group in groups:
                 if sum(sizes.values()) > limit and group.name not in needed:

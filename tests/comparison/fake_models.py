@@ -74,9 +74,9 @@ def killing(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: b
     return smooth(scene, phases, tolerance)
 
 
-def slow(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
-    time.sleep(60.0)
-    return smooth(scene, phases, tolerance)
+def endless(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
+    while True:
+        time.sleep(1.0)
 
 
 def uneven(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:

@@ -24,7 +24,7 @@ from comparison.execution.task import Task
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import Batch, BatchResult, execute_batch, unanswered
 from comparison.study.study import Study
-from reference.problem import load_scene
+from reference.problem import Outcome, load_scene
 
 
 def _answers(
@@ -109,7 +109,7 @@ def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on_in_process(
 def test_a_hang_ends_at_its_limit_and_costs_no_worker_of_the_cluster(tmp_path: Path, nanny: bool) -> None:
     started = LocalCluster(tmp_path, workers=1, nanny=nanny)
     tasks = [
-        Task(hangs_in_compiled_code, str(tmp_path / "hanging"), "test", 2.0, timeout=1.0),
+        Task(hangs_in_compiled_code, str(tmp_path / "hanging"), "test", 2.0, timeout=4.0),
         Task(doubled, str(tmp_path / "other"), "test", 1.0, timeout=60.0),
         Task(doubled, str(tmp_path / "without a limit"), "test", 0.5),
     ]
@@ -119,7 +119,7 @@ def test_a_hang_ends_at_its_limit_and_costs_no_worker_of_the_cluster(tmp_path: P
             Runner(results, Console(quiet=True), 1, there).run_tasks(tasks)
     finally:
         started.end()
-    assert results[tasks[0]].reason == "time limit: no answer within 1 s of processor time"
+    assert results[tasks[0]].outcome == Outcome.TIME_LIMIT
     assert [results[task].value for task in tasks[1:]] == [2, 2]
     assert len(list(tmp_path.glob("hanging-*"))) == 1, "not tried again on another worker"
 

@@ -1,4 +1,4 @@
-"""Ctrl-C and kill: within 2 s, one line with the command that goes on, the old report untouched, no process left."""
+"""Ctrl-C and kill: at once, one line with the command that goes on, the old report untouched, no process left."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from comparison.execution.output import publish
 from comparison.study.models import MODEL_HIERARCHY
 
 HERE = Path(__file__).parent
+HANGS = 300.0  # s: nothing here takes that long, however busy the machine
 SCRIPT = """
 import signal, sys
 signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background inherits it ignored
@@ -23,7 +24,7 @@ sys.path[:0] = [{here!r}, {root!r}]
 from comparison.run import main
 from fake_models import fake_hierarchy
 if __name__ == "__main__":
-    sys.exit(main(["fig3-I", "--grid", "16", "--jobs", "2", "--out", "report"], fake_hierarchy("slow", batch=1)))
+    sys.exit(main(["fig3-I", "--grid", "16", "--jobs", "2", "--out", "report"], fake_hierarchy("endless", batch=1)))
 """
 
 
@@ -36,6 +37,13 @@ def _runs(pid: int) -> bool:
     """Neither gone nor dead and waiting to be collected."""
     listing = subprocess.run(["ps", "-o", "stat=", "-p", str(pid)], capture_output=True, text=True, check=False)
     return listing.stdout.strip()[:1] not in ("", "Z")
+
+
+def _wait_for_the_end_of(workers: list[int]) -> None:
+    deadline = time.monotonic() + HANGS
+    while left := [worker for worker in workers if _runs(worker)]:
+        assert time.monotonic() < deadline, left
+        time.sleep(0.1)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of a process group")
@@ -58,16 +66,13 @@ def test_a_stopped_run_keeps_what_is_finished_and_says_how_to_go_on(tmp_path: Pa
     )
     assert process.stdout is not None
     for line in process.stdout:
-        if "exact equations, v_reg: 256 of 256" in line:  # the slow engine is next, a minute for each point
+        if "exact equations, v_reg: 256 of 256" in line:  # the engine is next, which never ends
             break
-    time.sleep(1.0)
     workers = _children(process.pid)
     assert workers
-    begin = time.monotonic()
     os.killpg(process.pid, number) if number == signal.SIGINT else os.kill(process.pid, number)
-    _, err = process.communicate(timeout=30)
+    _, err = process.communicate(timeout=HANGS)  # does not wait for the points under way
     assert process.returncode == code
-    assert time.monotonic() - begin < 15.0, "does not wait for the points under way, a minute each"
     stopped = re.fullmatch(
         r"interrupted: (\d+) of (\d+) batches are kept in 'report.tiles'; "
         r"go on with: python -m comparison.run fig3-I --grid 16 --jobs 2 --out report\n",
@@ -78,10 +83,7 @@ def test_a_stopped_run_keeps_what_is_finished_and_says_how_to_go_on(tmp_path: Pa
     assert len(list(tmp_path.glob("report.tiles/*/*.tile"))) == 256, "one model under several names is stored once"
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["report", "report.tiles"]
     assert sorted(entry.name for entry in old.iterdir()) == ["manifest.json", "summary.json"]
-    deadline = time.monotonic() + 5.0
-    while (left := [worker for worker in workers if _runs(worker)]) and time.monotonic() < deadline:
-        time.sleep(0.1)
-    assert left == []
+    _wait_for_the_end_of(workers)
 
 
 @pytest.mark.long
@@ -98,8 +100,5 @@ def test_the_workers_of_a_killed_run_end_with_it(tmp_path: Path) -> None:
     workers = _children(process.pid)
     assert workers
     process.kill()
-    process.communicate(timeout=30)
-    deadline = time.monotonic() + 10.0
-    while (left := [worker for worker in workers if _runs(worker)]) and time.monotonic() < deadline:
-        time.sleep(0.1)
-    assert left == []
+    process.communicate(timeout=HANGS)
+    _wait_for_the_end_of(workers)

@@ -27,7 +27,7 @@ from reference.problem import load_scene
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 FLAGS = ["--no-sandbox", "--disable-background-networking", "--disable-sync"]
 PHONE, LAPTOP, DESKTOP = 390, 1280, 1920  # px
-PATIENCE = 60_000  # ms: the machine may be busy
+PATIENCE = 300_000  # ms: nothing here takes that long, however busy the machine
 OVERLAPS = Path(__file__).with_name("boxes.js").read_text(encoding="utf-8")
 SERIOUS = ("serious", "critical")
 MOST_BYTES = 6e6
@@ -66,10 +66,18 @@ def _opened(browser: Browser, file: Path, width: int, scheme: Scheme = "light") 
 
 
 @pytest.fixture(scope="module")
-def visit(browser: Browser, finished: Path) -> Iterator[Visit]:
+def opened(browser: Browser, finished: Path) -> Iterator[Visit]:
     visit = _opened(browser, finished / "index.html", LAPTOP)
     yield visit
     visit.page.close()
+
+
+@pytest.fixture
+def visit(opened: Visit, finished: Path) -> Iterator[Visit]:
+    """The page, which whatever a test does to it makes neither complain nor ask a network for anything."""
+    yield opened
+    assert opened.complaints == []
+    assert opened.requests == [(finished / "index.html").as_uri()]
 
 
 def _until(page: Page, condition: str) -> None:
@@ -94,8 +102,12 @@ def _colored(canvas: Locator) -> bool:
     return bool((np.ptp(picture, axis=2) > 0.15).mean() > 0.003)
 
 
-def _canvases(page: Page) -> list[Locator]:
-    return page.locator("canvas.surface").all()
+def _until_colored(page: Page, what: str) -> None:
+    page.evaluate("() => new Promise(drawn => requestAnimationFrame(() => requestAnimationFrame(drawn)))")
+    end = time.monotonic() + PATIENCE / 1000
+    while not all(_colored(canvas) for canvas in page.locator("canvas.surface").all()):
+        assert time.monotonic() < end, what
+        page.wait_for_timeout(20)
 
 
 @pytest.mark.parametrize(
@@ -164,8 +176,7 @@ def test_every_surface_is_drawn_in_three_dimensions_and_as_a_map(visit: Visit) -
         page.locator("[data-part=body]").select_option(str(body))
         for view in ("map", "3-D"):
             page.get_by_role("button", name=view).click()
-            page.wait_for_timeout(100)
-            assert all(_colored(canvas) for canvas in _canvases(page)), f"scene {scene}, body {body}, {view}"
+            _until_colored(page, f"scene {scene}, body {body}, {view}")
     page.locator("[data-part=scene]").select_option(index=0)
 
 
@@ -317,9 +328,16 @@ def test_paper_shows_plots_and_surfaces_and_no_control(visit: Visit) -> None:
     assert surfaces == 3
 
 
-def test_the_page_is_small_and_usable_within_a_second(visit: Visit, finished: Path) -> None:
+def test_the_page_is_small_and_usable_within_a_second_of_processor_time(browser: Browser, finished: Path) -> None:
     assert (finished / "index.html").stat().st_size < MOST_BYTES / 4, "a study of two scenes on 4 x 4 phases"
-    assert visit.page.evaluate("performance.getEntriesByType('navigation')[0].domInteractive") < 1000.0
+    page = browser.new_page(viewport={"width": LAPTOP, "height": 900})
+    session = page.context.new_cdp_session(page)
+    session.send("Performance.enable", {"timeDomain": "threadTicks"})
+    page.goto((finished / "index.html").as_uri())
+    page.wait_for_selector("html[data-ready]", state="attached")
+    spent = {entry["name"]: entry["value"] for entry in session.send("Performance.getMetrics")["metrics"]}
+    assert 0.0 < spent["TaskDuration"] < 1.0  # seen: 0.2 to 0.3
+    page.close()
 
 
 def test_the_content_policy_allows_nothing_but_the_page_itself(visit: Visit) -> None:
@@ -327,12 +345,6 @@ def test_the_content_policy_allows_nothing_but_the_page_itself(visit: Visit) -> 
     assert "default-src 'none'" in policy
     assert "unsafe" not in policy
     assert "http" not in policy
-
-
-def test_nothing_was_asked_of_a_network_and_nothing_complained(visit: Visit, finished: Path) -> None:
-    """Last: after all that was done to the page above."""
-    assert visit.complaints == []
-    assert visit.requests == [(finished / "index.html").as_uri()]
 
 
 def test_surfaces_without_any_value_are_said_to_have_none(

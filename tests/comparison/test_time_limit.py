@@ -20,6 +20,13 @@ from reference.problem import Outcome
 pytest.importorskip("resource", reason="the system limits no processor time")
 
 
+@pytest.fixture
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only processor time counts, however long the machine keeps a worker waiting."""
+    for name in ("STALLED", "SPARE"):
+        monkeypatch.setattr(f"comparison.execution.processes.{name}", 1e9)
+
+
 def _run(tasks: list[Task], folder: Path, make: object = process_pool, jobs: int = 2) -> list[TaskResult]:
     results = TaskResults(Cache(folder / "cache"))
     Runner(results, Console(quiet=True), jobs, make).run_tasks(tasks)  # type: ignore[arg-type]
@@ -35,6 +42,7 @@ def forbidden(jobs: int) -> Executor:
     raise AssertionError("nothing should have been computed")
 
 
+@pytest.mark.usefixtures("patient")
 @pytest.mark.parametrize("hanging", [pytest.param(hangs, marks=pytest.mark.long), hangs_in_compiled_code])
 def test_a_hang_ends_at_the_limit_of_processor_time_and_costs_no_other_task(tmp_path: Path, hanging: object) -> None:
     others = [Task(doubled, str(tmp_path / f"other{number}"), "test", 0.1, timeout=60.0) for number in range(6)]
@@ -47,6 +55,7 @@ def test_a_hang_ends_at_the_limit_of_processor_time_and_costs_no_other_task(tmp_
 
 
 @pytest.mark.long
+@pytest.mark.usefixtures("patient")
 def test_a_repeated_run_does_not_wait_for_the_hang_again_unless_it_allows_more(tmp_path: Path) -> None:
     def task(timeout: float | None) -> Task:
         return Task(hangs, str(tmp_path / "hanging"), "test", 1.0, timeout=timeout)
@@ -60,6 +69,7 @@ def test_a_repeated_run_does_not_wait_for_the_hang_again_unless_it_allows_more(t
     assert TaskResults(Cache(tmp_path / "cache")).missing([task(None)]), "without a limit it may take any time"
 
 
+@pytest.mark.usefixtures("patient")
 def test_what_a_busy_machine_keeps_waiting_does_not_hang(tmp_path: Path) -> None:
     """2.5 s of waiting, next to no computing, under a limit of 1 s."""
     (result,) = _run([Task(is_kept_waiting, "", "test", 1.0, timeout=1.0)], tmp_path)
@@ -73,6 +83,7 @@ def test_what_computes_nothing_any_more_is_ended_in_the_end(tmp_path: Path, monk
 
 
 @pytest.mark.long
+@pytest.mark.usefixtures("patient")
 def test_the_limit_of_a_task_does_not_reach_the_next_one_in_the_same_process(tmp_path: Path) -> None:
     short = Task(doubled, str(tmp_path / "short"), "test", 2.0, timeout=1.0)
     endless = Task(is_busy, 2.0, "test", 1.0)
