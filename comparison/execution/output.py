@@ -466,7 +466,8 @@ def _is_mount_point(place: Path) -> bool:
         return True
     with suppress(OSError):
         escaped = str(place).replace("\\", "\\134").replace(" ", "\\040").replace("\t", "\\011").replace("\n", "\\012")
-        return any(line.split()[4] == escaped for line in MOUNTS.read_text(errors="replace").splitlines())
+        lines = MOUNTS.read_text(encoding="utf-8", errors="replace").splitlines()
+        return any(line.split()[4] == escaped for line in lines)
     return False
 
 

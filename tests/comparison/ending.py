@@ -9,14 +9,15 @@ import threading
 from typing import Any
 
 from comparison.execution.cache import Cache
+from comparison.execution.keys import BATCH
 
 
-def end_after(results: int, seconds: float) -> None:
-    """Kill this process so many seconds after it has begun to store the result of this number."""
+def end_after(results: int, seconds: float, analyses: bool = False) -> None:
+    """Kill this process so many seconds after it has begun to store the result, or analysis, of this number."""
     put, stored = Cache.put, itertools.count()
 
     def counted(cache: Cache, key: Any, value: Any) -> None:
-        if next(stored) == results:
+        if not (analyses and key.kind == BATCH) and next(stored) == results:
             threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGKILL)).start()
         put(cache, key, value)
 

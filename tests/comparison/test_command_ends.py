@@ -101,7 +101,8 @@ def test_a_full_output_is_one_line_and_exit_3(words: list[str], tmp_path: Path) 
 @POSIX
 def test_a_closed_or_full_output_of_errors_does_not_hide_the_exit_code() -> None:
     script = BEGIN.format(root=str(ROOT), body="raise ValueError('nobody hears it')")
-    for redirection in ("2>&-", ">&- 2>&-", "2>/dev/full"):
+    full = ["2>/dev/full"] if Path("/dev/full").exists() else []
+    for redirection in ("2>&-", ">&- 2>&-", *full):
         command = f"'{sys.executable}' -c \"$SCRIPT\" {redirection}"
         environment = {**os.environ, "SCRIPT": script}
         assert subprocess.run(["sh", "-c", command], env=environment, check=False).returncode == 3

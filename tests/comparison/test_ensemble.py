@@ -55,7 +55,7 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def content() -> dict:  # type: ignore[type-arg]
-    summary = json.loads(Path("out/ensemble.json").read_text())
+    summary = json.loads(Path("out/ensemble.json").read_text(encoding="utf-8"))
     assert isinstance(summary, dict)
     return summary
 
@@ -104,7 +104,7 @@ def test_the_command_writes_the_demands_of_every_motion_at_every_scale(folder: P
     assert {file.name for file in Path("out").iterdir()} == {*FILES, "manifest.json"}
     summary = content()
     assert (summary["motions"], summary["scales"], summary["outcomes"]) == (3, [0.5, 1.0], {"ok": 6})
-    with open("out/ensemble.csv", newline="") as file:
+    with open("out/ensemble.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert [row["model"] for row in rows] == ["exact"] * 6 + ["regularised", "translational"]
     scene = reference.load_scene("mine.toml").with_values(

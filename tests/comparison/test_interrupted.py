@@ -10,6 +10,7 @@ import sys
 import time
 from pathlib import Path
 
+import psutil
 import pytest
 
 from comparison.execution.output import publish
@@ -28,22 +29,19 @@ if __name__ == "__main__":
 """
 
 
-def _children(pid: int) -> list[int]:
-    listing = subprocess.run(["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True, check=False)
-    return [int(word) for word in listing.stdout.split()]
-
-
-def _runs(pid: int) -> bool:
-    """Neither gone nor dead and waiting to be collected."""
-    listing = subprocess.run(["ps", "-o", "stat=", "-p", str(pid)], capture_output=True, text=True, check=False)
-    return listing.stdout.strip()[:1] not in ("", "Z")
-
-
-def _wait_for_the_end_of(workers: list[int]) -> None:
+def _wait_for_the_end_of(workers: list[psutil.Process]) -> None:
     deadline = time.monotonic() + HANGS
     while left := [worker for worker in workers if _runs(worker)]:
         assert time.monotonic() < deadline, left
         time.sleep(0.1)
+
+
+def _runs(process: psutil.Process) -> bool:
+    """Neither gone nor dead and waiting to be collected."""
+    try:
+        return process.is_running() and process.status() != psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return False
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of a process group")
@@ -68,7 +66,7 @@ def test_a_stopped_run_keeps_what_is_finished_and_says_how_to_go_on(tmp_path: Pa
     for line in process.stdout:
         if "exact equations, v_reg: 256 of 256" in line:  # the engine is next, which never ends
             break
-    workers = _children(process.pid)
+    workers = psutil.Process(process.pid).children()
     assert workers
     os.killpg(process.pid, number) if number == signal.SIGINT else os.kill(process.pid, number)
     _, err = process.communicate(timeout=HANGS)  # does not wait for the points under way
@@ -97,7 +95,7 @@ def test_the_workers_of_a_killed_run_end_with_it(tmp_path: Path) -> None:
     for line in process.stdout:
         if "256 of 256" in line:
             break
-    workers = _children(process.pid)
+    workers = psutil.Process(process.pid).children()
     assert workers
     process.kill()
     process.communicate(timeout=HANGS)

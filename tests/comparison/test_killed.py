@@ -211,10 +211,13 @@ def test_a_full_disk_is_one_line_exit_3_and_the_run_goes_on_later(
 @pytest.mark.long
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kill -9")
 def test_a_real_run_killed_among_its_analyses_reports_the_same_numbers(tmp_path: Path) -> None:
-    def begun(out: str) -> subprocess.Popen[bytes]:
-        words = [sys.executable, "-m", "comparison.run", "fig4-viscous", "--grid", "2", "--jobs", "1", "--out", out]
-        environment = {**os.environ, "PYTHONPATH": str(HERE.parents[1]), "NUMBA_CACHE_DIR": str(tmp_path / "build")}
-        return subprocess.Popen(words, cwd=tmp_path, env=environment, stdout=subprocess.DEVNULL)
+    def ended(out: str, begin: str = "") -> int:
+        words = ["fig4-viscous", "--grid", "2", "--jobs", "1", "--out", out]
+        script = f"{begin}\nimport sys\nfrom comparison.run import main\nsys.exit(main({words}))"
+        paths = os.pathsep.join([str(HERE), str(HERE.parents[1])])
+        environment = {**os.environ, "PYTHONPATH": paths, "NUMBA_CACHE_DIR": str(tmp_path / "build")}
+        command = [sys.executable, "-c", script]
+        return subprocess.run(command, cwd=tmp_path, env=environment, stdout=subprocess.DEVNULL).returncode
 
     def numbers(out: str) -> tuple[object, dict[str, dict[str, int]]]:
         summary = json.loads((tmp_path / out / "summary.json").read_text(encoding="utf-8"))
@@ -226,20 +229,16 @@ def test_a_real_run_killed_among_its_analyses_reports_the_same_numbers(tmp_path:
             cell.pop("cost")
         return json.dumps(summary), run["parts"]
 
-    assert begun("whole").wait() == 0  # compiles the reference, which the others load
-    for late in (2, 25):  # the analyses, and after the surfaces: motions and pictures
-        process = begun("killed")
-        while process.poll() is None and len(list(tmp_path.glob("killed.tiles/*/*.answer"))) < late:
-            time.sleep(0.01)
-        process.kill()
-        assert process.wait() == -9
+    assert ended("whole") == 0  # compiles the reference, which the others load
+    for late in (2, 22):  # the analyses, and after the surfaces: motions and pictures
+        assert ended("killed", f"import ending\nending.end_after({late}, 0.0, analyses=True)") == -9
         assert not (tmp_path / "killed").exists()
-    assert begun("killed").wait() == 0
+    assert ended("killed") == 0
     whole, _ = numbers("whole")
     resumed, parts = numbers("killed")
     assert resumed == whole
     assert parts["assumptions"]["stored_before"] == parts["assumptions"]["tasks"]
-    assert begun("killed").wait() == 0
+    assert ended("killed") == 0
     again, parts = numbers("killed")
     assert again == whole
     assert parts

@@ -15,7 +15,7 @@ from reference.problem import load_scene
 CALLS = 60
 ALLOWED = 0.01  # MB per call: allocators keep a little; a system that is never reset keeps 0.05 and more
 SCRIPT = """
-import gc
+import gc, os
 import multibody
 from reference.problem import Scene, load_scene
 
@@ -23,7 +23,7 @@ table = load_scene("{scene}").model_dump(exclude_none=True)
 scene = Scene.model_validate({{**table, "duration": 0.02}})
 
 def resident():
-    return int(open("/proc/self/statm").read().split()[1]) * 4096 / 1e6
+    return int(open("/proc/self/statm").read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
 
 def call():
     multibody.{function}(scene, {phases}, {settings})
