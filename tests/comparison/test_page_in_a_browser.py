@@ -65,19 +65,14 @@ def _opened(browser: Browser, file: Path, width: int, scheme: Scheme = "light") 
     return visit
 
 
-@pytest.fixture(scope="module")
-def opened(browser: Browser, finished: Path) -> Iterator[Visit]:
+@pytest.fixture
+def visit(browser: Browser, finished: Path) -> Iterator[Visit]:
+    """The page as it opens. Whatever a test does to it, it complains of nothing and asks no network for anything."""
     visit = _opened(browser, finished / "index.html", LAPTOP)
     yield visit
     visit.page.close()
-
-
-@pytest.fixture
-def visit(opened: Visit, finished: Path) -> Iterator[Visit]:
-    """The page, which whatever a test does to it makes neither complain nor ask a network for anything."""
-    yield opened
-    assert opened.complaints == []
-    assert opened.requests == [(finished / "index.html").as_uri()]
+    assert visit.complaints == []
+    assert visit.requests == [(finished / "index.html").as_uri()]
 
 
 def _until(page: Page, condition: str) -> None:
