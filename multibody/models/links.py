@@ -6,6 +6,12 @@ A link is stiff in tension and in bending about the horizontal axes, ten times l
 dampers are then proportional to the stiffness in every direction. Where bars shorten as they sway, an upright rod
 holds the bodies apart in place of the connector's tension: a body on it sinks by u^2 / (2 L). Its force leans with it,
 by which the weight that the rod carries at each instant makes the link softer.
+
+The connector's own damper of displacements acts on the difference of two velocities in fixed axes, and takes the
+turning of a displaced link for a deformation. So a damper is made of two long rods along an axis of the link, forth and
+back between points far out on both bodies. The displacement along the mean of both bodies' axes makes one longer and
+the other shorter by as much; the twist makes both shorter. The rods damp their rates, and a rope along both takes
+away what that damps their sum. None of them resists a motion of both bodies as one, and each pulls along one line.
 """
 
 from __future__ import annotations
@@ -17,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-from multibody.models.engine import items
+from multibody.models.engine import exudyn, items
 from multibody.models.units import Units
 from reference.problem import Scene
 from reference.problem.bar_links import BarLink, bar_links
@@ -26,6 +32,7 @@ Array = NDArray[np.float64]
 
 PER_BODY = 6  # coordinates: x, y, z of the center of mass and three rotations
 MAX_BAR_STIFFNESS = 1e7  # of bars in tension, weights over rho, and in bending: as good as rigid
+ROD = 1e3  # length of the rods of dampers, in units of length
 LINK_COMPLIANCE_RATIO = 10.0  # of a bar in tension (and, times rho^2, in bending) over the contact, under one force
 
 
@@ -36,7 +43,6 @@ class Link:
     connector: Any
     carried: Array  # (3,), mass above it, and that mass times the place x, y of its center
     shear: Array  # (2, 2), stiffness
-    damping: Array  # (2, 2), in shear
     twist: float  # stiffness against twist
     bars: BarLink | None = None  # that give way in tension and bending; None: these are stiff
 
@@ -44,7 +50,7 @@ class Link:
         """Stiffness of a link that is stiff beside contacts of this penetration; bars that give way have their own."""
         if self.bars is None:
             stiff = 1.0 / (LINK_COMPLIANCE_RATIO * penetration)
-            set_link_stiffness(mbs, self.connector, self.carried, self.shear, self.damping, self.twist, stiff)
+            set_link_stiffness(mbs, self.connector, self.carried, self.shear, self.twist, stiff)
 
     def sinking(self, penetration: float) -> float:
         """How far a stiff link gives way along its bars under the weight on it; 0 for bars that give way."""
@@ -74,14 +80,15 @@ def add_links(
         above = masses[number + 1 :]
         carried = np.array([above.sum(), *(above @ centers[number + 1 :, :2])])
         neighbors, places = bodies[number : number + 2], centers[number : number + 2]
-        connector = add_link(mbs, neighbors, places)
+        connector = add_link(mbs, neighbors, places, damper)
         if bars is None:
             twist = _twist(scene, number, units, shear, square_distance)
-            links.append(Link(connector, carried, shear, damper, twist))
+            links.append(Link(connector, carried, shear, twist))
             continue
         own = _in_units(bars, units)
-        _set_bars(mbs, connector, neighbors, places, carried, own, damper, float(np.trace(damper) / np.trace(shear)))
-        links.append(Link(connector, carried, own.shear * np.eye(2), damper, own.torsion, own))
+        lag = float(np.trace(damper) / np.trace(shear))
+        _set_bars(mbs, connector, neighbors, places, carried, own, lag)
+        links.append(Link(connector, carried, own.shear * np.eye(2), own.torsion, own))
     return links
 
 
@@ -108,47 +115,66 @@ def _in_units(bars: BarLink, units: Units) -> BarLink:
     )
 
 
-def add_link(mbs: Any, bodies: list[Any], centers: Array) -> Any:
+def add_link(mbs: Any, bodies: list[Any], centers: Array, damping: Array) -> Any:
     """
     The link between two neighbors with centers of mass (2, 3), half-way up between them and on the vertical axis.
 
-    `set_link_stiffness` completes it.
+    damping: in shear, (2, 2). `set_link_stiffness` completes it.
     """
-    return mbs.AddObject(
-        items.ObjectConnectorRigidBodySpringDamper(
-            markerNumbers=_ends(mbs, bodies, centers, 0.0), useIntrinsicFormulation=True
-        )
+    values, directions = np.linalg.eigh(damping)
+    for value, direction in zip(values, directions.T):
+        add_damper(mbs, bodies, centers, np.append(direction, 0.0), value)
+    connector = items.ObjectConnectorRigidBodySpringDamper(
+        markerNumbers=_ends(mbs, bodies, centers, np.zeros(3), 0.0), useIntrinsicFormulation=True
     )
+    return mbs.AddObject(connector)
 
 
-def _ends(mbs: Any, bodies: list[Any], centers: Array, length: float) -> list[Any]:
-    """Markers on two neighbors at the ends of a rod of a length, upright on the axis, its middle half-way up."""
-    middle = 0.5 * (centers[1, 2] - centers[0, 2] - length)
+def add_damper(mbs: Any, bodies: list[Any], centers: Array, direction: Array, damping: float) -> None:
+    """A damper along a `direction` (3,) between the ends of a link."""
+    if damping <= 0.0:
+        return
+    forth, back = (_ends(mbs, bodies, centers, sign * ROD * direction, 0.5) for sign in (1.0, -1.0))
+    for ends in (forth, back):
+        rod = items.ObjectConnectorSpringDamper(markerNumbers=ends, referenceLength=ROD, damping=0.5 * damping)
+        mbs.AddObject(rod)
+    rope = items.ObjectConnectorReevingSystemSprings(
+        markerNumbers=[*forth, *back[::-1]],
+        referenceLength=-1.0,  # takes the sign
+        dampingPerLength=0.25 * damping,
+        regularizationForce=-1.0,  # it may push
+        sheavesAxes=exudyn.Vector3DList([[0.0, 0.0, 1.0]] * 4),
+        sheavesRadii=[0.0] * 4,
+    )
+    mbs.AddObject(rope)
+
+
+def _ends(mbs: Any, bodies: list[Any], centers: Array, rod: Array, below: float) -> list[Any]:
+    """Markers on two neighbors at the ends of a rod (3,), of which this share lies below half-way up on the axis."""
+    half = 0.5 * (centers[1, 2] - centers[0, 2]) * np.array([0.0, 0.0, 1.0])
+    axis = [[-center[0], -center[1], 0.0] for center in centers]
+    places = (axis[0] + half - below * rod, axis[1] - half + (1.0 - below) * rod)
     return [
-        mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[-center[0], -center[1], sign * middle]))
-        for body, center, sign in zip(bodies, centers, (1.0, -1.0))
+        mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[*place]))
+        for body, place in zip(bodies, places)
     ]
 
 
-def set_link_stiffness(
-    mbs: Any, bars: Any, carried: Array, shear: Array, damping: Array, twist: float, stiff: float
-) -> None:
+def set_link_stiffness(mbs: Any, connector: Any, carried: Array, shear: Array, twist: float, stiff: float) -> None:
     """
-    Give bars the scene's stiffness and damping in shear, (2, 2) each, stiffness in twist, and `stiff` otherwise.
+    Give a link the scene's stiffness in shear, (2, 2), stiffness in twist, and `stiff` otherwise.
 
-    carried: (3,), mass above them, and that mass times the place x, y of its center.
+    carried: (3,), mass above it, and that mass times the place x, y of its center.
     """
     mass, along_x, along_y = carried
-    stiffness = np.array([0.0, 0.0, stiff, stiff, stiff, 0.0])
-    matrix = np.diag([0.0, 0.0, *stiffness[2:5], twist])
+    matrix = np.diag([0.0, 0.0, stiff, stiff, stiff, twist])
     matrix[:2, :2] = shear
-    mbs.SetObjectParameter(bars, "stiffness", matrix)
+    mbs.SetObjectParameter(connector, "stiffness", matrix)
     # the stiff directions are damped critically, twist not at all
-    dampers = np.diag(2.0 * np.sqrt(stiffness * mass))
-    dampers[:2, :2] = damping
-    mbs.SetObjectParameter(bars, "damping", dampers)
+    dampers = 2.0 * np.sqrt(np.array([0.0, 0.0, stiff, stiff, stiff, 0.0]) * mass)
+    mbs.SetObjectParameter(connector, "damping", np.diag(dampers))
     # at rest the bars carry what stands on them without giving way
-    mbs.SetObjectParameter(bars, "offset", [0.0, 0.0, mass / stiff, along_y / stiff, -along_x / stiff, 0.0])
+    mbs.SetObjectParameter(connector, "offset", [0.0, 0.0, mass / stiff, along_y / stiff, -along_x / stiff, 0.0])
 
 
 def _set_bars(
@@ -158,10 +184,9 @@ def _set_bars(
     centers: Array,
     carried: Array,
     bars: BarLink,
-    damping: Array,
     lag: float,
 ) -> None:
-    """Give a link the stiffness of its bars, and dampers `lag` times that; damping: in shear, (2, 2)."""
+    """Give a link the stiffness of its bars, and dampers `lag` times that, but in shear."""
     _, along_x, along_y = carried
     stiffness = np.array([bars.shear, bars.shear, bars.tension, bars.bending, bars.bending, bars.torsion])
     # at rest the bars have the heights of the scene under the weight that they carry
@@ -169,14 +194,14 @@ def _set_bars(
     if bars.pendulum:
         stiffness[2] = offset[2] = 0.0
         rod = items.ObjectConnectorSpringDamper(
-            markerNumbers=_ends(mbs, bodies, centers, bars.pendulum),
+            markerNumbers=_ends(mbs, bodies, centers, np.array([0.0, 0.0, bars.pendulum]), 0.5),
             referenceLength=bars.pendulum + bars.load / bars.tension,
             stiffness=bars.tension,
             damping=lag * bars.tension,
         )
         mbs.AddObject(rod)
-    dampers = np.diag(lag * stiffness)
-    dampers[:2, :2] = damping
+    add_damper(mbs, bodies, centers, np.array([0.0, 0.0, 1.0]), lag * stiffness[2])
+    dampers = np.diag(lag * stiffness * [0.0, 0.0, 0.0, 1.0, 1.0, 1.0])
     mbs.SetObjectParameter(connector, "stiffness", np.diag(stiffness))
     mbs.SetObjectParameter(connector, "damping", dampers)
     mbs.SetObjectParameter(connector, "offset", offset)
@@ -209,20 +234,3 @@ def fastest_of_bars(links: list[Link], masses: Array, tensors: Array, centers: A
         own = np.array([bars.shear, bars.shear, bars.tension, bars.bending, bars.bending, bars.torsion])
         stiffness += apart.T @ (own[:, None] * apart)
     return float(np.sqrt(max(eigh(stiffness, inertia, eigvals_only=True)[-1], 0.0)))
-
-
-def undeformed(links: list[Link], centers: Array, coordinates: Array, start: Array) -> Array:
-    """
-    Coordinates (n,) with bodies on bars that give way moved as one with the body below since `start` (n,).
-
-    By so little that rotations add up: contacts and stiff links have settled.
-    """
-    settled = coordinates.copy()
-    for number, link in enumerate(links):
-        lower, upper = (slice(PER_BODY * body, PER_BODY * (body + 1)) for body in (number, number + 1))
-        before = coordinates if link.bars is None else start  # in which the link is as it is to be
-        moved = (settled - before)[lower]
-        settled[upper] = before[upper]
-        settled[upper][3:] += moved[3:]
-        settled[upper][2] += moved[2] + np.cross(moved[3:], centers[number + 1] - centers[number])[2]
-    return settled

@@ -4,6 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
+from multibody.integration.constant_step import set_initial_state, silence
+from multibody.models.assembly import assemble
+from multibody.models.depressions import angular_velocity_matrix
+from multibody.models.engine import exudyn
+from multibody.models.system import EngineState
 from reference.problem import Scene
 
 CONSTANT = 1e9  # s, period of a harmonic that stays at its first value
@@ -61,3 +68,22 @@ def frame(duration: float, count: int = 6, period: float = 0.17) -> Scene:
             },
         }
     )
+
+
+def forces_of_links(scene: Scene, coordinates: Any, velocities: Any) -> tuple[Any, Any, Any]:
+    """The engine's forces and moments (N, 3) on bodies off their supports, and the model, in its units."""
+    model = assemble(scene, "spatial", 1e-3)
+    model.set_contact(1e-6)
+    count = 6 * len(scene.bodies)
+    rest = np.zeros(model.coordinates - count)
+    contact = np.tile([1.0, 0.0, 0.0, 0.0], scene.isolator.support_count or 0)  # open
+    set_initial_state(model, EngineState(np.append(coordinates, rest), np.append(velocities, rest), contact))
+    solver, settings = exudyn.MainSolverImplicitSecondOrder(), exudyn.SimulationSettings()
+    settings.solution.file.write, settings.timeIntegration.verboseMode = False, 0
+    with silence():
+        solver.InitializeSolver(model.mbs, settings)
+        solver.ComputeODE2RHS(model.mbs)
+    pushed = np.array(solver.GetSystemResidual())[:count].reshape(-1, 2, 3).copy()
+    for body, angles in enumerate(np.reshape(coordinates, (-1, 6))[:, 3:]):
+        pushed[body, 1] = np.linalg.solve(angular_velocity_matrix(angles).T, pushed[body, 1])
+    return pushed[:, 0], pushed[:, 1], model

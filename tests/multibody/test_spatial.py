@@ -161,8 +161,8 @@ def test_a_free_chain_keeps_momentum_and_what_dampers_leave_of_its_energy(
     turned = rotation(np.array([0.0, 0.0, angle]))[:2, :2]
     stiffness = np.diag([0.0, 0.0, stiff, stiff, stiff, twist])
     stiffness[:2, :2] = turned @ np.diag([3.0, 5.0]) @ turned.T
-    link = add_link(mbs, bodies, centers)
-    set_link_stiffness(mbs, link, np.zeros(3), stiffness[:2, :2], turned @ np.diag(damping) @ turned.T, twist, stiff)
+    link = add_link(mbs, bodies, centers, turned @ np.diag(damping) @ turned.T)
+    set_link_stiffness(mbs, link, np.zeros(3), stiffness[:2, :2], twist, stiff)
     kind = exudyn.OutputVariableType
     mbs.Assemble()
     settings = exudyn.SimulationSettings()
