@@ -1,57 +1,167 @@
 """
-The start of a model whose supports share the load: its stiff parts in balance with the loading's first value.
+The start of a model whose bodies turn: at rest in the static equilibrium of its weight, its stiff parts in balance.
 
 Supports that start with equal shares are out of balance by the overturning moment. They would swing for a few of the
-contact's own periods, with an acceleration that no stiffness makes smaller. So contacts and links settle first, without
-friction as at rest, under the loading's value at zero. Their deflection is kept, the motion is not. A loading that is
-gone before a contact swings is nothing they could settle under.
+contact's own periods, with an acceleration that no stiffness makes smaller. An eccentric building on elastic supports
+tilts, and as it tilts it moves aside, so that every depression stays on its sphere. So the engine's forces are solved
+for zero by Newton's method, first under the weight alone and for all coordinates. Then the loading's first value joins
+it. Contacts, springs of spheres and stiff links give way to it until no force accelerates their deformation. The slow
+motions, which deform none of them, start from where they were. A support that would have to pull carries nothing. A
+loading that is gone before a contact swings is nothing they could give way to.
+
+Friction is zero at rest. On a plane nothing else holds the platform, which keeps its place there.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import null_space
 
-from multibody.integration.constant_step import Engine
+from multibody.integration.constant_step import set_initial_state
+from multibody.integration.openings import GAP_TOLERANCE, OPENING_GAP
+from multibody.models.engine import exudyn
+from multibody.models.impact import ImpactLaw
 from multibody.models.system import EngineModel, EngineState
 
-SETTLING_TIME = 60.0  # over sqrt(penetration): links and contacts have settled
-SETTLING_STEPS = 300
-MAX_STRETCH = 0.1  # units of time at once: the distance covered meanwhile stays small beside the sphere
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+MAX_ITERATIONS = 50  # of Newton's method
+MAX_RESIDUAL = 1e-9  # of the forces, in weights, beside their rounding
+SAFETY_OF_ROUNDING = 100.0  # of that rounding: many contacts, and stiff links
+CURRENT = exudyn.ConfigurationType.Current
 
 
-def balanced_start(engine: Engine, start: EngineState, penetration: float) -> EngineState:
-    """`start` with its stiff coordinates and contacts settled; `start` itself if it needs no balance or gets none."""
-    model = engine.model
-    swing = math.sqrt(max(penetration, model.bearing_penetration))
-    if model.set_frictionless is None or model.ground.decay_rate * swing > 1.0:
+def balanced_start(
+    model: EngineModel, start: EngineState, acceleration: Array, penetration: float
+) -> EngineState | None:
+    """
+    The equilibrium near `start`; None if there is none, and `start` itself for a model that needs none.
+
+    acceleration: of the plate at time zero, (3,), in units of the model.
+    """
+    if model.kinematics is None:
         return start
-    span = SETTLING_TIME * swing
-    stretches = math.ceil(span / MAX_STRETCH)
-    state = start
-    model.set_frictionless(True)
-    model.ground.hold(True)
-    for _ in range(stretches):
-        motion = engine.run(state, 0.0, span / SETTLING_STEPS, math.ceil(SETTLING_STEPS / stretches))
-        if motion is None or not np.isfinite(motion.coordinates[-1]).all():
-            state = start
+    pressed = model.bearing_penetration or penetration
+    balance = _Balance(model, model.kinematics, start, acceleration, pressed, penetration)
+    coordinates, closed = balance.under_weight(), np.ones(len(model.kinematics.depressions.ring), dtype=bool)
+    lasts = model.ground.decay_rate * math.sqrt(pressed) <= 1.0
+    while coordinates is not None and lasts and acceleration.any():
+        loaded = balance.under_loading(coordinates, closed)
+        opens = False if loaded is None else closed & (balance.gaps(loaded) > OPENING_GAP * pressed)
+        if not np.any(opens):
+            coordinates = loaded
             break
-        state = _returned(model, start, motion.state(-1))
-    model.ground.hold(False)
-    model.set_frictionless(False)
-    return state
-
-
-def _returned(model: EngineModel, start: EngineState, settled: EngineState) -> EngineState:
-    """The deflections of contacts and links in `settled`, at the place and with the velocities of `start`."""
-    coordinates, contact = settled.coordinates.copy(), settled.contact.copy()
-    bodies = model.bodies
-    # the horizontal distance covered meanwhile also lifts the platform along the sphere
-    rise = 0.0 if model.rim == math.inf else 0.5 * float((coordinates[bodies[0, :2]] ** 2).sum())
-    coordinates[bodies[:, :2]] = start.coordinates[bodies[:, :2]]
-    coordinates[bodies[:, 2]] -= rise
-    if model.undeformed is not None:  # bars that give way are no part of what settles
-        coordinates = model.undeformed(coordinates, start.coordinates)
-    contact[1::4] = start.contact[1::4]
+        closed = closed & ~opens
+    if coordinates is None:
+        return None
+    gaps, contact = balance.gaps(coordinates), start.contact.copy()
+    contact[0::4] = np.where(closed, np.minimum(gaps, -GAP_TOLERANCE * pressed), np.maximum(gaps, 0.0))
     return EngineState(coordinates, start.velocities, contact)
+
+
+@dataclass
+class _Balance:
+    """The engine's forces on a model at rest, and the coordinates at which they balance."""
+
+    model: EngineModel
+    kinematics: ImpactLaw
+    start: EngineState
+    acceleration: Array  # (3,)
+    pressed: float  # penetration of the contacts under the weight
+    penetration: float  # that of the level
+
+    def __post_init__(self) -> None:
+        settings = exudyn.SimulationSettings()
+        settings.timeIntegration.verboseMode = 0
+        settings.solution.file.write = False
+        set_initial_state(self.model, self.start)
+        self.model.ground.begin(0.0)
+        self._solver = exudyn.MainSolverImplicitSecondOrder()
+        self._solver.InitializeSolver(self.model.mbs, settings)
+        self._size = len(self.start.coordinates)
+        self._with_plate = np.zeros(self.model.coordinates)
+        self._carried = np.zeros(self._size)
+        self._carried[self.model.carried] = self.acceleration
+        rounding = self.model.rounding / self.penetration
+        self._limit = MAX_RESIDUAL + SAFETY_OF_ROUNDING * rounding
+
+    def gaps(self, coordinates: Array) -> Array:
+        """Gaps (K,) of the contacts at coordinates (n,)."""
+        clear: Array = self.kinematics.depressions.clearance(coordinates[None])[0] - self.pressed
+        return clear
+
+    def under_weight(self) -> Array | None:
+        """Coordinates (n,) of the static equilibrium."""
+        held = np.eye(self._size)[:, self._neutral()]
+        closed = np.ones(len(self.kinematics.depressions.ring), dtype=bool)
+        return self._solved(self.start.coordinates, null_space(held.T), held, closed, 0.0)
+
+    def under_loading(self, equilibrium: Array, closed: Mask) -> Array | None:
+        """Coordinates (n,) at which the loading deforms what is stiff, from the equilibrium (n,); closed: (K,)."""
+        mass = self._mass(equilibrium)
+        everything = self.kinematics.stiff_rates(equilibrium, np.ones_like(closed))
+        slow = null_space(self.kinematics.stiff_rates(equilibrium, closed))
+        deformed = np.asarray(np.linalg.solve(mass, everything.T), dtype=float)
+        return self._solved(equilibrium, deformed, mass @ slow, closed, 1.0)
+
+    def _neutral(self) -> list[int]:
+        """Coordinates that nothing but friction holds: place and yaw of a platform on a plane."""
+        first = int(self.model.bodies[0, 0])
+        return [first, first + 1, first + 5] if self.model.rim == math.inf else []
+
+    def _solved(self, begin: Array, moved: Array, held: Array, closed: Mask, loading: float) -> Array | None:
+        """
+        Coordinates at which forces `held` (n, t) alone are missing to the balance, from `begin` (n,).
+
+        moved: (n, s), independent directions. Contacts that are not closed, (K,), touch without force.
+        """
+        moved, _ = np.linalg.qr(moved)
+        coordinates, missing = begin, np.zeros(held.shape[1])
+        before = math.inf
+        for _ in range(MAX_ITERATIONS):
+            forces, stiffness = self._forces(coordinates, closed, loading)
+            touching = self.gaps(coordinates)[~closed] / self.pressed
+            residual = np.append(forces - held @ missing, touching)
+            worst = float(np.abs(residual).max())
+            if not math.isfinite(worst):
+                return None
+            if worst <= self._limit and worst > 0.5 * before:
+                return coordinates
+            before = worst
+            rates = self.kinematics.gap_rates(coordinates)[~closed] / self.pressed
+            matrix = np.block([[stiffness @ moved, -held], [rates @ moved, np.zeros((len(rates), len(missing)))]])
+            change = np.linalg.lstsq(matrix, -residual, rcond=None)[0]
+            coordinates = coordinates + moved @ change[: moved.shape[1]]
+            missing = missing + change[moved.shape[1] :]
+        return None
+
+    def _mass(self, coordinates: Array) -> Array:
+        """The engine's mass matrix (n, n)."""
+        self._set(coordinates)
+        self._solver.ComputeMassMatrix(self.model.mbs, 1.0)
+        mass: Array = np.array(self._solver.GetSystemMassMatrix())[: self._size, : self._size]
+        return mass
+
+    def _forces(self, coordinates: Array, closed: Mask, loading: float) -> tuple[Array, Array]:
+        """Forces (n,) under the weight and a share of the loading's first value, and their derivative (n, n)."""
+        shaken = self._mass(coordinates) @ self._carried
+        contact = np.zeros_like(self.start.contact)
+        contact[0::4] = np.where(closed, -1.0, 0.0)  # the engine then takes it for closed, whatever its gap
+        self._set(coordinates)
+        mbs, part = self.model.mbs, slice(self._size)
+        mbs.systemData.SetDataCoordinates(contact, configuration=CURRENT)
+        self._solver.ComputeODE2RHS(mbs)
+        forces = np.array(self._solver.GetSystemResidual())[part]
+        self._solver.ComputeJacobianODE2RHS(mbs, 1.0, 0.0, 0.0)
+        stiffness = np.array(self._solver.GetSystemJacobian())[part, part]
+        in_engine = 0.0 if self.model.moving_plate else 1.0  # whose inertial forces are loads
+        return forces - (loading - in_engine) * shaken, stiffness
+
+    def _set(self, coordinates: Array) -> None:
+        self._with_plate[: self._size] = coordinates
+        self.model.mbs.systemData.SetODE2Coordinates(self._with_plate, configuration=CURRENT)

@@ -10,7 +10,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.integration.adaptive import Budget, EngineRun, absolute_accelerations, run_adaptively, termination
+from multibody.integration.adaptive import (
+    Budget,
+    EngineRun,
+    absolute_accelerations,
+    begin_run,
+    run_adaptively,
+    termination,
+)
 from multibody.integration.balance import balanced_start
 from multibody.integration.constant_step import Engine
 from multibody.integration.level import Level
@@ -56,7 +63,9 @@ class PhasePair:
         """
         engine = Engine(self.model, level.newton, level.residual if residual is None else residual)
         self.model.set_contact(level.penetration, level.warping_compliance)
-        start = self._start(engine, level.penetration)
+        start = self._start(level.penetration)
+        if start is None:
+            return begin_run(self.model, stop).terminated(Outcome.SOLVER_FAILED, 0.0)
         if stop == math.inf and not (keep or self.whole) and looks_ahead(self.model, level):
             return run_looking_ahead(engine, start, self.end, self.ground, level, budget)
         return run_adaptively(engine, start, self.end, self.ground, level, budget, stop=stop, keep=keep)
@@ -73,8 +82,8 @@ class PhasePair:
         """Run in `count` equal steps, without control of their error; the motion is kept."""
         model, engine = self.model, Engine(self.model, newton, residual, integrator, discontinuous)
         model.set_contact(penetration)
-        start = self._start(engine, penetration)
-        motion = engine.run(start, 0.0, self.end / count, count)
+        start = self._start(penetration)
+        motion = None if start is None else engine.run(start, 0.0, self.end / count, count)
         result = EngineRun(Peaks(len(model.bodies), model.corner), math.inf, work=count)
         if motion is None or not np.isfinite(motion.accelerations).all():
             return result.terminated(Outcome.SOLVER_FAILED, 0.0)
@@ -84,8 +93,11 @@ class PhasePair:
         result.peaks.add(motion.time, absolute_accelerations(model, motion, self.ground), motion.slip)
         return result if outcome == Outcome.OK else result.terminated(outcome, instant)
 
-    def _start(self, engine: Engine, penetration: float) -> EngineState:
-        """The state at time zero, in balance where the motion starts at rest."""
+    def _start(self, penetration: float) -> EngineState | None:
+        """The state at time zero, in balance where the motion starts at rest; None if it is not to be had."""
         self.model.ground.set_phase(self.phase)
-        start = self.model.start(self.initial, ground_acceleration(self.scene, self.phase, [0.0])[0], penetration)
-        return balanced_start(engine, start, penetration) if self.initial is None else start
+        acceleration = ground_acceleration(self.scene, self.phase, [0.0])[0]
+        start = self.model.start(self.initial, acceleration, penetration)
+        if self.initial is not None:
+            return start
+        return balanced_start(self.model, start, acceleration / self.model.units.acceleration, penetration)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import orth
 
 from multibody.models.depressions import Depressions, angular_velocity_matrix, rotation
 from reference.problem import DryFriction
@@ -116,6 +117,31 @@ class ImpactLaw:
             return leaving, leaving
         upward = normals[:, 2] * velocities[self.depressions.vertical]
         return leaving - np.minimum(upward, 0.0), leaving - upward
+
+    def gap_rates(self, coordinates: Array) -> Array:
+        """Rates (K, n) of the gaps over the engine's velocities, at coordinates (n,)."""
+        normals, jacobian = self.depressions.motion_at_contacts(coordinates)
+        rates = np.zeros((len(normals), len(coordinates)))
+        rates[:, :PER_BODY] = np.einsum("ki,kij->kj", normals, jacobian)
+        rates[:, :PER_BODY] = rates[:, :PER_BODY] @ self._turning(coordinates)[:PER_BODY, :PER_BODY]
+        if len(self.depressions.vertical):
+            rates[np.arange(len(normals)), self.depressions.vertical] = -normals[:, 2]
+        return rates
+
+    def stiff_rates(self, coordinates: Array, closed: Mask) -> Array:
+        """
+        Rates (s, n) of all that is stiff over the engine's velocities, at coordinates (n,).
+
+        That is heave and tilt of the platform on closed contacts (K,), places of the spheres, tension and bending.
+        """
+        count, size = PER_BODY * len(self.masses), len(coordinates)
+        ring = self.depressions.ring[closed]
+        heave_and_tilt = orth(np.column_stack([np.ones(len(ring)), ring])).T if len(ring) else np.empty((0, 0))
+        turned = rotation(coordinates[:count].reshape(-1, PER_BODY)[:, 3:])
+        rows = np.zeros((len(heave_and_tilt) + 3 * int(self.rigid.sum()), size))
+        rows[: len(heave_and_tilt)] = heave_and_tilt @ self.gap_rates(coordinates)[closed]
+        rows[len(heave_and_tilt) :, :count] = self._bars(coordinates, turned) @ self._turning(coordinates)
+        return np.vstack([rows, np.eye(size)[count:]])
 
     def _turning(self, coordinates: Array) -> Array:
         """Matrix (6 N, 6 N) that makes velocities and angular velocities of the bodies of the engine's velocities."""

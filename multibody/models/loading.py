@@ -27,17 +27,12 @@ class SymbolicGround:
         self.amplitudes = scene.amplitudes / units.acceleration
         self.exponents = exponents(scene) * units.time
         self.decay_rate = float(-self.exponents.real.min())
-        self.pace = exudyn.symbolic.Real("pace", 1.0)  # of the loading's time in the engine's
         self.phases = [exudyn.symbolic.Real(f"alpha{harmonic + 1}", 0.0) for harmonic in range(2)]
 
     def set_phase(self, phase: Any) -> None:
         """Initial phases (2,), rad, of the runs that follow."""
         for symbol, value in zip(self.phases, phase, strict=True):
             symbol.SetValue(float(value))
-
-    def hold(self, held: bool) -> None:
-        """Whether the runs that follow have the first value all the time."""
-        self.pace.SetValue(0.0 if held else 1.0)
 
     def begin(self, time: float) -> None:
         """Nothing: the expression holds at any time."""
@@ -52,7 +47,6 @@ class SymbolicGround:
 
     def along(self, axis: int, time: Any) -> Any:
         """Expression of the acceleration along `axis` at the symbolic instant `time`."""
-        time = self.pace * time
         terms = [  # no term that changes nothing: the engine evaluates all of them in every iteration
             (amplitude if exponent.real == 0.0 else amplitude * exudyn.symbolic.exp(exponent.real * time))
             * exudyn.symbolic.cos(exponent.imag * time + phase)

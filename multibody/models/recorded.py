@@ -33,17 +33,13 @@ class RecordedGround:
         self.near = KNOT_TOLERANCE * float(np.diff(time).min())
         self._time, self._samples = time, samples
         self._rates = np.vstack([np.zeros(3), np.diff(samples, axis=0) / np.diff(time)[:, None], np.zeros(3)])
-        self._held, self._interval = False, -1
+        self._interval = -1
         self._origin = exudyn.symbolic.Real("origin", 0.0)
         self._value, self._rate = ([exudyn.symbolic.Real(f"{name}{k}", 0.0) for k in range(3)] for name in "ar")
         mbs.SetPreStepUserFunction(self.before_step)
 
     def set_phase(self, phase: Any) -> None:
         """Nothing: a record has no phases."""
-
-    def hold(self, held: bool) -> None:
-        """Whether the runs that follow have the first sample all the time."""
-        self._held = held
 
     def begin(self, time: float) -> None:
         """Make ready for a run that begins at this instant."""
@@ -65,7 +61,6 @@ class RecordedGround:
 
     def _enter(self, interval: int) -> None:
         """Interval k lies between knots k - 1 and k; 0 before the first knot, where the first sample holds."""
-        interval = 0 if self._held else interval
         if interval == self._interval:
             return
         self._interval, knot = interval, max(interval - 1, 0)

@@ -32,7 +32,6 @@ class SpeedFriction:
     ) -> None:
         law = scene.dry_friction
         self.law = DryFriction(law.slow, law.fast, law.rate * units.velocity)
-        self.frictionless = False  # whether the contacts have no friction for now
         self._contacts, self._ground, self._threshold = contacts, ground, threshold
         self._mass_ratio = scene.total_mass / float(scene.masses[0])
         self._slip = self._rate = [0.0] * len(contacts)  # at the start of the step
@@ -70,4 +69,4 @@ class SpeedFriction:
         for contact, slip, rate in zip(self._contacts, self._slip, self._rate, strict=True):
             speed = max(slip + span * rate, 0.0)
             coefficient = law.slow - (law.fast - law.slow) * math.expm1(-law.rate * speed)
-            mbs.SetObjectParameter(contact, "dynamicFriction", 0.0 if self.frictionless else coefficient)
+            mbs.SetObjectParameter(contact, "dynamicFriction", coefficient)

@@ -75,15 +75,14 @@ class EngineModel:
     bar_lags: Callable[[float], Array] | None = None
     # takes contacts (K,) out of the engine, whose penetration is given, and puts the others in
     set_open: Callable[[NDArray[np.bool_], float], None] | None = None
-    set_frictionless: Callable[[bool], None] | None = None  # removes or restores friction; None: starts in balance
+    # of bodies that turn, and of their contacts and stiff links; None: the model starts in balance by itself
+    kinematics: ImpactLaw | None = None
     # distance of the supports from a plane, (T,), for coordinates (T, n); None if the supports do not share the load
     warping_displacement: Callable[[Array], Array] | None = None
     bearing_penetration: float = 0.0  # by the weight, as the scene's bearings state it, or 0
     friction: SpeedFriction | None = None  # of contacts whose friction depends on the slip speed
     rim: float = 1.0  # displacement of the platform at which it reaches the rim; inf on a plane
     fastest_of_bars: float = 0.0  # largest angular frequency that bars make which give way; 0 without such bars
-    # coordinates (n,) with such bars as they were in the coordinates `start` (n,); None without
-    undeformed: Callable[[Array, Array], Array] | None = None
 
     @property
     def container(self) -> Any:
