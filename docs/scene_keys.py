@@ -74,8 +74,8 @@ paper's four cases and `reference/problem/examples` two recorded motions. An unk
 nearest valid keys; a wrong value is an error in one line with file, key, value and rule.
 
 Every optional key is off by default. "All" models are the paper's equations and the two engine models, translational
-and spatial; the spatial model needs every key of its own but `support_stiffness`, `restitution`, `offset`, `yaw` and
-those of `bars`, and no `ring` with positions of supports.
+and spatial; the spatial model needs every key of its own but `support_stiffness`, `support_damping`, `restitution`,
+`offset`, `yaw` and those of `bars`, and no `ring` with positions of supports.
 
 One number of a scene may run over a range, which makes one scene of every value:
 `friction = {{range = [0.02, 0.2], steps = 10}}` or `friction = {{values = [0.05, 0.1]}}`. Several keys may run where

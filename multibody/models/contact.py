@@ -33,7 +33,12 @@ def contact_law(scene: Scene, regularization: float | None, units: Units) -> tup
 
 
 def set_contact_parameters(
-    mbs: Any, contact: Any, radii: list[float] | float, penetration: float, count: int = 1
+    mbs: Any,
+    contact: Any,
+    radii: list[float] | float,
+    penetration: float,
+    count: int = 1,
+    damping_ratio: float = DAMPING_RATIO,
 ) -> None:
     """
     Set radii, stiffness and damping of one of `count` contacts that share the weight.
@@ -42,7 +47,7 @@ def set_contact_parameters(
     """
     mbs.SetObjectParameter(contact, "spheresRadii" if isinstance(radii, list) else "sphereRadius", radii)
     mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / (count * penetration))
-    mbs.SetObjectParameter(contact, "contactDamping", 2.0 * DAMPING_RATIO / (count * np.sqrt(penetration)))
+    mbs.SetObjectParameter(contact, "contactDamping", 2.0 * damping_ratio / (count * np.sqrt(penetration)))
 
 
 def corner_and_relaxation(scene: Scene, regularization: float | None, units: Units) -> tuple[float, float]:

@@ -21,7 +21,6 @@ More than three supports share the load as elastic bearings do (`supports`), or 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 from itertools import compress
 from typing import Any
 
@@ -30,6 +29,7 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from multibody.models.contact import (
+    DAMPING_RATIO,
     FORCE_ROUNDING,
     contact_law,
     corner_and_relaxation,
@@ -39,7 +39,7 @@ from multibody.models.contact import (
 from multibody.models.depressions import Depressions, FlatUnderside, rotation
 from multibody.models.engine import exudyn, items
 from multibody.models.impact import ImpactLaw
-from multibody.models.links import PER_BODY, Link, add_links, fastest_of_bars, undeformed
+from multibody.models.links import PER_BODY, Link, add_links, fastest_of_bars
 from multibody.models.loading import Push, ground_of, load_on_coordinate, push
 from multibody.models.plane import farthest, plane_contact, platform_on_plane, set_extent
 from multibody.models.plate import plate_for
@@ -106,7 +106,7 @@ def spatial(
     index = PER_BODY * np.arange(len(masses))[:, None] + np.arange(3)
     varies = scene.dry_friction.varies
     varying = SpeedFriction(mbs, scene, units, threshold, contacts, ground) if varies else None
-    parts = _Parts(scene, mbs, units, index, contacts, links, supports, radius, friction, varying, bearing_penetration)
+    parts = _Parts(scene, mbs, units, index, contacts, links, supports, radius, bearing_penetration)
     vertical = parts.body_coordinates + supports.vertical
     under_platform = (FlatUnderside if scene.flat else Depressions)(ring, centers[0], radius, vertical)
     restitution = scene.isolator.restitution or 0.0
@@ -133,7 +133,7 @@ def spatial(
         carried=np.vstack([index, parts.body_coordinates + supports.carried]),
         references=(container, expressions),
         allows_liftoff=True,
-        set_frictionless=parts.set_frictionless,
+        kinematics=impact_law,
         warping_displacement=parts.warping_displacement,
         bearing_penetration=bearing_penetration,
         depressions=under_platform,
@@ -144,7 +144,6 @@ def spatial(
         friction=varying,
         rim=np.inf if scene.flat else 1.0,
         fastest_of_bars=fastest_of_bars(links, masses, tensors, centers),
-        undeformed=None if rigid.all() else partial(undeformed, links, centers),
     )
 
 
@@ -160,8 +159,6 @@ class _Parts:
     links: list[Link]
     supports: Supports
     radius: float  # of the spheres
-    friction: float
-    varying: SpeedFriction | None  # where friction depends on the slip speed
     bearing_penetration: float  # by the weight, as the scene's bearings state it, or 0
 
     @property
@@ -191,8 +188,10 @@ class _Parts:
         """Stiffness, damping and radii of all contacts, for their penetration under the weight."""
         pressed = self.bearing_penetration or penetration
         radii = self.radius + pressed if self.scene.flat else [self.radius + pressed, self.radius + 1.0]
+        stated = self.scene.isolator.support_damping
+        ratio = DAMPING_RATIO if stated is None else stated
         for contact in self.contacts:
-            set_contact_parameters(self.mbs, contact, radii, pressed, len(self.contacts))
+            set_contact_parameters(self.mbs, contact, radii, pressed, len(self.contacts), ratio)
 
     def start(self, initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
         """See `EngineModel`."""
@@ -221,13 +220,6 @@ class _Parts:
     def settle(self, state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
         """See `EngineModel`: the bodies that turn settle by themselves."""
         return state
-
-    def set_frictionless(self, frictionless: bool) -> None:
-        """See `EngineModel`."""
-        if self.varying is not None:
-            self.varying.frictionless = frictionless
-        for contact in self.contacts:
-            self.mbs.SetObjectParameter(contact, "dynamicFriction", 0.0 if frictionless else self.friction)
 
     def warping_displacement(self, coordinates: Array) -> Array:
         """See `EngineModel`."""

@@ -61,6 +61,7 @@ SCENE: dict[str, Range] = {
     "isolator.supports": Range(3, 1000),
     "isolator.ring": Range(1e-6, 1e6, "m"),
     "isolator.support_stiffness": Range(1e-12, 1e18, "N/m"),
+    "isolator.support_damping": Range(0.01, 100.0),
     "isolator.restitution": Range(0.0, 1.0),
     "isolator.travel": Range(1e-9, 1e12, "m"),
     "isolator.sphere_radius": Range(1e-9, 1e6, "m"),

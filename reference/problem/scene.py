@@ -178,6 +178,10 @@ class Scene(Table):
         if bearings is not None and restitution is not None:
             rule = "supports with a support_stiffness rebound by it: remove one of the two keys"
             raise MisfitError("isolator.restitution", restitution, rule)
+        damping = self.isolator.support_damping
+        if bearings is None and damping is not None:
+            rule = "damps supports with a support_stiffness: state that, too, or remove this key"
+            raise MisfitError("isolator.support_damping", damping, rule)
         if bearings is not None:
             share = self.total_mass * GRAVITY / ((self.isolator.support_count or 1) * bearings * self.radius)
             if not share <= MAX_SUPPORT_DEFLECTION:

@@ -223,6 +223,15 @@ class Isolator(Table):
             SPATIAL,
         ),
     ] = None
+    support_damping: Annotated[
+        Annotated[Positive, within("isolator.support_damping")] | None,
+        about(
+            "damping of each support with a `support_stiffness`, as a ratio of critical under its share of the mass at "
+            "rest: 2 zeta sqrt(k m / K) in N s/m; 1, critical damping, without; the factors depend on it",
+            "",
+            SPATIAL,
+        ),
+    ] = None
     restitution: Annotated[
         Annotated[NonNegative, within("isolator.restitution")] | None,
         about("coefficient of restitution of a support that closes again, 0 without", "", SPATIAL),
