@@ -9,11 +9,15 @@ import numpy as np
 import pytest
 from beam_columns import Tower, tower_of_beams
 from rigid_chain import spatial_motion
+from scenes_at_hand import forces_of_links
 from scipy.optimize import brentq
 
 import multibody
+from multibody.integration.adaptive import Budget
+from multibody.integration.one_run import PhasePair
+from multibody.models.assembly import assemble
 from multibody.models.engine import exudyn, items
-from multibody.models.links import add_links
+from multibody.models.links import LINK_COMPLIANCE_RATIO, add_links
 from multibody.models.units import units_of
 from reference.problem import Outcome, Scene, SceneError, load_scene
 
@@ -132,6 +136,43 @@ def test_beam_elements_have_the_frequencies_of_beams_under_load(name: str) -> No
     frequencies = np.sqrt(values[:3])
     for expected in tower.frequencies():
         assert np.abs(frequencies / expected - 1.0).min() < 3e-3
+
+
+@pytest.mark.parametrize("axial_stiffness", [None, 2e4], ids=["rigid in tension", "clamped beams"])
+@pytest.mark.parametrize("count", [3, 8])
+def test_every_bar_adds_to_the_stiffness_against_twist(count: int, axial_stiffness: float | None) -> None:
+    """n (G J_t / l + s^2 12 E J / l^3), against what the engine answers to a small twist."""
+    length, beam, torsion, spread, angle = 0.9, 40.0, 3.0, 0.5, 1e-4
+    bars = {"count": count, "bending_stiffness": beam, "length": length, "torsional_stiffness": torsion}
+    bars |= {"spread": spread} | ({"axial_stiffness": axial_stiffness} if axial_stiffness else {})
+    scene = load_scene("fig3-I").with_values({"bodies.1.period": None, "bodies.1.bars": bars})
+    twisted = np.zeros(12)
+    twisted[11] = angle
+    _, moments, model = forces_of_links(scene, twisted, np.zeros(12))
+    unit = model.units.force * model.units.length
+    expected = count * (torsion / length + spread**2 * 12.0 * beam / length**3) * angle
+    assert moments[:, 2] * unit == pytest.approx([expected, -expected], rel=1e-5)
+
+
+@pytest.mark.parametrize("axial_stiffness", [None, 2e4], ids=["rigid in tension", "clamped beams"])
+@pytest.mark.parametrize("offset", [[0.1, 0.0], [0.0, 0.1], [-0.05, 0.08]], ids=str)
+def test_a_link_under_an_eccentric_weight_is_straight_at_rest(
+    offset: list[float], axial_stiffness: float | None
+) -> None:
+    """It is built to carry the moment of what stands on it: bodies on rigid supports do not lean against each other."""
+    bars = {"count": 4, "bending_stiffness": 40.0, "length": 0.9, "spread": 0.5}
+    bars |= {"axial_stiffness": axial_stiffness} if axial_stiffness else {}
+    values = {"bodies.1.period": None, "bodies.1.bars": bars, "bodies.1.offset": offset, "isolator.supports": 3}
+    scene = load_scene("fig3-I").with_values(values)
+    model = assemble(scene, "spatial", 1e-3)
+    level = multibody.levels(scene, "spatial")[0]
+    weight = (
+        float(scene.masses[1] / scene.total_mass) * np.hypot(*offset) / scene.radius
+    )  # moment, in weights times rho
+    run = PhasePair(scene, model, np.full(2, 0.5 * np.pi)).at_level(level, Budget(1e5), stop=1e-6, keep=True)
+    turns = run.chunks[0].coordinates[0][model.bodies + 3]
+    # as stiff as a link of rigid bars is in bending, it would lean by ten penetrations
+    assert np.abs(turns[1] - turns[0]).max() < 0.01 * LINK_COMPLIANCE_RATIO * level.penetration * weight
 
 
 BUILDINGS: dict[str, dict[str, Any]] = {
