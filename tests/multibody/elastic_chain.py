@@ -1,0 +1,346 @@
+"""
+An independent calculation of a building on elastic bearings, which shares no code with the project and no formulation.
+
+Rigid bodies in relative coordinates: place and rotation vector of the platform, and for every link the displacement of
+its upper end from its lower one in the middle axes of both bodies, and the rotation of the body above against that
+below. A link that is rigid in tension and bending has three of these six, two displacements and the twist. Kane's
+equations: Jacobians project the Newton-Euler equations, so there are no constraints and no multipliers. Dampers act on
+the rates of the coordinates themselves, which turn with the link. Each support presses by its own stiffness and
+damping. The start is the static equilibrium, in which fast motions of the bearings balance the loading's first value.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+from scipy.integrate import Radau
+from scipy.linalg import null_space
+
+Array = NDArray[np.float64]
+
+GRAVITY = 9.81
+ALONG = 1e-5  # s, of the difference quotient along the motion for the rates of the Jacobians
+PER_STEP = 12  # instants in a step at which accelerations are read
+
+compiled = njit(cache=True, error_model="numpy")
+
+
+@compiled
+def _skew(v):
+    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+
+
+@compiled
+def _cross(a, b):
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+@compiled
+def _exponential(v):
+    """Rotation matrix of a rotation vector, and the matrix (3, 3) of its angular velocity over its rates."""
+    square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
+    k = _skew(v)
+    kk = k @ k
+    if square < 1e-6:
+        first, second = 1.0 - square / 6.0, 0.5 - square / 24.0
+        third = 1.0 / 6.0 - square / 120.0
+    else:
+        angle = math.sqrt(square)
+        first, second = math.sin(angle) / angle, (1.0 - math.cos(angle)) / square
+        third = (1.0 - first) / square
+    return np.eye(3) + first * k + second * kk, np.eye(3) + second * k + third * kk
+
+
+@compiled
+def _kinematics(q, free, centers):
+    """Places (N, 3) and axes (N, 3, 3) of the bodies, and their Jacobians of velocity and spin (N, 3, n)."""
+    bodies, size = len(centers), 6 * len(centers)
+    places, axes = np.zeros((bodies, 3)), np.zeros((bodies, 3, 3))
+    moved, spun = np.zeros((bodies, 3, size)), np.zeros((bodies, 3, size))
+    places[0] = q[:3] + centers[0]
+    axes[0], rates = _exponential(q[3:6])
+    moved[0, :, :3] = np.eye(3)
+    spun[0, :, 3:6] = rates
+    for i in range(1, bodies):
+        own = 6 * i
+        half = 0.5 * (centers[i, 2] - centers[i - 1, 2])
+        shift, turn = q[own : own + 3], q[own + 3 : own + 6]
+        lower = axes[i - 1] @ np.array([-centers[i - 1, 0], -centers[i - 1, 1], half])
+        relative, rates = _exponential(turn)
+        middle, middle_rates = _exponential(0.5 * turn)
+        axes[i] = axes[i - 1] @ relative
+        between = axes[i - 1] @ middle
+        apart = between @ shift
+        upper = axes[i] @ np.array([-centers[i, 0], -centers[i, 1], -half])
+        places[i] = places[i - 1] + lower + apart - upper
+        spun[i] = spun[i - 1]
+        spun[i, :, own + 3 : own + 6] += axes[i - 1] @ rates
+        spin_between = spun[i - 1].copy()
+        spin_between[:, own + 3 : own + 6] += 0.5 * (axes[i - 1] @ middle_rates)
+        moved[i] = moved[i - 1] - _skew(lower) @ spun[i - 1] - _skew(apart) @ spin_between + _skew(upper) @ spun[i]
+        moved[i, :, own : own + 3] += between
+    keep = np.zeros(size)
+    for k in range(size):
+        keep[k] = 1.0 if free[k] else 0.0
+    return places, axes, moved * keep, spun * keep
+
+
+@compiled
+def _forces(q, rates, ground, masses, tensors, centers, free, stiffness, damping, preload, rods, ring, numbers):
+    """
+    Generalized forces (n,), mass matrix (n, n), gaps' rates (K, n), forces of the supports (K,), Jacobians of velocity.
+
+    numbers: rho, radius of the spheres, penetration at rest, stiffness and damping of a support, friction, v_reg.
+    """
+    rho, sphere, pressed, spring, dashpot, friction, corner = numbers
+    bodies, size = len(masses), len(q)
+    places, axes, moved, spun = _kinematics(q, free, centers)
+    _, _, moved_later, spun_later = _kinematics(q + ALONG * rates, free, centers)
+    _, _, moved_before, spun_before = _kinematics(q - ALONG * rates, free, centers)
+    force, mass = np.zeros(size), np.zeros((size, size))
+    for i in range(bodies):
+        omega = spun[i] @ rates
+        tensor = axes[i] @ tensors[i] @ axes[i].T
+        bias = (moved_later[i] - moved_before[i]) @ rates / (2.0 * ALONG)
+        turned = (spun_later[i] - spun_before[i]) @ rates / (2.0 * ALONG)
+        pull = -masses[i] * (ground + np.array([0.0, 0.0, GRAVITY]) + bias)
+        force += moved[i].T @ pull - spun[i].T @ (tensor @ turned + _cross(omega, tensor @ omega))
+        mass += masses[i] * (moved[i].T @ moved[i]) + spun[i].T @ (tensor @ spun[i])
+    for i in range(1, bodies):
+        own = 6 * i
+        change = q[own : own + 6] - preload[i - 1]
+        force[own : own + 6] -= stiffness[i - 1] @ change + damping[i - 1] @ rates[own : own + 6]
+        length, along, lag = rods[i - 1, 0], rods[i - 1, 1], rods[i - 1, 2]
+        if length > 0.0:  # an upright rod in place of the tension
+            half = 0.5 * (centers[i, 2] - centers[i - 1, 2] - length)
+            lower = axes[i - 1] @ np.array([-centers[i - 1, 0], -centers[i - 1, 1], half])
+            upper = axes[i] @ np.array([-centers[i, 0], -centers[i, 1], -half])
+            span = places[i] + upper - places[i - 1] - lower
+            direction = span / math.sqrt(span @ span)
+            over = moved[i] - _skew(upper) @ spun[i] - moved[i - 1] + _skew(lower) @ spun[i - 1]
+            stretch = direction @ over
+            force -= stretch * (along * (math.sqrt(span @ span) - rods[i - 1, 3]) + lag * along * (stretch @ rates))
+    supports = np.zeros(len(ring))
+    gap_rates = np.zeros((len(ring), size))
+    for k in range(len(ring)):
+        arm = axes[0] @ np.array([ring[k, 0] - centers[0, 0], ring[k, 1] - centers[0, 1], -centers[0, 2]])
+        away = np.array([ring[k, 0], ring[k, 1], rho]) - places[0] - arm
+        distance = math.sqrt(away @ away)
+        normal = away / distance
+        penetration = distance - rho + pressed
+        touching = arm + normal * (sphere + rho + 0.5 * penetration)
+        over = moved[0] - _skew(touching) @ spun[0]
+        gap_rates[k] = normal @ over
+        if penetration <= 0.0:
+            continue
+        velocity = over @ rates
+        approach = -(normal @ velocity)
+        supports[k] = spring * penetration - dashpot * (normal @ velocity)
+        slip = velocity + approach * normal
+        speed = math.sqrt(slip @ slip)
+        force += over.T @ (supports[k] * (normal - friction * slip / max(speed, corner)))
+    for k in range(size):
+        if not free[k]:
+            mass[k, k] = 1.0
+            force[k] = 0.0
+    return force, mass, gap_rates, supports, moved
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Peaks of the absolute accelerations, (N,), m/s^2, with their instants, and what else was read."""
+
+    peak: Array
+    instant: Array
+    mu: Array
+    start: Array  # coordinates at time zero
+    time: Array
+    supports: Array  # (T, K), N
+    turn: Array  # (T, 3), rotation vector of the platform
+
+
+class ElasticBuilding:
+    """A building of a scene, given as the table that a scene file is."""
+
+    def __init__(self, scene: dict[str, Any], regularization: float) -> None:
+        isolator, bodies = scene["isolator"], scene["bodies"]
+        self.scene = scene
+        masses = np.array([body["mass"] for body in bodies], float)
+        self.masses = masses
+        rho = isolator["radius"] if "radius" in isolator else GRAVITY * (isolator["period"] / (2.0 * math.pi)) ** 2
+        if isinstance(isolator["supports"], list):
+            ring = np.array(isolator["supports"], float)
+        else:
+            angles = 2.0 * np.pi * (np.arange(isolator["supports"]) + 0.5) / isolator["supports"]
+            ring = isolator["ring"] * np.column_stack([np.cos(angles), np.sin(angles)])
+        weight, spring = GRAVITY * masses.sum(), isolator["support_stiffness"]
+        pressed = weight / (len(ring) * spring)
+        ratio = isolator.get("support_damping", 1.0)
+        dashpot = 2.0 * ratio * math.sqrt(spring * masses.sum() / len(ring))
+        centers = np.array([[*body.get("offset", (0.0, 0.0)), body["height"]] for body in bodies], float)
+        tensors = []
+        for body in bodies:
+            x, y, z = body["size"]
+            own = np.diag([y * y + z * z, x * x + z * z, x * x + y * y]) * body["mass"] / 12.0
+            turned = _exponential(np.array([0.0, 0.0, body.get("yaw", 0.0)]))[0]
+            tensors.append(turned @ own @ turned.T)
+        links, size = len(bodies) - 1, 6 * len(bodies)
+        free = np.ones(size, dtype=bool)
+        stiffness, damping, preload, rods = (np.zeros((links, *shape)) for shape in ((6, 6), (6, 6), (6,), (4,)))
+        for i, body in enumerate(bodies[1:]):
+            above = slice(i + 1, None)
+            load = GRAVITY * masses[above].sum()
+            if "bars" in body:
+                self._bars(i, body, load, masses[above] @ centers[above, :2], stiffness, damping, preload, rods)
+                continue
+            free[6 * (i + 1) + np.array([2, 3, 4])] = False
+            k = np.array(body.get("stiffness") or (2.0 * np.pi / np.array(body["period"])) ** 2 * body["mass"], float)
+            c = body.get("damping", 0.0)
+            c = np.array(c, float) if isinstance(c, list) else 2.0 * c * np.sqrt(k * body["mass"])
+            turned = _exponential(np.array([0.0, 0.0, body.get("yaw", 0.0)]))[0][:2, :2]
+            stiffness[i, :2, :2] = turned @ np.diag(k) @ turned.T
+            damping[i, :2, :2] = turned @ np.diag(c) @ turned.T
+            stiffness[i, 5, 5] = (ring**2).sum(axis=1).mean() * k.mean()
+        self.free = free
+        numbers = (rho, isolator["sphere_radius"], pressed, spring, dashpot, isolator["friction"], regularization)
+        self._model = (masses, np.array(tensors), centers, free, stiffness, damping, preload, rods, ring, numbers)
+        self.ring = ring
+
+    def _bars(self, i, body, load, moments, stiffness, damping, preload, rods) -> None:  # type: ignore[no-untyped-def]
+        """Clamped beams under their load, half-way up: (2.3) with the functions of a beam-column."""
+        bars = body["bars"]
+        count, beam, length, spread = bars["count"], bars["bending_stiffness"], bars["length"], bars["spread"]
+        each = load / count
+
+        def sway(axial: float) -> float:
+            x = 0.5 * length * math.sqrt(axial / beam)
+            return axial / (length * (math.tan(x) / x - 1.0))
+
+        k, bent, slope = 12.0 * beam / length**3, beam / length, 1.2 / length
+        if bars.get("load_effect"):
+            x = 0.5 * length * math.sqrt(each / beam)
+            k, bent = sway(each), beam / length * x / math.tan(x)
+            slope = (sway(0.999 * each) - sway(1.001 * each)) / (0.002 * each)
+        rod = 1.0 / slope if bars.get("load_effect") == "shortening" else 0.0
+        tension = count * bars["axial_stiffness"] / length
+        bending = count * bent + 0.5 * tension * spread**2 + 0.25 * load * (length - rod)
+        shear = count * k + (load / rod if rod else 0.0)
+        twist = count * (k * spread**2 + bars.get("torsional_stiffness", 0.0) / length)
+        own = np.array([shear, shear, 0.0 if rod else tension, bending, bending, twist])
+        c = 2.0 * body.get("damping", 0.0) * math.sqrt(count * k * body["mass"])
+        lag = c / (count * k)
+        stiffness[i], damping[i] = np.diag(own), np.diag(lag * own)
+        damping[i, 0, 0] = damping[i, 1, 1] = c
+        # at rest the bars are straight and carry what is above; forces K (q - preload)
+        preload[i] = [0.0, 0.0, 0.0 if rod else load / tension, *(GRAVITY * moments[1] / bending,), 0.0, 0.0]
+        preload[i, 4] = -GRAVITY * moments[0] / bending
+        rods[i] = [rod, tension, lag, rod + load / tension]
+
+    def forces(self, q: Array, rates: Array, ground: Array) -> Any:
+        """What `_forces` returns."""
+        return _forces(np.ascontiguousarray(q), np.ascontiguousarray(rates), ground, *self._model)
+
+    def ground(self, time: float, phase: tuple[float, float]) -> Array:
+        """Acceleration of the plate, (3,), (5.2)-(5.4)."""
+        loading = self.scene["excitation"]
+        total = np.zeros(3)
+        for harmonic in range(2):
+            rate = 2.0 * np.pi / loading["periods"][harmonic]
+            value = math.exp(-loading["decay"][harmonic] * time) * math.cos(rate * time + phase[harmonic])
+            for axis, row in enumerate(loading["amplitudes"]):
+                total[axis] += row[harmonic] * value
+        return total
+
+    def equilibrium(self) -> Array:
+        """Coordinates (n,) at which nothing moves under the weight."""
+        everything = np.eye(len(self.free))[:, self.free]
+        return self._balanced(np.zeros(len(self.free)), everything, np.zeros((len(self.free), 0)), np.zeros(3))
+
+    def start(self, ground: Array) -> Array:
+        """Coordinates (n,) at time zero, with heave and tilt on the bearings in balance with the loading."""
+        rest = self.equilibrium()
+        if not ground.any():
+            return rest
+        _, mass, gap_rates, _, _ = self.forces(rest, np.zeros_like(rest), np.zeros(3))
+        patterns = np.column_stack([np.ones(len(self.ring)), self.ring])
+        fast = patterns.T @ gap_rates
+        slow = null_space(np.vstack([fast, np.eye(len(self.free))[~self.free]]))
+        return self._balanced(rest, np.linalg.solve(mass, fast.T), mass @ slow, ground)
+
+    def _balanced(self, begin: Array, moved: Array, held: Array, ground: Array) -> Array:
+        """Newton's method by difference quotients."""
+        count = moved.shape[1]
+        moved = np.linalg.qr(moved)[0]
+        still = np.zeros(len(begin))
+
+        def missing(unknown: Array) -> Array:
+            force: Array = self.forces(begin + moved @ unknown[:count], still, ground)[0]
+            return force[self.free] - (held @ unknown[count:])[self.free]
+
+        unknown, step = np.zeros(count + held.shape[1]), 1e-6
+        for _ in range(20):
+            slopes = [
+                (missing(unknown + step * one) - missing(unknown - step * one)) / (2.0 * step)
+                for one in np.eye(len(unknown))
+            ]
+            unknown = unknown - np.linalg.solve(np.array(slopes).T, missing(unknown))
+        if not np.abs(missing(unknown)).max() < 1e-7 * GRAVITY * self.masses.sum():
+            raise RuntimeError("no equilibrium")
+        return begin + moved @ unknown[:count]
+
+    def motion(self, phase: tuple[float, float], tolerance: float = 1e-8) -> Motion:
+        """The motion from its start to the end of the scene."""
+        size, bodies = len(self.free), len(self.masses)
+        start = self.start(self.ground(0.0, phase))
+
+        def solved(time: float, state: Array) -> tuple[Array, Any]:
+            found = self.forces(state[:size], state[size:], self.ground(time, phase))
+            return np.linalg.solve(found[1], found[0]), found
+
+        def rate(time: float, state: Array) -> Array:
+            return np.concatenate([state[size:], solved(time, state)[0]])
+
+        def read(time: float, state: Array) -> tuple[Array, Array]:
+            changed, found = solved(time, state)
+            rates = state[size:]
+            later, before = (
+                _kinematics(state[:size] + sign * ALONG * rates, self.free, self._model[2])[2] for sign in (1.0, -1.0)
+            )
+            moved = found[4] @ changed + (later - before) @ rates / (2.0 * ALONG)
+            return np.linalg.norm(moved + self.ground(time, phase), axis=1), found[3]
+
+        first = np.concatenate([start, np.zeros(size)])
+        solver = Radau(
+            rate,
+            0.0,
+            first,
+            self.scene["duration"],
+            rtol=tolerance,
+            atol=1e-3 * tolerance,
+            first_step=1e-6,
+            max_step=0.02,
+        )
+        peak, supports = read(0.0, first)
+        instant, times, all_supports, turns = np.zeros(bodies), [0.0], [supports], [start[3:6]]
+        while solver.status == "running":
+            message = solver.step()
+            if solver.status == "failed":
+                raise RuntimeError(message)
+            dense = solver.dense_output()
+            for time in np.linspace(solver.t_old, solver.t, PER_STEP + 1)[1:]:
+                state = dense(time)
+                sizes, supports = read(time, state)
+                instant = np.where(sizes > peak, time, instant)
+                peak = np.maximum(peak, sizes)
+                times.append(time)
+                all_supports.append(supports)
+                turns.append(state[3:6])
+        grid = np.linspace(0.0, self.scene["duration"], 200001)
+        grid = np.concatenate([grid, times])
+        largest = max(float(np.linalg.norm(self.ground(time, phase))) for time in grid)
+        return Motion(peak, instant, peak / largest, start, np.array(times), np.array(all_supports), np.array(turns))
