@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import null_space
+from scipy.linalg import block_diag, null_space
 
 from multibody.integration.constant_step import set_initial_state
 from multibody.integration.openings import GAP_TOLERANCE, OPENING_GAP
@@ -102,11 +102,17 @@ class _Balance:
         return self._solved(self.start.coordinates, null_space(held.T), held, closed, 0.0)
 
     def under_loading(self, equilibrium: Array, closed: Mask) -> Array | None:
-        """Coordinates (n,) at which the loading deforms what is stiff, from the equilibrium (n,); closed: (K,)."""
+        """
+        Coordinates (n,) at which the loading deforms what is stiff, from the equilibrium (n,); closed: (K,).
+
+        Springs hold the spheres in every direction in which they can move.
+        """
         mass = self._mass(equilibrium)
-        everything = self.kinematics.stiff_rates(equilibrium, np.ones_like(closed))
-        slow = null_space(self.kinematics.stiff_rates(equilibrium, closed))
-        deformed = np.asarray(np.linalg.solve(mass, everything.T), dtype=float)
+        stiff = self.kinematics.stiff_rates(equilibrium, np.ones_like(closed))
+        spheres = self._size - stiff.shape[1]
+        deformed = np.asarray(np.linalg.solve(mass, block_diag(stiff, np.eye(spheres)).T), dtype=float)
+        slow_of_bodies = null_space(self.kinematics.stiff_rates(equilibrium, closed))
+        slow = np.vstack([slow_of_bodies, np.zeros((spheres, slow_of_bodies.shape[1]))])
         return self._solved(equilibrium, deformed, mass @ slow, closed, 1.0)
 
     def _neutral(self) -> list[int]:

@@ -130,18 +130,16 @@ class ImpactLaw:
 
     def stiff_rates(self, coordinates: Array, closed: Mask) -> Array:
         """
-        Rates (s, n) of all that is stiff over the engine's velocities, at coordinates (n,).
+        Rates (s, 6 N) of what is stiff over the engine's velocities of the bodies, at coordinates (n,).
 
-        That is heave and tilt of the platform on closed contacts (K,), places of the spheres, tension and bending.
+        That is heave and tilt of the platform on closed contacts (K,), tension and bending of rigid links.
         """
-        count, size = PER_BODY * len(self.masses), len(coordinates)
+        count = PER_BODY * len(self.masses)
         ring = self.depressions.ring[closed]
         heave_and_tilt = orth(np.column_stack([np.ones(len(ring)), ring])).T if len(ring) else np.empty((0, 0))
         turned = rotation(coordinates[:count].reshape(-1, PER_BODY)[:, 3:])
-        rows = np.zeros((len(heave_and_tilt) + 3 * int(self.rigid.sum()), size))
-        rows[: len(heave_and_tilt)] = heave_and_tilt @ self.gap_rates(coordinates)[closed]
-        rows[len(heave_and_tilt) :, :count] = self._bars(coordinates, turned) @ self._turning(coordinates)
-        return np.vstack([rows, np.eye(size)[count:]])
+        bars = self._bars(coordinates, turned) @ self._turning(coordinates)
+        return np.vstack([heave_and_tilt @ self.gap_rates(coordinates)[closed, :count], bars])
 
     def _turning(self, coordinates: Array) -> Array:
         """Matrix (6 N, 6 N) that makes velocities and angular velocities of the bodies of the engine's velocities."""

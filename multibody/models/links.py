@@ -32,7 +32,7 @@ Array = NDArray[np.float64]
 
 PER_BODY = 6  # coordinates: x, y, z of the center of mass and three rotations
 MAX_BAR_STIFFNESS = 1e7  # of bars in tension, weights over rho, and in bending: as good as rigid
-ROD = 1e3  # length of the rods of dampers, in units of length
+ROD = 100.0  # length of the rods of dampers, in units of length; longer ones round, and mislead the Jacobian
 LINK_COMPLIANCE_RATIO = 10.0  # of a bar in tension (and, times rho^2, in bending) over the contact, under one force
 
 
