@@ -11,6 +11,7 @@ from fake_models import errors_in, fake_hierarchy
 from numpy.typing import NDArray
 
 from comparison.analysis.budget import TOTAL, Entry, budget, closure, steps, torus_distance
+from comparison.analysis.differences import differences
 from comparison.analysis.surfaces import labeled_surfaces
 from comparison.study.batches import execute_batch
 from comparison.study.models import Model
@@ -38,6 +39,18 @@ def test_the_steps_add_up_to_the_total_at_every_point(scene: str) -> None:
         assert steps_and_total[-1].key == TOTAL
         assert np.abs(steps_and_total[-1].size).max() > 1e-3, "there is something to add up"
         assert closure(steps_and_total) < 1e-14  # rounding of a handful of numbers near 1
+
+
+def test_the_ratio_is_held_against_the_root_of_the_sum_of_squares_of_both_errors() -> None:
+    """Errors 0.03 and 0.04 make u_D = 0.05; 1.0 to 0.9 is twice that, and 1.43 times their sum. The sign has no say."""
+    study, surfaces = _solved(fake_hierarchy())
+    first, second = {"model": "regularised"}, {"model": "translational"}
+    for name, one, other in (("mu", 1.0, 0.9), ("error", 0.03, 0.04)):
+        surfaces[name].loc[first], surfaces[name].loc[second] = one, other
+    (row,) = (row for row in differences(study, surfaces) if (row.pair, row.body) == ("like-for-like", 1))
+    assert row.ratio == pytest.approx(2.0)
+    assert row.beyond_error == 1.0
+    assert row.median == pytest.approx(0.1)
 
 
 def test_a_budget_with_a_step_left_out_or_counted_twice_does_not_close() -> None:
