@@ -25,18 +25,18 @@ from reference.problem import Estimate, Outcome, Scene, demands
 from reference.problem.measured import OF_BODIES, Measured
 
 SECONDS = {"reference": 0.15, "engine": 0.65}  # predicted cost of one motion, s on `study.models.RECORDED_ON`
-UNKNOWN = Estimate(math.nan, math.nan)
+LACKING = Estimate(math.nan, math.nan, "the model has no such value")
 
 Arguments = tuple[Scene, Model, float, tuple[float, float], list[tuple[str, int]]]
 
 
 @dataclass(frozen=True)
 class Peaks:
-    """What one model computes at one phase pair: value and error, NaN without an answer, and how the motion ended."""
+    """What one model computes at one phase pair: value and error, NaN without an answer, and why, or how it ended."""
 
     values: list[float]
     errors: list[float]
-    status: str
+    statuses: list[str]
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class ComputedPeak:
     error: float
     difference: float  # computed less measured
     exceeds: bool | None  # whether its size exceeds both uncertainties together; None where it is not known
-    status: str  # how the motion ended
+    status: str  # how the motion ended, or why it lacks this value
 
 
 @dataclass(frozen=True)
@@ -79,10 +79,8 @@ class MeasuredPeaks(Analysis[list[MeasuredPeak]]):
         known: dict[tuple[str, tuple[float, float], str], Mapping[tuple[str, int], tuple[float, float, str]]] = {}
         for scene, phases, model in _points(study):
             peaks: Peaks = results.value(self._task(study, scene, phases, model), _failed)
-            known[scene.name, phases, model.key] = {
-                asked: (value, error, peaks.status)
-                for asked, value, error in zip(_asked(scene, phases, model), peaks.values, peaks.errors)
-            }
+            numbers = zip(peaks.values, peaks.errors, peaks.statuses, strict=True)
+            known[scene.name, phases, model.key] = dict(zip(_asked(scene, phases, model), numbers, strict=True))
         listed = [
             _beside(
                 scene,
@@ -144,13 +142,14 @@ def peaks_at(task: Arguments) -> Peaks:
             found.append(Estimate(float(mu.mu[0, body - 1]), float(mu.error[0, body - 1])))
         else:
             found.append(_demand(getattr(numbers, quantity), quantity, body))
-    return Peaks([each.value for each in found], [each.error for each in found], status)
+    statuses = [each.reason or status for each in found]
+    return Peaks([each.value for each in found], [each.error for each in found], statuses)
 
 
 def _demand(numbers: Estimate | tuple[Estimate, ...] | None, quantity: str, body: int) -> Estimate:
-    """The number of a body, or of the isolator; UNKNOWN where the model does not have it."""
+    """The number of a body, or of the isolator."""
     if numbers is None:
-        return UNKNOWN
+        return LACKING
     return numbers if isinstance(numbers, Estimate) else numbers[body - OF_BODIES[quantity]]
 
 
@@ -173,4 +172,4 @@ def _beside(
 
 def _failed(task: Arguments, failed: TaskResult) -> Peaks:
     nothing = [math.nan] * len(task[4])
-    return Peaks(nothing, nothing, failed.outcome.value)
+    return Peaks(nothing, nothing, [failed.outcome.value] * len(nothing))

@@ -174,8 +174,9 @@ def significant_digits(values: NDArray[np.float64], digits: int) -> list[Any]:
 def _listed(demands: Demands) -> dict[str, Any]:
     """The demands as JSON."""
 
-    def pair(estimate: Estimate) -> list[float | None]:
-        return [float(f"{number:.7g}") if np.isfinite(number) else None for number in (estimate.value, estimate.error)]
+    def pair(estimate: Estimate) -> list[float | str | None]:
+        numbers = [float(f"{n:.7g}") if np.isfinite(n) else None for n in (estimate.value, estimate.error)]
+        return [*numbers, estimate.reason] if estimate.reason else [*numbers]
 
     listed: dict[str, Any] = {}
     for name, value in vars(demands).items():

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 
 from comparison.report.results.motions import MotionDemands, UncertainNumber
-from comparison.report.results.over_phases import DemandStatistics
+from comparison.report.results.over_phases import DemandStatistics, PhaseExtreme
 from comparison.report.results.scene import SceneResult
 from comparison.report.results.study import Results
 
@@ -54,7 +54,8 @@ def _over_phases(rows: Sequence[DemandStatistics], bodies: int) -> list[str]:
     drifts = [row.highest.value for row in rows if row.quantity == "drift"]
     smallest = [row.lowest.value for row in rows if row.quantity == "contact_force_min"]
     platform, top = largest("acceleration", 1), largest("acceleration", bodies)
-    isolator = largest("displacement", factor=MILLI), largest("residual", factor=MILLI)
+    rests = [row.highest for row in rows if row.quantity == "residual"]
+    isolator = largest("displacement", factor=MILLI), _with_error(rests)
     return [*isolator, largest("base_shear"), platform, top, _text(drifts, MILLI), _text(smallest, pick=min)]
 
 
@@ -64,13 +65,22 @@ def _over_motions(motions: Sequence[MotionDemands]) -> list[str]:
 
     return [
         largest([motion.displacement for motion in motions], MILLI),
-        largest([motion.residual for motion in motions], MILLI),
+        _with_error([motion.residual for motion in motions]),
         largest([motion.base_shear for motion in motions]),
         largest([motion.acceleration[0] for motion in motions if motion.acceleration]),
         largest([motion.acceleration[-1] for motion in motions if motion.acceleration]),
         largest([drift for motion in motions for drift in motion.drift], MILLI),
         _text([motion.contact_force_min.value for motion in motions], pick=min),
     ]
+
+
+def _with_error(numbers: Sequence[PhaseExtreme | UncertainNumber]) -> str:
+    """The largest residual with its error, which includes the creep of regularized friction, in mm."""
+    known = [number for number in numbers if math.isfinite(number.value)]
+    largest = max(known, key=lambda number: number.value, default=None)
+    if largest is None:
+        return ""
+    return f"{MILLI * largest.value:.4g}" + (f" ± {MILLI * largest.error:.1g}" if largest.error >= 0.0 else "")
 
 
 def _text(values: Sequence[float], factor: float = 1.0, pick: Callable[[Sequence[float]], float] = max) -> str:

@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 PER_BODY = {"acceleration": 0, "drift": 1, "torsion": 0}  # demands of bodies: index of the body that comes first
 QUANTITIES = {  # fields of `Demands` in words, and their units
     "displacement": ("largest displacement of the isolator", "m"),
-    "residual": ("displacement at the end", "m"),
+    "residual": ("residual displacement of the isolator", "m"),
     "cap_share": ("largest displacement over rho", "1"),
     "travel_share": ("largest displacement over the travel", "1"),
     "acceleration": ("largest absolute acceleration", "m/s^2"),

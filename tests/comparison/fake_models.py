@@ -19,6 +19,7 @@ from comparison.analysis.trajectories import StoredMotion, chosen_places, shown_
 from comparison.study.models import MODEL_HIERARCHY, Model, never
 from comparison.study.study import Study
 from reference.problem import GRAVITY, Amplification, Demands, Estimate, FloorSpectra, Outcome, Scene, Trajectory
+from reference.problem.demands import MOVING
 
 MOST = {"translational": 16, "spatial": 4}  # phases per axis: fewer than those of the real models, for small grids
 DEADLY = 2.0 * np.pi * 3 / 4  # alpha1, alpha2 of the one point of a 4 x 4 grid that a failing model fails at
@@ -175,7 +176,7 @@ def known_demands(scene: Scene, supported: bool) -> Demands:
     number, bodies = Estimate(1.5, 0.25), len(scene.bodies)
     support = number if supported else None
     return Demands(
-        Outcome.OK.value, number, Estimate(np.nan, np.nan), number, None, (number,) * bodies, number,
+        Outcome.OK.value, number, Estimate(np.nan, np.nan, MOVING), number, None, (number,) * bodies, number,
         (number,) * (bodies - 1), number, number, support, support,
         (number,) * bodies if supported else None, number, support, number, None,
         None if supported else Estimate(0.0, 0.25),

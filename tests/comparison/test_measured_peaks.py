@@ -84,6 +84,15 @@ def test_a_motion_that_ends_early_has_no_peaks_and_says_why():
 def test_a_quantity_that_a_model_lacks_is_not_known():
     (only,) = compared(PLAIN.with_values({"measured": [peak("torsion", 0.01, 0.001, 1)]}), EXACT)
     assert only.computed[0].exceeds is None
+    assert only.computed[0].status == "the model has no such value"
+
+
+def test_a_residual_of_a_platform_that_still_moves_says_so_beside_the_measured_one():
+    displacement, residual = peak("displacement", 0.03, 0.001), peak("residual", 0.01, 0.001)
+    scene = PLAIN.with_values({"duration": 1.2, "measured": [displacement, residual]})
+    moving, rest = compared(scene, EXACT, TRANSLATIONAL)
+    assert [each.status for each in moving.computed] == ["ok", "ok"]
+    assert [each.status for each in rest.computed] == ["moving at the end: take a longer duration"] * 2
 
 
 def test_a_record_is_compared_without_phases():

@@ -23,6 +23,7 @@ from comparison.report.motion_data import ROUNDING, contact_geometry, packed_mot
 from comparison.study.models import REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL, Model
 from multibody.film import contact_paths
 from reference.problem import Scene, builtin_scenes, demands, load_scene
+from reference.problem.demands import MOVING
 
 PHASE = (2.0, 0.7)
 MAX_LETTERS = 1.2e6  # of the motions of the default study
@@ -180,7 +181,7 @@ def test_the_summary_lists_the_demands_of_every_stored_motion(finished: Path) ->
         assert "spatial" in models
         for entry in result["demands"]:
             assert entry["base_shear"] == {"value": 1.5, "error": 0.25}
-            assert entry["residual"] == {"value": None, "error": None}
+            assert entry["residual"] == {"value": None, "error": None, "reason": MOVING}
             assert (len(entry["acceleration"]), len(entry["drift"])) == (len(scene.bodies), len(scene.bodies) - 1)
             assert (entry["support_force_min"] is None) == (entry["model"] != "spatial")
             assert (entry["uplift"] is None) == (entry["model"] != "spatial") == (entry["energy_balance"] is not None)

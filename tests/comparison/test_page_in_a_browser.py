@@ -238,6 +238,8 @@ def test_the_demands_of_both_models_stand_beside_each_other(visit: Visit) -> Non
     }
     assert rows["largest displacement of the isolator, mm"][0] == "1500 ± 300"
     assert "base shear, N" in rows
+    (residual,) = (cells for title, cells in rows.items() if title.startswith("residual"))
+    assert residual == ["none: moving at the end: take a longer duration"] * 2 + [""]
 
 
 def test_the_film_plays_and_pauses(visit: Visit) -> None:

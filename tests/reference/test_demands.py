@@ -148,6 +148,9 @@ def agree(scene: Scene, regularization: float | None) -> None:
         if not np.isnan(a.value):
             assert abs(a.value - b.value) <= a.error + b.error, name
             size = theirs.friction_energy.value if name == "energy_balance" else abs(b.value)
+            if name == "residual":  # its error is that against Coulomb friction, which both share
+                assert abs(a.value - b.value) <= 1e-3 * theirs.displacement.value
+                continue
             assert b.error <= 1e-2 * size + 1e-5, f"{name}: an error that large agrees with anything"
     for balance in (ours.energy_balance, theirs.energy_balance):
         assert balance is not None
@@ -187,6 +190,75 @@ def test_the_stops_are_the_rests_after_the_first_slip() -> None:
     assert demands(motion).stops == Estimate(len(motion.stick) - 1.0, 0.0)
     assert motion.stick[-1][1] == motion.time[-1]
     assert demands(motion).residual.value == pytest.approx(np.hypot(*motion.position[-1, 0, :2]), rel=1e-12)
+
+
+def shaken_then_still(**isolator: float) -> Scene:
+    """One body, 2 s of a decaying sweep along both axes, then 60 s of a ground at rest."""
+    time = np.append(np.arange(0.0, 2.0, 0.02), [2.0, 62.0])
+    decay = np.where(time < 2.0, np.exp(-time), 0.0)
+    shaking = np.column_stack([5.0 * np.sin(6.0 * time + time**2), 4.0 * np.cos(7.0 * time), 0.0 * time])
+    return Scene.model_validate(
+        {
+            "name": "shaken, then still",
+            "title": "shaken, then still",
+            "isolator": {"radius": 2.0, **(isolator or {"friction": 0.05})},
+            "bodies": [{"mass": 3.0}],
+            "excitation": {"record": {"time": time, "acceleration": shaking * decay[:, None]}},
+        }
+    )
+
+
+def test_a_residual_after_creep_is_that_of_coulomb_friction_within_its_error() -> None:
+    """At rest a regularized platform creeps to the center like exp(-t v_reg / (mu rho)); its residual does not."""
+    scene, v_reg = shaken_then_still(), 1e-3
+    truth = demands(reference.trajectory(scene, PHASE)).residual
+    assert truth.value > 0.02
+    assert truth.error < 1e-5 * truth.value, "Coulomb friction does not creep"
+    engine = multibody.single_run(scene, PHASE, step=5e-3, regularization=v_reg)
+    for motion in (reference.trajectory(scene, PHASE, regularization=v_reg), engine):
+        end = float(np.hypot(*motion.position[-1, 0, :2]))
+        start = motion.stick[-1][0]
+        assert end == pytest.approx(truth.value * np.exp(-(scene.duration - start) * v_reg / (0.05 * 2.0)), rel=0.02)
+        found = demands(motion).residual
+        assert abs(found.value - truth.value) < 0.02 * (truth.value - end)
+        if motion is not engine:  # a single run states no errors
+            assert truth.value - end < found.error < 2.0 * truth.value
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("motion", ["synthetic-pair", "synthetic-triple"])
+@pytest.mark.parametrize("v_reg", [1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize("friction", [0.02, 0.05, 0.1])
+def test_the_error_of_a_residual_covers_what_regularization_changes(motion: str, v_reg: float, friction: float) -> None:
+    scene = reference.load_scene(motion).with_values({"isolator.friction": friction})
+    truth, found = (demands(reference.trajectory(scene, PHASE, regularization=law)).residual for law in (None, v_reg))
+    assert abs(found.value - truth.value) <= found.error + truth.error
+
+
+@pytest.mark.parametrize(
+    ("isolator", "duration", "reason"),
+    [
+        ({"friction": 0.05}, 1.0, "moving at the end: take a longer duration"),
+        ({"friction": 0.0}, 62.0, "never at rest: no dry friction"),
+        ({"lubrication": 0.5}, 62.0, "never at rest: no dry friction"),
+    ],
+)
+def test_a_residual_that_is_none_says_why(isolator: dict[str, float], duration: float, reason: str) -> None:
+    scene = shaken_then_still(**isolator).with_values({"duration": duration})
+    motion = reference.trajectory(scene, PHASE)
+    answer = demands(motion)
+    assert (motion.status, answer.residual.reason) == ("ok", reason)
+    assert np.isnan(answer.residual.value)
+    assert not any(found.reason for name, found in estimates(answer).items() if name != "residual")
+
+
+def test_a_residual_is_not_read_from_samples_that_end_before_the_motion() -> None:
+    scene = shaken_then_still()
+    motion = reference.trajectory(scene, PHASE, times=np.linspace(0.0, 1.0, 101))
+    assert motion.stick[-1][1] == scene.duration
+    residual = demands(motion).residual
+    assert np.isnan(residual.value)
+    assert residual.reason == "no samples of the last rest"
 
 
 def unknown(answer: Demands) -> bool:

@@ -19,7 +19,7 @@ class ComputedPeak(Part):
     exceeds: bool | None
     """whether its size exceeds the uncertainty and the error together; null where it is not known"""
     status: str
-    """how the motion ended"""
+    """how the motion ended, or why it lacks this value"""
 
 
 class MeasuredPeak(Part):

@@ -39,6 +39,13 @@ class UncertainNumber(Part):
     """estimated absolute error; null where it is not known"""
 
 
+class Residual(UncertainNumber):
+    """A displacement at rest, which a motion may not have."""
+
+    reason: Text
+    """why there is no value although the motion lasts as long as the scene; empty otherwise"""
+
+
 class FloorSpectra(Part):
     """Floor response spectra of one motion: largest displacement of an oscillator times its squared frequency."""
 
@@ -65,8 +72,9 @@ class MotionDemands(Part):
     """how the motion ended"""
     displacement: UncertainNumber
     """largest horizontal displacement of the isolator, m"""
-    residual: UncertainNumber
-    """horizontal displacement at the end, m; null where the platform is not at rest then"""
+    residual: Residual
+    """horizontal displacement at which the platform comes to rest, m; null where it moves at the end; its error has
+    the creep of regularized friction"""
     cap_share: UncertainNumber
     """largest horizontal displacement over rho"""
     travel_share: UncertainNumber | None

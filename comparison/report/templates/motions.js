@@ -95,7 +95,7 @@ function contactPaths(scene, motion) {
 
 // what the motion demands of isolator and structure: one row per quantity, both models beside each other
 const DEMANDS = [
-  ["displacement", "largest displacement of the isolator, mm", MM], ["residual", "displacement at the end, mm", MM], ["cap_share", "largest displacement, share of ρ", 1],
+  ["displacement", "largest displacement of the isolator, mm", MM], ["residual", "residual displacement (± includes the creep of regularized friction), mm", MM], ["cap_share", "largest displacement, share of ρ", 1],
   ["travel_share", "largest displacement, share of the travel", 1],
   ["acceleration", "largest absolute acceleration, m/s²", 1, i => i ? `body ${i + 1}` : "platform"], ["base_shear", "base shear, N", 1], ["drift", "story drift, mm", MM, i => `body ${i + 2}`],
   ["contact_force_min", "smallest contact force, N", 1], ["contact_force_max", "largest contact force, N", 1],
@@ -110,9 +110,9 @@ function demandsTable(scene, place, models) {
     if (!each) return [[title, factor, demands.map(one => one?.[key] ?? null)]];
     const count = Math.max(...demands.map(one => one?.[key]?.length ?? 0));
     return Array.from({ length: count }, (_, i) => [`${title}: ${each(i)}`, factor, demands.map(one => one?.[key]?.[i] ?? null)]);
-  }).filter(([, , values]) => values.some(value => known(value?.[0])));
+  }).filter(([, , values]) => values.some(value => known(value?.[0]) || value?.[2]));
   const cell = (value, factor) => {
-    const made = element("td", "number", known(value?.[0]) ? digits(factor * value[0]) + (value[1] > 1e-4 * Math.abs(value[0]) ? ` ± ${digits(factor * value[1], 1)}` : "") : "none");
+    const made = element("td", "number", known(value?.[0]) ? digits(factor * value[0]) + (value[1] > 1e-4 * Math.abs(value[0]) ? ` ± ${digits(factor * value[1], 1)}` : "") : value?.[2] ? `none: ${value[2]}` : "none");
     made.dataset.value = known(value?.[0]) ? factor * value[0] : "";
     return made;
   };
@@ -120,7 +120,8 @@ function demandsTable(scene, place, models) {
   const body = rows.map(([title, factor, values]) => {
     const [a, b] = values.map(value => value?.[0]), heading = element("th", "", title), change = known(a) && known(b) && a ? 100 * (b - a) / Math.abs(a) : null;
     heading.scope = "row";
-    const last = element("td", "number", known(change) ? percentText(change) : "");
+    const covered = known(change) && Math.abs(b - a) <= values.reduce((sum, value) => sum + (value[1] ?? 0), 0);
+    const last = element("td", "number", known(change) ? percentText(change) + (covered ? ", within the errors" : "") : "");
     last.dataset.value = change ?? "";
     return element("tr", "", heading, ...values.map(value => cell(value, factor)), last);
   });
