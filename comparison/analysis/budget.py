@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from comparison.analysis.steps import Step, step
 from comparison.analysis.surfaces import common_phases
 from comparison.study.study import Study
+from reference.problem.distribution import fractile
 
 Array = NDArray[np.float64]
 
@@ -125,7 +126,7 @@ def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> Entry:
         mean=float(step.size[known].mean()),
         median=float(np.median(size)),
         rms=float(np.sqrt((size**2).mean())),
-        percentile95=float(np.percentile(size, 95.0)),
+        percentile95=fractile(size, 0.95),
         maximum=float(size.max()),
         real=float(step.real[known].mean()),
         unresolved=float(step.unresolved[known].mean()),

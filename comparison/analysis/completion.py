@@ -21,6 +21,7 @@ from comparison.analysis.surfaces import common_phases
 from comparison.study.models import Model
 from comparison.study.study import Study
 from reference.problem import Scene
+from reference.problem.distribution import fractile
 
 Array = NDArray[np.float64]
 
@@ -121,7 +122,7 @@ def _completion(
     base = mu(first, first)
     distance = np.abs(surface - base) / base
     known_distance = distance[np.isfinite(distance)]
-    difference = float(np.percentile(known_distance, 95.0)) if known_distance.size else float("nan")
+    difference = fractile(known_distance, 0.95) if known_distance.size else float("nan")
     reason = ""
     if not error <= MAX_ERROR_OF_RELIEF * relief:
         reason = f"leaving out a phase pair misses it by up to {error:.2g}, the surface is {relief:.2g} high"

@@ -25,7 +25,7 @@ from comparison.study.costs import at_samples
 from comparison.study.models import Model, steps_of
 from comparison.study.study import Study
 from reference.problem import Estimate, Estimates, Scene, phase_axis, phase_distribution, phase_grid
-from reference.problem.distribution import FRACTILES
+from reference.problem.distribution import FRACTILES, fractile
 from reference.problem.peak_demands import PER_BODY, QUANTITIES, demands_of_motions
 
 Array = NDArray[np.float64]
@@ -236,5 +236,5 @@ def _statistics(
         fractiles=tuple(Fractile(p, each.value, each.error) for p, each in zip(FRACTILES, taken.fractiles)),
         lowest=extreme(int(np.nanargmin(value))),
         highest=extreme(int(np.nanargmax(value))),
-        curve=tuple(np.quantile(value[known], CURVE, method="hazen").tolist()),
+        curve=tuple(fractile(value[known], p) for p in CURVE),
     )

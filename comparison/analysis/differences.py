@@ -13,6 +13,7 @@ from comparison.analysis.surfaces import common_phases
 from comparison.study.models import Pair
 from comparison.study.study import Study
 from reference.problem import Outcome
+from reference.problem.distribution import fractile
 
 Array = NDArray[np.float64]
 
@@ -67,16 +68,16 @@ def _difference(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> Diff
     valid = signed.known
     size = np.abs(signed.size[valid])
     stated = valid & np.isfinite(signed.uncertainty)
-    median, percentile95, maximum = np.percentile(size, [50, 95, 100]) if size.size else [np.nan] * 3
+    median, percentile95, maximum = (fractile(size, p) if size.size else np.nan for p in (0.5, 0.95, 1.0))
     return Difference(
         scene=scene,
         pair=pair.key,
         first=pair.first.key,
         second=pair.second.key,
         body=body,
-        median=float(median),
-        percentile95=float(percentile95),
-        maximum=float(maximum),
+        median=median,
+        percentile95=percentile95,
+        maximum=maximum,
         phases=signed.phases,
         beyond_error=float((np.abs(signed.size) > signed.uncertainty)[stated].mean()) if stated.any() else float("nan"),
         ratio=float(signed.ratio[valid].max()) if valid.any() and (stated == valid).all() else float("nan"),

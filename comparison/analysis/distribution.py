@@ -12,7 +12,7 @@ from comparison.analysis.surfaces import asked_of
 from comparison.study.models import models_of
 from comparison.study.study import Study
 from reference.problem import Estimate, Scene, phase_distribution
-from reference.problem.distribution import FRACTILES
+from reference.problem.distribution import FRACTILES, fractile
 
 CURVE = np.linspace(0.01, 0.99, 50)  # probabilities of the drawn curve
 
@@ -64,6 +64,6 @@ def distributions(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Dist
                 continue
             taken = phase_distribution(mu, error)
             fractiles = tuple(Fractile(p, each.value, each.error) for p, each in zip(FRACTILES, taken.fractiles))
-            curve = tuple(np.quantile(known, CURVE, method="hazen").tolist())
+            curve = tuple(fractile(known, p) for p in CURVE)
             listed.append(Distribution(model.key, body, taken.points, taken.unknown, taken.mean, fractiles, curve))
     return listed

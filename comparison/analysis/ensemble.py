@@ -1,8 +1,9 @@
 """
 Demands of a structure under many motions at many intensities (incremental dynamic analysis).
 
-A family of scenes whose loading has several scale factors: what else runs, the motions of a suite as a rule, makes the
-curves of demand against scale. The equations compute every scene, the engine a stated subset of them.
+A family of scenes with recorded motions: what runs beside the scale factor, the motions of a suite as a rule, makes the
+curves of demand against scale; with one scale factor there is one set of statistics. The equations compute every scene,
+the engine a stated subset of them.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from comparison.study.batches import imported
 from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL, Model
 from comparison.study.study import Study
 from reference.problem import Demands, Estimate, Family, Scene, SceneError, demands
+from reference.problem.distribution import fractile
 
 SCALE = "excitation.scale"
 FRACTILES = (0.16, 0.5, 0.84)
@@ -60,6 +62,7 @@ class Stripe:
     scale: float
     fractiles: tuple[Estimate, ...]  # at FRACTILES
     answered: int  # motions that have the demand
+    reasons: dict[str, int]  # why the others do not have it: how many each
 
 
 @dataclass(frozen=True)
@@ -106,7 +109,7 @@ class Ensemble(Analysis[EnsembleResult]):
     Parameters
     ----------
     family : Family
-        `excitation.scale` runs, and every scene has a recorded motion.
+        Every scene has a recorded motion.
     subset : int
         Scenes that the engine computes, spread evenly over motions and scales.
     tolerance : float
@@ -128,13 +131,13 @@ class Ensemble(Analysis[EnsembleResult]):
 
     def collect(self, study: Study | None, surfaces: xr.Dataset | None, results: TaskResults) -> EnsembleResult:
         """Points, stripes and the engine's bound."""
-        curves, scales = curves_of(self.family), self.family.columns[SCALE]
+        curves, scales = curves_of(self.family), scales_of(self.family)
 
         def point(number: int, model: Model) -> Point:
             scene = self.family.scenes[number]
             answer: Demands | str = results.value(self._task(scene, model), _outcome)
             peak = float(np.hypot(scene.record[:, 1], scene.record[:, 2]).max())
-            named = curves[number], float(scales[number]), peak, scene.name, model.key
+            named = curves[number], scales[number], peak, scene.name, model.key
             return Point(*named, answer, None) if isinstance(answer, str) else Point(*named, answer.status, answer)
 
         points = [point(number, EXACT) for number in range(len(curves))]
@@ -146,10 +149,8 @@ class Ensemble(Analysis[EnsembleResult]):
     def chosen(self) -> list[int]:
         """Places of the engine's scenes in the family: the motions and the scales each spread evenly."""
         curves = list(dict.fromkeys(curves_of(self.family)))
-        scales = sorted(set(map(float, self.family.columns[SCALE])))
-        at = {
-            (curve, float(s)): n for n, (curve, s) in enumerate(zip(curves_of(self.family), self.family.columns[SCALE]))
-        }
+        scales = sorted(set(scales_of(self.family)))
+        at = {point: n for n, point in enumerate(zip(curves_of(self.family), scales_of(self.family)))}
         count = min(self.subset, len(at))
         last, chosen = len(scales) + 1, []
         stride = next(n for n in range(max(1, round(GOLDEN * len(scales))), last + 1) if math.gcd(n, len(scales)) == 1)
@@ -178,15 +179,17 @@ def refuse_unfit(family: Family, label: str) -> None:
     Raises
     ------
     SceneError
-        Unless every scene has a recorded motion and `excitation.scale` runs.
+        Unless every scene has a recorded motion.
     """
     for scene in family.scenes:
         if not scene.recorded:
             rule = "an ensemble needs recorded motions: give --suite, or a record in the scene"
             raise SceneError(label, "excitation", scene.name, rule)
-    if SCALE not in family.columns:
-        rule = "an ensemble needs several scale factors: give --scales, or let excitation.scale run in the scene"
-        raise SceneError(label, SCALE, family.scenes[0].excitation.scale, rule)
+
+
+def scales_of(family: Family) -> list[float]:
+    """The scale factor of every scene, whether it runs or not."""
+    return [float(scene.excitation.scale or 1.0) for scene in family.scenes]
 
 
 def curves_of(family: Family) -> list[str]:
@@ -218,8 +221,13 @@ def stripes(points: Sequence[Point]) -> Iterator[Stripe]:
     for quantity in quantities(points):
         for scale in sorted({point.scale for point in points}):
             numbers = [point.estimate(quantity) for point in points if point.scale == scale]
-            answered = sum(math.isfinite(number.value) for number in numbers)
-            yield Stripe(quantity, scale, tuple(fractile(numbers, share) for share in FRACTILES), answered)
+            fractiles = tuple(uncertain_fractile(numbers, share) for share in FRACTILES)
+            ended = [point.status for point in points if point.scale == scale]
+            lacking = [
+                number.reason or status for number, status in zip(numbers, ended) if not math.isfinite(number.value)
+            ]
+            reasons = {reason: lacking.count(reason) for reason in lacking}
+            yield Stripe(quantity, scale, fractiles, len(numbers) - len(lacking), reasons)
 
 
 def quantities(points: Sequence[Point]) -> list[Quantity]:
@@ -229,9 +237,9 @@ def quantities(points: Sequence[Point]) -> list[Quantity]:
     return [quantity for quantity in names if quantity[0] != "energy_balance"]
 
 
-def fractile(numbers: Sequence[Estimate], share: float) -> Estimate:
+def uncertain_fractile(numbers: Sequence[Estimate], share: float) -> Estimate:
     """
-    Fractile of numbers with errors, linear between the two nearest; NaN numbers count as infinite.
+    Fractile of numbers with errors; NaN numbers count as infinite.
 
     Parameters
     ----------
@@ -247,22 +255,16 @@ def fractile(numbers: Sequence[Estimate], share: float) -> Estimate:
     Examples
     --------
     >>> numbers = [Estimate(1.0, 0.1), Estimate(2.0, 0.2), Estimate(float("nan"), float("nan"))]
-    >>> fractile(numbers, 0.5).value, round(fractile(numbers, 0.5).error, 12), fractile(numbers, 0.75).value
+    >>> median = uncertain_fractile(numbers, 0.5)
+    >>> median.value, round(median.error, 12), uncertain_fractile(numbers, 0.75).value
     (2.0, 0.2, nan)
     """
     value = np.array([number.value for number in numbers])
     error = np.array([number.error for number in numbers])
     low, middle, high = (
-        _ordered(np.where(np.isfinite(value), x, np.inf), share) for x in (value - error, value, value + error)
+        fractile(np.where(np.isfinite(value), x, np.inf), share) for x in (value - error, value, value + error)
     )
     return Estimate(middle, max(high - middle, middle - low)) if math.isfinite(middle) else Estimate(math.nan, math.nan)
-
-
-def _ordered(values: np.ndarray, share: float) -> float:
-    place = share * (len(values) - 1)
-    below, part = int(place), place - int(place)
-    first, second = np.sort(values)[[below, min(below + 1, len(values) - 1)]]
-    return float(first if part == 0.0 else math.nan if math.isinf(second) else first + part * (second - first))
 
 
 def bounds(points: Sequence[Point], engine: Sequence[Point], alike: Sequence[Point]) -> Iterator[Bound]:
@@ -302,6 +304,12 @@ def as_rows(result: EnsembleResult) -> list[dict[str, object]]:
             "peak_ground_acceleration": point.peak,
             "model": point.model,
             "status": point.status,
+            "missing": "; ".join(
+                f"{quantity_name(quantity)}: {reason}"
+                for quantity in names
+                for reason in [point.estimate(quantity).reason]
+                if reason
+            ),
         }
         for quantity in names:
             number = point.estimate(quantity)

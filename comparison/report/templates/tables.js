@@ -2,9 +2,10 @@
 // every table of the page: a click on a heading sorts, a button copies the table as CSV
 const cellValue = cell => cell.dataset.value ?? cell.textContent.trim().replace(/\s+/g, " ");
 function csvOf(table) {
+  const inert = text => /^[=@]/.test(text) ? `'${text}` : text;  // no formula where a spreadsheet opens it
   const quoted = text => /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
   const rows = [...table.rows].filter(row => row.cells.length);
-  return rows.map(row => [...row.cells].map(cell => quoted(row.parentElement.tagName === "THEAD" ? cell.textContent.trim() : cellValue(cell))).join(",")).join("\n") + "\n";
+  return rows.map(row => [...row.cells].map(cell => quoted(row.parentElement.tagName === "THEAD" ? cell.textContent.trim() : inert(cellValue(cell)))).join(",")).join("\n") + "\n";
 }
 async function copyText(text) {
   try {
