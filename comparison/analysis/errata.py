@@ -20,6 +20,7 @@ from comparison.analysis.printed_matrices import WRONG_DAMPING, WRONG_SPRING, pr
 from comparison.analysis.protocol import Analysis
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
+from comparison.study.models import V_REG
 from comparison.study.study import Study
 from reference.problem import Scene
 
@@ -28,6 +29,8 @@ Array = NDArray[np.float64]
 PHASES = np.array([(0.3, 1.1), (4.0, 5.5)])  # rad
 DURATION = 6.0  # s
 SECONDS = 0.12  # predicted cost of one erratum in one scene, s on `study.models.RECORDED_ON`
+
+RIGID_PERIOD = 1e-3  # s, of half of the platform on its other half, critically damped; moves exact mu_i by 1e-4
 
 Measure = Callable[[Scene], Array | None]  # relative change of mu (M, N), NaN where the printed form has no answer
 
@@ -71,6 +74,33 @@ def _wrong_damping(scene: Scene) -> Array | None:
     if scene.flat or not scene.lubricated:  # (3.9) is multiplied by Delta, which is infinite on a plane
         return None
     return _change(printed_amplification(scene, PHASES, [WRONG_DAMPING]), printed_amplification(scene, PHASES))
+
+
+def cut_platform(scene: Scene) -> Scene:
+    """The scene with its platform cut in two halves: a link between them that is rigid but for RIGID_PERIOD."""
+    half = 0.5 * float(scene.masses[0])
+    stiffness = half * (2.0 * np.pi / RIGID_PERIOD) ** 2
+    rigid = {"mass": half, "stiffness": [stiffness] * 2, "damping": [np.sqrt(2.0 * stiffness * half)] * 2}
+    above = [
+        {"mass": float(mass), "stiffness": spring.tolist(), **({"damping": damper.tolist()} if damper.any() else {})}
+        for mass, spring, damper in zip(scene.masses[1:], scene.stiffness, scene.damping)
+    ]
+    return scene.with_values({"bodies": [{"mass": half}, rigid, *above], "measured": None})
+
+
+def _change_by_cut(scene: Scene, **settings: Any) -> Array:
+    """Change of mu by the cut, (M, N): of the platform that of its lower half."""
+    cut = reference.amplification(cut_platform(scene), PHASES, **settings).mu
+    return _change(np.delete(cut, 1, axis=1), reference.amplification(scene, PHASES, **settings).mu)
+
+
+def _cut_small(scene: Scene) -> Array | None:
+    """With regularized friction, which keeps the one-sided limits at stops out."""
+    return _change_by_cut(scene, equations="small", regularization=None if scene.lubricated else V_REG)
+
+
+def _cut_supremum(scene: Scene) -> Array | None:
+    return None if scene.lubricated else _change_by_cut(scene)
 
 
 def _change(printed: Array, mended: Array) -> Array:
@@ -138,6 +168,14 @@ ERRATA: tuple[Erratum, ...] = (
         _wrong_damping,
     ),
     Erratum(
+        "(4.3)",
+        "friction terms xi'' x_1 / rho and eta'' y_1 / rho without x_1'' x_1 / rho and k (x_2 - x_1) x_1 / rho",
+        "all terms of this order, or none",
+        "the terms kept grow with m_1 alone: a platform cut in two by a rigid link is the same platform, and (4.3) "
+        "alone moves it differently; the exact equations with regularized friction do not",
+        _cut_small,
+    ),
+    Erratum(
         "(4.6)",
         "components of F_F are mu N each; F_3 has minus signs before g x_1 / rho and k (x_1 - x_2)",
         "|F_F| = mu N in every direction; F_3 = -(xi'' + (m_sum / m_1)(zeta'' + g) x_1 / rho + (k / m_1)(x_1 - x_2))",
@@ -150,6 +188,14 @@ ERRATA: tuple[Erratum, ...] = (
         "along x - beta y = 0",
         "v_i = x_i - beta y_i = 0 is the solution (4.7)",
         none="a statement about the motion; the motion itself stays in the plane x = beta y",
+    ),
+    Erratum(
+        "(5.1)",
+        "the maximum of the platform's acceleration",
+        "its resolved peak, or the peak with regularized friction",
+        "under Coulomb friction the maximum is a one-sided limit at a stop, which depends on how mass is lumped: cut "
+        "in two by a rigid link, the same platform has another one",
+        _cut_supremum,
     ),
     Erratum("section 5", "solution (5.7)", "solution (4.7)", "there is no (5.7)", none=_NAME),
 )
