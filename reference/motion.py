@@ -23,6 +23,7 @@ from reference.problem.ranges import checked_array, checked_state
 from reference.problem.scene import takes_scene
 from reference.solver.error_estimate import (
     DIFFERENCE_FRACTION,
+    MIN_STEP_TOLERANCE,
     READING_ERROR_FACTOR,
     ROUNDING_ERROR,
     TOLERANCE_RATIO,
@@ -72,7 +73,7 @@ def trajectory(
     Trajectory
         A motion that ends early has samples up to `instant`, and a status that says why. `stick` holds the intervals of
         rest, or of creep below v_reg. `peak` has the largest accelerations, which the samples miss. `accuracy` has a
-        second run with a looser tolerance.
+        second run with a looser tolerance; where that would end early, the motion itself has a tighter one.
 
     Raises
     ------
@@ -103,8 +104,12 @@ def trajectory(
     if run.outcome != Outcome.OK:
         return motion
     other = _recorded(system, pair, x, v, demand._replace(tolerance=TOLERANCE_RATIO * demand.tolerance))
-    if other.outcome != Outcome.OK:
-        return motion
+    if other.outcome != Outcome.OK:  # as close to the rim: a tighter run has the last word, and shows the error
+        tighter = max(demand.tolerance / TOLERANCE_RATIO, MIN_STEP_TOLERANCE)
+        run, other = _recorded(system, pair, x, v, demand._replace(tolerance=tighter)), run
+        motion = _motion(scene, pair, system, run, asked)
+        if run.outcome != Outcome.OK:
+            return motion
     floor = MIN_ERROR_FRACTION * demand.tolerance + ROUNDING_ERROR
     error = READING_ERROR_FACTOR * run.reading_error + DIFFERENCE_FRACTION * np.abs(run.peak - other.peak)
     coarser = _motion(scene, pair, system, other, asked)
