@@ -25,7 +25,11 @@ class Limits(Table):
     ] = None
     ratio: Annotated[
         Positive | None,
-        about("limit of the largest difference in units of u_D = sqrt(u_A^2 + u_B^2) of the two error estimates", "", STUDY),
+        about(
+            "limit of the largest difference in units of u_D = sqrt(u_A^2 + u_B^2) of the two error estimates",
+            "",
+            STUDY,
+        ),
     ] = None
 
     def stated(self) -> dict[str, float]:

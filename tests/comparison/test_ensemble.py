@@ -15,8 +15,18 @@ import numpy as np
 import pytest
 
 import reference
-from comparison.analysis.ensemble import SCALE, Ensemble, Point, bounds, curves_of, stripes, uncertain_fractile
+from comparison.analysis.ensemble import (
+    SCALE,
+    Ensemble,
+    EnsembleResult,
+    Point,
+    bounds,
+    curves_of,
+    stripes,
+    uncertain_fractile,
+)
 from comparison.cli.ensemble import FILES, main, table_text
+from comparison.report.figures.ensemble import draw_ensemble
 from reference.problem import Demands, Estimate, load_family, phase_distribution
 from reference.problem.distribution import FRACTILES
 
@@ -151,6 +161,26 @@ def test_the_columns_of_the_table_are_the_shares_that_they_name() -> None:
     points = [demanding(float(number), 0.0, Estimate(1.0, 0.0)) for number in range(11)]
     displacement = next(stripes(points))
     assert [each.value for each in displacement.fractiles] == pytest.approx([1.26, 5.0, 8.74])
+
+
+def test_the_picture_has_the_numbers_in_the_units_of_its_axes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Displacements in m of eleven motions, and the engine with its error bar."""
+    figures = []
+    monkeypatch.setattr("comparison.report.figures.ensemble.save", lambda figure, path: figures.append(figure))
+    points = [demanding(float(number), 0.0, Estimate(1.0, 0.0)) for number in range(11)]
+    engine = [demanding(5.5, 0.25, Estimate(1.0, 0.0), "translational")]
+    listed = list(stripes(points)), list(bounds(points, engine, engine))
+    family = load_family("synthetic-pair")
+    draw_ensemble(tmp_path / "ensemble.png", EnsembleResult(family, points, engine, engine, *listed))
+    axes = figures[0].axes[0]
+    assert axes.get_ylabel() == "isolator displacement, m"
+    lines = {line.get_label(): line.get_ydata() for line in axes.get_lines()}
+    assert lines["median"] == pytest.approx([5.0])
+    (bars,) = axes.containers
+    assert bars.get_label() == "engine with its error"
+    assert bars.lines[0].get_ydata() == pytest.approx([5.5])
+    assert bars.lines[2][0].get_segments()[0][:, 1] == pytest.approx([5.25, 5.75])
+    assert axes.collections[0].get_paths()[0].get_extents().intervaly == pytest.approx([1.26, 8.74])
 
 
 def test_the_engine_is_asked_at_different_motions_and_scales(folder: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -15,6 +16,8 @@ from comparison.analysis.ensemble_file import StoredDifference as Difference
 from comparison.analysis.ensemble_file import StoredFractile as Fractile
 from comparison.analysis.ensemble_file import StoredStripe as Stripe
 from comparison.execution.output import publish
+from comparison.report.page_plots import ensemble_panels
+from comparison.report.results.study import Results
 
 SMALL = ["fig3-I", "--grid", "2"]
 RUN = {"command": "made <by a test>", "began": "then", "compute_seconds": 1.0,
@@ -50,6 +53,35 @@ def test_what_is_written_is_what_is_read(tmp_path: Path) -> None:
     read = STORED.load(tmp_path)
     assert read is not None
     assert STORED.as_json(read) == STORED.as_json(written)
+
+
+def test_a_panel_in_mm_has_a_thousand_times_the_numbers_in_m(command: Callable[..., Run]) -> None:
+    report = command(*SMALL).report
+    publish(report, {FILE: STORED.as_json(three_motions())}, "a test")
+    command(*SMALL)
+    results = Results.model_validate_json((report / "summary.json").read_bytes())
+    (panel,) = (panel for panel in ensemble_panels(results) if panel["title"] == "isolator displacement")
+    assert panel["plot"]["y"]["title"] == "isolator displacement, mm"
+    motions, (band,), (engine,) = (
+        [line for line in panel["plot"]["series"] if line["name"].startswith(name)]
+        for name in ("one motion", "median", "engine")
+    )
+    assert [line["y"][0] for line in motions] == pytest.approx([100.0, 200.0, 300.0])
+    assert band["name"] == "median, 16 % to 84 %"
+    assert [band[key][0] for key in ("low", "y", "high")] == pytest.approx([132.0, 200.0, 268.0])
+    assert engine["y"] == pytest.approx([510.0])
+
+
+def test_the_table_has_every_fractile_in_the_column_of_its_share(command: Callable[..., Run]) -> None:
+    report = command(*SMALL).report
+    publish(report, {FILE: STORED.as_json(three_motions())}, "a test")
+    command(*SMALL)
+    page = (report / "index.html").read_text(encoding="utf-8")
+    heads = re.findall(r'<th class="number">(16|50|84) %</th>', page)
+    (row,) = re.findall(r"<tr><td>displacement</td><td[^>]*></td><td[^>]*>1</td>\s*(.*?)</tr>", page, re.S)
+    cells = re.findall(r"<td[^>]*>(.*?)</td>", row)
+    assert dict(zip(heads, cells)) == {"16": "0.132 ± 0", "50": "0.2 ± 0", "84": "0.268 ± 0"}
+    assert cells[3:] == ["m", "3"]
 
 
 def test_the_ensemble_beside_a_report_is_part_of_the_next(command: Callable[..., Run]) -> None:

@@ -11,7 +11,7 @@ import pytest
 
 import multibody
 import reference
-from reference.problem import GRAVITY, Demands, Estimate, Scene, State, Trajectory, demands, ground_peak
+from reference.problem import GRAVITY, Accuracy, Demands, Estimate, Scene, State, Trajectory, demands, ground_peak
 
 PHASE = (2.0, 0.7)
 RHO = 0.25
@@ -275,6 +275,67 @@ def test_a_motion_that_ends_early_has_a_status_and_no_numbers() -> None:
     answer = demands(refused)
     assert (answer.status, len(answer.acceleration), len(answer.drift)) == ("step limit", 2, 1)
     assert unknown(answer)
+
+
+@pytest.mark.parametrize(
+    ("phase", "tolerance", "amplitude"),
+    [
+        ((2.0, 0.7), 1e-2, 11.448066711425781),
+        ((4.0, 5.5), 1e-3, 12.094459533691406),
+        ((1.0, 3.0), 1e-3, 12.03369140625),
+    ],
+)
+def held(place: float, force: float, rests: int, accuracy: Accuracy | None = None) -> Trajectory:
+    """A made-up motion, constant in time but for two samples: its friction heats and its rests are counted."""
+    scene = shaken_then_still().with_values({"bodies": [{"mass": 3.0}, {"mass": 2.0, "period": [0.5, 0.5]}]})
+    time = np.linspace(0.0, scene.duration, 101)
+    position = np.zeros((101, 2, 3))
+    position[:, 0, 0], position[:, 1, 0] = place, 3.0 * place
+    acceleration = np.zeros((101, 2, 3))
+    acceleration[:, 0, 0] = force / 3.0
+    power = np.full(101, force / scene.duration)
+    stick = [(scene.duration * (k + 0.5) / rests, scene.duration * (k + 1.0) / rests) for k in range(rests)]
+    return Trajectory(
+        time, position, np.zeros((101, 2, 3)), acceleration, np.full(101, 10.0 * force), stick, "ok", np.nan, scene,
+        peak=np.array([force / 3.0, 0.0]), ground=np.zeros((101, 3)), friction_power=power, accuracy=accuracy,
+    )  # fmt: skip
+
+
+def test_the_error_of_every_demand_is_what_the_other_runs_say() -> None:
+    """A half of the difference to one run, a quarter of that to another, and a hundredth of the value."""
+    others = held(0.8, 14.0, 3), held(1.4, 10.0, 6)
+    motion = held(1.0, 12.0, 4, Accuracy(np.array([0.7, 0.9]), others, (0.5, 0.25), 0.01))
+    answer = demands(motion)
+    rho = motion.scene.radius
+    expected = {
+        "displacement": (1.0, 0.01 + 0.1 + 0.1),
+        "residual": (1.0, 0.01 + 0.1 + 0.1),
+        "cap_share": (1.0 / rho, 0.21 / rho),
+        "acceleration 0": (4.0, 0.7),
+        "acceleration 1": (0.0, 0.9),
+        "base_shear": (12.0, 0.12 + 1.0 + 0.5),
+        "drift 0": (2.0, 0.42),
+        "contact_force_min": (120.0, 16.2),
+        "contact_force_max": (120.0, 16.2),
+        "stops": (4.0, 2.0),
+        "friction_energy": (12.0, 0.12 + 1.0 + 0.5),
+    }
+    found = estimates(answer)
+    for name, (value, error) in expected.items():
+        assert found[name].value == pytest.approx(value), name
+        assert found[name].error == pytest.approx(error), name
+
+
+def test_a_motion_close_to_the_rim_that_is_ok_has_errors(
+    phase: tuple[float, float], tolerance: float, amplitude: float
+) -> None:
+    """A run with a looser tolerance reaches the rim there."""
+    scene = reference.load_scene("fig3-I").with_amplitude(amplitude)
+    motion = reference.trajectory(scene, phase, tolerance=tolerance)
+    answer = demands(motion)
+    assert answer.status in ("ok", "rim reached")
+    assert np.isfinite(answer.base_shear.error) == (answer.status == "ok")
+    assert np.isfinite(answer.acceleration[0].error) == (answer.status == "ok")
 
 
 def test_a_single_run_has_values_and_no_errors() -> None:
