@@ -187,7 +187,8 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
         where = ", ".join(f"{point.scene} ({point.status})" for point in result.engine)
         line = (
             f"The engine was asked at {where}: its largest difference from the equations of the ensemble, and like for "
-            "like from the equations with its own friction law, beside the two errors together."
+            "like from the equations with its own friction law, beside the two errors together. That of "
+            "its residual includes the creep of regularized friction."
         )
         console.print(line, soft_wrap=True)
 

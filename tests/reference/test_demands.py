@@ -277,14 +277,6 @@ def test_a_motion_that_ends_early_has_a_status_and_no_numbers() -> None:
     assert unknown(answer)
 
 
-@pytest.mark.parametrize(
-    ("phase", "tolerance", "amplitude"),
-    [
-        ((2.0, 0.7), 1e-2, 11.448066711425781),
-        ((4.0, 5.5), 1e-3, 12.094459533691406),
-        ((1.0, 3.0), 1e-3, 12.03369140625),
-    ],
-)
 def held(place: float, force: float, rests: int, accuracy: Accuracy | None = None) -> Trajectory:
     """A made-up motion, constant in time but for two samples: its friction heats and its rests are counted."""
     scene = shaken_then_still().with_values({"bodies": [{"mass": 3.0}, {"mass": 2.0, "period": [0.5, 0.5]}]})
@@ -326,6 +318,14 @@ def test_the_error_of_every_demand_is_what_the_other_runs_say() -> None:
         assert found[name].error == pytest.approx(error), name
 
 
+@pytest.mark.parametrize(
+    ("phase", "tolerance", "amplitude"),
+    [
+        ((2.0, 0.7), 1e-2, 11.448066711425781),
+        ((4.0, 5.5), 1e-3, 12.094459533691406),
+        ((1.0, 3.0), 1e-3, 12.03369140625),
+    ],
+)
 def test_a_motion_close_to_the_rim_that_is_ok_has_errors(
     phase: tuple[float, float], tolerance: float, amplitude: float
 ) -> None:
