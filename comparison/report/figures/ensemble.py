@@ -83,9 +83,9 @@ def _draw(axes: Axes, result: EnsembleResult, quantity: Quantity) -> None:
     if result.engine:
         places = [point.scale for point in result.engine]
         found = [point.estimate(quantity) for point in result.engine]
-        values, errors = (_column([getattr(each, part) for each in found], factor) for part in ("value", "error"))
+        heights, errors = (_column([getattr(each, part) for each in found], factor) for part in ("value", "error"))
         bars: dict[str, Any] = {"fmt": "x", "color": ENGINE, "ms": 8, "mew": 1.8, "capsize": 3}
-        axes.errorbar(places, values, np.nan_to_num(errors), label="engine with its error", **bars)
+        axes.errorbar(places, heights, np.nan_to_num(errors), label="engine with its error", **bars)
     axes.set_xlabel("scale factor of the motion")
     axes.set_ylabel(f"{TITLES[quantity[0]].format(quantity[1])}, {unit}".replace("m/s^2", "m/s$^2$"))
     drawn = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes.get_lines()])
