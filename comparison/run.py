@@ -35,6 +35,7 @@ from comparison.cli.closing import print_check, print_closing, print_faults
 from comparison.cli.computing import ending_early
 from comparison.cli.entered import Engines, as_words
 from comparison.cli.options import Options, parsed
+from comparison.cli.start import Clock, start_time
 from comparison.cli.terminal import print_models_left_out, print_plan, print_tolerance
 from comparison.execution.cache import Cache, store_beside
 from comparison.execution.executors import Pool
@@ -49,7 +50,8 @@ from comparison.execution.task_results import TaskResults
 from comparison.execution.workers import workers
 from comparison.registry import chosen_analyses, first_tasks
 from comparison.report.assemble import assemble
-from comparison.report.findings import Fault, collect_findings
+from comparison.report.findings import Fault, Findings, collect_findings
+from comparison.report.results.study import Results
 from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work, with_softened_bars
 from comparison.study.planning import StudyPlan, StudyRequest, plan_study
 from comparison.study.refinement import Step
@@ -86,6 +88,7 @@ def main(
     int
         Exit code.
     """
+    began = start_time()
     with stoppable():
         try:
             argv = changed(argv, as_words(models or {}))
@@ -99,7 +102,7 @@ def main(
                 print_plan(console, plan.study, options)
             if options.tolerance is not None:
                 print_tolerance(console, plan, options)
-            return 0 if options.plan else _ended(plan, options, console, argv, executor)
+            return 0 if options.plan else _ended(plan, options, console, argv, executor, began)
         except KeyboardInterrupt:
             print("interrupted before anything was computed", file=sys.stderr)
             return 130
@@ -125,7 +128,9 @@ def _chosen(options: Options, hierarchy: Sequence[Model]) -> StudyPlan:
     )
 
 
-def _ended(plan: StudyPlan, options: Options, console: Console, words: Sequence[str], executor: Pool) -> int:
+def _ended(
+    plan: StudyPlan, options: Options, console: Console, words: Sequence[str], executor: Pool, began: Clock
+) -> int:
     """The exit code; whatever ends the run early, what is finished is kept, and the line printed says how to go on."""
     study, store = plan.study, Cache(store_beside(options.out))
     models = {model.amplification for model in study.hierarchy}
@@ -133,22 +138,25 @@ def _ended(plan: StudyPlan, options: Options, console: Console, words: Sequence[
     def hint(rest: Sequence[str]) -> str:
         return resume_hint(store, rest, batches=len(study.batches()))
 
-    with (
-        ending_early(hint, words, options.scheduler),
-        workers(options.jobs, options.scheduler, models, executor) as (width, make),
-    ):
-        return _run(plan, replace(options, jobs=width), console, words, make, store)
+    with ending_early(hint, words, options.scheduler):
+        with workers(options.jobs, options.scheduler, models, executor) as (width, make):
+            results, findings = _found(plan, replace(options, jobs=width), console, words, make, store)
+        took = Clock.now().since(began)  # the workers have ended: their processor time is known
+        times = {"wall_seconds": round(took.wall, 1), "processor_seconds": round(took.processor, 1)}
+        results = results.model_copy(update={"run": results.run.model_copy(update=times)})
+        return _reported(results, findings, options, console, words)
 
 
-def _run(
+def _found(
     plan: StudyPlan,
     options: Options,
     console: Console,
     words: Sequence[str],
     executor: Callable[[int], Executor],
     store: Cache,
-) -> int:
-    from comparison.report.report import drawing_tasks, write_report  # plotting: not needed to refuse or to plan
+) -> tuple[Results, Findings]:
+    """What the report is made from; its times are not known yet."""
+    from comparison.report.report import drawing_tasks  # plotting: not needed to refuse or to plan
 
     begin, began = time.monotonic(), datetime.now(UTC)
     clear_dead(options.out)
@@ -169,7 +177,6 @@ def _run(
         spent, runner = spend(runner, study, options.budget, begin)
         study, computed, unfinished = spent.study, spent.computed, spent.unfinished
         analyses = chosen_analyses(study)
-    seconds = time.monotonic() - begin
     surfaces = labeled_surfaces(study, computed.batches, computed.answers)
     study = with_silent_models(study, surfaces)
     later = [analysis for analysis in analyses if analysis.needs_surfaces]
@@ -181,9 +188,8 @@ def _run(
     run: dict[str, Any] = {
         "command": command_line(words),
         "began": began.isoformat(timespec="seconds"),
-        "seconds": round(seconds, 1),
-        "compute_seconds": round(float(surfaces["cost"].sum()), 1),
-        "predicted_compute_seconds": round(sum(study.seconds(model) for model in study.hierarchy), 1),
+        "wall_seconds": 0.0,
+        "processor_seconds": 0.0,
         "tiles": len(computed.batches),
         "tiles_stored_before": computed.stored,
         "parts": {
@@ -215,14 +221,19 @@ def _run(
     drawings = drawing_tasks(results, findings)
     runner.run_tasks(drawings)
     files = {task.key: runner.results[task].value for task in drawings}
-    findings = replace(findings, drawings={key: value for key, value in files.items() if value})
+    return results, replace(findings, drawings={key: value for key, value in files.items() if value})
+
+
+def _reported(results: Results, findings: Findings, options: Options, console: Console, words: Sequence[str]) -> int:
+    """Write the report and say what is in it; the exit code."""
+    from comparison.report.report import write_report  # likewise
 
     console.print("Writing the report.")
     with writing(options.out), atomic_replace(options.out) as report:
         write_report(report.folder, results, findings)
     place = options.out if report.place == options.out.resolve() else report.place
     print_faults(results)
-    print_closing(console, results, options, words, place, time.monotonic() - begin)
+    print_closing(console, results, options, words, place)
     if options.check:
         print_check(results)
     return 1 if options.check and results.broken else 0

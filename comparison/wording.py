@@ -9,6 +9,8 @@ from markupsafe import Markup, escape
 
 from reference.problem import verbatim
 
+MAX_DECIMALS = 4  # of a percentage: what is smaller is nothing
+SHOWN_ERROR = 0.01  # of a size: a smaller error is not seen in two digits
 MAX_NAMES = 12  # on an axis of values that are no numbers; of more values every n-th is named
 POWERS = re.compile(r"\^(\w)")
 SUBSCRIPTS = re.compile(r"(?<=[\w>])_(\w+)")
@@ -38,6 +40,37 @@ def signed(value: float) -> str:
     if not math.isfinite(value) or abs(value) < 1e-6:
         return percent(abs(value))
     return ("+" if value > 0.0 else "−") + percent(abs(value))
+
+
+def difference(size: float, error: float) -> str:
+    """A share with its sign and as many digits as its error leaves; with the error where these digits show it."""
+    decimals = _decimals(size, error)
+    if decimals is None:
+        return signed(size)
+    if decimals > MAX_DECIMALS:
+        return "0 %"
+    digits = f"{100.0 * abs(size):.{decimals}f}"
+    sign = "−" if size < 0.0 else "+"
+    return f"{sign + digits if float(digits) else '0'} ± {100.0 * error:.{decimals}f} %"
+
+
+def more_or_less(size: float, error: float) -> str:
+    """A share in the digits of `difference`, its sign in words."""
+    decimals = _decimals(size, error)
+    digits = percent(abs(size)) if decimals is None else f"{100.0 * abs(size):.{min(decimals, MAX_DECIMALS)}f} %"
+    return f"{digits} {'less' if size < 0.0 else 'more'}"
+
+
+def _decimals(size: float, error: float) -> int | None:
+    """Decimals of a percentage that its error leaves, None where the error is not seen or not known."""
+    if not (math.isfinite(error) and error > SHOWN_ERROR * abs(size)):
+        return None
+    return max(0, -math.floor(math.log10(100.0 * error)))
+
+
+def shortened(text: str, letters: int) -> str:
+    """A text of at most so many letters; of a longer one the end is three dots."""
+    return text if len(text) <= letters else text[: letters - 1] + "…"
 
 
 def scientific(value: float) -> str:

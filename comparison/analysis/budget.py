@@ -29,8 +29,8 @@ TOTAL = "total"
 @dataclass(frozen=True)
 class Entry:
     """
-    One step in numbers. mean, median, rms, percentile95, maximum: of the absolute size but for the mean, which is of
-    the signed one, so that a step which only raises is told from one that scatters; NaN without a point.
+    One step in numbers. median, rms, percentile95, maximum: of the absolute size, NaN without a point. The signed mean
+    is the bar of the waterfall.
 
     phases: (alpha1, alpha2) of the maximum, rad. real: share of the points where the step is known to a fifth of itself
     or better, |D| > 5 u_D; unresolved: where u_D < |D| <= 5 u_D, not counted as real. error_estimate: median of u_D.
@@ -44,7 +44,6 @@ class Entry:
     step: str
     first: str
     second: str
-    mean: float
     median: float
     rms: float
     percentile95: float
@@ -79,6 +78,12 @@ def budget(study: Study, surfaces: xr.Dataset) -> list[Entry]:
     ]
 
 
+def known_to_all(steps: Sequence[Step]) -> tuple[int, NDArray[np.bool_]]:
+    """Where every step has a size: the stride of the coarsest of their phases, and which of these phases."""
+    coarsest = max(step.stride for step in steps)
+    return coarsest, np.all([step.every(coarsest, step.known) for step in steps], axis=0)
+
+
 def closure(steps: Sequence[Step]) -> float:
     """
     Largest |sum of the steps - total| over the points where every model has a value, relative to mu of the first.
@@ -110,7 +115,7 @@ def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> Entry:
         "phases": step.phases,
     }
     if not known.any():
-        sizes = ("mean", "median", "rms", "percentile95", "maximum")
+        sizes = ("median", "rms", "percentile95", "maximum")
         shares = ("real", "unresolved", "error_estimate", "peak_moves", "correlation")
         nothing: dict[str, Any] = dict.fromkeys((*sizes, *shares), float("nan"))
         return Entry(**names, **nothing)
@@ -123,7 +128,6 @@ def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> Entry:
     size = np.abs(step.size[known])
     return Entry(
         **names,
-        mean=float(step.size[known].mean()),
         median=float(np.median(size)),
         rms=float(np.sqrt((size**2).mean())),
         percentile95=fractile(size, 0.95),

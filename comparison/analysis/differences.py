@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from comparison.analysis.budget import known_to_all, steps
 from comparison.analysis.steps import Step, step
 from comparison.analysis.surfaces import common_phases
 from comparison.study.models import Pair
@@ -23,11 +24,12 @@ class Difference:
     """
     (mu of `second` - mu of `first`) / mu of `first` over the phases where both have a value.
 
-    median, percentile95, maximum: of its absolute value, NaN without any such phase. phases: (alpha1, alpha2) of the
-    maximum, rad. beyond_error: share of these phases where it exceeds u_D = sqrt(u_A^2 + u_B^2), the two error
-    estimates together, NaN where a model states no error. ratio: largest |D| / u_D, NaN where any error is missing.
-    asked: phases that both models were asked for; not_ok: those of them where either outcome is not ok; unanswered:
-    where either has no value.
+    mean, spread: of its signed value over the phases where every model of the scene has one, as in the waterfall, or
+    both models where the second is a user's engine; the spread is the standard deviation. median, percentile95, maximum:
+    of its absolute value. All are NaN without any such phase. phases: (alpha1, alpha2) of the maximum, rad.
+    beyond_error: share of these phases where it exceeds u_D = sqrt(u_A^2 + u_B^2), the two error estimates together, NaN
+    where a model states no error. ratio: largest |D| / u_D, NaN where any error is missing. asked: phases that both
+    models were asked for; not_ok: those of them where either outcome is not ok; unanswered: where either has no value.
     """
 
     scene: str
@@ -35,6 +37,8 @@ class Difference:
     first: str
     second: str
     body: int
+    mean: float
+    spread: float
     median: float
     percentile95: float
     maximum: float
@@ -54,15 +58,18 @@ def pair_step(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> Step:
 def differences(study: Study, surfaces: xr.Dataset) -> list[Difference]:
     """Every row of the closing table, in the order scene, body, pair."""
     return [
-        _difference(surfaces, scene.name, pair, body)
+        _difference(study, surfaces, scene.name, pair, body)
         for scene in study.scenes
         for body in range(1, len(scene.bodies) + 1)
         for pair in study.pairs(scene)
     ]
 
 
-def _difference(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> Difference:
+def _difference(study: Study, surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> Difference:
     signed = pair_step(surfaces, scene, pair, body)
+    hierarchy = [] if pair.second.side == "entered" else steps(study, surfaces, scene, body)
+    stride, common = known_to_all([*hierarchy, signed])
+    mean, spread = signed.mean(common, stride)
     status = common_phases(surfaces, scene, [pair.first.key, pair.second.key])["status"]
     not_ok = (status.sel(model=[pair.first.key, pair.second.key]) != Outcome.OK.value).any("model")
     valid = signed.known
@@ -75,9 +82,11 @@ def _difference(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> Diff
         first=pair.first.key,
         second=pair.second.key,
         body=body,
-        median=median,
-        percentile95=percentile95,
-        maximum=maximum,
+        mean=mean,
+        spread=spread,
+        median=float(median),
+        percentile95=float(percentile95),
+        maximum=float(maximum),
         phases=signed.phases,
         beyond_error=float((np.abs(signed.size) > signed.uncertainty)[stated].mean()) if stated.any() else float("nan"),
         ratio=float(signed.ratio[valid].max()) if valid.any() and (stated == valid).all() else float("nan"),

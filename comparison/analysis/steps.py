@@ -77,6 +77,17 @@ class Step:
         row, column = self.place
         return float(self.alpha1[row // self.stride]), float(self.alpha2[column // self.stride])
 
+    def mean(self, where: NDArray[np.bool_], stride: int) -> tuple[float, float]:
+        """
+        Mean and standard deviation of the signed size at those of every `stride`-th phase of the study.
+
+        This is the one statistic that stands for a difference as a whole: means of steps add up to that of the total.
+        """
+        if not where.any():
+            return float("nan"), float("nan")
+        sizes = self.every(stride, self.size)[where]
+        return float(sizes.mean()), float(sizes.std())
+
     def every(self, stride: int, values: NDArray[Any]) -> NDArray[Any]:
         """`values` of the step, such as its size, at every `stride`-th phase of the study only."""
         return values[:: stride // self.stride, :: stride // self.stride]

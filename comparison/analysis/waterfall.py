@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.analysis.budget import steps
+from comparison.analysis.budget import known_to_all, steps
 from comparison.analysis.independent import independent_phases
 from comparison.analysis.steps import RESOLVED, Step, step
 from comparison.study.study import Study
@@ -56,6 +56,7 @@ class Waterfall:
     body: int  # from 1
     bars: tuple[WaterfallBar, ...]  # means, one per step, in the order of the models
     total: WaterfallBar  # mean of the total difference: the sum of the bars
+    spread: float  # standard deviation of the total difference over the same phase pairs
     points: int  # phase pairs where every compared model has a value
     independent: int  # of these, not related by a symmetry of the scene
     largest: LargestDifference
@@ -69,8 +70,7 @@ def waterfall(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> Wa
     not average out.
     """
     hierarchy = steps(study, surfaces, scene.name, body)
-    stride = max(step.stride for step in hierarchy)
-    known = np.all([step.every(stride, step.known) for step in hierarchy], axis=0)
+    stride, known = known_to_all(hierarchy)
     bars = tuple(_mean(step, known, stride) for step in hierarchy)
     models = study.compared(scene)
     return Waterfall(
@@ -78,6 +78,7 @@ def waterfall(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> Wa
         body=body,
         bars=bars[:-1],
         total=bars[-1],
+        spread=hierarchy[-1].mean(known, stride)[1],
         points=int(known.sum()),
         independent=independent_phases(study, scene, models, known, stride),
         largest=largest_difference(study, surfaces, scene, body),
@@ -109,9 +110,8 @@ def largest_difference(study: Study, surfaces: xr.Dataset, scene: Scene, body: i
 
 
 def _mean(step: Step, known: NDArray[np.bool_], stride: int) -> WaterfallBar:
-    if not known.any():
-        return WaterfallBar(step.second.key, NAN, NAN)
-    size, error = (float(step.every(stride, values)[known].mean()) for values in (step.size, step.uncertainty))
+    size, _ = step.mean(known, stride)
+    error = float(step.every(stride, step.uncertainty)[known].mean()) if known.any() else NAN
     return WaterfallBar(step.second.key, size, error)
 
 

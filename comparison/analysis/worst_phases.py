@@ -1,8 +1,7 @@
 """
 The worst phases of every scene: the largest mu_i and displacement over all phases, and what the engine has there.
 
-The search of `reference.worst_phases` is made for the printed and the exact equations, and for those that the engine
-answers for. Beside these the engine is searched in a square around the worst phases, so that its own maximum nearby is
+The search of `reference.worst_phases` is made for the exact equations, and for those that the engine answers for. Beside these the engine is searched in a square around the worst phases, so that its own maximum nearby is
 known, too: its ratio to the equations, which hardly changes there, says where that is. The searches begin at the hills
 of the surfaces, if these are as fine as the search's own grid.
 """
@@ -10,6 +9,7 @@ of the surfaces, if these are as fine as the search's own grid.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -121,6 +121,33 @@ class WorstPhases(Analysis[list[Worst]]):
         if not study.phased:
             return None
         return [worst for task in self.tasks(study, surfaces) for worst in results.value(task, _without_value)]
+
+
+def nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, model: str, body: int) -> Any | None:
+    """
+    The largest mu over all phases of a model or, where it was not searched, of another one near it.
+
+    Parameters
+    ----------
+    found : sequence of Worst
+    models : sequence of str
+        Keys of the models of the scene in their order.
+    scene, model : str
+    body : int
+
+    Returns
+    -------
+    Worst or None
+        Of the model, else of the next one that was searched, else of the last one before; None without any.
+    """
+    searched = {
+        worst.model: worst
+        for worst in found
+        if (worst.scene, worst.quantity, worst.body) == (scene, "amplification", body) and math.isfinite(worst.value)
+    }
+    place = models.index(model)
+    order = [*models[place:], *reversed(models[:place])]
+    return next((searched[key] for key in order if key in searched), None)
 
 
 def _searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, str, int]]:

@@ -18,6 +18,7 @@ from comparison.report.results.differences import Headline
 from comparison.report.results.run import Targets
 from comparison.report.results.scene import SceneResult
 from comparison.report.results.study import Results
+from comparison.wording import percent, signed
 from reference.problem import builtin_scenes, example_scenes
 
 FILMED = ("translational", "spatial")  # models that multibody.animate knows, by their keys
@@ -50,9 +51,7 @@ def print_check(results: Results) -> None:
         print(line, file=sys.stderr)
 
 
-def print_closing(
-    console: Console, results: Results, options: Options, words: Sequence[str], report: Path, seconds: float
-) -> None:
+def print_closing(console: Console, results: Results, options: Options, words: Sequence[str], report: Path) -> None:
     """
     The last lines of a run.
 
@@ -62,16 +61,11 @@ def print_closing(
         The words of the command line.
     report : Path
         Folder of the report.
-    seconds : float
-        Wall time of the whole run, s.
     """
     _print_differences(console, results)
     if results.run.choice:
         _print_targets_met(console, results.run.choice, bool(results.phased))
-    console.print(
-        f"{seconds:.0f} s with {options.jobs} workers: {results.run.compute_seconds} s of compute "
-        f"({results.run.predicted_compute_seconds} s predicted)."
-    )
+    console.print(f"The run took {results.run.took}.", soft_wrap=True)
     for alert in _shown(results, options.check):
         color = "red" if alert.level == "red" else "yellow"
         console.print(f"{LABELS[alert.kind]}: {alert.line}", style=color, soft_wrap=True)
@@ -125,15 +119,16 @@ def _shown(results: Results, check: bool) -> list[Alert]:
 
 
 def _print_differences(console: Console, results: Results) -> None:
-    """Median, 95 % and maximum relative difference, and the points not ok, for every scene, body and pair."""
+    """Mean with its spread, 95 % and maximum size, and the points not ok, for every scene, body and pair."""
     rows = [row for scene in results.scenes_with("differences") for row in scene.differences]
     if not rows:
         return
-    console.print(f"Relative differences{' over the phases' if results.phased else ''}, per body:")
-    table = new_table("scene", "body", "difference", "median", "95 %", "maximum", "not ok")
+    over = " over the phases: mean and standard deviation with sign, 95 % and maximum of the size"
+    console.print(f"Relative differences{over if results.phased else ''}, per body:", soft_wrap=True)
+    table = new_table("scene", "body", "difference", "mean", "std. dev.", "95 %", "maximum", "not ok")
     for row in rows:
-        sizes = (f"{value:.1e}" for value in (row.median, row.percentile95, row.maximum))
-        table.add_row(row.scene, str(row.body), row.pair.replace("-", " "), *sizes, str(row.not_ok))
+        cells = (signed(row.mean), *(percent(size) for size in (row.spread, row.percentile95, row.maximum)))
+        table.add_row(row.scene, str(row.body), row.pair.replace("-", " "), *cells, str(row.not_ok))
     console.print(table)
 
 
@@ -146,8 +141,6 @@ def _print_targets_met(console: Console, targets: Targets, phased: bool) -> None
             f"{model.title}{grid}: {model.tolerance:g} met at {100.0 * model.met:.4g} % of {model.points} points "
             f"by the error estimates, {error} of them."
         )
-    if targets.budget is None:
-        console.print(f"{targets.seconds:.1f} s of compute where {targets.predicted_seconds:.1f} s were expected.")
     for step in targets.next_steps[:1]:
         others = f", and {len(targets.next_steps) - 1} more" if len(targets.next_steps) > 1 else ""
         line = f"More time would buy {step.what}: {step.seconds:.0f} s of processor time{others}."

@@ -9,11 +9,13 @@ This module imports nothing of the project, so that loading it takes no time.
 from __future__ import annotations
 
 import gc
+import os
 import signal
 import sys
+import time
 from difflib import get_close_matches
 from importlib import import_module
-from typing import NoReturn
+from typing import NamedTuple, NoReturn
 
 SCRIPT = "phase-resonance"
 # thresholds of Python's garbage collector: what is imported stays, and looking through it again and again takes a tenth
@@ -33,6 +35,30 @@ COMMANDS = {  # module whose `main` is the command, and what it does
 }
 
 
+class Clock(NamedTuple):
+    """An instant: wall time and processor time, s, the latter of this process and of its children that have ended."""
+
+    wall: float
+    processor: float
+
+    @classmethod
+    def now(cls) -> Clock:
+        """This instant."""
+        return cls(time.monotonic(), sum(os.times()[:4]))
+
+    def since(self, earlier: Clock) -> Clock:
+        """The times that have passed since another instant."""
+        return Clock(self.wall - earlier.wall, self.processor - earlier.processor)
+
+
+_started: list[Clock] = []
+
+
+def start_time() -> Clock:
+    """When the command of this process started, before its modules were loaded; now where a program calls it."""
+    return _started.pop() if _started else Clock.now()
+
+
 def start(module: str) -> NoReturn:
     """
     Import a command, run it and end the process with its exit code.
@@ -42,6 +68,7 @@ def start(module: str) -> NoReturn:
     module : str
         Full name of the module whose `main()` is the command.
     """
+    _started.append(Clock.now())
     gc.set_threshold(*COLLECTIONS)
     sys.modules["__main__"].__spec__ = __spec__  # what worker processes load again: not the whole command
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:

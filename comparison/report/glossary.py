@@ -16,7 +16,9 @@ GLOSSARY = {
     "phases": "The starting angles alpha_1 and alpha_2 of the two harmonics of the loading. One pair is one motion.",
     "phase pairs": "The starting angles alpha_1 and alpha_2 of the harmonics of the loading. One pair is one motion.",
     "independent": "Not the mirror image of another phase pair: symmetry gives the others without computing them.",
-    "median": "Half of the phase pairs have a smaller value, half a larger one.",
+    "mean": "Sum of the differences with their signs over the phase pairs where every model has a value, divided by "
+    "their number. Means of the effects add up to the mean of the total.",
+    "standard deviation": "How far the differences at single phase pairs lie from their mean: root of the mean square.",
     "engine": "Exudyn, a general multibody code: spheres in hollow spheres with elastic contact, built without the "
     "paper's equations.",
     "paper's equations": "The printed equations (4.3)-(4.4) for small vibrations, with dry friction that sticks.",
@@ -31,9 +33,10 @@ GLOSSARY = {
     "two codes": "Equations and engine, given the same geometry and the same friction law: what remains is the "
     "error of the codes.",
     "real": "Larger than five times the error estimates of both models together, and so known to a fifth of itself.",
+    "not real": "Not larger than five times the error estimates of both models together: nothing is claimed of it.",
     "limits": "Largest values that a scene file states as acceptable.",
 }  # fmt: skip
-LEAD = re.compile(r"^.*?(?= \(|\. |\.$)|\bCause: [^.]*(?:\.|$)")  # of a headline: how much, and why
+LEAD = re.compile(r"^.*?(?= \(|\. |\.$)|\bCause(?: of the \w+)?: [^.]*(?:\.|$)")  # of a headline: how much, and why
 WORDS = re.compile("|".join(rf"\b{re.escape(word)}\b" for word in sorted(GLOSSARY, key=len, reverse=True)))
 
 

@@ -27,6 +27,7 @@ def _suite(scene: SceneResult, began: str) -> ElementTree.Element:
     name = _allowed(scene.name)
     suite = ElementTree.Element("testsuite", name=name, time=f"{seconds:.1f}", timestamp=began)
     suite.extend([_case(name, limit) for limit in scene.limits])
+    ElementTree.SubElement(suite, "system-out").text = _allowed("\n".join(h.statement for h in scene.headlines))
     suite.set("tests", str(len(scene.limits)))
     suite.set("failures", str(len(suite.findall("testcase/failure"))))
     suite.set("errors", "0")

@@ -253,7 +253,8 @@ def page(figures: Path, findings: Findings, results: Results) -> str:
         effects={model.key: model.effect or model.title for model in study.hierarchy},
         record_tables=_record_tables(study, results),
         rows=rows,
-        dots=log_scale([size for row in rows for size in (row.median, row.maximum)]),
+        dots=log_scale([size for row in rows for size in (abs(row.mean), row.maximum)]),
+        means=_means(results),
         budget=[entry for scene in results.scenes_with("budget") for entry in scene.budget],
         trend_panels=trend_panels,
         distribution_panels=distribution_panels(results),
@@ -328,7 +329,7 @@ def _question(study: Study) -> str:
 
 
 ALERTS = {
-    "refused": ("model without any value", "models without any value"),
+    "refused": ("model without any usable value", "models without any usable value"),
     "limit": ("acceptance limit broken", "acceptance limits broken"),
     "lacking": ("model without some of its values", "models without some of their values"),
     "fault": ("error of a solver", "errors of solvers"),
@@ -353,6 +354,13 @@ def _alert_groups(results: Results) -> list[dict[str, Any]]:
     ]
 
 
+def _means(results: Results) -> dict[tuple[str, int, str], float]:
+    """The signed means of the waterfalls by scene, body, and model or "total"."""
+    every = [waterfall for scene in results.scenes for waterfall in scene.waterfalls]
+    steps = {(w.scene, w.body, bar.model): bar.size for w in every for bar in w.bars}
+    return steps | {(w.scene, w.body, "total"): w.total.size for w in every}
+
+
 def _card(scene: SceneResult, axes: dict[str, Scale]) -> dict[str, Any]:
     """One scene on the first screen."""
     bodies = [
@@ -372,7 +380,8 @@ def _phases_of(waterfall: Waterfall, scene: SceneResult) -> str:
     if scene.recorded:
         return "under the record"
     pairs = "phase pair" if waterfall.points == 1 else "phase pairs"
-    return f"mean over {waterfall.points} {pairs}, {waterfall.independent} of them independent"
+    over = f"mean over {waterfall.points} {pairs}, {waterfall.independent} of them independent"
+    return f"{over}; standard deviation of the total {percent(waterfall.spread)}"
 
 
 def _place_of(waterfall: Waterfall) -> str:

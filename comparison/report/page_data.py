@@ -14,6 +14,7 @@ from comparison.analysis.completion import Completion
 from comparison.analysis.differences import pair_step
 from comparison.analysis.stored import finite_or_none
 from comparison.analysis.surfaces import common_phases
+from comparison.analysis.worst_phases import nearest_search
 from comparison.report.findings import Findings
 from comparison.report.motion_data import contact_geometry, places, spectrum_axis, starts_of
 from comparison.study.models import Model, Pair, models_of
@@ -107,7 +108,8 @@ def _model(
     phases: per axis. computed: phase pairs that symmetry did not give. surface: whether its values are drawn as one.
     mu: per body. error: per body, null for a surface. completed: per body, null or through (a model), error (largest
     of leaving out one), reason (why it is not drawn), difference (whether that may be drawn), mu (null where refused).
-    worst: per body, null or alpha1, alpha2 (rad) and the largest mu over all phases.
+    worst: per body, null or alpha1, alpha2 (rad), the largest mu over all phases, and the model that was searched: this
+    one or one near it.
     """
     data = common_phases(findings.surfaces, scene.name, [model.key]).sel(model=model.key)
     bodies = range(1, len(scene.bodies) + 1)
@@ -127,12 +129,12 @@ def _model(
     }
 
 
-def _worst(findings: Findings, scene: Scene, model: Model, body: int) -> list[float] | None:
-    place = (scene.name, model.key, "amplification", body)
-    for worst in findings.worst_phases or ():
-        if (worst.scene, worst.model, worst.quantity, worst.body) == place and np.isfinite(worst.value):
-            return [*(round(phase, 4) for phase in worst.phases), float(f"{worst.value:.{DIGITS}g}")]
-    return None
+def _worst(findings: Findings, scene: Scene, model: Model, body: int) -> list[float | str] | None:
+    keys = [each.key for each in models_of(scene, findings.study.hierarchy)]
+    worst = nearest_search(findings.worst_phases or (), keys, scene.name, model.key, body)
+    if worst is None:
+        return None
+    return [*(round(phase, 4) for phase in worst.phases), float(f"{worst.value:.{DIGITS}g}"), worst.model]
 
 
 def _completed(completion: Completion | None) -> dict[str, Any] | None:

@@ -57,7 +57,8 @@ def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
             "y": {"title": "median relative difference", "log": True},
             "series": series,
         }
-        panels.append({"title": scene, "plot": plot})
+        cut = f", {MAX_CURVES} of {len(rows)} differences: the table has all" if len(rows) > MAX_CURVES else ""
+        panels.append({"title": f"{scene}{cut}", "plot": plot})
     return panels
 
 

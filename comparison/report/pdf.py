@@ -8,8 +8,10 @@ import tempfile
 from collections.abc import Sequence
 from importlib import resources
 from importlib.util import find_spec
+from math import isfinite
 from pathlib import Path
 
+from comparison.analysis.worst_phases import nearest_search
 from comparison.execution.task import Task
 from comparison.report.drawings import drawn, map_task
 from comparison.report.findings import Findings
@@ -69,9 +71,26 @@ def map_tasks(results: Results, findings: Findings) -> list[tuple[dict[str, str]
         bodies = sorted(headline.body for headline in largest[scene.name][:2])
         counts = [result.models[model.key] for model in (models[0], second)]
         sizes = [f"{c.phases_per_axis} × {c.phases_per_axis}, {c.computed} computed" for c in counts]
-        about = {"title": short_title(result), "note": f"{models[0].title}: {sizes[0]}; {second.title}: {sizes[1]}"}
+        note = f"{models[0].title}: {sizes[0]}; {second.title}: {sizes[1]}. "
+        note += f"The {len(bodies)} bodies with the largest differences of {result.bodies}. " * (
+            result.bodies > len(bodies)
+        )
+        note += "; ".join(_highest(results, result, model, body) for body in bodies for model in (models[0], second))
+        about = {"title": short_title(result), "note": f"{note}."}
         tasks.append((about, map_task(findings, scene, (models[0], second), bodies)))
     return tasks
+
+
+def _highest(results: Results, scene: SceneResult, model: Model, body: int) -> str:
+    """The largest mu of a model on its grid, and over all phases by the search of this model or of one near it."""
+    count = scene.models[model.key].phases_per_axis
+    grid = next(each.mu for each in scene.grid_maxima if (each.model, each.body) == (model.key, body))
+    largest = f"{grid:.4g} of {count} × {count} phases" if isfinite(grid) else "none"
+    worst = nearest_search(results.worst_phases or (), [*scene.models], scene.name, model.key, body)
+    titles = {each.key: each.title for each in results.models}
+    where = "" if worst is None or worst.model == model.key else f" by the {titles[worst.model]}"
+    over = "not searched over all phases" if worst is None else f"{worst.value:.4g} over all phases{where}"
+    return f"largest μ_{body}, {model.title}: {largest}, {over}"
 
 
 def _engine(models: Sequence[Model], result: SceneResult) -> Model:

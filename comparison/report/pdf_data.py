@@ -13,10 +13,10 @@ from comparison.report.results.run import ModelDescription
 from comparison.report.results.scene import Limit, ModelOutcome, SceneResult
 from comparison.report.results.study import Results
 from comparison.report.waterfall_chart import Scale, bars_of, scale_of
-from comparison.wording import significant
+from comparison.wording import percent, shortened, significant
 
-MAX_ALERTS, MAX_SENTENCES, MAX_WATERFALLS, MAX_LINES = 5, 10, 8, 8  # what fits on four pages
-MAX_TITLE, MAX_ALERT = 110, 500  # letters
+MAX_ALERTS, MAX_SENTENCES, MAX_WATERFALLS, MAX_LINES, MAX_ROWS = 5, 10, 8, 8, 16  # what fits on four pages
+MAX_TITLE, MAX_ALERT, MAX_COMMAND, MAX_NAME, MAX_CELL = 110, 500, 300, 60, 40  # letters
 
 
 def largest_headlines(results: Results) -> list[Headline]:
@@ -38,7 +38,11 @@ def pdf_data(results: Results, shown: Sequence[Headline], maps: Sequence[dict[st
     alerts = [alert for alert in results.alerts if alert.kind != "limit"]  # broken limits have a section of their own
     more = len(alerts) - MAX_ALERTS
     waterfalls, scale = _waterfalls(results, shown)
-    recorded = [scene for scene in results.scenes if scene.recorded][:MAX_LINES]
+    recorded = [scene for scene in results.scenes if scene.recorded]
+    records = [(scene, body) for scene in recorded for body in range(1, scene.bodies + 1)]
+    demands = demand_rows(results)
+    mapped = sum("surfaces" in scene.analyses for scene in results.phased)
+    largest = "largest differences"
     keys = list(dict.fromkeys(value.model for scene in recorded for value in scene.values))
     titles = {model.key: model.title for model in results.models}
     count = len(results.scenes)
@@ -46,23 +50,27 @@ def pdf_data(results: Results, shown: Sequence[Headline], maps: Sequence[dict[st
     return {
         "subtitle": f"Amplification factors of {count} scene{'' if count == 1 else 's'}{grid}: the paper's equations "
         f"against a multibody engine. Computed {results.run.began} by phase-resonance.",
-        "alerts": [{"level": alert.level, "line": alert.line[:MAX_ALERT] + "."} for alert in alerts[:MAX_ALERTS]],
+        "alerts": [
+            {"level": alert.level, "line": shortened(alert.line, MAX_ALERT) + "."} for alert in alerts[:MAX_ALERTS]
+        ],
         "broken": len(results.broken),
         "more_alerts": f"{more} more of these in index.html." if more > 0 else "",
         "scenes": [_sentences(scene, shown) for scene in results.scenes if any(h.scene == scene.name for h in shown)],
-        "more_scenes": _more(every, len(shown)),
+        "more_scenes": _more(largest, every, len(shown)),
         "waterfall_note": "Relative to the first model, on one scale; gray is not known to a fifth of itself; the thin "
-        f"line is the error. Every total is the sum of its bars. {_more(every, len(waterfalls))}",
+        f"line is the error. Every total is the sum of its bars. {_more(largest, every, len(waterfalls))}",
         "waterfalls": waterfalls,
         "zero": scale.at(0.0),
         "maps": maps,
-        "maps_note": "α₁ to the right, α₂ upward. Left and middle share their colors. A cross marks the highest value; "
-        "dots mark the computed phases of a surface that is completed through a finer model.",
+        "maps_note": "α₁ to the right, α₂ upward. Left and middle share their colors. A cross marks the highest value "
+        "of the grid; dots mark the computed phases of a surface that is completed through a finer model. "
+        + _more(f"scenes with the {largest}", mapped, len(maps)),
         "record_models": [titles[key] for key in keys],
-        "records": [_record(scene, body, keys) for scene in recorded for body in range(1, scene.bodies + 1)][:16],
+        "records": [_record(scene, body, keys) for scene, body in records[:MAX_ROWS]],
+        "more_records": _more("first rows", len(records), min(len(records), MAX_ROWS)),
         "demand_headings": list(HEADINGS),
-        "demands": demand_rows(results, MAX_LINES),
-        "demands_note": demands_note(results),
+        "demands": demands[:MAX_ROWS],
+        "demands_note": f"{demands_note(results)} {_more('first rows', len(demands), min(len(demands), MAX_ROWS))}",
         "models": [_model(results, model) for model in results.models if _outcomes(results, model)],
         "assumptions": [[a.number, a.statement, a.engine, a.relaxed] for a in ASSUMPTIONS],
         **_limits(results),
@@ -71,15 +79,14 @@ def pdf_data(results: Results, shown: Sequence[Headline], maps: Sequence[dict[st
     }
 
 
-def _more(every: int, shown: int) -> str:
-    rest = every - shown
-    return f"The {shown} largest differences of {every} are shown; the others are in index.html." if rest > 0 else ""
+def _more(what: str, every: int, shown: int) -> str:
+    """What is left out of so many, "" if nothing is."""
+    return f"The {shown} {what} of {every} are shown; the others are in index.html." if every > shown else ""
 
 
 def short_title(scene: SceneResult) -> str:
     """The title of a scene, or as much of it as fits."""
-    title = scene.title or scene.name
-    return title if len(title) <= MAX_TITLE else title[: MAX_TITLE - 1] + "…"
+    return shortened(scene.title or scene.name, MAX_TITLE)
 
 
 def _sentences(scene: SceneResult, shown: Sequence[Headline]) -> dict[str, Any]:
@@ -88,7 +95,7 @@ def _sentences(scene: SceneResult, shown: Sequence[Headline]) -> dict[str, Any]:
         for headline in shown
         if headline.scene == scene.name
     ]
-    return {"title": short_title(scene), "name": scene.name[:MAX_TITLE], "sentences": sentences}
+    return {"title": short_title(scene), "name": shortened(scene.name, MAX_TITLE), "sentences": sentences}
 
 
 def _waterfalls(results: Results, shown: Sequence[Headline]) -> tuple[list[dict[str, Any]], Scale]:
@@ -100,7 +107,7 @@ def _waterfalls(results: Results, shown: Sequence[Headline]) -> tuple[list[dict[
     recorded = {scene.name for scene in results.scenes if scene.recorded}
     panels = [
         {
-            "title": f"{waterfall.scene[:60]}, {names[waterfall.scene, waterfall.body]}",
+            "title": f"{shortened(waterfall.scene, MAX_NAME)}, {names[waterfall.scene, waterfall.body]}",
             "note": "under the record" if waterfall.scene in recorded else _points(waterfall),
             "bars": [
                 {
@@ -120,13 +127,14 @@ def _waterfalls(results: Results, shown: Sequence[Headline]) -> tuple[list[dict[
 
 
 def _points(waterfall: Waterfall) -> str:
-    return f"mean over {waterfall.points} phase pairs, {waterfall.independent} independent"
+    over = f"mean over {waterfall.points} phase pairs, {waterfall.independent} independent"
+    return f"{over}; standard deviation of the total {percent(waterfall.spread)}"
 
 
 def _record(scene: SceneResult, body: int, keys: Sequence[str]) -> list[str]:
     values = {value.model: value for value in scene.values if value.body == body}
     cells = [significant(values[key].mu) or values[key].status if key in values else "" for key in keys]
-    return [scene.name[:40], str(body), *cells]
+    return [shortened(scene.name, MAX_CELL), str(body), *cells]
 
 
 def _outcomes(results: Results, model: ModelDescription) -> list[ModelOutcome]:
@@ -148,9 +156,11 @@ def _limits(results: Results) -> dict[str, Any]:
     line = f"{broken} of {count} acceptance limits are broken." if broken else f"All {count} acceptance limits hold."
     limited = [scene for scene in results.scenes if scene.limits]
     lines = [
-        f"{scene.name[:60]}: " + ", ".join(_limit(limit) for limit in scene.limits) for scene in limited[:MAX_LINES]
+        f"{shortened(scene.name, MAX_NAME)}: " + ", ".join(_limit(limit) for limit in scene.limits)
+        for scene in limited[:MAX_LINES]
     ]
-    return {"limits_line": line, "limits": lines}
+    more = _more("first scenes with limits", len(limited), len(lines))
+    return {"limits_line": f"{line} {more}", "limits": lines}
 
 
 def _limit(limit: Limit) -> str:
@@ -159,12 +169,14 @@ def _limit(limit: Limit) -> str:
 
 def _provenance(results: Results) -> list[list[str]]:
     run = results.run
-    digests = ", ".join(f"{scene.name[:40]} {scene.digest}" for scene in results.scenes[:MAX_LINES])
+    shown = results.scenes[:MAX_LINES]
+    digests = ", ".join(f"{shortened(scene.name, MAX_CELL)} {scene.digest}" for scene in shown)
+    more = _more("first scenes", len(results.scenes), len(shown))
     versions = ", ".join(f"{name} {value}" for name, value in run.provenance.items())
     return [
-        ["command", run.command[:300]],
-        ["computed", f"{run.began}, {run.seconds} s with {run.jobs} workers"],
+        ["command", shortened(run.command, MAX_COMMAND)],
+        ["computed", f"{run.began}, {run.took}, until the report was written"],
         ["accuracy", f"every value of the surfaces asked for a relative error of {results.tolerance:g}"],
         ["versions", versions],
-        ["scenes", digests],
+        ["scenes", f"{digests}. {more}" if more else digests],
     ]

@@ -9,6 +9,7 @@ from comparison.report.results.motions import MotionDemands, UncertainNumber
 from comparison.report.results.over_phases import DemandStatistics, PhaseExtreme
 from comparison.report.results.scene import SceneResult
 from comparison.report.results.study import Results
+from comparison.wording import shortened
 
 HEADINGS = (
     "scene", "model", "isolator, mm", "residual, mm", "base shear, N", "platform, m/s²", "top, m/s²", "drift, mm",
@@ -17,16 +18,18 @@ HEADINGS = (
 MILLI = 1e3
 
 
-def demand_rows(results: Results, most: int) -> list[list[str]]:
+def demand_rows(results: Results) -> list[list[str]]:
     """
-    Cells under HEADINGS of the first and the last model of at most `most` scenes.
+    Cells under HEADINGS of the first and the last model of every scene.
 
     Over all phases where the study has these, else over the stored motions; a scene without either has no row.
     """
     titles = {model.key: model.title for model in results.models}
-    with_demands = [scene for scene in results.scenes if scene.demand_statistics or scene.demands][:most]
+    with_demands = [scene for scene in results.scenes if scene.demand_statistics or scene.demands]
     return [
-        [scene.name[:40], titles[key], *cells] for scene in with_demands for key, cells in _of_two_models(scene, titles)
+        [shortened(scene.name, 40), titles[key], *cells]
+        for scene in with_demands
+        for key, cells in _of_two_models(scene, titles)
     ]
 
 

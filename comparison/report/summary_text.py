@@ -33,7 +33,7 @@ def summary_text(results: Results) -> str:
     )
     parts.append(
         f"The two codes are cross-verified, not validated: {results.measurements}.  \n"
-        f"{_code(run.command)}: {run.seconds} s with {run.jobs} workers, began {run.began}; {made}. "
+        f"{_code(run.command)}: {run.took}, began {run.began}; {made}. "
         f"{listed}: `index.html` of the report."
     )
     return "\n\n".join(parts) + "\n"
@@ -70,7 +70,8 @@ def _differences(results: Results) -> list[str]:
             row.scene,
             str(row.body),
             row.pair.replace("-", " "),
-            *(percent(value) for value in (row.median, row.percentile95, row.maximum)),
+            signed(row.mean),
+            *(percent(value) for value in (row.spread, row.percentile95, row.maximum)),
             "none" if isnan(row.phases[0]) else f"({degrees(row.phases[0])}, {degrees(row.phases[1])})",
             percent(row.beyond_error),
             f"{row.unanswered} of {row.asked}",
@@ -78,8 +79,12 @@ def _differences(results: Results) -> list[str]:
         for scene in results.scenes_with("differences")
         for row in scene.differences
     ]
-    names = ["scene", "body", "difference", "median", "95 %", "maximum", "at (α₁, α₂)", "beyond u_D", "no value"]
-    return ["### Differences", _table(names, rows, left=3)]
+    names = ["scene", "body", "difference", "mean", "standard deviation", "95 %", "maximum", "at (α₁, α₂)"]
+    names += ["beyond u_D", "no value"]
+    note = (
+        "Mean and standard deviation are signed, over the phase pairs that every model has; 95 % and maximum are sizes."
+    )
+    return ["### Differences", note, _table(names, rows, left=3)]
 
 
 def _budget(results: Results) -> list[str]:

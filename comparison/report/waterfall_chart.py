@@ -8,12 +8,10 @@ from dataclasses import dataclass
 
 from comparison.report.results.differences import Waterfall, WaterfallBar
 from comparison.report.results.study import Results
-from comparison.wording import signed
+from comparison.wording import difference
 
 MARGIN = 0.03  # of the scale, beyond the longest bar
 MAX_TICKS = 5
-MAX_DECIMALS = 4  # of a percentage: what is smaller is nothing
-SHOWN_ERROR = 0.01  # of a size: a smaller error is not seen in two digits
 
 
 @dataclass(frozen=True)
@@ -138,19 +136,7 @@ def _bar(bar: WaterfallBar, model: str, start: float, scale: Scale) -> Bar:
     error = bar.error if math.isfinite(bar.error) else 0.0
     ends = scale.at(start + bar.size - error), scale.at(start + bar.size + error)
     kind = "unreal" if not bar.real else "total" if model == "total" else "up" if bar.size >= 0.0 else "down"
-    return Bar(model, kind, min(begin, end), round(abs(end - begin), 3), ends, end, _text(bar.size, error))
-
-
-def _text(size: float, error: float) -> str:
-    """A size, with as many digits as its error leaves; with the error where these digits show it."""
-    if not error > SHOWN_ERROR * abs(size):
-        return signed(size)
-    decimals = max(0, -math.floor(math.log10(100.0 * error)))
-    if decimals > MAX_DECIMALS:
-        return "0 %"
-    digits = f"{100.0 * abs(size):.{decimals}f}"
-    sign = "−" if size < 0.0 else "+"
-    return f"{sign + digits if float(digits) else '0'} ± {100.0 * error:.{decimals}f} %"
+    return Bar(model, kind, min(begin, end), round(abs(end - begin), 3), ends, end, difference(bar.size, error))
 
 
 def _ticks(low: float, high: float) -> list[float]:

@@ -26,7 +26,7 @@ def test_one_changed_bit_and_one_changed_number_are_found_and_times_are_not(fini
     other = tmp_path / "other"
     shutil.copytree(finished, other)
     summary = json.loads((other / "summary.json").read_text(encoding="utf-8"))
-    summary["run"]["seconds"] += 1.0
+    summary["run"]["wall_seconds"] += 1.0
     for model in summary["scenes"][0]["models"].values():
         model["cost"] += 1.0
     (other / "summary.json").write_text(json.dumps(summary), encoding="utf-8")

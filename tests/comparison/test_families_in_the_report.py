@@ -18,9 +18,10 @@ from test_texts_of_scenes import RUN
 from comparison.analysis.budget import budget
 from comparison.analysis.demand_surfaces import DemandStatistics, Extreme
 from comparison.analysis.distribution import Fractile
-from comparison.analysis.parameter import family_demands, family_demands_over_phases
+from comparison.analysis.parameter import family_demands, family_demands_over_phases, family_steps
 from comparison.analysis.surfaces import labeled_surfaces
 from comparison.analysis.trajectories import Place, StoredMotion
+from comparison.analysis.waterfall import waterfall
 from comparison.report.assemble import assemble
 from comparison.report.figures.families import draw_family, family_figure_name
 from comparison.report.findings import collect_findings
@@ -75,7 +76,9 @@ def test_the_figure_shows_mean_and_largest_step_of_every_scene_in_percent(
 
     monkeypatch.setattr(Axes, "plot", told)
     path = tmp_path / family_figure_name(family, 1)
-    draw_family(path, family, budget(study, surfaces), study.hierarchy, 1)
+    bars = {scene.name: [waterfall(study, surfaces, scene, body) for body in (1, 2)] for scene in family.scenes}
+    means = family_steps(family, bars)
+    draw_family(path, family, means, budget(study, surfaces), study.hierarchy, 1)
     assert {tuple(x) for x, _, _ in drawn} == {(0.1, 0.15, 0.2)}
     largest = {label: y for _, y, label in drawn if label not in ("mean", "--")}
     assert set(largest) == {"total", *(model.title for model in study.hierarchy[1:])}

@@ -12,7 +12,7 @@ from fake_models import errors_in, fake_hierarchy
 from test_waterfall import KEYS, planted, scattered
 
 from comparison.analysis.differences import differences
-from comparison.analysis.headline import Headline, headline
+from comparison.analysis.headline import Cause, Headline, headline
 from comparison.analysis.surfaces import labeled_surfaces
 from comparison.analysis.unanswered import with_silent_models
 from comparison.analysis.waterfall import waterfall
@@ -31,16 +31,16 @@ def test_the_sentence_has_the_planted_size_direction_phases_and_cause() -> None:
     later = dict.fromkeys(KEYS[1:], -0.12)
     study, surfaces = planted({"exact": 0.001, **later})
     result = told(study, surfaces)
-    assert (result.first, result.second, result.cause) == ("small", "spatial", ("resolved",))
-    assert result.median == pytest.approx(-0.12, rel=1e-9)
+    assert (result.first, result.second, result.cause.models) == ("small", "spatial", ("resolved",))
+    assert result.mean == pytest.approx(-0.12, rel=1e-9)
     assert result.sentence.startswith(
-        "fig3-I, platform: the engine gives 12 % less than the paper's equations (median over 4 × 4 initial phases, "
+        "fig3-I, platform: the engine gives 12 % less than the paper's equations (mean over 4 × 4 initial phases, "
     )
     assert "Cause: the instant of stopping, not geometry." in result.sentence
     assert "the two codes agree to" in result.sentence
 
 
-def test_a_median_above_zero_says_more_and_geometry_may_be_the_cause() -> None:
+def test_a_mean_above_zero_says_more_and_geometry_may_be_the_cause() -> None:
     study, surfaces = planted(dict.fromkeys(KEYS, 0.05))
     result = told(study, surfaces, body=2)
     assert "body 2: the engine gives 5 % more than the paper's equations" in result.sentence
@@ -50,7 +50,7 @@ def test_a_median_above_zero_says_more_and_geometry_may_be_the_cause() -> None:
 
 def test_two_steps_of_like_size_are_both_named() -> None:
     study, surfaces = planted({"exact": 0.05, **dict.fromkeys(KEYS[1:4], 0.08), "spatial": 0.13})
-    assert told(study, surfaces).cause == ("exact", "spatial", "resolved")
+    assert told(study, surfaces).cause.models == ("exact", "spatial", "resolved")
 
 
 def test_the_numbers_hold_the_largest_difference_of_the_scene_whatever_model_has_it() -> None:
@@ -71,7 +71,7 @@ def test_a_largest_difference_of_the_finer_model_names_its_phases_and_what_it_la
     surfaces["mu"].loc[{"model": "translational", "body": 1, "alpha1": 0.0, "alpha2": surfaces["alpha2"][1]}] *= 1.4
     result = told(study, surfaces)
     assert (result.maximum_model, result.maximum_phases_per_axis) == ("translational", 8)
-    assert "up to 40 % more without turning of the bodies, over 8 × 8 phases, at (0°, 45°)" in result.sentence
+    assert "up to 40 % more by the translational engine on 8 × 8 phases at (0°, 45°)" in result.sentence
     assert "agree at most initial phases" in result.sentence
 
 
@@ -79,7 +79,7 @@ def test_a_difference_within_five_errors_is_no_difference() -> None:
     study, surfaces = planted({"spatial": 0.01}, {"spatial": 0.004})
     result = told(study, surfaces)
     assert result.sentence.startswith("fig3-I, platform: no difference beyond the numerical error: the engine and")
-    assert result.cause == ()
+    assert result.cause == Cause()
     assert "Cause" not in result.sentence
 
 
@@ -91,16 +91,17 @@ def test_codes_that_differ_like_for_like_do_not_agree() -> None:
 def test_a_lubricated_scene_has_its_own_cause() -> None:
     study, surfaces = planted(dict.fromkeys(KEYS, 0.02), scene="fig4-viscous")
     result = told(study, surfaces)
-    assert result.cause == ("exact",)
+    assert result.cause.models == ("exact",)
     assert "stopping" not in result.sentence
 
 
-def test_a_record_has_no_phases_and_no_median() -> None:
+def test_a_record_has_no_phases_and_no_mean() -> None:
     study, surfaces = planted(dict.fromkeys(KEYS[2:], -0.03), scene="synthetic-pair")
     result = told(study, surfaces)
     assert "the engine gives 3 % less than the paper's equations under the record." in result.sentence
     assert "phases" not in result.sentence
     assert "nan" not in result.sentence
+    assert "mean" not in result.sentence
 
 
 def test_a_refused_model_changes_what_is_compared_and_the_sentence_says_so() -> None:
@@ -108,19 +109,20 @@ def test_a_refused_model_changes_what_is_compared_and_the_sentence_says_so() -> 
     surfaces["mu"].loc[{"model": "spatial"}] = np.nan
     result = told(study, surfaces)
     assert result.second == "translational"
-    assert "the translational engine gives 10 % more than the paper's equations (median over 8 × 8" in result.sentence
+    assert "the translational engine gives 10 % more than the paper's equations (mean over 8 × 8" in result.sentence
     surfaces["mu"].loc[{"model": "small"}] = np.nan
     assert "than the exact equations" in told(study, surfaces).sentence
     surfaces["mu"][:] = np.nan
     assert told(study, surfaces).sentence == (
-        "fig3-I, platform: the engine and the paper's equations have no value in common at any phase pair."
+        "fig3-I, platform: the models from the paper's equations to the engine have no value in common "
+        "at any phase pair."
     )
 
 
 def test_missing_values_are_counted_in_the_phases() -> None:
     study, surfaces = planted(dict.fromkeys(KEYS, 0.05))
     surfaces["mu"].loc[{"model": "spatial", "alpha1": 0.0, "alpha2": 0.0}] = np.nan
-    assert "median over 15 of 4 × 4 initial phases, 15 of them independent" in told(study, surfaces).sentence
+    assert "mean over 15 of 4 × 4 initial phases, 15 of them independent" in told(study, surfaces).sentence
 
 
 @pytest.mark.parametrize("bodies", [1, 6])

@@ -120,7 +120,7 @@ def test_the_demands_of_the_stored_motions_are_in_a_table(tmp_path: Path) -> Non
     findings = collect_findings(findings.study, findings.surfaces, {"motions": motions}, [], RUN)
     results = assemble(findings)
     numbers = ["1500", "", "1.5", "1.5", "1.5", "1500", "1.5"]  # lengths in mm; the residual is not known
-    rows = demand_rows(results, 8)
+    rows = demand_rows(results)
     assert [row[2:] for row in rows] == [numbers, numbers]
     assert [row[1] for row in rows] == ["small equations", "spatial engine"]
     pdf.write_pdf(tmp_path / "report.pdf", results, findings)

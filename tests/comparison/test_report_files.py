@@ -95,9 +95,9 @@ def test_summary_has_its_schema_and_no_nan(finished: Path) -> None:
     summary = _strict((finished / "summary.json").read_text(encoding="utf-8"))
     assert isinstance(summary, dict)
     assert summary["schema"] == "phase-resonance/summary"
-    assert summary["version"] == 4
+    assert summary["version"] == 5
     assert (summary["grid"], summary["tolerance"]) == (GRID, 1e-3)
-    assert {"command", "began", "seconds", "compute_seconds", "jobs", "provenance"} <= set(summary["run"])
+    assert {"command", "began", "wall_seconds", "processor_seconds", "jobs", "provenance"} <= set(summary["run"])
     assert [model["key"] for model in summary["models"]] == [model.key for model in MODEL_HIERARCHY]
     assert [scene["name"] for scene in summary["scenes"]] == ["fig3-I", "fig4-viscous"]
     dry, wet = summary["scenes"]

@@ -34,9 +34,8 @@ SCENES = Path(__file__).parents[2] / "reference/problem/scenes"
 RUN: dict[str, Any] = {
     "began": "2026",
     "command": "run `a`",
-    "seconds": 1.0,
-    "compute_seconds": 1.0,
-    "predicted_compute_seconds": 1.0,
+    "wall_seconds": 1.0,
+    "processor_seconds": 2.0,
     "tiles": 1,
     "tiles_stored_before": 0,
     "parts": {},

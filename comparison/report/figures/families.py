@@ -12,6 +12,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from comparison.analysis.budget import TOTAL, Entry
+from comparison.analysis.parameter import FamilyStep, family_steps
+from comparison.analysis.waterfall import waterfall
 from comparison.report.figures.file_names import figure_file
 from comparison.report.findings import Findings
 from comparison.study.models import Model
@@ -29,14 +31,24 @@ def family_figure_name(family: Family, body: int) -> str:
 
 def draw_families(folder: Path, findings: Findings) -> None:
     """Write the figure of every body of every family into `folder`, PNG."""
+    study, surfaces = findings.study, findings.surfaces
     for family in findings.families or ():
-        for body in range(1, family.bodies + 1):
-            draw_family(
-                folder / family_figure_name(family, body), family, findings.budget, findings.study.hierarchy, body
-            )
+        bodies = range(1, family.bodies + 1)
+        bars = {scene.name: [waterfall(study, surfaces, scene, body) for body in bodies] for scene in family.scenes}
+        means = family_steps(family, bars)
+        for body in bodies:
+            path = folder / family_figure_name(family, body)
+            draw_family(path, family, means, findings.budget, study.hierarchy, body)
 
 
-def draw_family(path: Path, family: Family, entries: Sequence[Entry], hierarchy: Sequence[Model], body: int) -> None:
+def draw_family(
+    path: Path,
+    family: Family,
+    means: Sequence[FamilyStep],
+    entries: Sequence[Entry],
+    hierarchy: Sequence[Model],
+    body: int,
+) -> None:
     """
     Write mean and largest size of every step of the budget, and of the total, over the values of the family.
 
@@ -52,9 +64,8 @@ def draw_family(path: Path, family: Family, entries: Sequence[Entry], hierarchy:
     places = np.array(family.values, dtype=float) if numbers else np.arange(len(family.values), dtype=float)
     steps = [key for key in titles if any(e.step == key and e.scene == family.scenes[0].name for e in entries)]
     for number, step in enumerate([*(key for key in steps if key != TOTAL), TOTAL]):
-        mean, largest, error_estimate = (
-            _over(family, entries, body, step, part) for part in ("mean", "maximum", "error_estimate")
-        )
+        mean = np.array(next(bar.size for bar in means if (bar.model, bar.body) == (step, body)))
+        largest, error_estimate = (_over(family, entries, body, step, part) for part in ("maximum", "error_estimate"))
         look: dict[str, Any] = {"marker": MARKERS[number % len(MARKERS)], "markersize": 4.0, "linewidth": 1.2}
         look["color"] = "black" if step == TOTAL else COLORS[number % len(COLORS)]
         left.plot(places, 100.0 * mean, **look)

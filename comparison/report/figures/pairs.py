@@ -97,7 +97,8 @@ def _map(figure: Figure, axes: Axes, step: Step) -> None:
     axes.set_xlabel(r"$\alpha_1$, rad")
     axes.set_ylabel(r"$\alpha_2$, rad")
     missing = int((~np.isfinite(percent)).sum())
-    size_text = f"largest {largest:.2g} %" if size.size else "no point to compare"
+    count = len(step.alpha1)
+    size_text = f"largest of {count} × {count}: {largest:.2g} %" if size.size else "no point to compare"
     gray = f", {missing} without a value (gray)" if missing else ""
     axes.set_title(f"second minus first, % of first\n{size_text}{gray}", fontsize=10)
     bar = figure.colorbar(image, cax=figure.add_axes((0.935, 0.14, 0.012, 0.65)), extend="both")

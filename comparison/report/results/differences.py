@@ -18,6 +18,10 @@ class Difference(Part):
     """key of the second model"""
     body: int
     """number of the body; 1 is the platform"""
+    mean: Number
+    """mean of the signed size over the phase pairs where every compared model has a value"""
+    spread: Number
+    """standard deviation of the signed size over the same phase pairs"""
     median: Number
     """median of the absolute size over the phase pairs where both have a value"""
     percentile95: Number
@@ -39,7 +43,11 @@ class Difference(Part):
 
 
 class BudgetEntry(Part):
-    """One step of the model hierarchy, or the total, in one body; relative to mu of the first model."""
+    """
+    One step of the model hierarchy, or the total, in one body; relative to mu of the first model.
+
+    Its signed mean is the bar in `waterfalls`.
+    """
 
     scene: Text
     """name of the scene"""
@@ -51,8 +59,6 @@ class BudgetEntry(Part):
     """key of the model before the step"""
     second: str
     """key of the model after the step"""
-    mean: Number
-    """mean of the signed size"""
     median: Number
     """median of the absolute size"""
     rms: Number
@@ -116,12 +122,23 @@ class Waterfall(Part):
     """one per step: means over the phase pairs where every compared model has a value"""
     total: WaterfallBar
     """mean of the total difference over the same phase pairs: the sum of the bars"""
+    spread: Number
+    """standard deviation of the total difference over the same phase pairs"""
     points: int
     """number of these phase pairs"""
     independent: int
     """of these, not related by a symmetry of the scene"""
     largest: LargestDifference
     """the same at the phase pair of the largest difference"""
+
+
+class Cause(Part):
+    """The models whose steps make a difference, from the bars of a waterfall."""
+
+    models: list[str]
+    """keys of the models whose real steps have the sign of the difference, largest first; empty where it is not real"""
+    offset: list[str]
+    """keys of the models whose real steps offset these, largest first"""
 
 
 class Headline(Part):
@@ -137,12 +154,17 @@ class Headline(Part):
     """key of the first model"""
     second: str
     """key of the last model"""
-    median: Number
-    """median of the signed difference over the phase pairs where both have a value"""
+    mean: Number
+    """mean of the signed difference over the phase pairs where every compared model has a value: the total of the
+    waterfall"""
+    mean_error: Number
+    """error estimate of the mean"""
+    spread: Number
+    """standard deviation of the signed difference over the same phase pairs"""
     phases_per_axis: int
-    """of the grid of phase pairs that both models were asked for; 1 under a record"""
+    """of the grid of phase pairs that every compared model was asked for; 1 under a record"""
     points: int
-    """phase pairs of this grid where both have a value"""
+    """phase pairs of this grid where every compared model has a value"""
     independent: int
     """of these, not related by a symmetry of the scene"""
     real: Number
@@ -158,10 +180,10 @@ class Headline(Part):
     """key of the engine model that has the maximum"""
     maximum_phases_per_axis: int
     """of the grid of phase pairs that this model and the first were asked for"""
-    cause: list[str]
-    """keys of the models whose steps in the means are the causes, largest first; empty where no step is real"""
-    maximum_cause: list[str]
-    """the same at the phase pair of the maximum"""
+    cause: Cause
+    """of the mean, from the bars of the means"""
+    maximum_cause: Cause
+    """of the maximum, from the bars at its phase pair"""
     like_for_like: Number
     """largest absolute difference of the two codes given the same equations and friction law"""
     sentence: Text

@@ -74,12 +74,10 @@ class Run(Part):
     """the command line"""
     began: str
     """date and time, UTC"""
-    seconds: float
-    """wall time of the computation, s"""
-    compute_seconds: float
-    """compute time of the surfaces, all workers together, s"""
-    predicted_compute_seconds: float
-    """what --plan predicts for it, s"""
+    wall_seconds: float
+    """wall time from the start of the command until the report was written, s"""
+    processor_seconds: float
+    """processor time of the command and its worker processes until then, s; workers of a cluster are not counted"""
     tiles: int
     """number of batches"""
     tiles_stored_before: int
@@ -92,6 +90,14 @@ class Run(Part):
     """versions, machine, commit"""
     choice: Targets | None
     """what --tolerance or --budget chose; null without either"""
+
+    @property
+    def took(self) -> str:
+        """The times of the run in words."""
+        workers = f"{self.jobs} worker{'' if self.jobs == 1 else 's'}"
+        return (
+            f"{self.wall_seconds:.1f} s of wall time with {workers}, {self.processor_seconds:.1f} s of processor time"
+        )
 
 
 class ModelDescription(Part):

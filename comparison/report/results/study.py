@@ -28,7 +28,7 @@ from comparison.report.results.trends import FamilyResult, Trend
 from comparison.report.results.values import Part, Text
 
 SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"
-VERSION: Literal[4] = 4  # grows when a key changes its meaning or goes
+VERSION: Literal[5] = 5  # grows when a key changes its meaning or goes
 
 
 class Results(Part):
@@ -38,7 +38,7 @@ class Results(Part):
         default=SCHEMA, validation_alias="schema", serialization_alias="schema"
     )
     """what this file is"""
-    version: Literal[4] = VERSION
+    version: Literal[5] = VERSION
     """grows when a key changes its meaning or goes; new keys may come without"""
     run: Run
     """how the report was made"""

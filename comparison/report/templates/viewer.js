@@ -20,13 +20,13 @@ const pairNow = () => sceneNow().pairs.find(pair => pair.key === state.pair) ?? 
 const thinned = (rows, n) => { const k = rows.length / n; return rows.filter((_, i) => i % k === 0).map(row => row.filter((_, j) => j % k === 0)); };
 const pointsOf = (rows, errors) => rows.flatMap((row, i) => row.flatMap((z, j) => known(z) ? [{ a: turn * i / rows.length, b: turn * j / rows.length, z, error: errors?.[i][j] }] : []));
 
-// one model as it may be drawn: all phases, completed, or points; `every` asks for so many phases per axis only
+// one model as it may be drawn: all phases, completed, or points; `every` asks for so many phases per axis only; phases: per axis, of what was computed
 function surfaceOf(scene, key, body, every = null) {
-  const model = scene.models[key], mu = model.mu[body - 1], completed = model.completed[body - 1];
-  if (every !== null && every < model.phases) return { rows: thinned(mu, every), sheet: false, points: pointsOf(thinned(mu, every), null), model };
-  if (model.surface) return { rows: mu, sheet: true, points: [], model };
-  if (completed?.mu) return { rows: completed.mu, sheet: true, points: pointsOf(mu, null), model, completed };
-  return { rows: mu, sheet: false, points: pointsOf(mu, model.error?.[body - 1]), model, completed };
+  const model = scene.models[key], mu = model.mu[body - 1], completed = model.completed[body - 1], { phases } = model;
+  if (every !== null && every < model.phases) return { rows: thinned(mu, every), sheet: false, points: pointsOf(thinned(mu, every), null), model, phases: every };
+  if (model.surface) return { rows: mu, sheet: true, points: [], model, phases };
+  if (completed?.mu) return { rows: completed.mu, sheet: true, points: pointsOf(mu, null), model, completed, phases };
+  return { rows: mu, sheet: false, points: pointsOf(mu, model.error?.[body - 1]), model, completed, phases };
 }
 const relative = (rows, base) => rows.map((row, i) => row.map((value, j) => known(value) && base[i][j] > 0 ? 100 * (value - base[i][j]) / base[i][j] : null));
 // the difference in percent of the first model, on the phases of both
@@ -35,8 +35,8 @@ function differenceOf(scene, pair, body) {
   const n = Math.min(a.phases, b.phases), raw = relative(thinned(b.mu[body - 1], n), thinned(a.mu[body - 1], n));
   const errors = pair.uncertainty?.[body - 1].map(row => row.map(value => known(value) ? 100 * value : null));
   if (first.sheet && second.sheet && first.rows.length === second.rows.length && [first, second].every(one => !one.completed || one.completed.difference))
-    return { rows: relative(second.rows, first.rows), sheet: true, points: first.completed || second.completed ? pointsOf(raw, null) : [], completed: second.completed ?? first.completed };
-  return { rows: raw, sheet: false, points: pointsOf(raw, errors) };
+    return { rows: relative(second.rows, first.rows), sheet: true, points: first.completed || second.completed ? pointsOf(raw, null) : [], completed: second.completed ?? first.completed, phases: n };
+  return { rows: raw, sheet: false, points: pointsOf(raw, errors), phases: n };
 }
 const values = surface => surface.sheet ? surface.rows.flat().filter(known) : surface.points.map(point => point.z);
 function extent(list) {
@@ -62,12 +62,13 @@ function panels() {
     const notes = [k === 2 ? `${shown} × ${shown} phases${surface.completed ? ", completed" : ""}` : state.grid === "second" && k === 0 && !surface.sheet ? `${shown} × ${shown} of ${surface.model.phases} × ${surface.model.phases} phases` : grid(surface, surface.model.phases)];
     if (surface.completed?.mu && k < 2) notes.push(`dots: computed; leaving out one misses it by at most ${digits(surface.completed.error, 2)}`);
     if (!surface.sheet && k === 1 && surface.completed?.reason) notes.push(`points: ${surface.completed.reason}`);
-    if (largest) notes.push(`${surface.completed ? "largest computed" : "largest"} ${k === 2 ? percentText(largest.z) : digits(largest.z)} at ${at([largest.a, largest.b])} ▾`);
+    if (largest) notes.push(`largest of ${surface.phases} × ${surface.phases} phases: ${k === 2 ? percentText(largest.z) : digits(largest.z)} at ${at([largest.a, largest.b])} ▾`);
     else notes.push("no value at any phase pair");
     if (surface.points.some(point => point.error === null)) notes.push("dashed: of unknown error");
     const worst = k < 2 ? surface.model.worst[body - 1] : null;
-    if (worst) notes.push(`over all phases ${digits(worst[2])} at ${at(worst.slice(0, 2))} ▿`);
-    return { ...common, ...surface, range: k === 2 ? [-reach, reach] : range, color: k === 2 ? signs : light, largest: largest && [largest.a, largest.b], worst: worst && worst.slice(0, 2),
+    const own = worst && worst[3] === (k ? pair.second : pair.first);
+    if (k < 2) notes.push(worst ? `largest over all phases${own ? "" : `, ${study.titles[worst[3]]}`}: ${digits(worst[2])} at ${at(worst.slice(0, 2))}${own ? " ▿" : ""}` : "largest over all phases: not searched");
+    return { ...common, ...surface, range: k === 2 ? [-reach, reach] : range, color: k === 2 ? signs : light, largest: largest && [largest.a, largest.b], worst: own && worst.slice(0, 2),
       lines: k === 2 && surface.sheet && !surface.completed ? pair.contours[body - 1] : [], notes,
       title: k === 2 ? "difference, % of the first" : study.titles[k ? pair.second : pair.first], unit: k === 2 ? " %" : "" };
   });

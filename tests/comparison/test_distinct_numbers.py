@@ -1,0 +1,267 @@
+"""A study of pairwise different numbers, read back from page, texts, terminal and figures: each stands in its place."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from html.parser import HTMLParser
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from conftest import Run, quick_figures
+from distinct_models import KEYS, STEPS, differences_of, distinct_hierarchy, grid_phases
+from known_analyses import analyses_are
+from numpy.typing import NDArray
+from test_pdf import flat, text_of
+
+from comparison.run import main
+
+GRID, COARSE = 8, 4  # of the equations, and of the engine
+Array = NDArray[np.float64]
+
+
+class Tables(HTMLParser):
+    """Every table of a page: rows of cells, each a text."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.tables: list[list[list[str]]] = []
+        self._inside = False
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag == "table":
+            self.tables.append([])
+        elif tag == "tr":
+            self.tables[-1].append([])
+        elif tag in ("td", "th"):
+            self.tables[-1][-1].append("")
+            self._inside = True
+
+    def handle_endtag(self, tag: str) -> None:
+        self._inside = self._inside and tag not in ("td", "th")
+
+    def handle_data(self, data: str) -> None:
+        if self._inside:
+            self.tables[-1][-1][-1] += data
+
+    def headed(self, *headings: str) -> list[dict[str, str]]:
+        """Rows of the one table with these headings, as cells by heading."""
+        [table] = [table for table in self.tables if set(headings) <= set(table[0])]
+        return [dict(zip(table[0], row, strict=True)) for row in table[1:]]
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("distinct") / "report"
+    with pytest.MonkeyPatch.context() as patch:
+        quick_figures(patch)
+        analyses_are(patch, motions=[])
+        words = ["fig3-I", "--grid", str(GRID), "--skip", "assumptions", "--out", str(place)]
+        assert main(words, distinct_hierarchy(), ThreadPoolExecutor) == 0
+    return place
+
+
+@pytest.fixture(scope="module")
+def tables(report: Path) -> Tables:
+    return Tables((report / "index.html").read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module")
+def summary(report: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads((report / "summary.json").read_text(encoding="utf-8"))
+    return found
+
+
+def step(key: str, body: int, count: int = COARSE) -> Array:
+    """What a model adds to the one before it on a grid."""
+    before = KEYS[KEYS.index(key) - 1]
+    return differences_of(key, body, grid_phases(count)) - differences_of(before, body, grid_phases(count))
+
+
+def pair_sizes(pair: str, body: int, count: int = COARSE) -> Array:
+    """The signed differences of a pair of models, relative to its own first model."""
+    first, second = {
+        "total": ("small", "spatial"),
+        "translational": ("small", "translational"),
+        "like for like": ("regularised", "translational"),
+    }[pair]
+    phases = grid_phases(count)
+    size = (1.0 + differences_of(second, body, phases)) / (1.0 + differences_of(first, body, phases)) - 1.0
+    return np.asarray(size)
+
+
+def of_sizes(pair: str, body: int) -> dict[str, float]:
+    """The statistics of the table of differences, made with NumPy alone."""
+    signed, size = pair_sizes(pair, body), np.abs(pair_sizes(pair, body))
+    return {
+        "mean": signed.mean(), "standard deviation": signed.std(), "95 %": np.percentile(size, 95.0),
+        "maximum": size.max(), "median size": np.median(size),
+    }  # fmt: skip
+
+
+ROWS = [(pair, body) for body in (1, 2) for pair in ("total", "translational", "like for like")]
+
+
+def test_no_two_statistics_of_the_study_are_written_alike() -> None:
+    for pair, body in ROWS:
+        written = {f"{abs(value):.1e}" for value in of_sizes(pair, body).values()}
+        assert len(written) == 5, f"{pair}, body {body}"
+    means = [of_sizes(pair, body)["mean"] for pair, body in ROWS]
+    assert min(means) < 0.0 < max(means), "of both signs"
+
+
+@pytest.mark.parametrize(("pair", "body"), ROWS)
+def test_every_statistic_of_a_pair_stands_in_its_own_column(
+    pair: str, body: int, tables: Tables, summary: dict[str, Any]
+) -> None:
+    numbers, place = of_sizes(pair, body), lambda row: (row["body"], row["difference"]) == (str(body), pair)
+    [row] = filter(place, tables.headed("mean, 95 %, maximum", "standard deviation"))
+    for name in ("mean", "standard deviation", "95 %", "maximum"):
+        assert row[name] == f"{numbers[name]:.1e}"
+    [row] = filter(place, tables.headed("median size", "beyond uD"))
+    assert row["median size"] == f"{numbers['median size']:.1e}"
+    [stored] = [
+        each
+        for each in summary["scenes"][0]["differences"]
+        if (each["body"], each["pair"]) == (body, pair.replace(" ", "-"))
+    ]
+    fields = {"mean": "mean", "spread": "standard deviation", "median": "median size", "percentile95": "95 %"}
+    for field, name in (fields | {"maximum": "maximum"}).items():
+        assert stored[field] == pytest.approx(numbers[name], rel=1e-9)
+
+
+def test_the_largest_is_at_the_phases_where_it_is(tables: Tables) -> None:
+    for row in tables.headed("median size", "beyond uD"):
+        sizes = np.abs(pair_sizes(row["difference"], int(row["body"])))
+        alpha1, alpha2 = np.degrees(grid_phases(COARSE)[sizes.argmax()])
+        assert (row["maximum at α₁"], row["at α₂"]) == (f"{alpha1:.0f}°", f"{alpha2:.0f}°")
+
+
+def test_beyond_u_d_counts_differences_of_both_signs(tables: Tables) -> None:
+    shares = set()
+    for row in tables.headed("median size", "beyond uD"):
+        pair, body = row["difference"], int(row["body"])
+        signed, phases = pair_sizes(pair, body), grid_phases(COARSE)
+        first, second = (
+            ("regularised" if pair == "like for like" else "small"),
+            ("spatial" if pair == "total" else "translational"),
+        )
+        ratio = (1.0 + differences_of(second, body, phases)) / (1.0 + differences_of(first, body, phases))
+        error = np.hypot(STEPS[first][-1], STEPS[second][-1] * ratio)
+        beyond = np.abs(signed) > error
+        assert row["beyond uD"] == f"{100.0 * beyond.mean():.0f} %"
+        if (signed[beyond] < 0.0).any():
+            shares.add((pair, body))
+    assert len(shares) > 2, "there are negative ones among them"
+
+
+def test_ring_and_bar_of_the_chart_are_at_95_percent_and_the_maximum(report: Path) -> None:
+    page = (report / "index.html").read_text(encoding="utf-8")
+    charts = re.findall(r'<svg class="dots body-(\d)".*?</svg>', page)
+    drawn = re.findall(r'<svg class="dots body-\d".*?</svg>', page)
+    assert len(charts) == len(drawn) == 6
+    low, high = map(float, re.search(r"logarithmic axis from ([\d.e+-]+) to ([\d.e+-]+)", page).groups())  # type: ignore[union-attr]
+
+    def at(size: float) -> float:
+        return 1.0 + 98.0 * np.log(size / low) / np.log(high / low)
+
+    for (pair, body), chart in zip(ROWS, drawn):
+        numbers = of_sizes(pair, body)
+        ring = float(re.search(r'class="ring" cx="([\d.]+)%', chart)[1])  # type: ignore[index]
+        end = float(re.search(r'class="end" x1="([\d.]+)%', chart)[1])  # type: ignore[index]
+        dot = float(re.search(r'<circle cx="([\d.]+)%', chart)[1])  # type: ignore[index]
+        expected = [at(abs(numbers[name])) for name in ("mean", "95 %", "maximum")]
+        assert [dot, ring, end] == pytest.approx(expected, abs=2e-3)
+
+
+def bars_of_page(report: Path, body: int, view: str = "mean") -> Iterator[tuple[str, str]]:
+    """Title and markup of every row of a waterfall of the page."""
+    page = (report / "index.html").read_text(encoding="utf-8")
+    tables = re.findall(rf'<table class="waterfall fixed" data-waterfall="{view}".*?</table>', page, re.DOTALL)
+    for row in re.findall(r"<tr class=\"(?!axis).*?</tr>", tables[body - 1], re.DOTALL):
+        yield re.sub("<.*?>", "", re.search(r"<th.*?</th>", row, re.DOTALL)[0]), row  # type: ignore[index]
+
+
+@pytest.mark.parametrize("body", [1, 2])
+def test_an_error_bar_is_as_long_as_the_error_on_either_side(body: int, report: Path) -> None:
+    rows = list(bars_of_page(report, body))
+    assert len(rows) == 6
+    ticks = [float(x) for x in re.findall(r'class="(?:grid|zero)" x1="([\d.]+)%', rows[0][1])]
+    page = (report / "index.html").read_text(encoding="utf-8")
+    labels = re.findall(r'<text x="[\d.]+%" y="11" text-anchor="middle">(.*?)</text>', page)[: len(ticks)]
+    sizes = [float(label.replace("−", "-").replace("+", "").replace(" %", "")) / 100.0 for label in labels]
+    per_share = (ticks[-1] - ticks[0]) / (sizes[-1] - sizes[0])  # percent of the width for a size of 1
+    phases = grid_phases(COARSE)
+    levels = {key: 1.0 + differences_of(key, body, phases) for key in KEYS}
+    for (first, second), (_, row) in zip([*pairwise(KEYS), (KEYS[0], KEYS[-1])], rows, strict=True):
+        error = np.hypot(STEPS[first][-1] * levels[first], STEPS[second][-1] * levels[second]).mean()
+        low, high = map(float, re.search(r'class="error" x1="([-\d.]+)%" x2="([-\d.]+)%', row).groups())  # type: ignore[union-attr]
+        assert high - low == pytest.approx(2.0 * error * per_share, abs=2.1e-3), "the places have three decimals"
+
+
+@pytest.mark.parametrize("body", [1, 2])
+def test_every_place_has_the_one_mean_of_the_total(
+    body: int, report: Path, tables: Tables, summary: dict[str, Any]
+) -> None:
+    signed = differences_of("spatial", body, grid_phases(COARSE))
+    mean, spread = signed.mean(), signed.std()
+    scene = summary["scenes"][0]
+    headline, waterfall = scene["headlines"][body - 1], scene["waterfalls"][body - 1]
+    total = next(row for row in scene["differences"] if (row["body"], row["pair"]) == (body, "total"))
+    for held in (headline["mean"], waterfall["total"]["size"], total["mean"]):
+        assert held == pytest.approx(mean, rel=1e-9)
+    for held in (headline["spread"], waterfall["spread"], total["spread"]):
+        assert held == pytest.approx(spread, rel=1e-9)
+    assert sum(bar["size"] for bar in waterfall["bars"]) == pytest.approx(mean, rel=1e-12)
+    digits = f"{abs(100.0 * mean):.2g} %"
+    direction = "less" if mean < 0.0 else "more"
+    assert f"the engine gives {digits} {direction} than the paper's equations (mean over 4 × 4" in headline["sentence"]
+    assert f"standard deviation {100.0 * spread:.2g} %;" in headline["sentence"]
+    rows = [text for title, text in bars_of_page(report, body) if title == "= total"]
+    sign = "−" if mean < 0.0 else "+"
+    assert [re.search(r'<td class="size">(.*?)</td>', row)[1] for row in rows] == [sign + digits]  # type: ignore[index]
+    [row] = [row for row in tables.headed("RMS", "real at") if (row["body"], row["step to"]) == (str(body), "total")]
+    assert row["mean"] == f"{mean:.1e}"
+    statement = headline["sentence"].removeprefix("fig3-I, ")
+    assert statement in (report / "summary.md").read_text(encoding="utf-8").replace("\\", "")
+    assert statement in str(ElementTree.parse(report / "junit.xml").getroot().findtext("testsuite/system-out"))
+    assert flat(statement) in flat(text_of(report / "report.pdf")[1])
+
+
+def test_means_of_the_steps_in_the_table_are_the_bars(tables: Tables, summary: dict[str, Any]) -> None:
+    titles = {model["title"].replace("_", ""): model["key"] for model in summary["models"]}
+    rows = [row for row in tables.headed("RMS", "real at") if row["step to"] != "total"]
+    assert len(rows) == 10
+    for row in rows:
+        key, body = titles[row["step to"]], int(row["body"])
+        count = COARSE if key in ("translational", "spatial") else GRID  # of the sizes: of both models of the step
+        assert row["mean"] == f"{step(key, body).mean():.1e}"
+        assert row["median"] == f"{np.median(np.abs(step(key, body, count))):.1e}"
+        assert row["maximum"] == f"{np.abs(step(key, body, count)).max():.1e}"
+
+
+def test_the_terminal_has_the_statistics_and_the_times_of_the_page(
+    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = command("fig3-I", "--grid", str(GRID), "--skip", "assumptions", hierarchy=distinct_hierarchy())
+    cells = [re.split(r"\s{2,}", line.strip()) for line in run.out.splitlines()]
+    heading = next(row for row in cells if row[0] == "scene")
+    assert heading[3:7] == ["mean", "std. dev.", "95 %", "maximum"]
+    for pair, body in ROWS:
+        [row] = [row for row in cells if row[1:3] == [str(body), pair]]
+        numbers = of_sizes(pair, body)
+        written = [float(cell.replace("−", "-").replace("+", "").replace(" %", "")) / 100.0 for cell in row[3:7]]
+        expected = [numbers[name] for name in ("mean", "standard deviation", "95 %", "maximum")]
+        assert written == pytest.approx(expected, rel=0.06), "two digits"
+    text = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))["run"]
+    took = f"{text['wall_seconds']:.1f} s of wall time with {text['jobs']} workers, {text['processor_seconds']:.1f} s"
+    for place in (run.out, *((run.report / name).read_text(encoding="utf-8") for name in ("index.html", "summary.md"))):
+        assert f"{took} of processor time" in place
+    assert flat(f"{took} of processor time") in flat(text_of(run.report / "report.pdf")[1])
