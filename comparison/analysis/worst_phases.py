@@ -1,9 +1,10 @@
 """
 The worst phases of every scene: the largest mu_i and displacement over all phases, and what the engine has there.
 
-The search of `reference.worst_phases` is made for the exact equations, and for those that the engine answers for. Beside these the engine is searched in a square around the worst phases, so that its own maximum nearby is
-known, too: its ratio to the equations, which hardly changes there, says where that is. The searches begin at the hills
-of the surfaces, if these are as fine as the search's own grid.
+The search of `reference.worst_phases` is made for the exact equations, and for those that the engine answers for.
+Beside these the engine is searched in a square around the worst phases, so that its own maximum nearby is known, too:
+its ratio to the equations, which hardly changes there, says where that is. The searches begin at the hills of the
+surfaces, if these are as fine as the search's own grid.
 """
 
 from __future__ import annotations
