@@ -25,10 +25,10 @@ class Difference:
     (mu of `second` - mu of `first`) / mu of `first` over the phases where both have a value.
 
     mean, spread: of its signed value over the phases where every model of the scene has one, as in the waterfall, or
-    both models where the second is a user's engine; the spread is the standard deviation. median, percentile95, maximum:
-    of its absolute value. All are NaN without any such phase. phases: (alpha1, alpha2) of the maximum, rad.
-    beyond_error: share of these phases where it exceeds u_D = sqrt(u_A^2 + u_B^2), the two error estimates together, NaN
-    where a model states no error. ratio: largest |D| / u_D, NaN where any error is missing. asked: phases that both
+    both models where the second is a user's engine; the spread is the standard deviation. median, percentile95,
+    maximum: of its absolute value. All are NaN without any such phase. phases: (alpha1, alpha2) of the maximum, rad.
+    beyond_error: share of these phases where it exceeds u_D = sqrt(u_A^2 + u_B^2), the two error estimates together,
+    NaN where a model states no error. ratio: largest |D| / u_D, NaN where any error is missing. asked: phases that both
     models were asked for; not_ok: those of them where either outcome is not ok; unanswered: where either has no value.
     """
 

@@ -119,15 +119,15 @@ def _shown(results: Results, check: bool) -> list[Alert]:
 
 
 def _print_differences(console: Console, results: Results) -> None:
-    """Mean with its spread, 95 % and maximum size, and the points not ok, for every scene, body and pair."""
+    """Mean with its spread, maximum size, and the points not ok, for every scene, body and pair."""
     rows = [row for scene in results.scenes_with("differences") for row in scene.differences]
     if not rows:
         return
-    over = " over the phases: mean and standard deviation with sign, 95 % and maximum of the size"
+    over = " over the phases: mean and standard deviation with sign, maximum of the size"
     console.print(f"Relative differences{over if results.phased else ''}, per body:", soft_wrap=True)
-    table = new_table("scene", "body", "difference", "mean", "std. dev.", "95 %", "maximum", "not ok")
+    table = new_table("scene", "body", "difference", "mean", "std. dev.", "maximum", "not ok")
     for row in rows:
-        cells = (signed(row.mean), *(percent(size) for size in (row.spread, row.percentile95, row.maximum)))
+        cells = (signed(row.mean), *(percent(size) for size in (row.spread, row.maximum)))
         table.add_row(row.scene, str(row.body), row.pair.replace("-", " "), *cells, str(row.not_ok))
     console.print(table)
 

@@ -140,5 +140,6 @@ def new_table(*headings: str) -> Table:
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for heading in headings:
         words = heading in ("scene", "model", "difference", "step", "quantity")
-        table.add_column(heading, justify="left" if words else "right", no_wrap=not words, overflow="fold")
+        whole = heading == "difference" or not words
+        table.add_column(heading, justify="left" if words else "right", no_wrap=whole, overflow="fold")
     return table

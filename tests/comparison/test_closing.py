@@ -5,9 +5,11 @@ from __future__ import annotations
 import io
 import json
 import shlex
+import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -16,9 +18,12 @@ from conftest import Run
 from fake_models import errors_in, fake_hierarchy
 from rich.console import Console
 
+import comparison.run
+from comparison.cli.start import Clock
 from comparison.cli.terminal import new_table
 from comparison.execution.keys import ANALYSIS
 from comparison.execution.resume import changed, resume_hint, without_scheduler
+from comparison.execution.workers import workers
 from comparison.run import main
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"
@@ -101,13 +106,14 @@ def test_engines_given_in_python_are_entered_in_spite_of_two_dashes(command: Cal
 
 
 def test_a_long_name_of_a_scene_cuts_no_number(capsys: pytest.CaptureFixture[str]) -> None:
-    table = new_table("scene", "body", "difference", "median", "95 %", "maximum", "not ok")
+    table = new_table("scene", "body", "difference", "mean", "std. dev.", "maximum", "not ok")
     name = "building-" + "x" * 71
-    table.add_row(name, "2", "like for like", "1.2e-05", "3.4e-05", "5.6e-05", "12345")
+    numbers = ("−0.0051 %", "< 0.0001 %", "0.014 %", "12345")
+    table.add_row(name, "2", "like for like", *numbers)
     for width in (80, 100, 120):
         Console(width=width).print(table)
         shown = capsys.readouterr().out
-        assert all(cell in shown for cell in ("like for like", "1.2e-05", "3.4e-05", "5.6e-05", "12345")), shown
+        assert all(cell in shown for cell in ("like for like", *numbers)), shown
         assert "".join(line.split()[0] for line in shown.splitlines()[3:] if line.strip()) == name
 
 
@@ -126,3 +132,45 @@ def test_a_check_without_limits_says_so_in_the_last_line(
 
 def test_a_record_has_no_grid_to_refine(command: Callable[..., Run]) -> None:
     assert after_report(command("synthetic-pair", hierarchy=fake_hierarchy()))[2:] == []
+
+
+def test_the_times_of_a_run_are_known_when_the_workers_have_ended(
+    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The processor time of a process is that of its parent as soon as it has ended."""
+    events: list[str] = []
+
+    @contextmanager
+    def told(*arguments: object) -> Iterator[tuple[int, object]]:
+        with workers(*arguments) as given:  # type: ignore[arg-type]
+            yield given
+        events.append("ended")
+
+    class Told(Clock):
+        @classmethod
+        def now(cls) -> Clock:
+            events.append("read")
+            return Clock(1000.0 + len(events), 50.0)
+
+    monkeypatch.setattr(comparison.run, "workers", told)
+    monkeypatch.setattr(comparison.run, "Clock", Told)
+    monkeypatch.setattr(comparison.run, "start_time", lambda: Clock(900.0, 20.0))
+    run = command("fig3-I", "--grid", "2", hierarchy=fake_hierarchy())
+    assert events == ["ended", "read"]
+    times = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))["run"]
+    assert (times["wall_seconds"], times["processor_seconds"]) == (102.0, 30.0)
+    words = "102.0 s of wall time with"
+    for name in ("index.html", "summary.md"):
+        text = (run.report / name).read_text(encoding="utf-8")
+        assert words in text
+        assert "30.0 s of processor time" in text
+    assert words in run.out
+    assert "predicted" not in run.out
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows does not add up the times of processes")
+def test_the_processor_time_of_an_ended_process_is_counted() -> None:
+    before = Clock.now()
+    burn = "import time\nwhile time.process_time() < 0.5: pass"
+    subprocess.run([sys.executable, "-c", burn], check=True)
+    assert Clock.now().since(before).processor >= 0.45, "processor time is counted in steps"

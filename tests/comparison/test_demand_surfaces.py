@@ -13,6 +13,7 @@ import xarray as xr
 from conftest import Run
 from fake_models import fake_hierarchy
 from known_analyses import analyses_are, collected
+from test_distinct_numbers import Tables
 
 import reference
 from comparison.analysis.demand_surfaces import PREFIX, DemandSurfaces, demand_statistics, with_demands
@@ -129,6 +130,14 @@ def test_the_report_shows_them_where_they_are_asked_for(
     [scene] = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))["scenes"]
     models = {row["model"] for row in scene["demand_statistics"] if row["quantity"] == "base_shear"}
     assert models == {"small", "exact", "regularised"}
+    shown = Tables(page).headed("demand", "median", "84 %")
+    for row in scene["demand_statistics"]:
+        if (row["quantity"], row["model"]) == ("base_shear", "small"):
+            [cells] = [r for r in shown if "base shear" in r["demand"] and r["model"] == "small equations"]
+            share = {each["probability"]: each["value"] for each in row["fractiles"]}
+            numbers = [row["lowest"]["value"], share[0.5], share[0.84], row["highest"]["value"]]
+            assert len({*share.values()}) > 2, "fractiles can be told apart"
+            assert [cells[name] for name in ("smallest", "median", "84 %", "largest")] == [f"{n:.4g}" for n in numbers]
     stored = xr.load_dataset(run.report / "surfaces.nc")
     assert float(stored["demand_base_shear"].sel(model="small").max()) == pytest.approx(
         float(demands["base_shear"].sel(scene="fig3-I", model="small").max())

@@ -14,13 +14,27 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+import xarray as xr
 from conftest import Run, quick_figures
-from distinct_models import KEYS, STEPS, differences_of, distinct_hierarchy, grid_phases
+from distinct_models import KEYS, STEPS, differences_of, distinct_hierarchy, first_mu, grid_phases
 from known_analyses import analyses_are
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 from test_pdf import flat, text_of
+from test_texts_of_scenes import RUN
 
+from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.worst_phases import Worst
+from comparison.report.assemble import assemble
+from comparison.report.figures import pairs, print_maps
+from comparison.report.findings import collect_findings
+from comparison.report.page_data import page_data
+from comparison.report.pdf import map_tasks
 from comparison.run import main
+from comparison.study.batches import execute_batch
+from comparison.study.study import Study
+from reference.problem import load_scene
 
 GRID, COARSE = 8, 4  # of the equations, and of the engine
 Array = NDArray[np.float64]
@@ -253,15 +267,119 @@ def test_the_terminal_has_the_statistics_and_the_times_of_the_page(
     run = command("fig3-I", "--grid", str(GRID), "--skip", "assumptions", hierarchy=distinct_hierarchy())
     cells = [re.split(r"\s{2,}", line.strip()) for line in run.out.splitlines()]
     heading = next(row for row in cells if row[0] == "scene")
-    assert heading[3:7] == ["mean", "std. dev.", "95 %", "maximum"]
+    assert heading[3:6] == ["mean", "std. dev.", "maximum"]
     for pair, body in ROWS:
         [row] = [row for row in cells if row[1:3] == [str(body), pair]]
         numbers = of_sizes(pair, body)
-        written = [float(cell.replace("−", "-").replace("+", "").replace(" %", "")) / 100.0 for cell in row[3:7]]
-        expected = [numbers[name] for name in ("mean", "standard deviation", "95 %", "maximum")]
+        written = [float(cell.replace("−", "-").replace("+", "").replace(" %", "")) / 100.0 for cell in row[3:6]]
+        expected = [numbers[name] for name in ("mean", "standard deviation", "maximum")]
         assert written == pytest.approx(expected, rel=0.06), "two digits"
     text = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))["run"]
     took = f"{text['wall_seconds']:.1f} s of wall time with {text['jobs']} workers, {text['processor_seconds']:.1f} s"
     for place in (run.out, *((run.report / name).read_text(encoding="utf-8") for name in ("index.html", "summary.md"))):
         assert f"{took} of processor time" in place
     assert flat(f"{took} of processor time") in flat(text_of(run.report / "report.pdf")[1])
+
+
+def drawn(patch: pytest.MonkeyPatch, draw: Callable[..., object], *arguments: Any) -> Figure:
+    """The figure that a function draws."""
+    figures: list[Figure] = []
+    patch.setattr(Figure, "savefig", lambda figure, *rest, **options: figures.append(figure))
+    draw(*arguments)
+    return figures[0]
+
+
+def by_phase(values: Array) -> Array:
+    """Values on a grid, alpha1 along the rows, closed at 2 pi."""
+    count = round(len(values) ** 0.5)
+    return np.pad(values.reshape(count, count), ((0, 1), (0, 1)), mode="wrap")
+
+
+@pytest.fixture(scope="module")
+def solved() -> tuple[Study, xr.Dataset]:
+    study = Study((load_scene("fig3-I"),), GRID, 1e-3, distinct_hierarchy())
+    batches = study.batches()
+    return study, labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
+
+
+def heights(key: str, body: int, count: int) -> Array:
+    phases = grid_phases(count)
+    return by_phase(first_mu(body, phases) * (1.0 + differences_of(key, body, phases)))
+
+
+def test_a_pair_of_surfaces_has_each_under_its_title_and_the_map_its_axes(
+    solved: tuple[Study, xr.Dataset], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study, surfaces = solved
+    scene = study.scenes[0]
+    [pair] = [pair for pair in study.pairs(scene) if pair.key == "translational"]
+    shown: list[tuple[Any, ...]] = []
+    surface = Axes3D.plot_surface
+
+    def told(axes: Axes3D, *xyz: Array, **look: object) -> object:
+        shown.append((axes, *xyz))
+        return surface(axes, *xyz, **look)
+
+    monkeypatch.setattr(Axes3D, "plot_surface", told)
+    figure = drawn(monkeypatch, pairs.draw_pair, Path("unused.png"), surfaces, scene, 2, pair)
+    first, second, difference, _ = figure.axes
+    assert ["small equations" in first.get_title(), "translational engine" in second.get_title()] == [True, True]
+    for axes, key, count in ((first, "small", GRID), (second, "translational", COARSE)):
+        [(_, alpha1, alpha2, mu)] = [call for call in shown if call[0] is axes]
+        np.testing.assert_allclose(mu, heights(key, 2, count), rtol=1e-12)
+        assert alpha1[1, 0] == alpha2[0, 1] == pytest.approx(2.0 * np.pi / count)
+        assert alpha1[0, 1] == alpha2[1, 0] == 0.0
+    for axes in (first, second, difference):
+        assert (axes.get_xlabel(), axes.get_ylabel()) == (r"$\alpha_1$, rad", r"$\alpha_2$, rad")
+    [mesh] = difference.collections
+    sizes = 100.0 * by_phase(pair_sizes("translational", 2))
+    np.testing.assert_allclose(mesh.get_array().reshape(COARSE + 1, COARSE + 1), sizes.T, rtol=1e-9)
+    assert f"largest of 4 × 4: {np.abs(sizes).max():.2g} %" in difference.get_title()
+
+
+def test_maps_for_print_have_each_model_under_its_title_and_alpha1_to_the_right(
+    solved: tuple[Study, xr.Dataset], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study, surfaces = solved
+    models = study.hierarchy[0], study.hierarchy[4]
+    figure = drawn(monkeypatch, print_maps.draw_maps, surfaces, study.scenes[0], models, [2], [])
+    maps = [axes for axes in figure.axes if axes.get_title()]
+    assert [axes.get_title().split(", ")[1] for axes in maps] == ["small equations", "translational engine", "%"]
+    percent = 100.0 * by_phase(pair_sizes("translational", 2))
+    expected = heights("small", 2, GRID), heights("translational", 2, COARSE), percent
+    for axes, values in zip(maps, expected, strict=True):
+        [mesh] = axes.collections
+        np.testing.assert_allclose(mesh.get_array().reshape(values.shape), values.T, rtol=1e-9)
+    for axes, values in zip(maps[:2], expected):
+        [cross] = [line for line in axes.lines if line.get_marker() == "x"]
+        row, column = np.unravel_index(values[:-1, :-1].argmax(), values[:-1, :-1].shape)
+        place = 2.0 * np.pi * np.array([row, column]) / (len(values) - 1)
+        assert [float(cross.get_xdata()[0]), float(cross.get_ydata()[0])] == pytest.approx(place.tolist())
+
+
+def test_what_is_not_real_is_explained_as_not_real(report: Path) -> None:
+    page = (report / "index.html").read_text(encoding="utf-8")
+    [tip] = re.findall(r'data-tip="([^"]*)">not real</span>', page)
+    assert tip.startswith("Not larger than five times the error estimates")
+
+
+def test_a_largest_value_names_its_grid_and_the_search_over_all_phases(
+    solved: tuple[Study, xr.Dataset],
+) -> None:
+    study, surfaces = solved
+    searched = [
+        Worst("fig3-I", "exact", "amplification", 1, value=8.765, phases=(1.0, 2.0)),
+        Worst("fig3-I", "translational", "amplification", 1, value=7.654, phases=(1.1, 2.1)),
+    ]
+    findings = collect_findings(study, surfaces, {"worst_phases": searched}, [], RUN)
+    [(about, _)] = map_tasks(assemble(findings), findings)
+    fine, coarse = heights("small", 1, GRID).max(), heights("spatial", 1, COARSE).max()
+    for words in (
+        f"μ_1, small equations: {fine:.4g} of 8 × 8 phases, 8.765 over all phases by the exact equations",
+        f"μ_1, spatial engine: {coarse:.4g} of 4 × 4 phases, 7.654 over all phases by the translational engine",
+        f"μ_2, small equations: {heights('small', 2, GRID).max():.4g} of 8 × 8 phases, not searched over all phases",
+    ):
+        assert words in about["note"]
+    data = json.loads(page_data(findings))["scenes"][0]["models"]
+    assert data["small"]["worst"] == [[1.0, 2.0, 8.765, "exact"], None]
+    assert data["spatial"]["worst"] == [[1.1, 2.1, 7.654, "translational"], None]

@@ -307,8 +307,8 @@ def test_an_entered_engine_changes_no_other_number(function: str) -> None:
 @pytest.mark.parametrize(
     ("function", "said"),
     [
-        ("off", "mine differs by up to 2.1 % from the exact equations, v_reg (mean +2.1 % over 4 × 4 initial phases, "),
-        ("with_error", "mine agrees to 0 % with the exact equations, v_reg (mean 0 % over 4 × 4 initial phases, "),
+        ("off", "mine differs by up to 2.1 % from the exact equations, v_reg (mean +2.1 % over 4 × 4 initial phases; "),
+        ("with_error", "mine agrees to 0 % with the exact equations, v_reg (mean 0 % over 4 × 4 initial phases; "),
     ],
 )
 def test_the_headline_and_the_first_pair_are_those_of_the_engine_of_the_user(function: str, said: str) -> None:
@@ -318,7 +318,7 @@ def test_the_headline_and_the_first_pair_are_those_of_the_engine_of_the_user(fun
     for body in (1, 2):
         sentence = headline(study, surfaces, SCENE, waterfall(study, surfaces, SCENE, body), rows).sentence
         assert sentence.split(": ", 1)[1].startswith(said)
-        assert "The engine gives 1 % more than the paper's equations" in sentence
+        assert "The engine gives 1.0 % more than the paper's equations" in sentence
         assert "the two codes" not in sentence, "it would be taken for the engine of the user"
 
 

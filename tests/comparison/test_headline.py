@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from fake_models import errors_in, fake_hierarchy
-from test_waterfall import KEYS, planted, scattered
+from test_waterfall import GRID, KEYS, planted, scattered
 
 from comparison.analysis.differences import differences
 from comparison.analysis.headline import Cause, Headline, headline
@@ -144,3 +144,67 @@ def test_a_model_without_words_for_its_effect_is_named_by_its_title() -> None:
     study, surfaces = planted(dict.fromkeys(KEYS, 0.05))
     hierarchy = tuple(replace(model, effect="") for model in study.hierarchy)
     assert "Cause: the step to the exact equations." in told(replace(study, hierarchy=hierarchy), surfaces).sentence
+
+
+def test_a_cause_has_the_sign_of_the_difference_and_what_offsets_it_is_said() -> None:
+    gaps = dict(zip(KEYS, (0.03, 0.03, 0.03, 0.03, -0.02)))  # geometry +3 %, turning of the bodies -5 %
+    result = told(*planted(gaps))
+    assert result.mean == pytest.approx(-0.02, rel=1e-9)
+    assert (result.cause.models, result.cause.offset) == (("spatial",), ("exact",))
+    assert "Cause: turning of the bodies (partly offset by geometry) in the mean, geometry at the" in result.sentence
+    against = dict(zip(KEYS, (-0.05, -0.02, 0.015, 0.015, 0.015)))  # the largest step is against the total
+    result = told(*planted(against))
+    assert set(result.cause.models) == {"resolved", "regularised"}
+    assert result.cause.offset == ("exact",)
+
+
+def test_another_cause_at_the_largest_is_in_the_same_sentence() -> None:
+    study, surfaces = planted({"spatial": -0.05})
+    place = {"body": 1, "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][4]}
+    for key in KEYS:
+        surfaces["mu"].loc[{"model": key, **place}] *= 0.7
+    sentence = told(study, surfaces).sentence
+    assert sentence.count("Cause") == 1
+    assert "Cause: turning of the bodies in the mean, geometry at the largest." in sentence
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_no_sentence_denies_geometry_and_blames_it(seed: int) -> None:
+    study, surfaces = planted({})
+    sizes = np.random.default_rng(seed).normal(size=(len(KEYS), 1, 1)) * [0.3, 3.0, 1.0, 1.0, 3.0][seed % 5] * 0.01
+    for key, shift in zip(KEYS, sizes.cumsum(axis=0)):
+        surfaces["mu"].loc[{"model": key}] *= 1.0 + float(shift[0, 0])
+    result = told(study, scattered(surfaces, seed) if seed % 2 else surfaces)
+    sentence = result.sentence
+    assert sentence.count("Cause") <= 1
+    if "not geometry" in sentence:
+        assert sentence.count("geometry") == 1
+        assert "exact" not in (*result.cause.models, *result.maximum_cause.models, *result.cause.offset)
+
+
+def test_headline_bars_and_table_have_one_mean_where_values_are_missing() -> None:
+    study, surfaces = planted(dict(zip(KEYS, (0.02, -0.07, -0.05, -0.06, 0.1))))
+    surfaces = scattered(surfaces)
+    for key, place in (("exact", (0, 2)), ("regularised", (4, 4)), ("spatial", (6, 0))):
+        where = {"model": key, "alpha1": surfaces["alpha1"][place[0]], "alpha2": surfaces["alpha2"][place[1]]}
+        surfaces["mu"].loc[where] = np.nan
+    for body in (1, 2):
+        result, bars = told(study, surfaces, body), waterfall(study, surfaces, study.scenes[0], body)
+        [row] = [row for row in differences(study, surfaces) if (row.body, row.pair) == (body, "total")]
+        assert result.points == bars.points == 13
+        mu = surfaces["mu"].sel(scene="fig3-I", body=body)[:, ::2, ::2]
+        known = np.isfinite(mu.values).all(axis=0)
+        signed = (mu.sel(model="spatial") / mu.sel(model="small") - 1.0).values[known]
+        for mean in (result.mean, bars.total.size, row.mean, sum(bar.size for bar in bars.bars)):
+            assert mean == pytest.approx(signed.mean(), rel=1e-12)
+        for spread in (result.spread, bars.spread, row.spread):
+            assert spread == pytest.approx(signed.std(), rel=1e-12)
+
+
+def test_scattered_differences_of_both_signs_are_no_difference_in_the_mean() -> None:
+    study, surfaces = planted({"spatial": 0.0})
+    sign = np.where((np.arange(GRID)[:, None] + np.arange(GRID)) // 2 % 2, -1.0, 1.0)
+    surfaces["mu"].loc[{"model": "spatial"}] *= 1.0 + 0.04 * sign
+    sentence = told(study, surfaces).sentence
+    assert "differ at most initial phases, but not in the mean (mean difference 0" in sentence
+    assert "standard deviation 4 %" in sentence

@@ -128,3 +128,29 @@ def test_the_demands_of_the_stored_motions_are_in_a_table(tmp_path: Path) -> Non
     assert 2 <= pages <= 4
     assert flat("Largest values over the stored motions") in flat(text)
     assert "base shear, N" in text
+
+
+def test_what_the_pdf_leaves_out_it_counts(tmp_path: Path) -> None:
+    record = load_scene("synthetic-pair")
+    scenes = [_called(record, f"{'long-' * 20}{number}", "A record") for number in range(9)]
+    scenes += [_called(load_scene("fig3-I"), f"phased{number}", "Phases") for number in range(6)]
+    results, findings = studied(scenes, fake_hierarchy(gap=0.01), 2)
+    motions = known_motions(findings.study, findings.surfaces)
+    findings = collect_findings(findings.study, findings.surfaces, {"motions": motions}, [], RUN)
+    results = assemble(findings)
+    pdf.write_pdf(tmp_path / "report.pdf", results, findings)
+    text = flat(text_of(tmp_path / "report.pdf")[1])
+    for words in (
+        "The 16 first rows of 18 are shown; the others are in index.html.",  # values under the records
+        "The 16 first rows of 30 are shown",  # demands, of two models each
+        "The 4 scenes with the largest differences of 6 are shown",  # maps
+        "The 10 largest differences of 30 are shown",  # sentences
+        "The 8 largest differences of 30 are shown",  # bars
+        "The 8 first scenes with limits of",
+        "The 8 first scenes of 15 are shown",  # provenance
+    ):
+        assert flat(words) in text, words
+    name = results.scenes[0].name
+    data = pdf.pdf_data(results, [], [])
+    assert data["records"][0][0] == f"{name[:39]}…"
+    assert data["demands"][0][0] == f"{name[:39]}…"
