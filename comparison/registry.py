@@ -18,6 +18,7 @@ from comparison.analysis.trajectories import Motions
 from comparison.analysis.worst_phases import WorstPhases
 from comparison.execution.task import Task
 from comparison.report.figures.pictures import Pictures
+from comparison.study.levels import Level, levels_of
 from comparison.study.study import Study
 
 ANALYSES: tuple[Analysis[Any], ...] = (
@@ -71,19 +72,16 @@ def first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:
     ]
 
 
-def predicted_costs(study: Study, analyses: Sequence[Analysis[Any]]) -> dict[str, tuple[int, float]]:
+def levels(study: Study) -> list[Level]:
     """
-    What each analysis costs.
+    The levels of a study, from coarse to fine.
 
     Parameters
     ----------
     study : Study
-    analyses : sequence of Analysis
 
     Returns
     -------
-    dict of str to tuple
-        By stage: number of tasks, s on one core.
+    list of Level
     """
-    seconds = {analysis.stage: analysis.predicted_seconds(study.selecting(analysis.key)) for analysis in analyses}
-    return {stage: (len(costs), sum(costs)) for stage, costs in seconds.items()}
+    return levels_of(study, {analysis.key: analysis.level for analysis in chosen_analyses(study)})

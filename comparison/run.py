@@ -1,9 +1,14 @@
 """
 The study on the command line: `python -m comparison.run [SCENE ...]`.
 
+The study is computed level by level, from coarse grids to fine ones. Each level has a whole report, which takes the
+place of the one before. A deadline and Ctrl-C end the same run early: the report is then that of the last level
+that is complete, with every analysis that is finished.
+
 Exit codes: 0 done; 1 a limit of --check is broken; 2 a wrong scene or option, before anything is computed; 3 something
-could not be written, or an unexpected error; 4 the cluster was lost; 128 + number of the signal, 130 for Ctrl-C; 141
-whoever read the output closed it. After 3, 4 and a signal the same command goes on where it stopped.
+could not be written, no level was complete at the deadline, or an unexpected error; 4 the cluster was lost; 128 +
+number of the signal, 130 for Ctrl-C; 141 whoever read the output closed it. After 3, 4 and a signal the same command
+goes on where it stopped.
 """
 
 from __future__ import annotations
@@ -14,47 +19,36 @@ if __name__ == "__main__":
     start("comparison.run")  # does not return: the module is loaded once, under its own name
 
 import sys
-import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
+from contextlib import suppress
 from dataclasses import replace
-from datetime import UTC, datetime
 from importlib import import_module
-from pathlib import Path
-from typing import Any
 
 from rich.console import Console
 
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.taken_up import TAKEN_UP
-from comparison.analysis.targets import targets_met
-from comparison.analysis.unanswered import with_silent_models
-from comparison.cli.arguments import command, writing
-from comparison.cli.budgeted import allotment, drawings_first, spend
-from comparison.cli.closing import print_check, print_closing, print_faults
+from comparison.cli.arguments import EndedEarlyError, command
+from comparison.cli.closing import print_check, print_closing, print_faults, print_level
 from comparison.cli.computing import ending_early
 from comparison.cli.entered import Engines, as_words
 from comparison.cli.options import Options, parsed
+from comparison.cli.reports import Complete, Reports, computed_level
 from comparison.cli.start import Clock, start_time
-from comparison.cli.terminal import print_models_left_out, print_plan, print_tolerance
+from comparison.cli.terminal import print_models_left_out, print_plan, print_stored
 from comparison.execution.cache import Cache, store_beside
+from comparison.execution.deadline import Deadline, TimeUpError
 from comparison.execution.executors import Pool
 from comparison.execution.keys import batch_key, task_key
-from comparison.execution.output import atomic_replace, clear_dead, on_stderr
+from comparison.execution.output import clear_dead
 from comparison.execution.processes import process_pool
-from comparison.execution.progress import wide_console
-from comparison.execution.provenance import provenance
-from comparison.execution.resume import changed, command_line, resume_hint
-from comparison.execution.runner import Computed, Runner, longest_first
+from comparison.execution.progress import progress, wide_console
+from comparison.execution.resume import changed, resume_hint
+from comparison.execution.runner import Runner
 from comparison.execution.task_results import TaskResults
 from comparison.execution.workers import workers
-from comparison.registry import chosen_analyses, first_tasks
-from comparison.report.assemble import assemble
-from comparison.report.findings import Fault, Findings, collect_findings
-from comparison.report.results.study import Results
+from comparison.registry import chosen_analyses, first_tasks, levels
+from comparison.study.costs import STARTING, WRITING, seconds_of_analysis, seconds_of_model
 from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work, with_softened_bars
-from comparison.study.planning import StudyPlan, StudyRequest, plan_study
-from comparison.study.refinement import Step
 from comparison.study.study import Study
 from reference.problem.command import stoppable
 
@@ -91,76 +85,56 @@ def main(
     began = start_time()
     with stoppable():
         try:
-            argv = changed(argv, as_words(models or {}))
-            options = parsed(argv)
+            words = changed(argv, as_words(models or {}))
+            options = parsed(words)
             console = wide_console()
-            plan = _chosen(options, hierarchy)
-            if options.budget is not None:
-                allotment(plan.study, options.budget, options.jobs)  # refuses what nothing fits
-            print_models_left_out(console, plan.study)
+            study = _study(options, hierarchy)
+            print_models_left_out(console, study)
             if options.plan:
-                print_plan(console, plan.study, options)
-            if options.tolerance is not None:
-                print_tolerance(console, plan, options)
-            return 0 if options.plan else _ended(plan, options, console, argv, executor, began)
+                print_plan(console, study, options)
+                return 0
+            return _ended(study, options, console, words, executor, began)
         except KeyboardInterrupt:
             print("interrupted before anything was computed", file=sys.stderr)
             return 130
 
 
-def _chosen(options: Options, hierarchy: Sequence[Model]) -> StudyPlan:
-    """What is computed; under a budget, of what as much is computed as fits."""
+def _study(options: Options, hierarchy: Sequence[Model]) -> Study:
+    """The whole question."""
     hierarchy = with_softened_bars(hierarchy, options.scenes)
     if options.max_work is not None:
         hierarchy = with_max_work(hierarchy, options.max_work)
     hierarchy = (*hierarchy, *options.models)
-    return plan_study(
-        StudyRequest(
-            options.scenes,
-            hierarchy,
-            options.tolerance,
-            options.grid,
-            options.full,
-            budgeted=options.budget is not None,
-            tries=options.plan,
-            selection=options.selection,
-        )
-    )
+    return Study(options.scenes, options.grid, options.tolerance, hierarchy, options.full, selection=options.selection)
 
 
-def _ended(
-    plan: StudyPlan, options: Options, console: Console, words: Sequence[str], executor: Pool, began: Clock
-) -> int:
+def _ended(study: Study, options: Options, console: Console, words: Sequence[str], executor: Pool, began: Clock) -> int:
     """The exit code; whatever ends the run early, what is finished is kept, and the line printed says how to go on."""
-    study, store = plan.study, Cache(store_beside(options.out))
+    store = Cache(store_beside(options.out))
     models = {model.amplification for model in study.hierarchy}
 
     def hint(rest: Sequence[str]) -> str:
         return resume_hint(store, rest, batches=len(study.batches()))
 
-    with ending_early(hint, words, options.scheduler):
-        with workers(options.jobs, options.scheduler, models, executor) as (width, make):
-            results, findings = _found(plan, replace(options, jobs=width), console, words, make, store)
-        took = Clock.now().since(began)  # the workers have ended: their processor time is known
-        times = {"wall_seconds": round(took.wall, 1), "processor_seconds": round(took.processor, 1)}
-        results = results.model_copy(update={"run": results.run.model_copy(update=times)})
-        return _reported(results, findings, options, console, words)
+    with (
+        ending_early(hint, words, options.scheduler),
+        workers(options.jobs, options.scheduler, models, executor) as (width, make),
+    ):
+        return _run(study, options, width, console, words, make, store, began, hint)
 
 
-def _found(
-    plan: StudyPlan,
+def _run(
+    study: Study,
     options: Options,
+    jobs: int,
     console: Console,
     words: Sequence[str],
-    executor: Callable[[int], Executor],
+    make: Callable[[int], Executor],
     store: Cache,
-) -> tuple[Results, Findings]:
-    """What the report is made from; its times are not known yet."""
-    from comparison.report.report import drawing_tasks  # plotting: not needed to refuse or to plan
-
-    begin, began = time.monotonic(), datetime.now(UTC)
+    began: Clock,
+    hint: Callable[[Sequence[str]], str],
+) -> int:
     clear_dead(options.out)
-    study = plan.study
     analyses = chosen_analyses(study)
     first = first_tasks(study, analyses)
     keys = [batch_key(batch) for batch in study.batches()]
@@ -168,92 +142,40 @@ def _found(
     if options.fresh:  # gone before anything is computed: what an interrupted run left is new
         store.forget(keys)
         store.remove(map(task_key, first))
-
-    runner = Runner(TaskResults(store, options.fresh), console, options.jobs, executor)
-    unfinished: Sequence[tuple[Step, float]] = ()
-    if options.budget is None:
-        computed = runner.run_study(study, first)
-    else:
-        spent, runner = spend(runner, study, options.budget, begin)
-        study, computed, unfinished = spent.study, spent.computed, spent.unfinished
-        analyses = chosen_analyses(study)
-    surfaces = labeled_surfaces(study, computed.batches, computed.answers)
-    study = with_silent_models(study, surfaces)
-    later = [analysis for analysis in analyses if analysis.needs_surfaces]
-    tasks = [task for analysis in later for task in analysis.tasks(study.selecting(analysis.key), surfaces)]
-    if tasks:
-        console.print("Computing what the surfaces choose, and drawing the figures of the report.")
-    runner.run_tasks(tasks, order=longest_first if options.budget is None else drawings_first)
-
-    run: dict[str, Any] = {
-        "command": command_line(words),
-        "began": began.isoformat(timespec="seconds"),
-        "wall_seconds": 0.0,
-        "processor_seconds": 0.0,
-        "tiles": len(computed.batches),
-        "tiles_stored_before": computed.stored,
-        "parts": {
-            stage: {"tasks": part.tasks, "stored_before": part.stored, "seconds": round(part.seconds, 2)}
-            for stage, part in runner.results.parts.items()
-        },
-        "jobs": options.jobs,
-        "choice": targets_met(plan, study, options.tolerance, options.budget, unfinished, surfaces)
-        if options.by_trade
-        else None,
-        "provenance": provenance(),
-    }
-    findings = collect_findings(
-        study,
-        surfaces,
-        {
-            analysis.key: analysis.collect(study.selecting(analysis.key), surfaces, runner.results)
-            for analysis in analyses
-        },
-        _faults(study, computed),
-        run,
-        families=[family for family in options.families if len(family.scenes) > 1] or None,
-        **{
-            name: None if analysis in study.absent else _taken_up(load, options.out)
-            for name, (analysis, load) in TAKEN_UP.items()
-        },
-    )
-    results = assemble(findings)
-    drawings = drawing_tasks(results, findings)
-    runner.run_tasks(drawings)
-    files = {task.key: runner.results[task].value for task in drawings}
-    return results, replace(findings, drawings={key: value for key, value in files.items() if value})
-
-
-def _reported(results: Results, findings: Findings, options: Options, console: Console, words: Sequence[str]) -> int:
-    """Write the report and say what is in it; the exit code."""
-    from comparison.report.report import write_report  # likewise
-
-    console.print("Writing the report.")
-    with writing(options.out), atomic_replace(options.out) as report:
-        write_report(report.folder, results, findings)
-    place = options.out if report.place == options.out.resolve() else report.place
-    print_faults(results)
-    print_closing(console, results, options, words, place)
-    if options.check:
-        print_check(results)
-    return 1 if options.check and results.broken else 0
-
-
-def _faults(study: Study, computed: Computed) -> list[Fault]:
-    """What solvers reported, once for each scene, model and message."""
-    titles = {model.key: model.title for model in study.hierarchy}
-    faults = {
-        Fault(batch.scene.name, f"{titles[batch.model]}: {answer.error_message}")
-        for batch, answer in zip(computed.batches, computed.answers)
-        if answer.error_message
-    }
-    return sorted(faults, key=lambda fault: fault.line)
-
-
-def _taken_up(load: Callable[[Path], Any], out: Path) -> Any:
-    """What another command left beside the report; a file that has appeared since and is none of theirs is left."""
-    try:
-        return load(out)
-    except (OSError, ValueError) as error:
-        on_stderr(str(error))
-        return None
+    results = TaskResults(store, options.fresh)
+    print_stored(console, store, keys, first, options.fresh)
+    stages = {analysis.stage: seconds_of_analysis(study, analysis.key, analysis.stage) for analysis in analyses}
+    total = STARTING + WRITING + sum(stages.values()) + sum(seconds_of_model(study, model) for model in study.hierarchy)
+    reports = Reports(options, jobs, words, began)
+    complete: Complete | None = None
+    stopped: KeyboardInterrupt | None = None
+    with progress(console, total, jobs) as display, Deadline(began.wall, options.budget) as deadline:
+        runner = Runner(results, console, jobs, make, display, stages)
+        try:
+            for level in levels(study):
+                complete = computed_level(level, runner)
+                if level.last or reports.is_due:
+                    before = reports.results
+                    reports.write(complete, runner)
+                    deadline.keep_free(reports.seconds)
+                    if not level.last:
+                        print_level(console, reports.written, before, level, reports.place)
+        except TimeUpError:
+            deadline.keep_free(0.0)
+            with suppress(TimeUpError):  # then the report before stays
+                reports.write_stopped(complete, runner)
+        except KeyboardInterrupt as stop:
+            reports.write_stopped(complete, runner)
+            stopped = stop
+    found = reports.results
+    if found is not None:
+        print_faults(found)
+        print_closing(console, found, replace(options, jobs=jobs), words, reports.place)
+        if options.check:
+            print_check(found)
+    if stopped is not None:
+        raise stopped
+    if found is None:
+        rule = "no level of the study was complete by then"
+        raise EndedEarlyError(3, f"command line: --budget = {options.budget:g}: {rule}: {hint(words)}")
+    return 1 if options.check and found.broken else 0

@@ -145,7 +145,6 @@ class Limit:
     expected: float | None
     measure: Callable[[Scene], Values]
     applies: Callable[[Scene], bool]
-    seconds: float  # predicted cost in one scene, s on `study.models.RECORDED_ON`
 
 
 def _dry(scene: Scene) -> bool:
@@ -161,13 +160,11 @@ def _any(scene: Scene) -> bool:
 
 
 LIMITS = (
-    Limit("exact equations: regularized against resolved", REGULARIZATIONS, 1.0, _regularized, _dry, 0.02),
-    Limit("exact equations: regularized against supremum", REGULARIZATIONS, None, _to_supremum, _dry, 0.02),
-    Limit("engine against resolved", ENGINE_REGULARIZATIONS, 1.0, _by_engine, _dry, 0.35),
-    Limit(
-        "bodies that turn: against v_reg = 1e-4 m/s", ENGINE_REGULARIZATIONS, 1.0, _with_turning, _dry_on_supports, 2.2
-    ),
-    Limit("elastic contact against rigid", PENETRATIONS, 1.0, _stiffened, _any, 1.1),
+    Limit("exact equations: regularized against resolved", REGULARIZATIONS, 1.0, _regularized, _dry),
+    Limit("exact equations: regularized against supremum", REGULARIZATIONS, None, _to_supremum, _dry),
+    Limit("engine against resolved", ENGINE_REGULARIZATIONS, 1.0, _by_engine, _dry),
+    Limit("bodies that turn: against v_reg = 1e-4 m/s", ENGINE_REGULARIZATIONS, 1.0, _with_turning, _dry_on_supports),
+    Limit("elastic contact against rigid", PENETRATIONS, 1.0, _stiffened, _any),
 )
 
 Arguments = tuple[Scene, int]  # and the number of the limit
@@ -181,7 +178,7 @@ class Convergence(Analysis[list[Trend]]):
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One task for each limit and scene."""
         return [
-            Task(limit_trends, (scene, number), self.stage, limit.seconds, scene)
+            Task(limit_trends, (scene, number), self.stage, about=scene)
             for number, limit in enumerate(LIMITS)
             for scene in study.phased
             if limit.applies(scene)

@@ -21,7 +21,6 @@ from comparison.analysis.surfaces import NOT_ASKED
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
-from comparison.study.costs import at_samples
 from comparison.study.models import Model, steps_of
 from comparison.study.study import Study
 from reference.problem import Estimate, Estimates, Scene, phase_axis, phase_distribution, phase_grid
@@ -30,8 +29,7 @@ from reference.problem.peak_demands import PER_BODY, QUANTITIES, demands_of_moti
 
 Array = NDArray[np.float64]
 
-SECONDS = {"reference": 0.06, "engine": 0.5}  # predicted cost of one motion, s on `study.models.RECORDED_ON`
-BATCH_SECONDS = 2.0  # of the motions of one task, as predicted
+BATCH = {"reference": 32, "engine": 4}  # motions of one task: about two seconds
 PREFIX = "demand_"  # of a demand in surfaces.nc
 
 # scene, model, relative error asked, phases (M, 2), rad
@@ -78,16 +76,16 @@ class DemandStatistics:
 class DemandSurfaces(Analysis[xr.Dataset]):
     """Demands at every phase pair of every model's surface."""
 
-    key, stage = "demands", "demands"
+    key, stage, level = "demands", "demands", 2
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """Motions of about two seconds each."""
         phases = phase_grid(study.grid)
         return [
             Task(
-                moved_demands, (scene, model, model.tolerance(study.tolerance), phases[places]), self.stage, cost, scene
+                moved_demands, (scene, model, model.tolerance(study.tolerance), phases[places]), self.stage, about=scene
             )
-            for scene, model, places, cost in _batches(study)
+            for scene, model, places in _batches(study)
         ]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> xr.Dataset | None:
@@ -103,7 +101,7 @@ class DemandSurfaces(Analysis[xr.Dataset]):
         plane = (len(names), len(models), study.grid**2)
         status = np.full(plane, NOT_ASKED, dtype=object)
         numbers: dict[str, Array] = {}
-        for (scene, model, places, _), task in zip(_batches(study), self.tasks(study), strict=True):
+        for (scene, model, places), task in zip(_batches(study), self.tasks(study), strict=True):
             batch: DemandBatch = results.value(task, _without_value)
             where = names.index(scene.name), models.index(model.key)
             status[where][places] = batch.status
@@ -125,15 +123,13 @@ def _moving(study: Study, scene: Scene) -> list[Model]:
     return [model for model in steps_of(scene, study.hierarchy) if "cutoff" not in model.settings]
 
 
-def _batches(study: Study) -> Iterator[tuple[Scene, Model, NDArray[np.intp], float]]:
-    """Scene, model, places on the whole grid, and predicted cost, s."""
+def _batches(study: Study) -> Iterator[tuple[Scene, Model, NDArray[np.intp]]]:
+    """Scene, model, places on the whole grid."""
     for scene in study.scenes:
         for model in _moving(study, scene):
-            places, each = study.solved(scene, model), SECONDS[model.side] * at_samples(scene)
-            size = max(1, round(BATCH_SECONDS / each))
+            places, size = study.solved(scene, model), BATCH[model.side]
             for first in range(0, len(places), size):
-                part = places[first : first + size]
-                yield scene, model, part, each * len(part)
+                yield scene, model, places[first : first + size]
 
 
 def moved_demands(task: Arguments) -> DemandBatch:

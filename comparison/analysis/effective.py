@@ -18,7 +18,6 @@ from comparison.analysis.protocol import Analysis
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
-from comparison.study.costs import at_samples
 from comparison.study.models import Model, steps_of
 from comparison.study.study import Study
 from reference.problem import GRAVITY, Outcome, Scene, Trajectory, ground_acceleration
@@ -27,7 +26,6 @@ Array = NDArray[np.float64]
 
 PHASES = (0.3, 1.1)  # rad, of the motion that is measured
 DURATION = 6.0  # s: two frequencies are strongest in their first seconds; a record is followed to its end
-SECONDS = {"reference": 0.02, "engine": 0.2}  # predicted cost of one motion, s on `study.models.RECORDED_ON`
 LEAST_SHARE = 0.1  # of the change from slow to fast friction: motions that see less of it do not tell the fast one
 LEVEL = 1e-5  # rise of a flat slider over its displacement that counts as none: what contacts give way by
 FASTEST = 0.9  # friction is measured where the platform slides faster than this part of its largest speed
@@ -80,7 +78,7 @@ def stated(scene: Scene) -> Effective:
 class EffectiveValues(Analysis[list[Effective]]):
     """For every scene what it states, then what the motion of each model shows."""
 
-    key, stage = "effective", "effective values"
+    key, stage, level = "effective", "effective values", 2
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """Every model of every scene."""
@@ -95,10 +93,7 @@ class EffectiveValues(Analysis[list[Effective]]):
         ]
 
     def _of(self, study: Study, scene: Scene) -> list[Task]:
-        return [
-            Task(read_back, (scene, model), self.stage, SECONDS[model.side] * at_samples(scene), scene)
-            for model in steps_of(scene, study.hierarchy)
-        ]
+        return [Task(read_back, (scene, model), self.stage, about=scene) for model in steps_of(scene, study.hierarchy)]
 
 
 def read_back(task: tuple[Scene, Model]) -> Effective:

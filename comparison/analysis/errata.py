@@ -28,7 +28,6 @@ Array = NDArray[np.float64]
 
 PHASES = np.array([(0.3, 1.1), (4.0, 5.5)])  # rad
 DURATION = 6.0  # s
-SECONDS = 0.12  # predicted cost of one erratum in one scene, s on `study.models.RECORDED_ON`
 
 RIGID_PERIOD = 1e-3  # s, of half of the platform on its other half, critically damped; moves exact mu_i by 1e-4
 
@@ -217,12 +216,12 @@ class Effect:
 class Errata(Analysis[list[Effect]]):
     """Every measurable erratum in every scene, in the order scene, erratum."""
 
-    key, stage = "errata", "errata"
+    key, stage, level = "errata", "errata", 2
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One task for each effect."""
         return [
-            Task(measured, (scene, number), self.stage, SECONDS, scene)
+            Task(measured, (scene, number), self.stage, about=scene)
             for scene in study.phased
             for number, erratum in enumerate(ERRATA)
             if erratum.measure

@@ -19,10 +19,11 @@ from comparison.analysis.stored import FILE_FORMAT, StoredFile, finite_or_none
 from comparison.analysis.tradeoff.measure import Measurement, measure, sample, without_value
 from comparison.execution.task import Task
 from comparison.execution.task_results import TaskResults
-from comparison.study.costs import USUAL
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, Model
 from comparison.study.study import Study
 from reference.problem import Scene
+
+TOLERANCE = 1e-3  # asked of the engine; the equations are asked for their own
 
 FILE, PICTURE = "growth.json", "growth.png"
 SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"
@@ -209,9 +210,9 @@ class Growth(Analysis[list[Series]]):
         ]
 
     def _task(self, quantity: Quantity, model: Model, scene: Scene, value: float) -> Task:
-        settings: dict[str, Any] = {**model.settings, "tolerance": USUAL[model.side]}
+        settings: dict[str, Any] = {**model.settings, "tolerance": model.tolerance(TOLERANCE)}
         if model.side == "engine":
             settings["max_work"] = MAX_WORK
         phases = sample(quantity.points(model, value))
         measurement = Measurement(quantity.scene(scene, value), (model.amplification, settings), 0, phases)
-        return Task(measure, measurement, self.stage, LIMIT / 4.0, scene, timeout=LIMIT)
+        return Task(measure, measurement, self.stage, about=scene, timeout=LIMIT)

@@ -18,13 +18,11 @@ from comparison.analysis.protocol import Analysis
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
-from comparison.study.costs import at_samples
 from comparison.study.models import Model, steps_of
 from comparison.study.study import Study
 from reference.problem import Estimate, Outcome, Scene, demands
 from reference.problem.measured import OF_BODIES, Measured
 
-SECONDS = {"reference": 0.15, "engine": 0.65}  # predicted cost of one motion, s on `study.models.RECORDED_ON`
 LACKING = Estimate(math.nan, math.nan, "the model has no such value")
 
 Arguments = tuple[Scene, Model, float, tuple[float, float], list[tuple[str, int]]]
@@ -68,7 +66,7 @@ class MeasuredPeak:
 class MeasuredPeaks(Analysis[list[MeasuredPeak]]):
     """Every measured peak of every scene by every model that has its quantity."""
 
-    key, stage = "measured", "measured"
+    key, stage, level = "measured", "measured", 2
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One task for each scene, phase pair of a test, and model."""
@@ -94,7 +92,7 @@ class MeasuredPeaks(Analysis[list[MeasuredPeak]]):
 
     def _task(self, study: Study, scene: Scene, phases: tuple[float, float], model: Model) -> Task:
         arguments = scene, model, model.tolerance(study.tolerance), phases, _asked(scene, phases, model)
-        return Task(peaks_at, arguments, self.stage, SECONDS[model.side] * at_samples(scene), scene)
+        return Task(peaks_at, arguments, self.stage, about=scene)
 
 
 def phases_of(peak: Measured) -> tuple[float, float]:

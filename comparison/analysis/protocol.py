@@ -11,6 +11,7 @@ from comparison.execution.task import Task
 from comparison.execution.task_results import TaskResults
 from comparison.study.study import Study
 
+LAST = 3  # level of a study: the whole of it
 Result = TypeVar("Result", covariant=True)
 
 
@@ -25,6 +26,7 @@ class Analysis(Protocol[Result]):
     key: ClassVar[str]  # its name for a selection, and its field of the findings
     stage: ClassVar[str]  # the stage of its tasks, on the terminal and in the table of costs
     needs_surfaces: ClassVar[bool] = False  # whether the surfaces choose its tasks
+    level: ClassVar[int] = LAST  # of the study, the first whose report has it
 
     @abstractmethod
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
@@ -46,7 +48,3 @@ class Analysis(Protocol[Result]):
 
         A task that returned nothing leaves a gap that says why. None: the analysis does not apply to the study.
         """
-
-    def predicted_seconds(self, study: Study) -> list[float]:
-        """Predicted cost of each task before the surfaces are known, s on one core."""
-        return [task.seconds for task in self.tasks(study)]

@@ -29,7 +29,6 @@ Array = NDArray[np.float64]
 SCALES = (1.0, 0.5, 0.25, 0.125)
 PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad
 TOLERANCE = 1e-8  # relative: the step at the smallest scale is 1e-5
-SECONDS = 0.03  # predicted cost of one task, s on `study.models.RECORDED_ON`
 CUTOFF = 1e-3  # m/s at s = 1, of the resolved peak; it scales with the motion
 STEP = "exact minus small"
 PRINTED = "small, s minus s/2"
@@ -53,12 +52,12 @@ def scaled(scene: Scene, s: float) -> Scene:
 class Scaling(Analysis[list[Trend]]):
     """The trends of every scene and body, for the supremum and, where that differs, the resolved peak."""
 
-    key, stage = "scaling", "scaling test"
+    key, stage, level = "scaling", "scaling test", 2
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One task for each scene and reading of the peak."""
         return [
-            Task(scene_trends, (scene, supremum), self.stage, SECONDS, scene)
+            Task(scene_trends, (scene, supremum), self.stage, about=scene)
             for scene in study.phased
             for supremum in (True, False)
             if supremum or _dry(scene)

@@ -18,7 +18,6 @@ from comparison.analysis.thinning import thinned
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
-from comparison.study.costs import at_samples
 from comparison.study.models import Model
 from comparison.study.study import Study
 from reference.problem import Demands, FloorSpectra, Outcome, Scene, Trajectory, demands, floor_spectra
@@ -27,7 +26,6 @@ from reference.problem.demands import ANSWERED
 Array = NDArray[np.float64]
 
 SPREAD = 5  # phase pairs (k, 2k) 2 pi/5: evenly over the square, and no two of them mirror images of each other
-SECONDS = {"reference": 0.15, "engine": 0.65}  # predicted cost of one motion, s on `study.models.RECORDED_ON`
 
 
 @dataclass(frozen=True)
@@ -156,28 +154,12 @@ class Motions(Analysis[list[StoredMotion]]):
         """One task for each motion, in the order of `motion_arguments`."""
         assert surfaces is not None, "the places are chosen by the surfaces"
         return [
-            Task(moved, arguments, self.stage, SECONDS[arguments[1].side] * at_samples(arguments[0]), arguments[0])
-            for arguments in motion_arguments(study, surfaces)
+            Task(moved, arguments, self.stage, about=arguments[0]) for arguments in motion_arguments(study, surfaces)
         ]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[StoredMotion]:
         """The motions, in the order of the tasks."""
         return [results.value(task, _without_value) for task in self.tasks(study, surfaces)]
-
-    def predicted_seconds(self, study: Study) -> list[float]:
-        """Before the surfaces are known that choose the places."""
-        return [SECONDS[model.side] * at_samples(scene) for scene in study.scenes for model in _moving(study, scene)]
-
-
-def _moving(study: Study, scene: Scene) -> list[Model]:
-    """The models of the motions: all where a difference is largest; at evenly spread phases those that have all."""
-    shown = shown_models(study, scene)
-    if scene.recorded:
-        return shown
-    return [
-        *(model for model in shown for _ in scene.bodies),
-        *(model for model in shown for _ in range(SPREAD) if study.strides[model.key] == 1),
-    ]
 
 
 def shown_models(study: Study, scene: Scene) -> list[Model]:

@@ -25,7 +25,6 @@ from comparison.analysis.surfaces import asked_of
 from comparison.execution.task import Task, TaskResult
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import imported
-from comparison.study.costs import seconds_per_point
 from comparison.study.models import Model, models_of, pairs_of
 from comparison.study.study import Study
 from reference.problem import Scene
@@ -108,14 +107,8 @@ class WorstPhases(Analysis[list[Worst]]):
             for model, engine, quantity, body in _searches(study, scene):
                 starts = _starts(study, surfaces, scene, model, quantity, body)
                 argument = (scene, model, engine, quantity, body, study.tolerance, starts)
-                tasks.append(Task(worst_of, argument, self.stage, _seconds(scene, model, engine), scene))
+                tasks.append(Task(worst_of, argument, self.stage, about=scene))
         return tasks
-
-    def predicted_seconds(self, study: Study) -> list[float]:
-        """Where the climbs begin does not change how many there are."""
-        return [
-            _seconds(scene, model, engine) for scene in study.phased for model, engine, _, _ in _searches(study, scene)
-        ]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Worst] | None:
         """In the order of the tasks; None for a study without phases."""
@@ -160,11 +153,6 @@ def _searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, str
     searched = [model for model in equations if model in exact or model.key in engines]
     searches = [(model, engines.get(model.key), "amplification", body) for model in searched for body in bodies]
     return searches + [(model, None, "displacement", 1) for model in exact]
-
-
-def _seconds(scene: Scene, model: Model, engine: Model | None) -> float:
-    seconds = POINTS * seconds_per_point(scene, model)
-    return seconds if engine is None else seconds + ENGINE_POINTS * seconds_per_point(scene, engine)
 
 
 def _starts(

@@ -15,12 +15,13 @@ from comparison.cli.terminal import new_table
 from comparison.execution.resume import changed, command_line
 from comparison.report.results.alerts import Alert
 from comparison.report.results.differences import Headline
-from comparison.report.results.run import Targets
 from comparison.report.results.scene import SceneResult
 from comparison.report.results.study import Results
+from comparison.study.levels import Level
 from comparison.wording import percent, signed
 from reference.problem import builtin_scenes, example_scenes
 
+FIRST_SENTENCES = 8  # of the terminal after a level
 FILMED = ("translational", "spatial")  # models that multibody.animate knows, by their keys
 LABELS = {
     "refused": "No answer",
@@ -63,8 +64,6 @@ def print_closing(console: Console, results: Results, options: Options, words: S
         Folder of the report.
     """
     _print_differences(console, results)
-    if results.run.choice:
-        _print_targets_met(console, results.run.choice, bool(results.phased))
     console.print(f"The run took {results.run.took}.", soft_wrap=True)
     for alert in _shown(results, options.check):
         color = "red" if alert.level == "red" else "yellow"
@@ -75,8 +74,25 @@ def print_closing(console: Console, results: Results, options: Options, words: S
         console.print(f"{results.measurements}.", soft_wrap=True)
     console.print(f"Report: {report / 'index.html'}", soft_wrap=True)  # a path is copied whole
     console.print(f"In print: {results.no_pdf or report / 'report.pdf'}", soft_wrap=True)
+    if results.run.level < results.run.levels:
+        console.print(f"This is level {results.run.level} of {results.run.levels}: the same command goes on with it.")
     for line in next_commands(results, words):
         console.print(line, soft_wrap=True)
+
+
+def print_level(console: Console, results: Results, before: Results | None, level: Level, report: Path) -> None:
+    """What there is after a level that is not the last: the place of its report, and its first new sentences."""
+    console.print(f"{level.title.capitalize()}: {report / 'index.html'}", soft_wrap=True)
+    known = set(_sentences(before)) if before else set()
+    sentences = [sentence for sentence in _sentences(results) if sentence not in known]
+    for sentence in sentences[:FIRST_SENTENCES]:
+        console.print(f"  {sentence}", soft_wrap=True)
+    if len(sentences) > FIRST_SENTENCES:
+        console.print(f"  and {len(sentences) - FIRST_SENTENCES} more on the page.")
+
+
+def _sentences(results: Results) -> list[str]:
+    return [headline.sentence for scene in results.scenes for headline in scene.headlines]
 
 
 def next_commands(results: Results, words: Sequence[str]) -> list[str]:
@@ -92,7 +108,7 @@ def next_commands(results: Results, words: Sequence[str]) -> list[str]:
     if filmed:
         largest, source = max(filmed, key=lambda pair: abs(pair[0].maximum))
         lines.append(f"Next: a film of the largest difference: {_film(largest, source)}")
-    if results.phased and not (results.run.choice and results.run.choice.budget):
+    if results.phased and not any(word.startswith("--budget") for word in words):
         finer = command_line(changed(words, ["--grid", str(2 * results.grid), "--plan"], options=["--grid"]))
         lines.append(f"Next: what a finer grid costs: {finer}")
     return lines
@@ -130,18 +146,3 @@ def _print_differences(console: Console, results: Results) -> None:
         cells = (signed(row.mean), *(percent(size) for size in (row.spread, row.maximum)))
         table.add_row(row.scene, str(row.body), row.pair.replace("-", " "), *cells, str(row.not_ok))
     console.print(table)
-
-
-def _print_targets_met(console: Console, targets: Targets, phased: bool) -> None:
-    """What came of --tolerance and --budget."""
-    for model in targets.models:
-        error = "no value at more than 1 %" if model.error99 is None else f"{100.0 * model.error99:.2g} % of mu at 99 %"
-        grid = f", {model.phases_per_axis} x {model.phases_per_axis} phases" if phased else ""
-        console.print(
-            f"{model.title}{grid}: {model.tolerance:g} met at {100.0 * model.met:.4g} % of {model.points} points "
-            f"by the error estimates, {error} of them."
-        )
-    for step in targets.next_steps[:1]:
-        others = f", and {len(targets.next_steps) - 1} more" if len(targets.next_steps) > 1 else ""
-        line = f"More time would buy {step.what}: {step.seconds:.0f} s of processor time{others}."
-        console.print(line.replace("×", "x"), soft_wrap=True)

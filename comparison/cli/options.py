@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -13,12 +14,14 @@ from comparison.cli.entered import add_models, entered_models
 from comparison.execution.cache import refuse_foreign_store
 from comparison.execution.output import destination, refuse_foreign_report
 from comparison.study.models import Model
-from comparison.study.planning import DEFAULT_GRID, DEFAULT_TOLERANCE, tightest
 from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.study import refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
 from reference.problem.acceptance import Acceptance
 from reference.problem.analyses import ANALYSES, ON_REQUEST, known_analyses
+
+DEFAULT_TOLERANCE, TIGHTEST = 1e-3, 1e-8
+DEFAULT_GRID = 48  # phases per axis of the equations; the engine's models have a `most` of their own
 
 
 @dataclass(frozen=True)
@@ -26,10 +29,10 @@ class Options:
     """What the command line asks for, valid."""
 
     families: tuple[Family, ...]
-    grid: int | None
+    grid: int
     out: Path
     jobs: int
-    tolerance: float | None
+    tolerance: float
     budget: float | None
     check: bool
     plan: bool
@@ -39,11 +42,6 @@ class Options:
     max_work: float | None = None
     selection: Selection = EVERYTHING
     models: tuple[Model, ...] = ()  # engines of the user
-
-    @property
-    def by_trade(self) -> bool:
-        """Whether a tolerance or a budget decides what is computed."""
-        return self.tolerance is not None or self.budget is not None
 
     @property
     def scenes(self) -> tuple[Scene, ...]:
@@ -78,10 +76,10 @@ def parsed(argv: Sequence[str]) -> Options:
         raise SceneError("command line", "--skip", words.skip, "names what --only leaves out anyway: give one of them")
     options = Options(
         families=families,
-        grid=None if words.grid is None else whole_number("--grid", words.grid, 2, 512),
+        grid=DEFAULT_GRID if words.grid is None else whole_number("--grid", words.grid, 2, 512),
         out=destination(words.out),
         jobs=jobs(words),
-        tolerance=_optional("--tolerance", words.tolerance, tightest(), 0.1, "relative error of mu"),
+        tolerance=_optional("--tolerance", words.tolerance, TIGHTEST, 0.1, "relative error of mu") or DEFAULT_TOLERANCE,
         budget=_optional("--budget", words.budget, 1.0, 1e7, "s of the whole run"),
         check=words.check,
         plan=words.plan,
@@ -97,9 +95,8 @@ def parsed(argv: Sequence[str]) -> Options:
     sources = list(zip(names, options.families))
     refuse_same_names((source, family.name) for source, family in sources)
     refuse_same_names((source, scene.name) for source, family in sources for scene in family.scenes)
-    if words.scheduler is not None and options.budget is not None:
-        rule = "is kept by ending processes of this machine, --scheduler computes on others: give one of the two"
-        raise SceneError("command line", "--budget", words.budget, rule)
+    if options.budget is not None and not hasattr(signal, "setitimer"):
+        raise SceneError("command line", "--budget", words.budget, "needs a timer that this system does not have")
     if not options.plan:
         try:
             for _, load in TAKEN_UP.values():
@@ -136,14 +133,13 @@ def _parser() -> CommandParser:
     parser.add_argument(
         "--tolerance",
         metavar="X",
-        help="relative error asked of every mu: takes the cheapest settings that are known to meet it, and leaves out "
-        "models that cannot; the equations are asked for 1e-6 or better "
+        help="relative error asked of every mu; the equations are asked for 1e-6 or better "
         f"(default {DEFAULT_TOLERANCE:g})",
     )
     parser.add_argument(
         "--budget",
         metavar="SECONDS",
-        help="time for the whole run: computes from coarse to fine grids and reports the best complete study",
+        help="time for the whole run: it ends with the report of the last level that is complete by then",
     )
     parser.add_argument("--amplitude", metavar="A", help="largest ground acceleration amplitude of every scene, m/s^2")
     parser.add_argument(
@@ -163,7 +159,9 @@ def _parser() -> CommandParser:
     parser.add_argument("--skip", metavar="LIST", help="make all analyses but these")
     parser.add_argument("--also", metavar="LIST", help=f"make these analyses besides: {', '.join(ON_REQUEST)}")
     parser.add_argument("--check", action="store_true", help="exit 1 if a scene's acceptance limits are broken")
-    parser.add_argument("--plan", action="store_true", help="print what would be computed and its cost; run nothing")
+    parser.add_argument(
+        "--plan", action="store_true", help="print what would be computed and roughly how long it takes; run nothing"
+    )
     return parser
 
 

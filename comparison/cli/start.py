@@ -13,8 +13,10 @@ import os
 import signal
 import sys
 import time
+from contextlib import suppress
 from difflib import get_close_matches
 from importlib import import_module
+from pathlib import Path
 from typing import NamedTuple, NoReturn
 
 SCRIPT = "phase-resonance"
@@ -36,7 +38,7 @@ COMMANDS = {  # module whose `main` is the command, and what it does
 
 
 class Clock(NamedTuple):
-    """An instant: wall time and processor time, s, the latter of this process and of its children that have ended."""
+    """An instant: wall time, and processor time of this process and its children, s; on Linux also of those that run."""
 
     wall: float
     processor: float
@@ -44,11 +46,21 @@ class Clock(NamedTuple):
     @classmethod
     def now(cls) -> Clock:
         """This instant."""
-        return cls(time.monotonic(), sum(os.times()[:4]))
+        return cls(time.monotonic(), sum(os.times()[:4]) + _of_children())
 
     def since(self, earlier: Clock) -> Clock:
         """The times that have passed since another instant."""
         return Clock(self.wall - earlier.wall, self.processor - earlier.processor)
+
+
+def _of_children() -> float:
+    """Processor time of the worker processes that run, s; 0 where the system does not tell."""
+    seconds = 0.0
+    for child in sys.modules["multiprocessing"].active_children() if "multiprocessing" in sys.modules else ():
+        with suppress(OSError):
+            fields = Path(f"/proc/{child.pid}/stat").read_text().rpartition(")")[2].split()
+            seconds += (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    return seconds
 
 
 _started: list[Clock] = []

@@ -1,56 +1,97 @@
-"""What the terminal says before a run: the plan, its cost, and what was chosen for a tolerance or a budget."""
+"""What the terminal says before a run: what would be computed, and roughly how long it would take."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
+from typing import Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from comparison.analysis.targets import describe
-from comparison.cli.budgeted import allotment, listed_steps
+from comparison.analysis.protocol import Analysis
 from comparison.cli.options import Options
-from comparison.execution.cache import Cache, store_beside
+from comparison.execution.cache import Cache, Key, store_beside
 from comparison.execution.keys import batch_key
+from comparison.execution.task import Task
 from comparison.execution.task_results import TaskResults
-from comparison.registry import chosen_analyses, first_tasks, predicted_costs
-from comparison.study.accuracy_record import recorded
+from comparison.registry import chosen_analyses, first_tasks, levels
 from comparison.study.batches import refusal_of
-from comparison.study.models import models_of, why_not_spatial
-from comparison.study.overhead import COMPILED_ONCE, LOADING, START_UP, WRITING
-from comparison.study.planning import StudyPlan
+from comparison.study.costs import COMPILING, STARTING, WRITING, seconds_of_analysis, seconds_of_model
+from comparison.study.models import Model, models_of, why_not_spatial
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
 
+NAMES = 4  # of a list on the terminal
+
 
 def print_plan(console: Console, study: Study, options: Options) -> None:
-    """What would be computed and its predicted cost."""
-    refused = _refused(study)
-    for (scene, title), reason in refused.items():
-        console.print(f"{scene}, {title}: {reason}.", soft_wrap=True)
-    if options.budget is None:
-        _print_costs(console, study, options, refused)
-    else:
-        _print_steps(console, study, options.budget, options.jobs)
+    """What would be computed, and roughly how long it would take."""
+    for reason, of in _refused(study).items():
+        console.print(f"{_listed(of)}: {reason}.", soft_wrap=True)
+    table = new_table("file", "scenes", "model", "phase pairs", "computed", "tolerance")
+    for family in options.families:
+        for model in study.hierarchy:
+            scenes = [scene for scene in family.scenes if model.applies(scene)]
+            if scenes:
+                points = sum(study.points(model, scene) for scene in scenes)
+                computed = sum(len(study.solved(scene, model)) for scene in scenes)
+                counts = f"{points:,}", f"{computed:,}", f"{model.tolerance(study.tolerance):.0e}"
+                table.add_row(family.name, str(len(scenes)), model.title, *counts)
+    console.print(table)
+    analyses = chosen_analyses(study)
+    counted = {each.stage: _number_of_tasks(study, each) for each in analyses}
+    console.print(f"Analyses (tasks): {', '.join(f'{name} ({count})' for name, count in counted.items()) or 'none'}.")
+    for level in levels(study) if study.phased else ():
+        console.print(f"{level.title.capitalize()}: {_grids(level.study)}.")
     _print_reductions(console, study)
     if study.absent:
         reasons = ", ".join(f"{analysis} ({reason})" for analysis, reason in study.absent.items())
         console.print(f"Not in the report: {reasons}.", soft_wrap=True)
     if len(study.phased) < len(study.scenes):
         console.print("A recorded motion has no phases: one point per model.")
-    store, batches = Cache(store_beside(options.out)), study.batches()
-    if not options.fresh and (stored := sum(store.holds(batch_key(batch)) for batch in batches)):
-        asked, known = first_tasks(study, chosen_analyses(study)), TaskResults(store)
-        others = f"{sum(map(known.holds, asked))} of {len(asked)} analyses"
-        console.print(
-            f"{stored} of {len(batches)} batches are in {store.folder} already, {others}: they are not computed again."
-        )
-    console.print(f"Costs were recorded on one core of {recorded().machine}; another machine scales them all alike.")
-    if tried := [scene.name for scene in study.scenes if scene.digest() not in recorded().seconds]:
-        console.print(f"Not recorded, so tried here at a few phase pairs: {', '.join(tried)}.", soft_wrap=True)
-    console.print(COMPILED_ONCE)
-    console.print(f"{'No surface' if tried else 'Nothing'} was computed. The report would go to {options.out}.")
+    batches = [batch_key(batch) for batch in study.batches()]
+    print_stored(console, Cache(store_beside(options.out)), batches, first_tasks(study, analyses), options.fresh)
+    seconds = sum(seconds_of_model(study, model) for model in study.hierarchy)
+    seconds += sum(seconds_of_analysis(study, each.key, each.stage) for each in analyses)
+    wall = STARTING + seconds / options.jobs + WRITING
+    first = f" and {COMPILING:.0f} s for compiling on a new installation" if study.hierarchy else ""
+    console.print(f"Roughly {wall:.0f} s with {options.jobs} workers{first}; nothing was computed.")
+    console.print(f"The report would go to {options.out}.", soft_wrap=True)
+
+
+def _grids(study: Study) -> str:
+    """The grids of a level: of the equations, and of the engine's models."""
+    grids = {_kind(model): len(study.axis(model)) for model in study.hierarchy}
+    return ", ".join(f"{kind} {count} x {count} phases" for kind, count in grids.items())
+
+
+def _kind(model: Model) -> str:
+    return "equations" if model.side == "reference" else model.title
+
+
+def _number_of_tasks(study: Study, analysis: Analysis[Any]) -> str:
+    return (
+        "chosen by the surfaces" if analysis.needs_surfaces else str(len(analysis.tasks(study.selecting(analysis.key))))
+    )
+
+
+def _listed(names: Sequence[str]) -> str:
+    """The first names, and how many others."""
+    shown = ", ".join(names[:NAMES])
+    return shown if len(names) <= NAMES else f"{shown} and {len(names) - NAMES} more"
+
+
+def print_stored(console: Console, store: Cache, batches: Sequence[Key], tasks: Sequence[Task], fresh: bool) -> None:
+    """Say how much an earlier run has left."""
+    if fresh:
+        return
+    stored, results = sum(map(store.holds, batches)), TaskResults(store)
+    others = sum(map(results.holds, tasks))
+    if stored or others:
+        analyses = f", {others} of {len(tasks)} analyses" if tasks else ""
+        line = f"{stored} of {len(batches)} batches{analyses} are in {store.folder}: only the others are computed."
+        console.print(line, soft_wrap=True)  # a path is copied whole
 
 
 def print_models_left_out(console: Console, study: Study) -> None:
@@ -60,86 +101,33 @@ def print_models_left_out(console: Console, study: Study) -> None:
             console.print(f"{scene.name}: {reason}.", soft_wrap=True)
 
 
-def _refused(study: Study) -> dict[tuple[str, str], str]:
-    """Why a surface would have no value, by name of the scene and title of the model."""
-    return {
-        (scene.name, model.title): reason
-        for scene in study.scenes
-        for model in models_of(scene, study.hierarchy)
-        if (reason := refusal_of(scene, model, model.tolerance(study.tolerance), study.full))
-    }
-
-
-def _print_costs(console: Console, study: Study, options: Options, refused: Mapping[tuple[str, str], str]) -> None:
-    """A row for every scene and model, the analyses, and the time of the whole run."""
-    table = new_table("scene", "model", "points", "computed", "tolerance", "s on one core")
-    total = 0.0
+def _refused(study: Study) -> dict[str, list[str]]:
+    """Why surfaces would have no value, with the scenes and models."""
+    refused: dict[str, list[str]] = {}
     for scene in study.scenes:
         for model in models_of(scene, study.hierarchy):
-            points, computed = study.points(model, scene), len(study.solved(scene, model))
-            seconds = 0.0 if (scene.name, model.title) in refused else study.seconds_of(scene, model)
-            total += seconds
-            cells = str(points), str(computed), f"{model.tolerance(study.tolerance):.0e}", f"{seconds:.1f}"
-            table.add_row(scene.name, model.title, *cells)
-    console.print(table)
-    costs = predicted_costs(study, chosen_analyses(study))
-    others = ", ".join(f"{name} {seconds:.0f} s ({tasks})" for name, (tasks, seconds) in costs.items() if tasks)
-    console.print(f"Beside the surfaces, s on one core and tasks: {others or 'nothing'}.")
-    total += sum(seconds for _, seconds in costs.values())
-    wall = LOADING + START_UP + total / options.jobs + WRITING
-    over = f"{study.grid} x {study.grid} phases, " if study.phased else ""
-    console.print(f"{over}{options.jobs} worker processes: about {wall:.0f} s.")
-
-
-def _print_steps(console: Console, study: Study, budget: float, jobs: int) -> None:
-    """The steps of a budget in their order, and when each would be done."""
-    share = allotment(study, budget, jobs)
-    titles = {model.key: model.title for model in study.hierarchy if model.side == "engine"}
-    table = new_table("step", "s on one core", "report after, s")
-    after = budget - share.surfaces + START_UP
-    for step in listed_steps(study):
-        after += step.seconds / jobs
-        table.add_row(describe(step, titles).replace("×", "x"), f"{step.seconds:.1f}", f"{after:.0f}")
-    console.print(table)
-    console.print(f"After {budget:g} s the steps that are complete by then make the report.")
-    if share.dropped:
-        console.print(f"Left out, because they would take too much of this time: {', '.join(share.dropped)}.")
+            if reason := refusal_of(scene, model, model.tolerance(study.tolerance), study.full):
+                refused.setdefault(reason, []).append(f"{scene.name}, {model.title}")
+    return refused
 
 
 def _print_reductions(console: Console, study: Study) -> None:
-    """What the scenes do not require, and what that saves."""
+    """What the scenes do not require."""
     if study.full:
         console.print("Every phase pair and every model is computed in full (--full).")
     elif rows := reductions(study):
         console.print("Left out, because the scene does not require it (--full computes it):")
         for row in rows:
-            console.print(f"  {row.scene}: {row.what} ({row.models}): cost {row.cost}: {row.why}")
+            console.print(f"  {row.what} ({row.models}; {_listed(row.scenes)}): {row.why}", soft_wrap=True)
     else:
         console.print("Nothing is left out: the scenes require all of it.")
-
-
-def print_tolerance(console: Console, plan: StudyPlan, options: Options) -> None:
-    """What `--tolerance` chose, and what is expected of it."""
-    study = plan.study
-    console.print(f"Chosen for --tolerance {options.tolerance:g}, by the recorded accuracy and cost:")
-    table = new_table("model", "phases per axis", "asked for", "s of compute")
-    for model in study.hierarchy:
-        if any(model.applies(scene) for scene in study.scenes):
-            asked = f"{model.tolerance(study.tolerance):.0e}"
-            table.add_row(model.title, str(len(study.axis(model))), asked, f"{study.seconds(model):.1f}")
-    console.print(table)
-    for line in plan.omitted:
-        console.print(f"Left out: {line}.")
-    if not any(model.side == "engine" for model in study.hierarchy):
-        console.print("NO ENGINE MODEL is left: this study compares the equations with each other only.")
-    console.print(f"Expected: every mu to {study.tolerance:g} at 99 % of the points; {plan.compute:.1f} s of compute.")
 
 
 def new_table(*headings: str) -> Table:
     """An empty table: words to the left, numbers to the right. Where it is too wide words are folded, never numbers."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for heading in headings:
-        words = heading in ("scene", "model", "difference", "step", "quantity")
+        words = heading in ("file", "scene", "model", "difference", "step", "quantity")
         whole = heading == "difference" or not words
         table.add_column(heading, justify="left" if words else "right", no_wrap=whole, overflow="fold")
     return table

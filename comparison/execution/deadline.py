@@ -1,42 +1,51 @@
-"""Until when the workers may compute, and which task still fits."""
+"""The instant at which a run must be over."""
 
 from __future__ import annotations
 
+import signal
 import time
-from collections import defaultdict
-from collections.abc import Hashable
+from types import FrameType
+from typing import NoReturn
+
+EARLY = 0.3  # s: the process takes so long to end
+SOON = 1e-3  # s
+
+
+class TimeUpError(BaseException):
+    """The deadline has come. No Exception: what a task raises must not be taken for it."""
 
 
 class Deadline:
     """
-    An instant at which the workers must be done.
+    Raises TimeUpError in the block when the time is up, whatever the main thread does then.
 
     Parameters
     ----------
-    seconds : float
-        From now.
+    begin : float
+        `time.monotonic()` when the run began.
+    seconds : float or None
+        How long it may take; None for as long as it takes.
     """
 
-    def __init__(self, seconds: float) -> None:
-        self._end = time.monotonic() + seconds
-        self._predicted: dict[Hashable, float] = defaultdict(float)
-        self._taken: dict[Hashable, float] = defaultdict(float)
+    def __init__(self, begin: float, seconds: float | None) -> None:
+        self._end = None if seconds is None else begin + seconds - EARLY
 
-    @property
-    def left(self) -> float:
-        """s until the deadline, negative after it."""
-        return self._end - time.monotonic()
+    def __enter__(self) -> Deadline:
+        if self._end is not None:
+            self._before = signal.signal(signal.SIGALRM, _up)
+            self.keep_free(0.0)
+        return self
 
-    def learn(self, kind: Hashable, predicted: float, taken: float) -> None:
-        """Remember what a task of some kind was predicted to take and what it took, s of processor time."""
-        self._predicted[kind] += predicted
-        self._taken[kind] += taken
+    def __exit__(self, *error: object) -> None:
+        if self._end is not None:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            signal.signal(signal.SIGALRM, self._before)
 
-    def expected(self, kind: Hashable, predicted: float) -> float:
-        """What a task takes, going by what others of its kind took, s of processor time."""
-        before = self._predicted[kind]
-        return predicted * (self._taken[kind] / before if before > 0.0 else 1.0)
+    def keep_free(self, seconds: float) -> None:
+        """From now on the time is up so much before the end, for what has to follow."""
+        if self._end is not None:
+            signal.setitimer(signal.ITIMER_REAL, max(self._end - seconds - time.monotonic(), SOON))
 
-    def allows(self, kind: Hashable, predicted: float) -> bool:
-        """Whether a task would end in time."""
-        return self.expected(kind, predicted) < self.left
+
+def _up(number: int, frame: FrameType | None) -> NoReturn:
+    raise TimeUpError

@@ -1,80 +1,70 @@
 """
 The one way in which anything is computed: batches and tasks, each from the cache if it is there, else executed.
 
-Everything that is missing goes through the workers in one sweep, is stored as soon as it arrives, and is shown as
-progress.
+Everything that is missing goes through the workers in one sweep and is stored as soon as it arrives.
 """
 
 from __future__ import annotations
 
-import math
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 
 from rich.console import Console
 
-from comparison.execution.deadline import Deadline
+from comparison.execution.cache import Key
 from comparison.execution.executors import Pool
 from comparison.execution.keys import batch_key, cached_batch
-from comparison.execution.progress import Stage, progress
+from comparison.execution.progress import Display, progress
 from comparison.execution.splitting import merge, split_batch
 from comparison.execution.sweep import sweep
 from comparison.execution.task import Task, TaskResult, execute, unfinished
 from comparison.execution.task_results import TaskResults
 from comparison.execution.warm_up import WARM_UP, compiling_task, warm_up
 from comparison.study.batches import Batch, BatchResult, execute_batch, unanswered
-from comparison.study.overhead import COMPILED_ONCE, START_UP
+from comparison.study.costs import seconds_per_point
 from comparison.study.study import Study
 from reference.problem import Outcome
 
-COMPILING = "compiling the reference"
+COMPILING = "compiling the reference, once"
 GIVEN_UP_AFTER = 2  # calls of one of the user's engines that hang or end their process: it is not asked again
 
 Piece = Batch | Task
 
 
-def longest_first(piece: Piece) -> float:
-    """The order in which no worker is left with a long task when the others are done."""
-    return -piece.seconds
-
-
-def surfaces_first(piece: Piece) -> float:
-    """The order of the study, then tasks, the longest first."""
-    return -piece.seconds if isinstance(piece, Task) else -math.inf
-
-
 @dataclass(frozen=True)
 class Computed:
-    """
-    What a sweep has computed of a study. stored: how many batches were there before. batches, answers: in the order of
-    the study; all of them, unless the deadline came first.
-    """
+    """The batches of a study with their answers, in the order of the study; how many an earlier run had stored."""
 
     batches: Sequence[Batch]
     answers: Sequence[BatchResult]
     stored: int
 
 
-@dataclass(frozen=True)
+@dataclass
 class Runner:
     """
     Runs batches and tasks on `executor`, or on what it makes for `jobs` workers, and keeps what they return.
 
-    deadline: what would end after it is not computed.
+    display: what is told of finished work; without it every call shows its own. stages: rough s of processor time of
+    the stages of tasks; a stage that is not listed takes what its tasks weigh.
     """
 
     results: TaskResults  # of all tasks, with the cache of both
     console: Console
     jobs: int
     executor: Pool
-    deadline: Deadline | None = None
+    display: Display | None = None
+    stages: Mapping[str, float] = field(default_factory=dict)
+    answers: dict[Key, BatchResult] = field(default_factory=dict)  # of all batches so far
+    stored: set[Key] = field(default_factory=set)  # of these, read from the cache
+    lost: Counter[str] = field(default_factory=Counter)  # calls that hung or ended their process, by lane
+    compiled: bool = False  # whether a worker has compiled the reference
 
-    def run_study(
-        self, study: Study, tasks: Sequence[Task] = (), order: Callable[[Piece], float] = surfaces_first
-    ) -> Computed:
+    def run_study(self, study: Study, tasks: Sequence[Task] = ()) -> Computed:
         """
-        Every batch of the study and every task, in one sweep.
+        Every batch of the study, then every task, in one sweep.
 
         Parameters
         ----------
@@ -82,8 +72,6 @@ class Runner:
             What the surfaces are made of.
         tasks : sequence of Task
             What is computed beside them; `results` has what they return.
-        order : callable
-            Of a batch or task: those with the smallest value come first.
 
         Returns
         -------
@@ -95,132 +83,129 @@ class Runner:
         StoreError, ExecutorLostError
             If the cache cannot be written, or the executor cannot go on.
         """
-        cache, batches = self.results.cache, study.batches()
-        stored = [None if cache is None else cached_batch(cache, batch) for batch in batches]
-        answers = {place: answer for place, answer in enumerate(stored) if answer is not None}
-        missing = [place for place in range(len(batches)) if place not in answers]
+        batches = study.batches()
+        keys = [batch_key(batch) for batch in batches]
+        cache = self.results.cache
+        for key, batch in zip(keys, batches):
+            if key not in self.answers and cache and (stored := cached_batch(cache, batch)):
+                self.answers[key] = stored
+                self.stored.add(key)
+                self._skip(self._weights(study, [batch]))
+        missing = [batch for key, batch in zip(keys, batches) if key not in self.answers]
+        weights = self._weights(study, missing) | self._task_weights(tasks)
         left = self.results.missing(tasks)
-        if answers and cache is not None:
-            others = f", {len(tasks) - len(left)} of {len(tasks)} analyses" if tasks else ""
-            count = f"{len(answers)} of {len(batches)} batches{others}"
-            # a path is copied whole
-            self.console.print(f"{count} are in {cache.folder}: only the others are computed.", soft_wrap=True)
+        self._skip({id(task): weights[id(task)] for task in tasks if task not in left})
         if missing or left:
-            stages = (
-                {COMPILING: Stage(1, START_UP)} | _batch_stages(study, batches, missing) | _task_stages(tasks, left)
-            )
-            titles = {WARM_UP: COMPILING, **{model.key: model.title for model in study.hierarchy}}
-            compiled = {model.key for model in study.hierarchy if model.side == "reference"}
-            self.console.print(COMPILED_ONCE)
-            pieces: list[Piece] = [*(batches[place] for place in missing), *left]
-            done = self._sweep([warm_up(study), *sorted(pieces, key=order)], stages, titles, compiled, pending=True)
-            computed = {id(piece): answer for piece, answer in done}
-            answers |= {place: computed[id(batches[place])] for place in missing if id(batches[place]) in computed}
-        places = sorted(answers)
-        return Computed([batches[n] for n in places], [answers[n] for n in places], len(batches) - len(missing))
+            titles = {model.key: model.title for model in study.hierarchy}
+            waiting = {model.key for model in study.hierarchy if model.side == "reference"}
+            first: list[Piece] = [] if self.compiled else [warm_up(study)]
+            self._sweep([*first, *missing, *left], weights, titles, waiting, pending=not self.compiled)
+            self.compiled = True
+        return Computed(batches, [self.answers[key] for key in keys], sum(key in self.stored for key in keys))
 
-    def run_tasks(
-        self, tasks: Sequence[Task], compile_first: bool = False, order: Callable[[Piece], float] = longest_first
-    ) -> None:
+    def run_tasks(self, tasks: Sequence[Task], compile_first: bool = False) -> None:
         """
-        Every task; `results` has what they return. Raises as `run_study`.
+        Every task, the longest first; `results` has what they return. Raises as `run_study`.
 
-        compile_first: nothing has compiled the reference yet, so one worker does before the tasks that need it. A task
-        that the deadline leaves out has a result that says so.
+        compile_first: nothing has compiled the reference yet, so one worker does before the tasks that need it.
         """
-        left = sorted(self.results.missing(tasks), key=order)
-        if not left:
-            return
-        stages, pieces = _task_stages(tasks, left), list[Piece](left)
-        pending = compile_first and any(task.needs_compiled_reference for task in left)
-        if pending:
-            stages = {COMPILING: Stage(1, START_UP)} | stages
-            pieces.insert(0, compiling_task(COMPILING))
-        self._sweep(pieces, stages, {}, set(), pending)
-        for task in left:
-            if task not in self.results:
-                self.results.leave_out(task)
+        left = sorted(self.results.missing(tasks), key=lambda task: -task.seconds)
+        weights = self._task_weights(tasks)
+        self._skip({id(task): weights[id(task)] for task in tasks if task not in left})
+        if left:
+            pending = compile_first and any(task.needs_compiled_reference for task in left)
+            first = [compiling_task(COMPILING)] if pending else []
+            self._sweep([*first, *left], weights, {}, set(), pending)
+
+    def _weights(self, study: Study, batches: Sequence[Batch]) -> dict[int, float]:
+        """Rough s of processor time of the batches."""
+        models = {model.key: model for model in study.hierarchy}
+        return {id(batch): len(batch.phases) * seconds_per_point(batch.scene, models[batch.model]) for batch in batches}
+
+    def _task_weights(self, tasks: Sequence[Task]) -> dict[int, float]:
+        """The same of tasks, from what their stages take."""
+        sums: Counter[str] = Counter()
+        for task in tasks:
+            sums[task.stage] += task.seconds  # type: ignore[assignment]
+        return {
+            id(task): task.seconds * self.stages.get(task.stage, sums[task.stage]) / sums[task.stage] for task in tasks
+        }
+
+    def _skip(self, weights: Mapping[int, float]) -> None:
+        if self.display is not None:
+            self.display.skip(sum(weights.values()))
+
+    @contextmanager
+    def _shown(self, weights: Mapping[int, float]) -> Iterator[Display]:
+        if self.display is not None:
+            yield self.display
+        else:
+            with progress(self.console, sum(weights.values()), self.jobs) as display:
+                yield display
 
     def _sweep(
         self,
         pieces: Sequence[Piece],
-        stages: Mapping[str, Stage],
+        weights: Mapping[int, float],
         titles: Mapping[str, str],
         compiled: set[str],
         pending: bool,
-    ) -> list[tuple[Batch, BatchResult]]:
+    ) -> None:
         """
         Run the pieces in one sweep; the first of them compiles the reference if that is `pending`.
 
-        titles: stages by the models of batches. compiled: the models that wait for the compiled reference. Returns the
-        batches that were computed.
+        titles: of the models of batches. compiled: the models that wait for the compiled reference.
         """
         first = pieces[0] if pending else None
         waiting = {id(first)} if pending else set()
-        computed: list[tuple[Batch, BatchResult]] = []
-        lost: Counter[str] = Counter()  # calls by lane
-        with progress(self.console, stages, self.jobs, self.deadline) as display:
+        total = Counter(_name(piece, titles) for piece in pieces for _ in range(_points(piece)))
+        done_so_far: Counter[str] = Counter()
+        with self._shown(weights) as display:
 
             def done(piece: Piece, answer: BatchResult | TaskResult) -> None:
                 waiting.discard(id(piece))
-                if self.deadline is not None and piece is not first:
-                    self.deadline.learn(piece.kind, piece.seconds, answer.cost)
-                if isinstance(piece, Task):
-                    assert isinstance(answer, TaskResult)
-                    if piece is not first:
-                        self.results.put(piece, answer)
-                    display.advance(piece.stage, 1, piece.seconds)
-                    return
-                assert isinstance(answer, BatchResult)
-                if piece.lane and {Outcome.TIME_LIMIT.value, Outcome.WORKER_DIED.value} & {*answer.status}:
-                    lost[piece.lane] += 1
                 if piece is not first:
-                    computed.append((piece, answer))
-                    if self.results.cache is not None:
-                        self.results.cache.put(batch_key(piece), answer)
-                display.advance(titles[piece.model], len(piece.phases), piece.seconds)
+                    self._keep(piece, answer)
+                name = _name(piece, titles)
+                done_so_far[name] += _points(piece)
+                unit = "phase pairs" if isinstance(piece, Batch) else "tasks"
+                display.advance(name, f"{done_so_far[name]} of {total[name]} {unit}", weights.get(id(piece), 0.0))
 
             def ready(piece: Piece) -> bool:
                 needs = piece.needs_compiled_reference if isinstance(piece, Task) else piece.model in compiled
                 return not (waiting and needs)
 
-            def seconds_left(piece: Piece) -> float:
-                if isinstance(piece, Batch) and lost[piece.lane] >= GIVEN_UP_AFTER:
-                    return 0.0
-                if self.deadline is None:
-                    return math.inf
-                return self.deadline.left if self.deadline.allows(piece.kind, piece.seconds) else 0.0
+            def given_up(piece: Piece) -> bool:
+                return isinstance(piece, Batch) and self.lost[piece.lane] >= GIVEN_UP_AFTER
 
-            execution = self.jobs, self.executor, ready, _split, _merge, seconds_left
-            sweep(pieces, _execute, _unfinished, done, *execution)
-        asked = {id(batch) for batch, _ in computed}
-        given_up = [piece for piece in pieces if isinstance(piece, Batch) and lost[piece.lane] >= GIVEN_UP_AFTER]
+            sweep(pieces, _execute, _unfinished, done, self.jobs, self.executor, ready, _split, _merge, given_up)
         message = f"{GIVEN_UP_AFTER} calls hung or ended their process: not asked for the other phase pairs"
-        computed += [
-            (piece, unanswered(piece, Outcome.TIME_LIMIT, message)) for piece in given_up if id(piece) not in asked
-        ]
-        return computed
+        for piece in pieces:
+            if isinstance(piece, Batch) and piece is not first and batch_key(piece) not in self.answers:
+                self.answers[batch_key(piece)] = unanswered(piece, Outcome.TIME_LIMIT, message)
+
+    def _keep(self, piece: Piece, answer: BatchResult | TaskResult) -> None:
+        if isinstance(piece, Task):
+            assert isinstance(answer, TaskResult)
+            self.results.put(piece, answer)
+            return
+        assert isinstance(answer, BatchResult)
+        if piece.lane and {Outcome.TIME_LIMIT.value, Outcome.WORKER_DIED.value} & {*answer.status}:
+            self.lost[piece.lane] += 1
+        self.answers[batch_key(piece)] = answer
+        if self.results.cache is not None:
+            self.results.cache.put(batch_key(piece), answer)
 
 
-def _batch_stages(study: Study, batches: Sequence[Batch], missing: Sequence[int]) -> dict[str, Stage]:
-    stages = {}
-    for model in study.hierarchy:
-        points_by_place = {place: len(batch.phases) for place, batch in enumerate(batches) if batch.model == model.key}
-        if points_by_place:
-            points = sum(points_by_place.values())
-            left = sum(points_by_place[place] for place in missing if place in points_by_place)
-            seconds = sum(batches[place].seconds for place in missing if place in points_by_place)
-            stages[model.title] = Stage(points, seconds, points - left)
-    return stages
+def _name(piece: Piece, titles: Mapping[str, str]) -> str:
+    """What the terminal calls a piece of work."""
+    if isinstance(piece, Task):
+        return piece.stage
+    return COMPILING if piece.model == WARM_UP else titles[piece.model]
 
 
-def _task_stages(tasks: Sequence[Task], left: Sequence[Task]) -> dict[str, Stage]:
-    stages = {}
-    for name in dict.fromkeys(task.stage for task in tasks):
-        count = sum(task.stage == name for task in tasks)
-        seconds = [task.seconds for task in left if task.stage == name]
-        stages[name] = Stage(count, sum(seconds), count - len(seconds))
-    return stages
+def _points(piece: Piece) -> int:
+    return len(piece.phases) if isinstance(piece, Batch) else 1
 
 
 def _execute(piece: Piece) -> BatchResult | TaskResult:

@@ -6,7 +6,6 @@ Results come back in the order of the tasks, whatever the scheduling was.
 
 from __future__ import annotations
 
-import math
 from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
@@ -42,9 +41,9 @@ def whole(task: object) -> Sequence[object]:
     return ()
 
 
-def unlimited(task: object) -> float:
-    """No task has a limit of time, s."""
-    return math.inf
+def never(task: object) -> bool:
+    """No task is given up."""
+    return False
 
 
 @dataclass(eq=False)  # found in the queue by what it is, not by comparing scenes and arrays
@@ -70,7 +69,7 @@ def sweep(
     ready: Callable[[Task], bool] = at_once,
     split: Callable[[Task], Sequence[Task]] = whole,  # type: ignore[assignment]
     join: Callable[[Task, Sequence[Result]], Result] | None = None,
-    seconds_left: Callable[[Task], float] = unlimited,
+    given_up: Callable[[Task], bool] = never,
 ) -> list[Result]:
     """
     Run every task on an executor and lose none.
@@ -101,9 +100,9 @@ def sweep(
         The parts of a task; empty if it cannot be split.
     join : callable
         The result of a task from those of its parts.
-    seconds_left : callable
-        How long a task may take before a deadline, s. A task that has none left does not start, and one that takes
-        longer is ended. `done` is not called with it; its result is `on_failure(task, Outcome.TIME_LIMIT, message)`.
+    given_up : callable
+        Whether a task is not started any more. `done` is not called with it; its result is
+        `on_failure(task, Outcome.TIME_LIMIT, message)`.
 
     Returns
     -------
@@ -115,7 +114,7 @@ def sweep(
     ExecutorLostError
         If the executor cannot go on; results that `done` has seen are the caller's to keep.
     """
-    return _Sweep(tasks, solve, on_failure, done, ready, split, join, seconds_left).run(factory(executor), jobs)
+    return _Sweep(tasks, solve, on_failure, done, ready, split, join, given_up).run(factory(executor), jobs)
 
 
 class _Sweep(Generic[Task, Result]):
@@ -128,9 +127,9 @@ class _Sweep(Generic[Task, Result]):
         ready: Callable[[Task], bool],
         split: Callable[[Task], Sequence[Task]],
         join: Callable[[Task, Sequence[Result]], Result] | None,
-        seconds_left: Callable[[Task], float],
+        given_up: Callable[[Task], bool],
     ) -> None:
-        self._seconds_left = seconds_left
+        self._given_up = given_up
         self._solve, self._on_failure, self._done = solve, on_failure, done
         self._ready, self._split, self._join = ready, split, join
         self._queue: deque[_Work[Task, Result]] = deque(_Work(task, place) for place, task in enumerate(tasks))
@@ -180,8 +179,6 @@ class _Sweep(Generic[Task, Result]):
             self._keep(work, future.result())
         elif isinstance(error, WorkerDiedError):
             self._died(work, error.times, error.exit_code)
-        elif isinstance(error, TimeLimitError) and self._seconds_left(work.task) <= 0.0:
-            self._give_up(work)
         elif isinstance(error, TimeLimitError):
             self._keep(work, self._on_failure(work.task, Outcome.TIME_LIMIT, str(error)))
         elif not isinstance(error, BrokenExecutor | ExecutorLostError):
@@ -195,13 +192,11 @@ class _Sweep(Generic[Task, Result]):
         arriving: results have arrived that may make tasks ready, so that none is passed over yet.
         """
         while len(self._at_work) < width(pool, jobs) and (work := self._next(arriving)) is not None:
-            left = self._seconds_left(work.task)
-            if left <= 0.0:
-                self._queue.appendleft(work)
-                self._give_up_late()
+            if self._given_up(work.task):
+                self._give_up(work)
                 continue
             try:
-                future = start(pool, self._solve, work.task, _shorter(getattr(work.task, "timeout", None), left))
+                future = start(pool, self._solve, work.task, getattr(work.task, "timeout", None))
             except BrokenExecutor:
                 if self._at_work:
                     self._queue.appendleft(work)
@@ -252,19 +247,11 @@ class _Sweep(Generic[Task, Result]):
             message = f"the worker process died {work.deaths} times{ending}"
             self._keep(work, self._on_failure(work.task, Outcome.WORKER_DIED, message))
 
-    def _give_up_late(self) -> None:
-        """Take everything that has no time left from the queue at once."""
-        late = [work for work in self._queue if self._seconds_left(work.task) <= 0.0]
-        gone = set(map(id, late))
-        self._queue = deque(work for work in self._queue if id(work) not in gone)
-        for work in late:
-            self._give_up(work)
-
     def _give_up(self, work: _Work[Task, Result]) -> None:
-        """No time is left for the task, or for all of which it is a part."""
+        """Neither the task nor that of which it is a part is computed."""
         while work.parent is not None:
             work = work.parent
-        self._results[work.place] = self._on_failure(work.task, Outcome.TIME_LIMIT, "not computed before the deadline")
+        self._results[work.place] = self._on_failure(work.task, Outcome.TIME_LIMIT, "given up")
 
     def _keep(self, work: _Work[Task, Result], result: Result) -> None:
         parent = work.parent
@@ -276,11 +263,6 @@ class _Sweep(Generic[Task, Result]):
         if len(parent.parts) == parent.count:  # never, where one of them was given up
             assert self._join is not None, "what can be split can be joined"
             self._keep(parent, self._join(parent.task, [parent.parts[place] for place in range(parent.count)]))
-
-
-def _shorter(timeout: float | None, left: float) -> float | None:
-    """The limit of a task that has `left` s before the deadline."""
-    return timeout if math.isinf(left) else min(left, math.inf if timeout is None else timeout)
 
 
 def _error(future: Future[Result]) -> BaseException | None:

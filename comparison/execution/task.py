@@ -30,16 +30,11 @@ class Task:
     function: Callable[[Any], Any]
     argument: Any
     stage: str  # its name on the terminal and in the table of costs
-    seconds: float  # predicted cost, as `costs.seconds_per_point`
+    seconds: float = 1.0  # what it weighs beside other tasks of its stage
     about: Any = None  # what its directory in the cache belongs to
     needs_compiled_reference: bool = True  # on a new installation it waits until one worker has compiled the reference
     timeout: float | None = None  # most processor time, s, rounded up; what takes longer is ended: Outcome.TIME_LIMIT
     lane: str = ""  # as `study.batches.Batch`
-
-    @property
-    def kind(self) -> str:
-        """Tasks of one kind cost about as much more or less than predicted."""
-        return self.stage
 
     @cached_property
     def key(self) -> str:

@@ -58,10 +58,6 @@ class TaskResults:
     def __contains__(self, task: Task) -> bool:
         return task.key in self._results
 
-    def leave_out(self, task: Task) -> None:
-        """Say of a task that it was not computed, for this run alone."""
-        self._results[task.key] = unfinished(task, Outcome.TIME_LIMIT, "not computed within the budget")
-
     def value(self, task: Task, on_failure: Callable[[Any, TaskResult], Any]) -> Any:
         """
         What a task returned, or what stands in its place.

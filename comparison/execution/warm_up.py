@@ -14,7 +14,6 @@ import numpy as np
 import reference
 from comparison.execution.task import Task
 from comparison.study.batches import Batch
-from comparison.study.overhead import START_UP
 from comparison.study.study import Study
 from reference.problem import Scene, load_scene
 
@@ -30,7 +29,7 @@ def warm_up(study: Study) -> Batch:
     batches = study.batches()
     batch = next((batch for batch in batches if batch.model == "exact"), batches[0])
     scene = batch.scene.with_values({"duration": DURATION})
-    return replace(batch, model=WARM_UP, scene=scene, phases=batch.phases[:1], seconds=START_UP)
+    return replace(batch, model=WARM_UP, scene=scene, phases=batch.phases[:1])
 
 
 def compiling_task(stage: str) -> Task:
@@ -46,7 +45,13 @@ def compiling_task(stage: str) -> Task:
     -------
     Task
     """
-    return Task(_first_call, load_scene("fig3-I").with_values({"duration": DURATION}), stage, 0.0, None, False)
+    return Task(
+        _first_call,
+        load_scene("fig3-I").with_values({"duration": DURATION}),
+        stage,
+        0.0,
+        needs_compiled_reference=False,
+    )
 
 
 def _first_call(scene: Scene) -> None:

@@ -28,7 +28,6 @@ from comparison.analysis.waterfall import waterfall
 from comparison.report.alerts import alerts
 from comparison.report.findings import Findings
 from comparison.report.motion_data import significant_digits
-from comparison.report.pdf import why_no_pdf
 from comparison.report.results.alerts import Unanswered
 from comparison.report.results.differences import BudgetEntry, Completion, Difference, Headline, Waterfall
 from comparison.report.results.measured import MeasuredPeak
@@ -97,7 +96,7 @@ def assemble(findings: Findings) -> Results:
         absent=study.absent,
         alerts=alerts(findings),
         faults=[fault.line for fault in findings.faults],
-        no_pdf=why_no_pdf(),
+        no_pdf=findings.no_pdf,
     )
 
 

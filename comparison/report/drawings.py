@@ -18,8 +18,6 @@ from comparison.report.findings import Findings
 from comparison.study.models import Model
 from reference.problem import Scene
 
-SECONDS = {"maps": 0.7, "assumptions": 0.4}  # of drawing one, recorded beside `pictures.SECONDS`
-
 
 @dataclass(frozen=True)
 class PrintMaps:
@@ -44,7 +42,7 @@ def map_task(findings: Findings, scene: Scene, models: tuple[Model, Model], bodi
     """The maps of two models of a scene."""
     completed = [surface for surface in findings.completions if surface.scene == scene.name]
     shown = findings.surfaces[SHOWN].sel(scene=[scene.name])
-    return _task(draw_print_maps, PrintMaps(shown, scene, models, tuple(bodies), completed), SECONDS["maps"])
+    return _task(draw_print_maps, PrintMaps(shown, scene, models, tuple(bodies), completed))
 
 
 def assumption_tasks(findings: Findings) -> list[Task]:
@@ -52,10 +50,7 @@ def assumption_tasks(findings: Findings) -> list[Task]:
     if findings.assumptions is None:
         return []
     cells = findings.assumptions.cells
-    return [
-        _task(draw_assumption_figure, AssumptionFigure(scene, cells), SECONDS["assumptions"])
-        for scene in findings.assumptions.scenes
-    ]
+    return [_task(draw_assumption_figure, AssumptionFigure(scene, cells)) for scene in findings.assumptions.scenes]
 
 
 def drawn(findings: Findings, task: Task) -> Files:
@@ -82,5 +77,5 @@ def draw_assumption_figure(figure: AssumptionFigure) -> Files:
         return tuple((file.name, file.read_bytes()) for file in sorted(Path(name).iterdir()))
 
 
-def _task(function: object, argument: object, seconds: float) -> Task:
-    return Task(function, argument, Pictures.stage, seconds, needs_compiled_reference=False)  # type: ignore[arg-type]
+def _task(function: object, argument: object) -> Task:
+    return Task(function, argument, Pictures.stage, needs_compiled_reference=False)  # type: ignore[arg-type]

@@ -61,6 +61,7 @@ class Findings:
     completions: Sequence[Completion]  # surfaces of models with fewer phases, on all of them
     faults: Sequence[Fault]  # what solvers reported
     run: Mapping[str, Any]  # command, times, provenance
+    no_pdf: str = ""  # why there is no report.pdf, "" where there is one
     pictures: Mapping[str, bytes] = field(default_factory=dict)  # files of the pictures of the surfaces, by name
     motions: Sequence[StoredMotion] | None = None  # motions at chosen phases
     worst_phases: Sequence[Worst] | None = None  # the largest values over all phases

@@ -28,14 +28,8 @@ class Batch:
     first: int
     phases: Array
     level: int = 0  # of the nested grids, the first that has these phases
-    seconds: float = 0.0  # predicted processor time
     timeout: float | None = None  # most processor time of the call, s; what takes longer is ended: Outcome.TIME_LIMIT
     lane: str = ""  # workers are shared within a lane only: an engine of the user may spoil the process it runs in
-
-    @property
-    def kind(self) -> tuple[str, str]:
-        """Batches of one kind cost about as much more or less than predicted."""
-        return self.scene.name, self.model
 
 
 @dataclass(frozen=True)
@@ -131,7 +125,7 @@ def ok_without_numbers(batch: Batch, mu: Array, error: Array, status: Sequence[s
     """The phase pairs of a batch that are ok without a number for every body: no number that is none is an answer."""
     error_may_be_unknown = bool(batch.lane)
     finite = (np.isfinite(mu) & (np.isfinite(error) | error_may_be_unknown)).all(axis=1)
-    return [index for index in np.flatnonzero(~finite) if status[index] == Outcome.OK]
+    return [index for index in np.flatnonzero(~finite).tolist() if status[index] == Outcome.OK]
 
 
 def unanswered(batch: Batch, outcome: Outcome, error_message: str) -> BatchResult:

@@ -18,7 +18,6 @@ REFERENCE_TOLERANCE = (
     1e-6  # the reference is cheap: asked for at least this, so that its error never blurs a difference
 )
 SOFTENED = "softened-"  # begins the key of a model whose bars are softened
-RECORDED_ON = "one core of a 2-core AMD EPYC (x86-64) virtual machine"
 
 
 def dry(scene: Scene) -> bool:
@@ -86,7 +85,7 @@ class Model:
     `assumptions`: its row in the report's table of equations. `applies`: whether the scene gives it anything to add.
     `most`: phases per axis that its cost allows, or None; of a finer study it computes every k-th phase. `symmetric`:
     whether mirrored phases (symmetry.py) are known to give mirrored motions of the scene and are not computed again.
-    `asks`: the tolerance that was chosen for it (planning.py). `refusal`: the function that tells from the scene alone
+    `refusal`: the function that tells from the scene alone
     why all phase pairs would be refused, or "" ("package:function", the contract of `multibody.refusal`). `side`:
     "entered" for an engine of the user (entered.py), which has no place in the steps from model to model and no
     trajectory. `like`: key of the reference's model that such an engine is held against. `timeout`: most processor
@@ -105,7 +104,6 @@ class Model:
     most: int | None = None
     symmetric: Callable[[Scene], bool] = field(default=never)
     applies: Callable[[Scene], bool] = field(default=any_scene)
-    asks: float | None = None
     refusal: str | None = None
     effect: str = ""
     like: str | None = None
@@ -113,13 +111,11 @@ class Model:
 
     @property
     def recorded_key(self) -> str:
-        """Key in the record of costs: bars that are softer cost as much."""
+        """Key in the table of costs: bars that are softer cost as much."""
         return self.key.removeprefix(SOFTENED)
 
     def tolerance(self, asked: float) -> float:
         """Relative error this model asks of its own numbers when the study asks for `asked`."""
-        if self.asks is not None:
-            return self.asks
         return min(asked, REFERENCE_TOLERANCE) if self.side == "reference" else asked
 
 
@@ -272,7 +268,7 @@ TRANSLATIONAL = _next(
     settings={"model": "translational", "regularization": V_REG},
     batch=2,
     applies=any_scene,
-    most=24,
+    most=16,
 )
 SPATIAL = _next(
     TRANSLATIONAL,
@@ -289,7 +285,7 @@ SPATIAL = _next(
     settings={"model": "spatial", "regularization": V_REG},
     batch=1,
     applies=has_spatial_data,
-    most=8,
+    most=16,
     symmetric=with_mirrored_supports,
 )
 

@@ -9,13 +9,11 @@ from operator import mul
 import numpy as np
 from numpy.typing import NDArray
 
-FIRST_HALVINGS = 3  # the coarsest grids double: 2, 4, 8 phases per axis
-
 
 @cache
 def nested_grids(grid: int) -> tuple[int, ...]:
     """
-    Grids from coarse to fine, each a part of the next, the last one with `grid` phases per axis.
+    Grids from coarse to fine, each a part of the next, the last one with `grid` phases per axis: halvings come first.
 
     Parameters
     ----------
@@ -30,17 +28,14 @@ def nested_grids(grid: int) -> tuple[int, ...]:
     Examples
     --------
     >>> nested_grids(48), nested_grids(96), nested_grids(7)
-    ((2, 4, 8, 24, 48), (2, 4, 8, 24, 48, 96), (7,))
+    ((2, 4, 8, 16, 48), (2, 4, 8, 16, 32, 96), (7,))
     """
     factors, rest = [], grid
     for prime in range(2, grid + 1):
         while rest % prime == 0:
             factors.append(prime)
             rest //= prime
-    halvings = factors.count(2)
-    odd = [factor for factor in factors if factor != 2]
-    first = [2] * min(halvings, FIRST_HALVINGS)
-    return tuple(accumulate([*first, *odd, *[2] * (halvings - len(first))], mul)) or (1,)
+    return tuple(accumulate(factors, mul)) or (1,)
 
 
 def levels(grid: int) -> NDArray[np.intp]:

@@ -1,57 +1,69 @@
-"""What a study leaves out of its scenes, as rows for `--plan`: what, in which models, what that saves, and why."""
+"""What a study leaves out because its scenes do not require it, as rows for `--plan`: each reason once."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from comparison.study.models import Model
-from comparison.study.speedup import REDUCTIONS
 from comparison.study.study import Study
-from reference.problem import Scene, half_turn, no_friction, own_axes, unused_harmonics
+from reference.problem import (
+    Scene,
+    half_turn,
+    linear,
+    no_friction,
+    own_axes,
+    planar,
+    planar_chain,
+    untilted,
+    unused_harmonics,
+)
+
+# what the models with one of these values of a setting leave out, where the scene allows it
+LEFT_OUT = (
+    ("every run but one per harmonic", linear, "equations", ("small",)),
+    ("motion across its plane", planar, "equations", ("small", "exact")),
+    ("motion across its plane, of the bodies", planar_chain, "model", ("translational",)),
+    ("rotations, all supports but one", untilted, "model", ("spatial",)),
+)
 
 
 class Row(NamedTuple):
-    """cost: what is left of that of the models, "none" where they are not computed."""
+    """What is left out, of which models, why, and in which scenes."""
 
     what: str
-    scene: str
     models: str
-    cost: str
     why: str
+    scenes: tuple[str, ...]
 
 
 def reductions(study: Study) -> list[Row]:
     """Everything that the scenes of the study do not require and that is therefore not computed."""
-    return [] if study.full else [row for scene in study.scenes for row in _of(study, scene)]
+    scenes: dict[tuple[str, str, str], list[str]] = {}
+    for scene in () if study.full else study.scenes:
+        for row in _of(study, scene):
+            scenes.setdefault(row, []).append(scene.name)
+    return [Row(*row, tuple(names)) for row, names in scenes.items()]
 
 
-def _of(study: Study, scene: Scene) -> list[Row]:
+def _of(study: Study, scene: Scene) -> Iterator[tuple[str, str, str]]:
     models = [model for model in study.hierarchy if model.applies(scene)]
-    rows = []
-    for factor, concerned in _by_factor(
-        [(study.points(model, scene) / len(study.solved(scene, model)), model) for model in models]
-    ):
-        rows.append(Row("mirrored phases", scene.name, _titles(concerned, models), f"1/{factor:.3g}", _mirror(scene)))
+    shares = [study.points(model, scene) / len(study.solved(scene, model)) for model in models]
+    for share in sorted(set(shares) - {1.0}, reverse=True):
+        concerned = [model for model, own in zip(models, shares) if own == share]
+        yield f"mirrored phases, all but 1/{share:.3g}", _titles(concerned, models), _mirror(scene)
     if no_friction(scene):
-        alike = [
-            model
-            for model in study.hierarchy
-            if model not in models and model.settings.get("regularization") is not None
-        ]
-        alike += [model for model in study.hierarchy if model not in models and "cutoff" in model.settings]
-        if alike:
-            rows.append(Row("laws of friction", scene.name, _titles(alike, models), "none", no_friction(scene).reason))
-    for part in REDUCTIONS:
-        concerned = [model for model in models if part.concerns(model)]
-        if concerned and (decided := part.decided(scene)):
-            rows.append(Row(part.name, scene.name, _titles(concerned, models), f"1/{part.factor:.3g}", decided.reason))
-    return rows
+        laws = [model for model in study.hierarchy if model not in models and _reads_friction(model)]
+        if laws:
+            yield "laws of friction", _titles(laws, models), no_friction(scene).reason
+    for what, decided, setting, values in LEFT_OUT:
+        concerned = [model for model in models if model.settings.get(setting) in values]
+        if concerned and (reduction := decided(scene)):
+            yield what, _titles(concerned, models), reduction.reason
 
 
-def _by_factor(models_by_factor: Sequence[tuple[float, Model]]) -> list[tuple[float, list[Model]]]:
-    factors = sorted({factor for factor, _ in models_by_factor if factor > 1.0}, reverse=True)
-    return [(factor, [model for its_factor, model in models_by_factor if its_factor == factor]) for factor in factors]
+def _reads_friction(model: Model) -> bool:
+    return model.settings.get("regularization") is not None or "cutoff" in model.settings
 
 
 def _mirror(scene: Scene) -> str:
@@ -61,4 +73,4 @@ def _mirror(scene: Scene) -> str:
 
 
 def _titles(concerned: Sequence[Model], models: Sequence[Model]) -> str:
-    return "all" if len(concerned) == len(models) else ", ".join(model.key for model in concerned)
+    return "all models" if len(concerned) == len(models) else ", ".join(model.key for model in concerned)

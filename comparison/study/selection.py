@@ -16,14 +16,14 @@ class Selection:
     """
     The analyses of every scene.
 
-    by_scene: those asked for, by name of the scene; a scene that is not in it has all but those on request. dropped:
-    those that are left out of every scene because they do not fit the budget. of_the_paper: those that are made of the
+    by_scene: those asked for, by name of the scene; a scene that is not in it has all but those on request. later:
+    those that only a later level of the study has. of_the_paper: those that are made of the
     paper's scenes unless they are asked for by name, and that no scene here has for this reason. on_request: those that
     no scene here has because nobody named them.
     """
 
     by_scene: Mapping[str, Sequence[str]] = field(default_factory=dict)
-    dropped: tuple[str, ...] = ()
+    later: tuple[str, ...] = ()
     of_the_paper: tuple[str, ...] = ()
     on_request: tuple[str, ...] = ON_REQUEST
 
@@ -55,22 +55,20 @@ class Selection:
 
     def why_absent(self, analysis: str) -> str:
         """Why an analysis that no scene has is not made."""
-        if analysis in self.dropped:
-            return "does not fit the budget"
+        if analysis in self.later:
+            return "follows at a later level of the study"
         if analysis in self.of_the_paper:
             return f"of the paper's scenes; --only {analysis} makes it of others"
         return f"on request; --also {analysis} makes it" if analysis in self.on_request else "not asked for"
 
     def without(self, analyses: Collection[str]) -> Selection:
-        """The same, with these analyses dropped."""
-        return replace(self, dropped=(*self.dropped, *analyses))
+        """The same without these analyses, which follow later."""
+        return replace(self, later=tuple(analyses))
 
     def has(self, analysis: str, scene: str) -> bool:
         """Whether the analysis is made of the scene; what cannot be selected, such as a step towards others, is."""
         usual = [name for name in ANALYSES if name not in ON_REQUEST]
-        return analysis not in self.dropped and (
-            analysis not in ANALYSES or analysis in self.by_scene.get(scene, usual)
-        )
+        return analysis not in self.later and (analysis not in ANALYSES or analysis in self.by_scene.get(scene, usual))
 
 
 EVERYTHING = Selection()

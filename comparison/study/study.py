@@ -9,13 +9,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.study.accuracy_record import recorded
 from comparison.study.batches import Batch
-from comparison.study.costs import seconds_per_point
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, steps_of
 from comparison.study.nesting import levels
 from comparison.study.selection import EVERYTHING, Selection
-from comparison.study.speedup import speedup
 from reference.problem import Scene, SceneError, phase_grid
 from reference.problem.analyses import ANALYSES
 from reference.problem.symmetry import sources
@@ -57,8 +54,7 @@ class Study:
     are multiples of one another, so that of any two models the coarser grid is part of the finer. Phases whose motion
     is the mirror image of another's are not computed again, and models leave out what the scene does not require,
     unless the study is `full`. A scene with a recorded motion has no phases: every model computes the one point (0, 0).
-    costs: processor time of a point at the usual tolerance, s, by name of the scene and key of the model, where it was
-    tried (costs.py); else it is that of the record. silent: by name of the scene, the models that have no value there:
+    silent: by name of the scene, the models that have no value there:
     comparisons pass over them (analysis/unanswered.py). selection: the analyses that are made of each scene.
     """
 
@@ -67,7 +63,6 @@ class Study:
     tolerance: float
     hierarchy: Sequence[Model] = MODEL_HIERARCHY
     full: bool = False
-    costs: Mapping[tuple[str, str], float] | None = None
     silent: Mapping[str, tuple[str, ...]] | None = None
     selection: Selection = EVERYTHING
 
@@ -170,33 +165,13 @@ class Study:
         phases = phase_grid(self.grid)
         asked = {"full": True} if self.full else {}
         settings = {**model.settings, "tolerance": model.tolerance(self.tolerance), **asked}
-        size = model.batch * max(1, round(self.speedup(scene, model)))
-        batches, first, each = [], 0, self.seconds_per_point(scene, model)
+        batches, first = [], 0
         for level, places in enumerate(self.solved_by_level(scene, model)):
-            for start in range(0, len(places), size):
-                part = phases[places[start : start + size]]
-                about = first + start, part, level, each * len(part)
+            for start in range(0, len(places), model.batch):
+                part = phases[places[start : start + model.batch]]
+                about = first + start, part, level
                 batches.append(
                     Batch(scene, model.key, model.amplification, settings, *about, model.timeout, _lane(model))
                 )
             first += len(places)
         return batches
-
-    def speedup(self, scene: Scene, model: Model) -> float:
-        """How many times less a point costs for what the model leaves out of this scene."""
-        return 1.0 if self.full else speedup(scene, model)
-
-    def seconds_per_point(self, scene: Scene, model: Model) -> float:
-        """Predicted processor time of a phase pair, s."""
-        tried = (self.costs or {}).get((scene.name, model.key))
-        usual = seconds_per_point(scene, model, self.full) if tried is None else tried
-        accuracy = recorded().accuracy.get(model.recorded_key)
-        return usual * (accuracy.cost(model.tolerance(self.tolerance)) if accuracy else 1.0)
-
-    def seconds_of(self, scene: Scene, model: Model) -> float:
-        """Predicted cost of one model on one scene, s on one core."""
-        return self.seconds_per_point(scene, model) * len(self.solved(scene, model))
-
-    def seconds(self, model: Model) -> float:
-        """Predicted cost of one model on every scene it applies to, s on one core."""
-        return sum(self.seconds_of(scene, model) for scene in self.scenes if model.applies(scene))

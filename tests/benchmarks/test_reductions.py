@@ -1,8 +1,8 @@
 """
 What is saved where a scene does not require all of a model: processor time in full over that of the reduced one.
 
-Run with `python -m pytest tests/benchmarks/test_reductions.py -m long -s`; reference/README.md has the figures, and
-comparison/study/speedup.py predicts with them. Full and reduced runs alternate, and the fastest of each are compared:
+Run with `python -m pytest tests/benchmarks/test_reductions.py -m long -s`; reference/README.md has the figures.
+Full and reduced runs alternate, and the fastest of each are compared:
 other work on the machine only ever slows a run down.
 """
 
@@ -17,8 +17,6 @@ import pytest
 
 import multibody
 import reference
-from comparison.study.models import SMALL, SPATIAL, TRANSLATIONAL
-from comparison.study.speedup import speedup
 from reference.problem import Scene, load_scene, phase_grid
 
 ROUNDS = 3
@@ -77,7 +75,7 @@ SUPERPOSED = {
 def test_a_sum_of_motions_costs_a_small_part_of_the_runs(name: str) -> None:
     scene = SUPERPOSED[name]
     ratio = measured(reference.amplification, scene, phase_grid(48), phase_grid(12), equations="small")
-    assert ratio > 0.25 * speedup(scene, SMALL)  # threads of a linear algebra library that wait count as processor time
+    assert ratio > 10.0  # threads of a linear algebra library that wait count as processor time
 
 
 @pytest.mark.long
@@ -87,7 +85,6 @@ def test_a_sum_of_motions_costs_a_small_part_of_the_runs(name: str) -> None:
 def test_a_plane_costs_less_than_space(scene: Scene) -> None:
     ratio = measured(multibody.amplification, scene, RANDOM, RANDOM, model="translational")
     assert ratio > 1.0
-    assert speedup(scene, TRANSLATIONAL) > 1.0
 
 
 @pytest.mark.long
@@ -102,7 +99,7 @@ def test_solving_in_a_plane_costs_less_than_in_space(scene: Scene, law: dict[str
 def test_a_level_platform_costs_less_than_one_that_turns(name: str) -> None:
     scene = level_platform(name)
     ratio = measured(multibody.amplification, scene, RANDOM, RANDOM, model="spatial")
-    assert ratio > 0.6 * speedup(scene, SPATIAL) > 0.6
+    assert ratio > 1.0
 
 
 @pytest.mark.long

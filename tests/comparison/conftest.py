@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,7 +16,6 @@ from PIL import Image
 from comparison.analysis.errata import Effect
 from comparison.report.figures import assumptions, budget, pairs, paper, print_maps
 from comparison.run import main
-from comparison.study import accuracy_record
 from comparison.study.models import Model
 
 try:
@@ -49,15 +48,6 @@ def quick_figures(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(budget, "draw_budget", quick_figure)
     patch.setattr(paper, "draw_paper_figure", quick_figure)
     patch.setattr(print_maps, "draw_maps", lambda *arguments: QUICK_MAPS)
-
-
-@pytest.fixture(scope="session", autouse=True)
-def without_machine_record() -> Iterator[None]:
-    """What was recorded on the machine that runs the tests decides nothing in them."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(accuracy_record, "machine_file", lambda: None)
-        accuracy_record.recorded.cache_clear()
-        yield
 
 
 @pytest.fixture

@@ -22,10 +22,6 @@ WRONG = {
     "tolerance nan": (["--tolerance", "nan"], "command line: --tolerance = nan: must be a number"),
     "budget zero": (["--budget", "0"], "command line: --budget = 0.0: must be a number from 1 to 1e+07"),
     "budget a word": (["--budget", "soon"], "command line: --budget = 'soon': must be a number from 1 to 1e+07"),
-    "budget of a cluster": (
-        ["--budget", "60", "--scheduler", "tcp://x:1"],
-        "command line: --budget = '60': is kept by",
-    ),
     "tolerance a word": (["--tolerance", "fine"], "command line: --tolerance = 'fine': must be a number"),
     "amplitude zero": (["--amplitude", "0"], "command line: --amplitude = 0.0: must be a number"),
     "amplitude infinite": (["--amplitude", "inf"], "command line: --amplitude = inf: must be a number"),

@@ -13,7 +13,6 @@ import multibody
 import reference
 from comparison.analysis import convergence
 from comparison.analysis.convergence import LIMITS, PENETRATIONS, Convergence, limit_trends
-from comparison.registry import ANALYSES, predicted_costs
 from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
 
@@ -39,13 +38,6 @@ def test_every_limit_comes_in_order_and_a_lubricated_scene_has_only_the_contact(
         ("fig4-viscous", 2),
     ]
     assert {trend.verdict for trend in trends} == {"like the power 1"}
-
-
-def test_every_limit_has_a_predicted_cost() -> None:
-    tasks, seconds = predicted_costs(_study("fig3-I"), ANALYSES)["convergence"]
-    assert tasks == len(LIMITS)
-    assert seconds == pytest.approx(sum(limit.seconds for limit in LIMITS))
-    assert all(limit.seconds > 0.0 for limit in LIMITS)
 
 
 def _regularized(power: float) -> object:

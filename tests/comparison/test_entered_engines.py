@@ -41,8 +41,8 @@ from comparison.execution.processes import process_pool
 from comparison.report.figures.tradeoff import draw_tradeoff
 from comparison.study.batches import execute_batch
 from comparison.study.entered import amplification, entered_model
+from comparison.study.levels import levels_of
 from comparison.study.models import Model, pairs_of
-from comparison.study.planning import StudyRequest, plan_study
 from comparison.study.study import Study
 from reference.problem import Outcome, SceneError, load_scene
 
@@ -416,10 +416,10 @@ def test_it_is_asked_for_one_phase_pair_in_a_call(like: str) -> None:
     assert {len(batch.phases) for batch in study.batches() if batch.model == "mine"} == {1}
 
 
-def test_no_budget_gives_it_more_phases_than_the_dearest_model() -> None:
-    hierarchy = [*fake_hierarchy(), entered("plain")]
-    study = plan_study(StudyRequest((SCENE,), hierarchy, budgeted=True)).study
-    assert len(study.axis(study.hierarchy[-1])) <= 8
+def test_the_first_level_asks_it_at_no_more_phases_than_the_translational_engine() -> None:
+    study = Study((SCENE,), 48, 1e-3, [*fake_hierarchy(), entered("plain")])
+    first = levels_of(study, {})[0].study
+    assert len(first.axis(first.hierarchy[-1])) == 8
 
 
 def test_its_source_and_that_of_its_helpers_are_part_of_what_its_results_are_found_by(

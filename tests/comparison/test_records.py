@@ -20,7 +20,8 @@ from comparison.analysis.budget import budget
 from comparison.analysis.surfaces import NOT_ASKED, labeled_surfaces
 from comparison.analysis.trajectories import chosen_places
 from comparison.cli.assumptions import main as assumptions
-from comparison.registry import ANALYSES, first_tasks, predicted_costs
+from comparison.registry import ANALYSES, first_tasks
+from comparison.report.figures.pictures import Pictures
 from comparison.run import main
 from comparison.study.batches import execute_batch
 from comparison.study.reductions import reductions
@@ -52,8 +53,8 @@ def test_a_record_is_one_point_of_every_model_and_the_other_scene_keeps_its_grid
 def test_what_needs_phases_or_amplitudes_is_not_asked_of_a_record(study):
     stages = {task.stage for task in first_tasks(Study(study.scenes[:1], 4, 1e-3), ANALYSES)}
     assert stages == {"effective values"}
-    assert predicted_costs(Study(study.scenes[:1], 4, 1e-3), ANALYSES)["pictures"][0] == 0
-    assert {row.what for row in reductions(Study(study.scenes[:1], 4, 1e-3))} <= {"end of every run"}
+    assert Pictures().tasks(Study(study.scenes[:1], 4, 1e-3), labeled_surfaces(study, [], [])) == []
+    assert reductions(Study(study.scenes[:1], 4, 1e-3)) == []
     (place,) = chosen_places(study, None, study.scenes[0])
     assert (place.row, place.column) == (0, 0)
 

@@ -27,7 +27,6 @@ Array = NDArray[np.float64]
 
 PHASES = np.array([(0.0, 0.0), (0.3, 1.1), (2.0, 0.7)])  # rad; the first is where turning tells most in fig3-I
 DURATION = 6.0  # s: the loading is strongest in its first seconds
-SECONDS = {"translational": 0.35, "spatial": 0.8}  # predicted cost of one task, s on `study.models.RECORDED_ON`
 WITHIN = (0.01, 0.05)  # of mu_i
 CLOSE_ENOUGH = 0.2 * WITHIN[0]  # relative error of mu_i that says whether it stays within: no smaller one is asked for
 
@@ -215,8 +214,7 @@ def variation_tasks(study: Study, stage: str, variations: Sequence[Variation] = 
             varied,
             argument,
             stage,
-            SECONDS["translational" if argument[2] is None else "spatial"],
-            argument[0],
+            about=argument[0],
             needs_compiled_reference=False,
         )
         for argument in variation_arguments(study, variations)

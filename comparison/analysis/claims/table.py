@@ -25,7 +25,6 @@ from comparison.study.study import Study
 from reference.problem import builtin_scenes
 
 GRID = 16  # phases per axis: 24 change a count here and there, and none of the claims that no reading reproduces
-SECONDS = 0.1  # of one case under one reading on GRID, recorded beside `costs.seconds_per_point`
 COARSE = 2  # every second phase for surfaces that are only correlated with another
 
 
@@ -76,7 +75,7 @@ class ClaimTable:
         return "every reading" if len(names) == len(self.readings) else "; ".join(names) or "no reading"
 
 
-SPIKE = Task(spike_over_the_step, LITERAL, "claims", 2.0 * SECONDS)
+SPIKE = Task(spike_over_the_step, LITERAL, "claims")
 
 
 @dataclass(frozen=True)
@@ -110,7 +109,7 @@ class Claims(Analysis[ClaimTable]):
         return self._task(_question(case, reading, self.grid))
 
     def _task(self, question: Question) -> Task:
-        return Task(gathered, question, self.stage, SECONDS * (self.grid / GRID) ** 2)
+        return Task(gathered, question, self.stage)
 
 
 def paper_complete(study: Study) -> bool:

@@ -18,7 +18,6 @@ from comparison.study.selection import EVERYTHING
 from comparison.study.study import Study
 from reference.problem import Scene
 
-SECONDS = {"pair": 0.32, "budget": 0.4, "paper": 0.7}  # of drawing one, recorded beside `costs.seconds_per_point`
 SHOWN = ["mu", "error", "stride", "recorded"]  # of the surfaces: what pictures are made of
 
 
@@ -50,7 +49,7 @@ def pictures(study: Study, surfaces: xr.Dataset) -> list[Picture]:
     listed = []
     for scene in study.phased:
         silent = {scene.name: (study.silent or {}).get(scene.name, ())}
-        alone = replace(study, scenes=(scene,), costs=None, silent=silent, selection=EVERYTHING)
+        alone = replace(study, scenes=(scene,), silent=silent, selection=EVERYTHING)
         shown = surfaces[SHOWN].sel(scene=[scene.name])
         with_surfaces, with_budget = (study.selection.has(section, scene.name) for section in ("surfaces", "budget"))
         if with_surfaces:
@@ -66,7 +65,7 @@ def pictures(study: Study, surfaces: xr.Dataset) -> list[Picture]:
 class Pictures(Analysis[dict[str, bytes]]):
     """Every file of every picture by its name."""
 
-    key, stage, needs_surfaces = "pictures", "pictures", True
+    key, stage, needs_surfaces, level = "pictures", "pictures", True, 1
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One task for each picture."""
@@ -77,8 +76,7 @@ class Pictures(Analysis[dict[str, bytes]]):
                 drawn,
                 picture,
                 self.stage,
-                SECONDS[picture.kind],
-                about[picture.scene.name],
+                about=about[picture.scene.name],
                 needs_compiled_reference=False,
             )
             for picture in pictures(study, surfaces)
@@ -92,16 +90,6 @@ class Pictures(Analysis[dict[str, bytes]]):
             for task in tasks
             for name, content in results.value(task, lambda picture, *failure: drawn(picture))
         }
-
-    def predicted_seconds(self, study: Study) -> list[float]:
-        """Of what `pictures` lists."""
-        costs = []
-        for scene in study.phased:
-            if study.selection.has("surfaces", scene.name):
-                costs += [SECONDS["paper"], *[SECONDS["pair"]] * (len(scene.bodies) * len(study.pairs(scene)))]
-            if study.selection.has("budget", scene.name):
-                costs += [SECONDS["budget"]] * len(scene.bodies)
-        return costs
 
 
 def drawn(picture: Picture) -> Files:

@@ -18,55 +18,6 @@ class WorkPart(Part):
     """processor time of all of them when they were computed, s"""
 
 
-class TargetOfModel(Part):
-    """What one model met of a target."""
-
-    key: str
-    """key of the model"""
-    title: str
-    """title of the model"""
-    tolerance: float
-    """relative error that was to be met"""
-    asked: float
-    """tolerance that the model was given for it"""
-    phases_per_axis: int
-    """of its grid; 1 in a study without phases"""
-    points: int
-    """phase pairs of all its surfaces"""
-    met: float
-    """fraction of them whose error estimates meet the tolerance"""
-    error99: float | None
-    """relative error estimate that 99 % do not exceed; null if more than 1 % have no value"""
-
-
-class NextStep(Part):
-    """What more time would buy."""
-
-    what: Text
-    """a finer grid of a model, or an analysis"""
-    seconds: float
-    """processor time that it still takes, s"""
-
-
-class Targets(Part):
-    """What --tolerance or --budget chose, and what came of it."""
-
-    tolerance: float | None
-    """value of --tolerance"""
-    budget: float | None
-    """value of --budget, s"""
-    predicted_seconds: float
-    """compute time expected for the surfaces, s"""
-    seconds: float
-    """compute time they took, s"""
-    left_out: list[Text]
-    """models left out, and why"""
-    next_steps: list[NextStep]
-    """what the budget did not buy, in the order in which it would be computed"""
-    models: list[TargetOfModel]
-    """what every model met"""
-
-
 class Run(Part):
     """How the report was made."""
 
@@ -88,8 +39,10 @@ class Run(Part):
     """worker processes"""
     provenance: dict[str, Text]
     """versions, machine, commit"""
-    choice: Targets | None
-    """what --tolerance or --budget chose; null without either"""
+    level: int
+    """level of the study that the report holds"""
+    levels: int
+    """levels of the study: a report of an earlier one is replaced as the run goes on"""
 
     @property
     def took(self) -> str:

@@ -1,0 +1,189 @@
+"""The reports of a run: one after each level, each in the place of the one before."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from comparison.analysis.surfaces import labeled_surfaces
+from comparison.analysis.taken_up import TAKEN_UP
+from comparison.analysis.unanswered import with_silent_models
+from comparison.cli.arguments import writing
+from comparison.cli.options import Options
+from comparison.cli.start import Clock
+from comparison.execution.output import atomic_replace, on_stderr
+from comparison.execution.provenance import provenance
+from comparison.execution.resume import command_line
+from comparison.execution.runner import Computed, Runner
+from comparison.registry import chosen_analyses, first_tasks
+from comparison.report.assemble import assemble
+from comparison.report.findings import Fault, Findings, collect_findings
+from comparison.report.pdf import why_no_pdf
+from comparison.report.results.study import Results
+from comparison.study.levels import Level
+from comparison.study.study import Study
+
+WITH_THE_LAST = "it comes with the last level of a run"
+PATIENCE = 3.0  # s: a level that is done sooner after the report before has none of its own, unless it is the last
+
+
+@dataclass(frozen=True)
+class Complete:
+    """A level of which everything is computed: its study knows which models have no value, its surfaces are labeled."""
+
+    level: Level
+    study: Study
+    computed: Computed
+    surfaces: xr.Dataset
+
+
+def computed_level(level: Level, runner: Runner) -> Complete:
+    """Compute what a level still lacks: its surfaces with the analyses beside them, then what the surfaces choose."""
+    analyses = chosen_analyses(level.study)
+    computed = runner.run_study(level.study, first_tasks(level.study, analyses))
+    surfaces = labeled_surfaces(level.study, computed.batches, computed.answers)
+    study = with_silent_models(level.study, surfaces)
+    later = [analysis for analysis in analyses if analysis.needs_surfaces]
+    runner.run_tasks([task for each in later for task in each.tasks(study.selecting(each.key), surfaces)])
+    return Complete(level, study, computed, surfaces)
+
+
+class Reports:
+    """
+    Writes the reports of a run.
+
+    Parameters
+    ----------
+    options : Options
+    jobs : int
+        Workers.
+    words : sequence of str
+        The command line.
+    began : Clock
+        When the run began.
+
+    Attributes
+    ----------
+    place : Path
+        Where the reports are: beside the folder of the options if that holds something else.
+    results : Results or None
+        What the last one says; None before the first.
+    level : Level or None
+        Whose report it is.
+    seconds : float
+        The longest time that one took to write, s.
+    """
+
+    def __init__(self, options: Options, jobs: int, words: Sequence[str], began: Clock) -> None:
+        self._options, self._jobs, self._words, self._began = options, jobs, words, began
+        self._last = began.wall
+        self.place = options.out
+        self.results: Results | None = None
+        self.level: Level | None = None
+        self.seconds = 0.0
+
+    @property
+    def written(self) -> Results:
+        """What the last report says, where there is one."""
+        assert self.results is not None
+        return self.results
+
+    @property
+    def is_due(self) -> bool:
+        """Whether a level that is complete gets a report although others follow."""
+        return time.monotonic() - self._last >= PATIENCE
+
+    def write(self, complete: Complete, runner: Runner, stopped: bool = False) -> None:
+        """Write the report of a level; that of the last one, unless the run was ended, with drawings and a PDF."""
+        from comparison.report.report import drawing_tasks, write_report  # plotting: not needed to refuse or to plan
+
+        begin = time.monotonic()
+        final = complete.level.last and not stopped
+        results, findings = self._said(complete, runner, why_no_pdf() if final else WITH_THE_LAST)
+        if final:
+            drawings = drawing_tasks(results, findings)
+            runner.run_tasks(drawings)
+            files = {task.key: runner.results[task].value for task in drawings}
+            findings = replace(findings, drawings={key: value for key, value in files.items() if value})
+        with writing(self._options.out), atomic_replace(self.place) as report:
+            write_report(report.folder, results, findings)
+        self.place = self._options.out if report.place == self._options.out.resolve() else report.place
+        self.results, self.level, self._last = results, complete.level, time.monotonic()
+        self.seconds = max(self.seconds, self._last - begin)
+
+    def write_stopped(self, complete: Complete | None, runner: Runner) -> None:
+        """Write the report of the last complete level of a run that was ended, with the analyses that are finished."""
+        if complete is None:
+            return
+        later = set(complete.study.selection.later)
+        for analysis in chosen_analyses(replace(complete.study, selection=complete.study.selection.without(()))):
+            if analysis.key in later:
+                asked = replace(complete.study, selection=complete.study.selection.without(later - {analysis.key}))
+                tasks = analysis.tasks(asked.selecting(analysis.key), complete.surfaces)
+                if tasks and not runner.results.missing(tasks):
+                    later.remove(analysis.key)
+        if self.level is not complete.level or later != set(complete.study.selection.later):
+            study = replace(complete.study, selection=complete.study.selection.without(sorted(later)))
+            self.write(replace(complete, study=study), runner, stopped=True)
+
+    def _said(self, complete: Complete, runner: Runner, no_pdf: str) -> tuple[Results, Findings]:
+        study, surfaces, took = complete.study, complete.surfaces, Clock.now().since(self._began)
+        run: dict[str, Any] = {
+            "command": command_line(self._words),
+            "began": (datetime.now(UTC) - timedelta(seconds=took.wall)).isoformat(timespec="seconds"),
+            "wall_seconds": round(took.wall, 1),
+            "processor_seconds": round(took.processor, 1),
+            "tiles": len(complete.computed.batches),
+            "tiles_stored_before": complete.computed.stored,
+            "parts": {
+                stage: {"tasks": part.tasks, "stored_before": part.stored, "seconds": round(part.seconds, 2)}
+                for stage, part in runner.results.parts.items()
+            },
+            "jobs": self._jobs,
+            "level": complete.level.number,
+            "levels": complete.level.of,
+            "provenance": provenance(),
+        }
+        findings = collect_findings(
+            study,
+            surfaces,
+            {
+                analysis.key: analysis.collect(study.selecting(analysis.key), surfaces, runner.results)
+                for analysis in chosen_analyses(study)
+            },
+            _faults(study, complete.computed),
+            run,
+            no_pdf=no_pdf,
+            families=[family for family in self._options.families if len(family.scenes) > 1] or None,
+            **{
+                name: None if analysis in study.absent else _taken_up(load, self._options.out)
+                for name, (analysis, load) in TAKEN_UP.items()
+            },
+        )
+        return assemble(findings), findings
+
+
+def _faults(study: Study, computed: Computed) -> list[Fault]:
+    """What solvers reported, once for each scene, model and message."""
+    titles = {model.key: model.title for model in study.hierarchy}
+    faults = {
+        Fault(batch.scene.name, f"{titles[batch.model]}: {answer.error_message}")
+        for batch, answer in zip(computed.batches, computed.answers)
+        if answer.error_message
+    }
+    return sorted(faults, key=lambda fault: fault.line)
+
+
+def _taken_up(load: Callable[[Path], Any], out: Path) -> Any:
+    """What another command left beside the report; None for a file that has come since and cannot be read."""
+    try:
+        return load(out)
+    except (OSError, ValueError) as error:
+        on_stderr(str(error))
+        return None

@@ -1,0 +1,97 @@
+"""The levels of a study: the same question on coarser grids first, so that a whole report is there early."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from math import gcd
+
+from comparison.study.models import Model
+from comparison.study.nesting import nested_grids
+from comparison.study.study import Study
+
+# phases per axis at the first two levels; the third is the whole study
+MOST: tuple[Mapping[str, float], ...] = (
+    {"reference": 16, "engine": 8, "spatial": 4, "entered": 8},
+    {"reference": float("inf"), "engine": float("inf"), "spatial": 8, "entered": float("inf")},
+)
+
+
+@dataclass(frozen=True)
+class Level:
+    """One level: its study, and its number of how many."""
+
+    study: Study
+    number: int
+    of: int
+
+    @property
+    def last(self) -> bool:
+        """Whether it is the whole study."""
+        return self.number == self.of
+
+    @property
+    def title(self) -> str:
+        """For the terminal and the page."""
+        return f"level {self.number} of {self.of}"
+
+
+def levels_of(study: Study, first: Mapping[str, int]) -> list[Level]:
+    """
+    The levels of a study, from coarse to fine; each begins with the phase pairs of the one before.
+
+    Parameters
+    ----------
+    study : Study
+        The whole question.
+    first : mapping of str to int
+        The level that an analysis is first made at, by its key.
+
+    Returns
+    -------
+    list of Level
+        The last is the study itself. A level that would add nothing is left out.
+    """
+    made = [key for key in first if study.selecting(key).scenes]
+    studies: list[Study] = []
+    for number, most in enumerate(MOST, start=1):
+        later = [key for key in made if first[key] > number]
+        coarse = _coarser(study, most)
+        studies.append(replace(coarse, selection=coarse.selection.without(later)))
+    studies.append(study)
+    different = [
+        each for each, finer in zip(studies, [*studies[1:], None]) if finer is None or _work(each) != _work(finer)
+    ]
+    return [Level(each, number, len(different)) for number, each in enumerate(different, start=1)]
+
+
+def _work(study: Study) -> tuple[object, ...]:
+    """What is computed."""
+    return study.grid, tuple(study.strides.items()), study.selection
+
+
+def _coarser(study: Study, most: Mapping[str, float]) -> Study:
+    """The study on the finest of the nested grids of every model that has no more phases per axis than its `most`."""
+    strides = {model.key: _stride(study, model, most[_kind(model)]) for model in study.hierarchy}
+    shared = gcd(*strides.values())  # the equations have every phase of the coarser study
+    if study.grid % shared:
+        return study
+    grid = study.grid // shared
+    hierarchy = [
+        replace(model, most=None if model.side == "reference" else -(-grid // (strides[model.key] // shared)))
+        for model in study.hierarchy
+    ]
+    return replace(study, grid=grid, hierarchy=hierarchy)
+
+
+def _stride(study: Study, model: Model, most: float) -> int:
+    """Every which of the study's phases a model has at a level with at most so many per axis."""
+    stride, phases = study.strides[model.key], len(study.axis(model))
+    if stride * phases != study.grid:  # the last phase and the first are closer than the others: no grid is nested
+        return stride
+    chain = nested_grids(phases)
+    return stride * phases // max((grid for grid in chain if grid <= most), default=chain[0])
+
+
+def _kind(model: Model) -> str:
+    return "spatial" if model.settings.get("model") == "spatial" else model.side
