@@ -7,6 +7,7 @@ from typing import Any
 
 from comparison.analysis.assumptions.validity import Assumptions
 from comparison.analysis.claims.table import Claims
+from comparison.analysis.completion import CompletedSurfaces
 from comparison.analysis.convergence import Convergence
 from comparison.analysis.demand_surfaces import DemandSurfaces
 from comparison.analysis.effective import EffectiveValues
@@ -32,6 +33,7 @@ ANALYSES: tuple[Analysis[Any], ...] = (
     WorstPhases(),
     DemandSurfaces(),
     MeasuredPeaks(),
+    CompletedSurfaces(),
     Pictures(),
 )
 

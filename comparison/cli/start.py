@@ -38,7 +38,7 @@ COMMANDS = {  # module whose `main` is the command, and what it does
 
 
 class Clock(NamedTuple):
-    """An instant: wall time, and processor time of this process and its children, s; on Linux also of those that run."""
+    """An instant: wall time, and processor time of this process and its children, s; on Linux also of running ones."""
 
     wall: float
     processor: float

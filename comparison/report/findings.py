@@ -112,7 +112,8 @@ def collect_findings(
     rows, lacking = differences(study, surfaces), unanswered(study, surfaces)
     names = ("motions", "worst_phases", "demands", "claims", "scaling", "convergence", "assumptions", "measured")
     optional: dict[str, Any] = {name: collected.get(name) for name in names}
-    completed = [surface for scene in study.scenes for surface in completions(study, surfaces, scene)]
+    held_out = collected.get("completion")
+    completed = [surface for scene in study.scenes for surface in completions(study, surfaces, scene, held_out)]
     return Findings(
         study=study,
         surfaces=with_completed(surfaces, completed),

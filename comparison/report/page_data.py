@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from comparison.analysis.completion import Completion
 from comparison.analysis.differences import pair_step
-from comparison.analysis.stored import finite_or_none
 from comparison.analysis.surfaces import common_phases
 from comparison.analysis.worst_phases import nearest_search
 from comparison.report.findings import Findings
@@ -106,8 +105,9 @@ def _model(
     One model of a scene.
 
     phases: per axis. computed: phase pairs that symmetry did not give. surface: whether its values are drawn as one.
-    mu: per body. error: per body, null for a surface. completed: per body, null or through (a model), error (largest
-    of leaving out one), reason (why it is not drawn), difference (whether that may be drawn), mu (null where refused).
+    mu: per body. error: per body, null for a surface. completed: per body, null or through (a model), certificate
+    (how far it is off, in words), reason (why it is not drawn), difference (whether that may be drawn), mu (null where
+    refused).
     worst: per body, null or alpha1, alpha2 (rad), the largest mu over all phases, and the model that was searched: this
     one or one near it.
     """
@@ -142,7 +142,7 @@ def _completed(completion: Completion | None) -> dict[str, Any] | None:
         return None
     return {
         "through": completion.through,
-        "error": finite_or_none(completion.error),
+        "certificate": completion.certificate if completion.accepted else "",
         "reason": completion.reason,
         "difference": completion.difference_accepted,
         "mu": _rows(completion.mu, DIGITS) if completion.accepted else None,

@@ -31,6 +31,7 @@ ASKED = (
     "effective",
     "assumptions",
     "measured",
+    "completion",
     "pictures",
 )  # of the models of the hierarchy, or drawn from their surfaces
 

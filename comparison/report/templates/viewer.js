@@ -60,7 +60,7 @@ function panels() {
   return [first, second, difference].map((surface, k) => {
     const largest = largestOf(surface, k === 2 ? Math.abs : undefined), shown = surface.sheet ? surface.rows.length : Math.round(Math.sqrt(surface.rows.flat().length));
     const notes = [k === 2 ? `${shown} × ${shown} phases${surface.completed ? ", completed" : ""}` : state.grid === "second" && k === 0 && !surface.sheet ? `${shown} × ${shown} of ${surface.model.phases} × ${surface.model.phases} phases` : grid(surface, surface.model.phases)];
-    if (surface.completed?.mu && k < 2) notes.push(`dots: computed; leaving out one misses it by at most ${digits(surface.completed.error, 2)}`);
+    if (surface.completed?.mu && k < 2) notes.push(`dots: computed; ${surface.completed.certificate}`);
     if (!surface.sheet && k === 1 && surface.completed?.reason) notes.push(`points: ${surface.completed.reason}`);
     if (largest) notes.push(`largest of ${surface.phases} × ${surface.phases} phases: ${k === 2 ? percentText(largest.z) : digits(largest.z)} at ${at([largest.a, largest.b])} ▾`);
     else notes.push("no value at any phase pair");

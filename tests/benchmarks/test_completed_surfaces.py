@@ -1,0 +1,68 @@
+"""
+The translational surfaces of the paper's scenes on 64 x 64 phases from 8 x 8 computed and 59 held-out phase pairs.
+
+Run with `python -m pytest tests/benchmarks/test_completed_surfaces.py -m long -s`; docs/decisions/0009 has the figures.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from comparison.analysis.completion import CompletedSurfaces, completions, held_out_places
+from comparison.analysis.surfaces import labeled_surfaces
+from comparison.execution.task import execute
+from comparison.execution.task_results import TaskResults
+from comparison.study.batches import execute_batch, imported
+from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL
+from comparison.study.study import Study
+from reference.problem import load_scene, phase_grid
+from reference.problem.symmetry import sources
+
+GRID, COMPUTED, FURTHER = 64, 8, 200
+ASKED = 5e-4  # of the engine, and of the completed surface
+MAX_RUNS = 256  # of the engine
+SCENES = ("fig3-I", "fig3-II", "fig4-dry", "fig4-viscous")
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", SCENES)
+def test_completed_surfaces_keep_their_certificate_at_further_phases(name: str) -> None:
+    scene, model = load_scene(name), replace(TRANSLATIONAL, most=COMPUTED)
+    study = Study((scene,), GRID, ASKED, (EXACT, REGULARIZED, model))
+    analysis, results = CompletedSurfaces(), TaskResults()
+    begin = time.process_time()
+    batches = study.batches()
+    surfaces = labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
+    for task in analysis.tasks(study):
+        results.put(task, execute(task))
+    listed = completions(study, surfaces, scene, analysis.collect(study, surfaces, results))
+    seconds = time.process_time() - begin
+    held_out = held_out_places(study, scene, model)
+    runs = len(study.solved(scene, model)) + len(held_out)
+    assert runs <= MAX_RUNS
+
+    different = np.unique(sources(scene, GRID))
+    seen = sources(scene, GRID)[study.places(model)]
+    rest = np.setdiff1d(different, np.concatenate([seen, held_out]))
+    places = np.random.default_rng(5).choice(rest, FURTHER, replace=False)
+    engine: Callable[..., object] = imported(model.amplification)
+    truth = engine(scene, phase_grid(GRID)[places], **model.settings, tolerance=ASKED)
+    for surface in listed:
+        mu = truth.mu[:, surface.body - 1]
+        missed = np.abs(surface.mu.ravel()[places] / mu - 1.0)
+        beyond = float((missed > surface.error).mean())
+        beyond_both = float((missed > surface.error + truth.error[:, surface.body - 1] / mu).mean())
+        print(
+            f"\n{name} mu_{surface.body}: {runs} runs, {seconds:.1f} s of processor time, E {surface.error:.2e}, engine's "
+            f"own error {surface.model_error:.2e}; {FURTHER} further phase pairs: largest {missed.max():.2e}, "
+            f"{100.0 * beyond:.1f} % beyond E, {100.0 * beyond_both:.1f} % beyond E and the engine's error"
+        )
+        assert surface.accepted
+        assert surface.error <= ASKED
+        assert surface.share <= 0.0501
+        assert beyond <= surface.share + 3.0 * np.sqrt(surface.share / FURTHER)
