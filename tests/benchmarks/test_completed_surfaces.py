@@ -58,8 +58,8 @@ def test_completed_surfaces_keep_their_certificate_at_further_phases(name: str) 
         beyond = float((missed > surface.error).mean())
         beyond_both = float((missed > surface.error + truth.error[:, surface.body - 1] / mu).mean())
         print(
-            f"\n{name} mu_{surface.body}: {runs} runs, {seconds:.1f} s of processor time, E {surface.error:.2e}, engine's "
-            f"own error {surface.model_error:.2e}; {FURTHER} further phase pairs: largest {missed.max():.2e}, "
+            f"\n{name} mu_{surface.body}: {runs} runs, {seconds:.1f} s of processor time, E {surface.error:.2e}, "
+            f"engine's own error {surface.model_error:.2e}; {FURTHER} further phase pairs: largest {missed.max():.2e}, "
             f"{100.0 * beyond:.1f} % beyond E, {100.0 * beyond_both:.1f} % beyond E and the engine's error"
         )
         assert surface.accepted
