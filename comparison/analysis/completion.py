@@ -272,7 +272,7 @@ def with_completed(surfaces: xr.Dataset, listed: Sequence[Completion]) -> xr.Dat
         completed.loc[place] = surface.mu
         for name in certificate:
             stated[f"completed_{name}"].loc[place] = getattr(surface, name)
-    return surfaces.assign(completed=completed, **stated)
+    return surfaces.assign({"completed": completed, **stated})
 
 
 def _is_spatial(model: Model) -> bool:
