@@ -102,7 +102,7 @@ class Completion:
 class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
     """Held-out phase pairs of every model that is completed."""
 
-    key, stage = "completion", "held-out phases"
+    key, stage, level = "completion", "held-out phases", 2
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """A few phase pairs each."""
@@ -115,7 +115,7 @@ class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
         found = {}
         for scene, model, tasks in self._listed(study):
             if not all(task in results for task in tasks):
-                continue  # the study ended at a coarser grid than the one whose phase pairs were held out
+                continue  # of a level of the study that holds out no phase pairs
             parts = [results.value(task, _without_value) for task in tasks]
             mu, error = (np.concatenate([getattr(part, name) for part in parts]) for name in ("mu", "error"))
             found[scene.name, model.key] = HeldOut(mu, error)
@@ -133,15 +133,10 @@ class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
                 asked = {"full": True} if study.full else {}
                 settings = {**model.settings, "tolerance": model.tolerance(study.tolerance), **asked}
                 parts = [phases[first : first + POINTS] for first in range(0, len(phases), POINTS)]
-                each = study.seconds_per_point(scene, model)
-                yield (
-                    scene,
-                    model,
-                    [
-                        Task(held_out_values, (scene, model, settings, part), self.stage, each * len(part), scene)
-                        for part in parts
-                    ],
-                )
+                tasks = [
+                    Task(held_out_values, (scene, model, settings, part), self.stage, about=scene) for part in parts
+                ]
+                yield scene, model, tasks
 
 
 def held_out_values(task: Arguments) -> HeldOut:

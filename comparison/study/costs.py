@@ -31,7 +31,7 @@ SECONDS: Mapping[str, float] = {
     "demands": 10.0,
     "measured peaks": 1.0,
     "pictures": 3.0,
-    "completion": 3.5,
+    "held-out phases": 3.5,
 }
 UNKNOWN = 1.0  # s: of a model of the user, and of an analysis that is not listed
 COMPILING = 20.0  # s: the reference, on its first call on a machine
