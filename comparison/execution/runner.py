@@ -94,7 +94,7 @@ class Runner:
         missing = [batch for key, batch in zip(keys, batches) if key not in self.answers]
         weights = self._weights(study, missing) | self._task_weights(tasks)
         left = self.results.missing(tasks)
-        self._skip({id(task): weights[id(task)] for task in tasks if task not in left})
+        self._skip_but(tasks, left, weights)
         if missing or left:
             titles = {model.key: model.title for model in study.hierarchy}
             waiting = {model.key for model in study.hierarchy if model.side == "reference"}
@@ -111,7 +111,7 @@ class Runner:
         """
         left = sorted(self.results.missing(tasks), key=lambda task: -task.seconds)
         weights = self._task_weights(tasks)
-        self._skip({id(task): weights[id(task)] for task in tasks if task not in left})
+        self._skip_but(tasks, left, weights)
         if left:
             pending = compile_first and any(task.needs_compiled_reference for task in left)
             first = [compiling_task(COMPILING)] if pending else []
@@ -130,6 +130,11 @@ class Runner:
         return {
             id(task): task.seconds * self.stages.get(task.stage, sums[task.stage]) / sums[task.stage] for task in tasks
         }
+
+    def _skip_but(self, tasks: Sequence[Task], left: Sequence[Task], weights: Mapping[int, float]) -> None:
+        """The tasks that are not left need no work."""
+        missing = set(map(id, left))
+        self._skip({id(task): weights[id(task)] for task in tasks if id(task) not in missing})
 
     def _skip(self, weights: Mapping[int, float]) -> None:
         if self.display is not None:
