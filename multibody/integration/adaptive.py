@@ -90,6 +90,7 @@ class EngineRun:
     warping_load: float = 0.0  # largest load that warping of the supports takes so far, in shares of the weight
     last_open: float = -math.inf  # the latest instant at which a support carried no load, in units of time
     max_displacement: float = 0.0  # horizontal, of the platform, in units of length
+    max_vertical: float = 0.0  # acceleration of any body, relative to the plate
     # the last instant at which an acceleration or the displacement of the platform came within SETTLED_FRACTION of its
     # largest value, in units of time
     settled: float = 0.0
@@ -285,6 +286,8 @@ def _record(
     time, slip = motion.time, motion.slip
     if result.undisturbed > time[0]:
         time, slip, size, distance = _from(result.undisturbed, time, slip, size, distance)
+    vertical = float(np.abs(motion.accelerations[:, model.bodies[:, 2]]).max())
+    result.max_vertical = max(result.max_vertical, vertical)
     if read and len(time):
         result.peaks.add(time, size, slip)
         _record_settling(result, time, size, distance)

@@ -31,6 +31,7 @@ class Candidate:
     shares_contact: bool  # with the level before, which then does not show what the contact's compliance leaves
     level_errors: Array  # (N,), errors that other levels and the springs of supports show, in units of the model
     rounding: Array  # likewise, that rounding of the contact forces leaves
+    least: Array  # (N,), errors that the noise of the contact force leaves, however well runs agree
     coarser: tuple[tuple[EngineRun, float], ...]  # other runs, and the share of their difference to this one
     confirmed: bool = True  # whether a run on springs of real bearings, if it needs one, ended
     compliance: Array | None = None  # errors (N,) that the contact's compliance leaves, once a run has shown them
@@ -39,7 +40,7 @@ class Candidate:
     def errors(self) -> Array:
         """Errors (N,), in units of the model."""
         shown = widened_without_convergence(self.level_errors + self.rounding, self.run)
-        return shown if self.compliance is None else shown + self.compliance
+        return np.maximum(shown if self.compliance is None else shown + self.compliance, self.least)
 
     @property
     def lacks_compliance(self) -> bool:

@@ -18,7 +18,7 @@ from multibody.integration.adaptive import EngineRun
 from multibody.integration.level import COMPLIANCE_RATIO, Level
 from multibody.integration.peak import Peaks
 from multibody.models.system import EngineModel
-from reference.problem import Outcome
+from reference.problem import Outcome, Scene
 
 Array = NDArray[np.float64]
 
@@ -26,6 +26,10 @@ SAFETY_TWO_LEVELS, SAFETY_THREE_LEVELS = 1.5, 1.25  # on the error that so many 
 # on what a softer contact shows of rounding at the same step: its own compliance may act against that (measured: 2 is
 # 1.2 times too little, once in 48)
 SAFETY_OF_ROUNDING = 3.0
+NOISE_OF_ROUNDING = 0.5  # of the contact force, over the bound of its rounding (measured: up to 0.27)
+NOISE_OF_TURNING = 0.2  # likewise, of a platform that turns (measured: up to 0.10)
+# force on the platform of a flat slider over Newton's residual, from which on that does not act in full (measured: 34)
+MAX_FORCE_WITHOUT_ITERATION = 40.0
 SAFETY_OF_SHARING = 2.0  # on what two loads of warping show
 SAFETY_OF_BEARINGS = 2.0  # on what springs of real bearings change at a coarser level
 MIN_RATE, MAX_RATE = 2.0, 4.0  # factor by which a level reduces the error: at stops, in smooth motion
@@ -76,6 +80,29 @@ def from_rounding(peaks: Peaks, level: Level, other: Peaks, softer: Level, safet
     change = np.abs(peaks.value - other.value)
     shown = np.maximum(safety * stiffer / (stiffer - 1.0) * change, level.error_floor * peaks.value)
     return np.minimum(level.rounding, shown)
+
+
+def from_contact_noise(run: EngineRun, level: Level, scene: Scene, model: EngineModel) -> Array:
+    """
+    Least error (N,) of a run, which the noise of the contact force leaves whatever other runs show.
+
+    A platform that hardly moves is at the same place in all runs, and they round alike. The noise accelerates all
+    bodies along the vertical, where it adds to the other components as a square. On a plane steps in which the force on
+    the platform changes by less than Newton's residual are taken without an iteration. All runs then leave it. A platform
+    that turns is nowhere at rest, so that levels round differently and show it, but for peaks that are noise altogether.
+    """
+    peaks, shares = run.peaks.value, scene.masses / scene.total_mass
+    if model.depressions is not None:
+        noise = NOISE_OF_TURNING * level.rounding
+        return np.where(peaks <= noise, noise, 0.0)
+    noise = NOISE_OF_ROUNDING * level.rounding
+    vertical = peaks if model.ground.shakes(2) else np.minimum(run.max_vertical, peaks)
+    gain = (2.0 * vertical + noise) * noise
+    error = np.minimum(noise, gain / np.maximum(peaks + np.sqrt(np.maximum(peaks**2 - gain, 0.0)), SMALLEST_CHANGE))
+    if scene.flat:
+        left = level.residual / shares[0]
+        error[0] += left * min(1.0, MAX_FORCE_WITHOUT_ITERATION * left / max(peaks[0], SMALLEST_CHANGE))
+    return error
 
 
 def widened_by_impacts(errors: Array, peaks: list[Peaks], run: EngineRun, before: int) -> Array:

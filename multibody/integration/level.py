@@ -39,6 +39,10 @@ MAX_CONTACT_LAG = 0.3  # x at level 0 where rounding allows: from there on a lev
 # time in which the contact follows over the inverse of the largest angular frequency that matters, at level 0: on the
 # slope of the sphere a slower contact takes part in the motion of stiff links, and its damper ends that at every level
 MAX_CONTACT_TIME = 0.25
+# of the duration, where the force on the contact changes: a slower contact has not followed when the motion ends, and
+# a softer one would not show it
+MAX_CONTACT_TIME_OF_MOTION = 0.05
+MAX_CHANGE_WITHOUT_CONTACT = 0.03  # of that force, over a peak: it adds as a square
 MAX_CONTACT_TIME_OF_ROCKING = 0.04  # likewise, where bodies turn: links then press the supports by their height, too
 NEWTON_TOLERANCE = 1e-5  # relative, of the forces, at level 0
 # squared step over the penetration, up to which that is enough: it is relative to a step's first residual, which is
@@ -92,6 +96,10 @@ class Level:
     load : float
         The loading of a flat slider, in units of g; zero for any other. What accelerates the bodies is friction, which
         may be a small difference of forces that Newton's iteration solves to its tolerance.
+    softest : float
+        Largest penetration with which the contact follows a change of its force within the motion.
+    force_change : float
+        A bound of that change, in weights.
 
     Examples
     --------
@@ -112,6 +120,8 @@ class Level:
     decays: tuple[tuple[float, float], ...] = ()
     strength: float = 1.0
     load: float = 0.0
+    softest: float = math.inf
+    force_change: float = 0.0
 
     @property
     def rounding(self) -> float:
@@ -184,10 +194,16 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
     step = largest_step(period, model)
     strength = 1.0 if model.allows_liftoff else weak_strength(scene)  # a tower tilts on soft contacts
     peak, most = (MIN_PEAK, MAX_PENETRATION) if strength == 1.0 else (strength, MAX_WEAK_PENETRATION)
+    followed, force_change = (
+        MAX_CONTACT_TIME_OF_MOTION * scene.duration / model.units.time,
+        contact_change(scene, model),
+    )
+    slowest = followed if force_change == math.inf else 1.0
+    most = min(most, COMPLIANCE_RATIO * slowest**2)
     rounding = MAX_ROUNDING_SHARE * peak * min(tolerance, LOOSEST_FOR_ROUNDING)
     stiffest = min(model.rounding / rounding, most / COMPLIANCE_RATIO)
     share = MAX_CONTACT_TIME_OF_ROCKING if model.allows_liftoff else MAX_CONTACT_TIME
-    slowest = min(MAX_CONTACT_LAG * model.relaxation, share * period / (2.0 * math.pi), 1.0)
+    slowest = min(MAX_CONTACT_LAG * model.relaxation, share * period / (2.0 * math.pi), slowest)
     softest = max(min(slowest**2, MAX_PENETRATION), stiffest)
     stiffenings = math.floor(math.log(softest / stiffest, COMPLIANCE_RATIO) + 1e-9)
     penetrations = [softest / COMPLIANCE_RATIO ** min(level, stiffenings) for level in range(MAX_LEVELS)]
@@ -209,6 +225,8 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
             decays=tuple((until, needed / 2.0**level) for until, needed in brief),
             strength=strength,
             load=2.0 * scene.largest_acceleration / GRAVITY if scene.flat else 0.0,
+            softest=followed**2,
+            force_change=force_change,
         )
         for level, penetration in enumerate(penetrations)
     ]
@@ -230,8 +248,23 @@ def for_small_peaks(level: Level, smallest: float, tolerance: float) -> Level:
     if smallest >= WEAK_LOADING:
         return level
     wanted = level.rounding_moment / (MAX_ROUNDING_SHARE * tolerance * max(smallest, WEAKEST_PEAK))
-    penetration = max(level.penetration, min(wanted, MAX_WEAK_PENETRATION / COMPLIANCE_RATIO))
+    follows = level.force_change > MAX_CHANGE_WITHOUT_CONTACT * smallest
+    softest = min(MAX_WEAK_PENETRATION / COMPLIANCE_RATIO, level.softest if follows else math.inf)
+    penetration = max(level.penetration, min(wanted, softest))
     return replace(level, penetration=penetration, strength=min(level.strength, smallest))
+
+
+def contact_change(scene: Scene, model: EngineModel) -> float:
+    """
+    Bound of the change of the contact's force within a brief motion from rest, in weights.
+
+    The loading takes the platform no faster than it would go freely. Speed V and way X along the cap change the force
+    by V^2 / rho and by the loading times X / rho.
+    """
+    if model.ground.shakes(2):
+        return math.inf
+    speed = 2.0 * math.sqrt(2.0) * scene.largest_acceleration / GRAVITY * scene.duration / model.units.time
+    return 1.5 * speed**2
 
 
 def weak_strength(scene: Scene) -> float:

@@ -22,6 +22,7 @@ from multibody.integration.candidate import Candidate
 from multibody.integration.estimate import (
     ERROR_PER_WARPING_LOAD,
     SAFETY_OF_BEARINGS,
+    from_contact_noise,
     from_levels,
     from_rounding,
     from_sharing,
@@ -133,7 +134,8 @@ class LevelRuns:
                 return None
             errors = widened_by_impacts(errors + change, [], run, self._levels_on_the_same_springs())
         coarser = ((self.runs[-2], share_of_change(before, model)),)
-        return Candidate(run, level, self.shares_contact(number), errors, rounding, coarser, confirmed)
+        least = from_contact_noise(run, level, self.pair.scene, model)
+        return Candidate(run, level, self.shares_contact(number), errors, rounding, least, coarser, confirmed)
 
     def _levels_on_the_same_springs(self) -> int:
         """How many levels before the last one have its springs: others are another motion, and confirm nothing."""

@@ -163,7 +163,15 @@ def _smooth(
             s = float(time[extra] - time[row])
             third = (float(size[extra] - size[row]) - (slope + curvature * s) * s) / (s * (s - t[0]) * (s - t[1]))
             error = max(error, abs(third * summit * (summit - t[0]) * (summit - t[1])))
+    if around and first <= row - 2 and row + 2 <= last:
+        error = max(error, _alternating(size[row - 2 : row + 3]))
     return float(size[row]) + rise, error, float(time[row]) + summit
+
+
+def _alternating(size: Array) -> float:
+    """Part of the middle of five samples that alternates from step to step: none where steps resolve the motion."""
+    a, b, c, d, e = size.tolist()
+    return abs(a - 4.0 * b + 6.0 * c - 4.0 * d + e) / 16.0
 
 
 def _unresolved(time: Array, size: Array, row: int, corners: list[int]) -> float:

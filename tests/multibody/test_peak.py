@@ -121,3 +121,11 @@ def test_samples_that_alternate_or_are_far_from_an_impact_say_nothing_about_it(i
 def test_the_end_of_the_record_counts() -> None:
     peaks = read(lambda t: t, lambda t: np.ones_like(t), np.inf, 3)
     assert peaks.value[0] == pytest.approx(0.98)
+
+
+def test_samples_that_alternate_at_the_peak_have_half_of_their_spread_as_error() -> None:
+    time = np.arange(0.0, 1.0, 0.02)
+    size = np.cos(time - 0.5) + 0.01 * np.cos(np.pi * np.arange(len(time)))
+    peaks = Peaks(1, np.inf)
+    peaks.add(time, size[:, None], np.ones((len(time), 1)))
+    assert peaks.value[0] - 1.0 <= peaks.sampling[0] < 0.02

@@ -9,8 +9,9 @@ from oracle import set_valued_run
 
 import reference
 from reference.problem import Scene, phase_grid
-from reference.solver.error_estimate import peaks_at
-from reference.surface import checked_demand
+from reference.solver.error_estimate import NOT_MET, peaks_at
+from reference.solver.system import SOLVED
+from reference.surface import checked_demand, superposed
 
 SCENES = {
     "fig3-I": reference.load_scene("fig3-I"),
@@ -273,3 +274,19 @@ def test_what_is_known_remains_where_a_finer_run_cannot_be_finished():
     assert np.all((found.error > 1e-8 * found.mu).any(axis=1))
     assert np.all(found.error[:, 0] < rough.error[:, 0])
     assert np.all(np.abs(found.mu - rough.mu) <= found.error + rough.error)
+
+
+def test_a_value_whose_error_misses_the_tolerance_is_not_called_ok():
+    """Without friction the bodies hardly feel so brief a loading: their peaks are as small as rounding."""
+    scene = reference.load_scene("fig3-I").with_values({"duration": 0.01, "isolator.friction": 0.0})
+    found = reference.amplification(scene, [(0.3, 1.1)], tolerance=1e-10)
+    assert (found.error > 1e-10 * found.mu).any()
+    assert found.status.tolist() == ["tolerance not met"]
+
+
+def test_superposed_motions_that_miss_the_tolerance_are_not_called_ok():
+    scene = reference.load_scene("fig3-I").with_values({"isolator.friction": 0.0})
+    system, demand = checked_demand(scene, "small", None, 1e-6, None, "consistent")
+    for tolerance, code in ((1e-6, SOLVED), (1e-15, NOT_MET)):  # stricter than any that may be asked for
+        peaks = superposed(scene, system, np.array([[0.3, 1.1]]), demand._replace(tolerance=tolerance))
+        assert peaks.code.tolist() == [code]
