@@ -88,8 +88,8 @@ def from_contact_noise(run: EngineRun, level: Level, scene: Scene, model: Engine
 
     A platform that hardly moves is at the same place in all runs, and they round alike. The noise accelerates all
     bodies along the vertical, where it adds to the other components as a square. On a plane steps in which the force on
-    the platform changes by less than Newton's residual are taken without an iteration. All runs then leave it. A platform
-    that turns is nowhere at rest, so that levels round differently and show it, but for peaks that are noise altogether.
+    the platform changes by less than Newton's residual are taken without an iteration. All runs then leave it. A
+    platform that turns is nowhere at rest: levels round differently and show it, but for peaks that are noise.
     """
     peaks, shares = run.peaks.value, scene.masses / scene.total_mass
     if model.depressions is not None:

@@ -1,4 +1,4 @@
-"""Whatever the loading, no value of the engine is called ok that the equations with the same friction law contradict."""
+"""Whatever the loading, no value of the engine is called ok that the equations with the same law contradict."""
 
 from __future__ import annotations
 
