@@ -63,9 +63,11 @@ def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> 
         turned = np.sign(last - before) != np.sign(before - peaks[-3].value)
         rate = np.where(turned | (rate > MAX_CREDIBLE_RATE), MIN_RATE, np.clip(rate, MIN_RATE, MAX_RATE))
     change = safety * change * (1.0 + lag(levels[-2], model)) / (rate - 1.0)
-    level_error: Array = np.maximum(change, levels[-1].error_floor * last)
+    # steps alternate by what Newton's iteration leaves; on a plane nothing else accelerates the platform
     unsolved = levels[-1].newton * levels[-1].load
-    return level_error + peaks[-1].sampling + unsolved + MIN_RELATIVE_ERROR * last
+    level_error: Array = np.maximum(change, levels[-1].error_floor * last)
+    level_error = level_error + unsolved if model.rim == math.inf else np.maximum(level_error, unsolved)
+    return level_error + peaks[-1].sampling + MIN_RELATIVE_ERROR * last
 
 
 def from_rounding(peaks: Peaks, level: Level, other: Peaks, softer: Level, safety: float = SAFETY_TWO_LEVELS) -> Array:

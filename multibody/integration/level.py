@@ -94,8 +94,8 @@ class Level:
     strength : float
         Of a weak loading, in units of g; one for any other. The residual is held against it.
     load : float
-        The loading of a flat slider, in units of g; zero for any other. What accelerates the bodies is friction, which
-        may be a small difference of forces that Newton's iteration solves to its tolerance.
+        The loading, in units of g. What accelerates the bodies may be a small difference of it and of other forces,
+        which Newton's iteration solves to its tolerance.
     softest : float
         Largest penetration with which the contact follows a change of its force within the motion.
     force_change : float
@@ -224,7 +224,7 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
             warping_compliance=MIN_WARPING_COMPLIANCE,
             decays=tuple((until, needed / 2.0**level) for until, needed in brief),
             strength=strength,
-            load=2.0 * scene.largest_acceleration / GRAVITY if scene.flat else 0.0,
+            load=2.0 * scene.largest_acceleration / GRAVITY,
             softest=followed**2,
             force_change=force_change,
         )

@@ -26,6 +26,7 @@ CARRIED_SAMPLES = 6  # samples carried over to the next chunk: what the readings
 MAX_STEP_CHANGE = 20.0
 MAX_STEPS_BEYOND = 1.5  # from the last sample to an instant that is read from the samples before it
 SAMPLES_BEHIND_CORNER = 3  # samples behind a corner, from which it is read
+LONGER_STEP = 1.5  # over the one before
 CANDIDATE_FRACTION = 0.97  # of the peak: samples below it cannot be raised above it by interpolation at a resolved step
 
 
@@ -145,7 +146,11 @@ def _smooth(
 
     The sample itself where one of the others is not between `first` and `last`: a corner or a kink lies in between.
     """
-    sample = float(size[row]), 0.0, float(time[row])
+    alternating = 0.0
+    if last - first >= 4:
+        begin = min(max(row - 2, first), last - 4)
+        alternating = _alternating(time[begin : begin + 5], size[begin : begin + 5])
+    sample = float(size[row]), alternating, float(time[row])
     if not (first <= min(others) and max(others) <= last):
         return sample
     t = [float(time[other] - time[row]) for other in others]
@@ -157,21 +162,26 @@ def _smooth(
     around = others[0] < row < others[1]
     summit = min(max(-0.5 * slope / curvature, min(t[0], 0.0)), t[1] if around else max(t[0], 0.0))
     rise = (slope + curvature * summit) * summit
-    error = 0.0
+    error = alternating
     for extra in (row - 2, row + 2) if around else (2 * others[1] - others[0],):
         if first <= extra <= last:
             s = float(time[extra] - time[row])
             third = (float(size[extra] - size[row]) - (slope + curvature * s) * s) / (s * (s - t[0]) * (s - t[1]))
             error = max(error, abs(third * summit * (summit - t[0]) * (summit - t[1])))
-    if around and first <= row - 2 and row + 2 <= last:
-        error = max(error, _alternating(size[row - 2 : row + 3]))
     return float(size[row]) + rise, error, float(time[row]) + summit
 
 
-def _alternating(size: Array) -> float:
-    """Part of the middle of five samples that alternates from step to step: none where steps resolve the motion."""
-    a, b, c, d, e = size.tolist()
-    return abs(a - 4.0 * b + 6.0 * c - 4.0 * d + e) / 16.0
+def _alternating(time: Array, size: Array) -> float:
+    """
+    Part of five samples that alternates from step to step on a cubic: next to nothing where steps resolve the motion.
+
+    What the first of longer steps leaves, where it is the last one, is all in its own sample.
+    """
+    apart = time[:, None] - time
+    np.fill_diagonal(apart, 1.0)
+    weights = 1.0 / apart.prod(axis=1)
+    longer = time[-1] - time[-2] > LONGER_STEP * (time[-2] - time[-3])
+    return float(abs(weights @ size) / (abs(weights[-1]) if longer else np.abs(weights).sum()))
 
 
 def _unresolved(time: Array, size: Array, row: int, corners: list[int]) -> float:
