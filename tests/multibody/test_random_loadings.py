@@ -28,10 +28,10 @@ NAMED = {
 }
 
 
-def assert_not_contradicted(case: Case) -> bool:
+def assert_not_contradicted(case: Case, max_work: float = MAX_WORK) -> bool:
     """Whether the engine has an answer, whose error and status hold."""
     scene, phase, v_reg, tolerance = case
-    engine = multibody.amplification(scene, [phase], regularization=v_reg, tolerance=tolerance, max_work=MAX_WORK)
+    engine = multibody.amplification(scene, [phase], regularization=v_reg, tolerance=tolerance, max_work=max_work)
     if np.isnan(engine.mu).any():
         assert engine.status[0] not in (Outcome.OK, Outcome.TOLERANCE_NOT_MET)
         return False
@@ -144,3 +144,10 @@ def test_the_equations_that_the_engine_is_held_against_are_right_under_weak_load
     scene = load_scene("fig3-I").with_values({"duration": 1.0}).with_amplitude(size)
     found = reference.amplification(scene, [(0.3, 1.1)], "exact", 1e-3)
     np.testing.assert_allclose(found.mu[0], weak_peaks(scene, (0.3, 1.1), 1e-3), rtol=2e-5)
+
+
+@pytest.mark.parametrize("seed", [28, 40, 65, 94])
+def test_an_answer_before_the_level_at_which_rounding_takes_over_is_not_called_ok(seed: int) -> None:
+    for strongest, v_reg in ((1e-1, 1e-5), (1e-2, 1e-4)):
+        scene, phase, _, _ = random_case(seed, strongest * (1e-2 if v_reg == 1e-5 else 1e-3), strongest, 1e-2, 1.0)
+        assert_not_contradicted(Case(scene, phase, v_reg, 1e-4), max_work=2e4)
