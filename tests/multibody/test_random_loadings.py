@@ -146,8 +146,9 @@ def test_the_equations_that_the_engine_is_held_against_are_right_under_weak_load
     np.testing.assert_allclose(found.mu[0], weak_peaks(scene, (0.3, 1.1), 1e-3), rtol=2e-5)
 
 
-@pytest.mark.parametrize("seed", [28, 40, 65, 94])
-def test_an_answer_before_the_level_at_which_rounding_takes_over_is_not_called_ok(seed: int) -> None:
+@pytest.mark.parametrize("max_work", [2e4, 3e3])  # with the other one levels end before
+@pytest.mark.parametrize("seed", [28, 40, 62, 65, 94])
+def test_an_answer_before_the_level_at_which_rounding_takes_over_is_not_called_ok(seed: int, max_work: float) -> None:
     for strongest, v_reg in ((1e-1, 1e-5), (1e-2, 1e-4)):
         scene, phase, _, _ = random_case(seed, strongest * (1e-2 if v_reg == 1e-5 else 1e-3), strongest, 1e-2, 1.0)
-        assert_not_contradicted(Case(scene, phase, v_reg, 1e-4), max_work=2e4)
+        assert_not_contradicted(Case(scene, phase, v_reg, 1e-4), max_work)
