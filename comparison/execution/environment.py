@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import hashlib
+import os
 import platform
 import sys
 from functools import cache
@@ -27,6 +28,7 @@ def environment_fingerprint(model: str) -> dict[str, str]:
     return {
         "python": platform.python_version(),
         "machine": platform.machine(),
+        "exudyn module": os.environ.get("EXUDYN_MODULE", ""),
         **{name: _version(name) for name in PACKAGES},
         **{f"source of {name}": source_digest(name) for name in sources},
     }
@@ -38,6 +40,7 @@ def task_environment_fingerprint(module: str) -> dict[str, str]:
     return {
         "python": platform.python_version(),
         "machine": platform.machine(),
+        "exudyn module": os.environ.get("EXUDYN_MODULE", ""),
         **{name: _version(name) for name in (*PACKAGES, *DRAWING)},
         **{f"source of {name}": source_digest(name) for name in sources},
     }

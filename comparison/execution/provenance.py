@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import platform
 import subprocess
+from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 
@@ -20,6 +21,7 @@ def provenance() -> dict[str, str]:
         "commit": _commit(),
         "python": platform.python_version(),
         **{name: version(name) for name in PACKAGES},
+        "exudyn module": import_module("multibody.models.engine").MODULE,
         "system": f"{platform.system()} {platform.release()} {platform.machine()}",
         "processor": _processor(),
         "processors": str(os.cpu_count()),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import weakref
 from importlib import import_module
 from typing import Any
@@ -15,6 +16,7 @@ except ImportError as error:
     raise ImportError(
         f"the engine Exudyn cannot be loaded (on Debian and Ubuntu it needs the package libgl1): {reason}"
     ) from error
+MODULE = "fast" if "exudyn.exudynCPPfast" in sys.modules else "default"  # EXUDYN_MODULE=fast: no range checks
 items: Any = import_module("exudyn.itemInterface")
 symbolic_function: Any = import_module("exudyn.advancedUtilities").CreateSymbolicUserFunction
 

@@ -13,9 +13,11 @@ from conftest import Run
 from fake_models import fake_hierarchy
 from rich.console import Console
 
+import multibody.models.engine
 from comparison.execution.cache import MAGIC, Cache
 from comparison.execution.environment import source_digest
 from comparison.execution.keys import batch_key, cached_batch
+from comparison.execution.provenance import provenance
 from comparison.execution.runner import Runner
 from comparison.execution.task_results import TaskResults
 from comparison.study.batches import BatchResult, execute_batch, unanswered
@@ -58,6 +60,15 @@ def test_a_tile_belongs_to_scene_model_settings_versions_and_source(
         with monkeypatch.context() as patch:
             patch.setattr(f"comparison.execution.environment.{name}", lambda package, value=value: value)
             assert cached_batch(store, batch) is None, name
+
+
+def test_results_of_the_fast_module_of_exudyn_are_not_those_of_the_default(monkeypatch: pytest.MonkeyPatch) -> None:
+    batch = _study().batches()[0]
+    monkeypatch.delenv("EXUDYN_MODULE", raising=False)
+    usual = batch_key(batch)
+    monkeypatch.setenv("EXUDYN_MODULE", "fast")
+    assert batch_key(batch) != usual
+    assert provenance()["exudyn module"] == multibody.models.engine.MODULE
 
 
 def test_changed_source_is_another_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
