@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import itertools
 import json
+import subprocess
+import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -204,3 +206,49 @@ def test_the_time_left_is_what_is_left_times_what_the_work_so_far_took(monkeypat
     display.advance("engine", "1 of 9 tasks", 10.0)
     display.skip(30.0)
     assert display.left == pytest.approx(60.0)  # 60 of work at 10 in 10 s
+
+
+KILLED = """
+import sys
+sys.path[:0] = [{here!r}, {root!r}]
+from concurrent.futures import ThreadPoolExecutor
+from comparison.cli import reports
+from comparison.run import main
+from ending import end_after
+from fake_models import fake_hierarchy
+from known_analyses import ASKED, analyses_are
+from conftest import quick_figures
+from comparison.report.figures import assumptions
+import conftest, pytest
+patch = pytest.MonkeyPatch()
+patch.setattr(assumptions, "draw_assumptions", conftest.quick_figure)
+quick_figures(patch)
+analyses_are(patch, motions=[])
+reports.PATIENCE = 0.0
+end_after({number}, {seconds})
+main({words!r}, fake_hierarchy(), ThreadPoolExecutor)
+"""
+
+
+@pytest.mark.long
+@pytest.mark.usefixtures("every_level")
+def test_a_run_killed_at_random_instants_leaves_a_whole_report_and_ends_alike(
+    command: Callable[..., Run], tmp_path: Path
+) -> None:
+    here, draw = Path(__file__).parent, np.random.default_rng(7)
+    undisturbed, found = _whole(command, tmp_path / "undisturbed"), []
+    for run in range(20):
+        place = tmp_path / str(run)
+        about = {"number": int(draw.integers(1, 650)), "seconds": float(draw.uniform(0.0, 0.2))}
+        script = KILLED.format(here=str(here), root=str(here.parents[1]), words=[*WORDS, "--out", str(place)], **about)
+        subprocess.run([sys.executable, "-c", script], capture_output=True, check=False)
+        if place.exists():
+            level = json.loads((place / "summary.json").read_text("utf-8"))["run"]["level"]
+            surfaces = xr.load_dataset(place / "surfaces.nc")
+            assert np.isfinite(surfaces["mu"].sel(model="small")).all()
+            assert surfaces.sizes["alpha1"] == (8, 24, 24)[level - 1]
+        else:
+            level = 0
+        found.append(level)
+        xr.testing.assert_identical(_whole(command, place).drop_attrs(), undisturbed.drop_attrs())
+    assert {0, 1} <= set(found), "killed before and after the first report"
