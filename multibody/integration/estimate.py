@@ -63,10 +63,9 @@ def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> 
         turned = np.sign(last - before) != np.sign(before - peaks[-3].value)
         rate = np.where(turned | (rate > MAX_CREDIBLE_RATE), MIN_RATE, np.clip(rate, MIN_RATE, MAX_RATE))
     change = safety * change * (1.0 + lag(levels[-2], model)) / (rate - 1.0)
-    # what Newton's iteration leaves, of bodies that do not turn; on a plane nothing else accelerates the platform
-    unsolved = 0.0 if model.depressions is not None and model.rim < math.inf else levels[-1].newton * levels[-1].load
+    unsolved = levels[-1].newton * levels[-1].load
     level_error: Array = np.maximum(change, levels[-1].error_floor * last)
-    level_error = level_error + unsolved if model.rim == math.inf else np.maximum(level_error, unsolved)
+    level_error = level_error + unsolved if levels[-1].flat else np.maximum(level_error, unsolved)
     return level_error + peaks[-1].sampling + MIN_RELATIVE_ERROR * last
 
 

@@ -94,8 +94,10 @@ class Level:
     strength : float
         Of a weak loading, in units of g; one for any other. The residual is held against it.
     load : float
-        The loading, in units of g. What accelerates the bodies may be a small difference of it and of other forces,
-        which Newton's iteration solves to its tolerance.
+        The loading, in units of g; zero for bodies that turn on a sphere. What accelerates the bodies may be a small
+        difference of it and of other forces, which Newton's iteration solves to its tolerance.
+    flat : bool
+        Whether on a plane, where friction alone accelerates the platform.
     softest : float
         Largest penetration with which the contact follows a change of its force within the motion.
     force_change : float
@@ -120,6 +122,7 @@ class Level:
     decays: tuple[tuple[float, float], ...] = ()
     strength: float = 1.0
     load: float = 0.0
+    flat: bool = False
     softest: float = math.inf
     force_change: float = 0.0
 
@@ -224,7 +227,8 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
             warping_compliance=MIN_WARPING_COMPLIANCE,
             decays=tuple((until, needed / 2.0**level) for until, needed in brief),
             strength=strength,
-            load=2.0 * scene.largest_acceleration / GRAVITY,
+            load=2.0 * scene.largest_acceleration / GRAVITY if scene.flat or not model.allows_liftoff else 0.0,
+            flat=scene.flat,
             softest=followed**2,
             force_change=force_change,
         )
