@@ -102,8 +102,8 @@ def test_plan_of_many_scenes_fits_a_screen_and_gives_each_reason_once(
 def test_the_closing_table_has_a_row_for_every_scene_body_and_pair(command: Callable[..., Run]) -> None:
     run = command("fig3-I", "fig4-viscous", "--grid", "2")
     table = run.out.split("Relative differences", 1)[1].splitlines()
-    heading = next(line for line in table if "median" in line).split()
-    assert heading == ["scene", "body", "difference", "median", "95", "%", "maximum", "not", "ok"]
+    heading = next(line for line in table if "std. dev." in line).split()
+    assert heading == ["scene", "body", "difference", "mean", "std.", "dev.", "maximum", "not", "ok"]
     rows = [line.split() for line in table if line.strip().startswith("fig") and ", " not in line]
     assert [(row[0], row[1], row[2]) for row in rows] == [
         (scene, body, pair)
@@ -111,7 +111,7 @@ def test_the_closing_table_has_a_row_for_every_scene_body_and_pair(command: Call
         for body in "12"
         for pair in ("total", "translational", "like")
     ]
-    assert {tuple(row[-4:]) for row in rows} == {("1.0e-02", "1.0e-02", "1.0e-02", "0")}
+    assert {tuple(row[-7:]) for row in rows} == {("+1", "%", "0", "%", "1", "%", "0")}
 
 
 def test_without_a_scene_the_study_is_the_papers_four_cases(command: Callable[..., Run]) -> None:

@@ -7,23 +7,23 @@ import json
 import shlex
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 from conftest import Run
-from fake_models import errors_in, fake_hierarchy
+from fake_models import busy, errors_in, fake_hierarchy
 from rich.console import Console
 
 import comparison.run
+from comparison.cli import reports
 from comparison.cli.start import Clock
 from comparison.cli.terminal import new_table
 from comparison.execution.keys import ANALYSIS
+from comparison.execution.processes import process_pool
 from comparison.execution.resume import changed, resume_hint, without_scheduler
-from comparison.execution.workers import workers
 from comparison.run import main
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"
@@ -134,29 +134,17 @@ def test_a_record_has_no_grid_to_refine(command: Callable[..., Run]) -> None:
     assert after_report(command("synthetic-pair", hierarchy=fake_hierarchy()))[2:] == []
 
 
-def test_the_times_of_a_run_are_known_when_the_workers_have_ended(
+def test_the_times_of_a_run_are_the_same_in_every_place(
     command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The processor time of a process is that of its parent as soon as it has ended."""
-    events: list[str] = []
-
-    @contextmanager
-    def told(*arguments: object) -> Iterator[tuple[int, object]]:
-        with workers(*arguments) as given:  # type: ignore[arg-type]
-            yield given
-        events.append("ended")
-
     class Told(Clock):
         @classmethod
         def now(cls) -> Clock:
-            events.append("read")
-            return Clock(1000.0 + len(events), 50.0)
+            return Clock(1002.0, 50.0)
 
-    monkeypatch.setattr(comparison.run, "workers", told)
-    monkeypatch.setattr(comparison.run, "Clock", Told)
+    monkeypatch.setattr(reports, "Clock", Told)
     monkeypatch.setattr(comparison.run, "start_time", lambda: Clock(900.0, 20.0))
     run = command("fig3-I", "--grid", "2", hierarchy=fake_hierarchy())
-    assert events == ["ended", "read"]
     times = json.loads((run.report / "summary.json").read_text(encoding="utf-8"))["run"]
     assert (times["wall_seconds"], times["processor_seconds"]) == (102.0, 30.0)
     words = "102.0 s of wall time with"
@@ -166,6 +154,14 @@ def test_the_times_of_a_run_are_known_when_the_workers_have_ended(
         assert "30.0 s of processor time" in text
     assert words in run.out
     assert "predicted" not in run.out
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell")
+def test_the_processor_time_of_a_running_process_is_counted() -> None:
+    before = Clock.now()
+    with process_pool(1) as pool:
+        pool.submit(busy, 1.5).result()
+        assert Clock.now().since(before).processor >= 1.2, "processor time is counted in steps"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows does not add up the times of processes")

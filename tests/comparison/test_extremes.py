@@ -232,8 +232,8 @@ def test_a_field_shows_the_error_or_the_outcome_whatever_the_reason_says():
 @pytest.mark.parametrize(
     ("content", "reason"),
     [
-        ('{"columns": {}, "rows": [], "run": {}, "old": 1}', "old = 1: "),
-        ('{"columns": {}, "rows": 3, "run": {}}', "rows = 3: "),
+        ('{"columns": {}, "rows": [], "run": {}, "old": 1}', "old: "),
+        ('{"columns": {}, "rows": 3, "run": {}}', "rows: "),
         ('{"columns": {}', "Invalid JSON"),
         ("\xff", "Invalid JSON"),
     ],

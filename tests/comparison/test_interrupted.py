@@ -22,8 +22,15 @@ SCRIPT = """
 import signal, sys
 signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background inherits it ignored
 sys.path[:0] = [{here!r}, {root!r}]
+from comparison.execution.cache import Cache
 from comparison.run import main
 from fake_models import fake_hierarchy
+put = Cache.put
+def counted(cache, *words):
+    put(cache, *words)
+    with open("stored.txt", "a") as file:
+        file.write("x")
+Cache.put = counted
 if __name__ == "__main__":
     sys.exit(main(["fig3-I", "--grid", "16", "--jobs", "2", "--out", "report"], fake_hierarchy("endless", batch=1)))
 """
@@ -44,6 +51,13 @@ def _runs(process: psutil.Process) -> bool:
         return False
 
 
+def _wait_for_the_equations(place: Path, process: subprocess.Popen[str]) -> None:
+    """Until the last of the equations' 1024 results is stored; models under several names share 256 files."""
+    log = place / "stored.txt"
+    while process.poll() is None and (not log.exists() or log.read_text("utf-8").count("x") < 1024):
+        time.sleep(0.05)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of a process group")
 @pytest.mark.parametrize(
     ("number", "code"),
@@ -62,10 +76,7 @@ def test_a_stopped_run_keeps_what_is_finished_and_says_how_to_go_on(tmp_path: Pa
         text=True,
         start_new_session=True,  # Ctrl-C reaches the whole group, as on a terminal
     )
-    assert process.stdout is not None
-    for line in process.stdout:
-        if "exact equations, v_reg: 256 of 256" in line:  # the engine is next, which never ends
-            break
+    _wait_for_the_equations(tmp_path, process)  # the engine is next, which never ends
     workers = psutil.Process(process.pid).children()
     assert workers
     os.killpg(process.pid, number) if number == signal.SIGINT else os.kill(process.pid, number)
@@ -79,7 +90,7 @@ def test_a_stopped_run_keeps_what_is_finished_and_says_how_to_go_on(tmp_path: Pa
     assert stopped, err
     assert int(stopped[1]) == 256 * sum(model.side == "reference" for model in MODEL_HIERARCHY) < int(stopped[2])
     assert len(list(tmp_path.glob("report.tiles/*/*.tile"))) == 256, "one model under several names is stored once"
-    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["report", "report.tiles"]
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["report", "report.tiles", "stored.txt"]
     assert sorted(entry.name for entry in old.iterdir()) == ["manifest.json", "summary.json"]
     _wait_for_the_end_of(workers)
 
@@ -91,10 +102,7 @@ def test_the_workers_of_a_killed_run_end_with_it(tmp_path: Path) -> None:
     process = subprocess.Popen(
         [sys.executable, "-c", script], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
     )
-    assert process.stdout is not None
-    for line in process.stdout:
-        if "256 of 256" in line:
-            break
+    _wait_for_the_equations(tmp_path, process)
     workers = psutil.Process(process.pid).children()
     assert workers
     process.kill()

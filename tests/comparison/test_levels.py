@@ -7,6 +7,7 @@ import json
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -194,7 +195,7 @@ def test_the_time_is_up_at_the_deadline_less_what_is_kept_free(monkeypatch: pyte
 
 
 def test_the_alarm_ends_what_the_main_thread_does() -> None:
-    with Deadline(command_module.time.monotonic(), 0.0), pytest.raises(TimeUpError):
+    with Deadline(time.monotonic(), 0.0), pytest.raises(TimeUpError):
         threading.Event().wait(60.0)
 
 

@@ -146,11 +146,9 @@ def test_a_wrong_limit_is_one_line_with_the_nearest_key(
     assert run.err.count("\n") == 1
 
 
-def test_the_plan_says_that_a_model_is_refused_and_counts_nothing_for_it(command: Callable[..., Run]) -> None:
+def test_the_plan_says_that_a_model_is_refused(command: Callable[..., Run]) -> None:
     run = command("fig3-I", "--plan", hierarchy=silenced("spatial"))
     assert f"fig3-I, spatial engine: {WHY.removeprefix('step limit: ')}." in run.out
-    row = next(line.split() for line in run.out.splitlines() if "spatial engine  " in line)
-    assert row[-1] == "0.0"
 
 
 def test_a_motion_that_was_never_begun_has_a_status_and_no_error() -> None:

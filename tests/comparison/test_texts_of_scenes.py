@@ -105,7 +105,12 @@ def test_dollars_in_a_title_are_letters_of_every_figure(tmp_path: Path) -> None:
     cells = [Cell(scene.name, variation, nothing, nothing, ("ok",) * 3) for variation in FEW]
     draw_assumptions(tmp_path / "assumptions.png", scene, cells)
     draw_family(
-        tmp_path / "family.png", Family("fam", (scene, scene), "a$b$", ("$c$", r"$\frac{$")), [], fake_hierarchy(), 1
+        tmp_path / "family.png",
+        Family("fam", (scene, scene), "a$b$", ("$c$", r"$\frac{$")),
+        [],
+        [],
+        fake_hierarchy(),
+        1,
     )
     assert (tmp_path / "assumptions.png").stat().st_size > 0
     assert (tmp_path / "family.png").stat().st_size > 0
