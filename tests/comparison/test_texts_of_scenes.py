@@ -14,6 +14,7 @@ from fake_models import fake_hierarchy
 from rich.console import Console
 
 from comparison.analysis.assumptions.variations import FEW, Cell
+from comparison.analysis.parameter import FamilyStep
 from comparison.analysis.surfaces import labeled_surfaces
 from comparison.execution.progress import progress, wide_console
 from comparison.report.assemble import assemble
@@ -107,7 +108,7 @@ def test_dollars_in_a_title_are_letters_of_every_figure(tmp_path: Path) -> None:
     draw_family(
         tmp_path / "family.png",
         Family("fam", (scene, scene), "a$b$", ("$c$", r"$\frac{$")),
-        [],
+        [FamilyStep("total", 1, (0.01, 0.02), (1e-3, 1e-3), (True, True))],
         [],
         fake_hierarchy(),
         1,
