@@ -25,7 +25,7 @@ STEPS = {
     "resolved": (-0.043, 0.087, 0.0137, -0.0159, 2.3e-5),
     "regularised": (-0.0113, 0.0067, -0.0029, 0.0083, 3.1e-5),
     "translational": (0.0017, -0.0029, 0.0013, 0.0023, 7.3e-5),
-    "spatial": (-0.0597, -0.0713, 0.0371, 0.0411, 1.9e-4),
+    "spatial": (-0.0597, -0.0713, 0.0271, 0.0411, 1.9e-4),
 }
 KEYS = tuple(STEPS)
 
@@ -44,7 +44,8 @@ def differences_of(key: str, body: int, phases: Array) -> Array:
     for number, name in enumerate(KEYS[: KEYS.index(key) + 1]):
         mean, swing = STEPS[name][2 * body - 2 : 2 * body]
         shape = np.cos(phases[:, 0] + 0.7 * number) + 0.6 * np.sin(phases[:, 1] - 0.4 * number + body)
-        total += mean + swing * (shape + 0.45 * np.cos(phases[:, 0] - 2.0 * phases[:, 1] + number))
+        shape += 0.45 * np.cos(phases[:, 0] - 2.0 * phases[:, 1] + number)
+        total += mean + swing * (shape + 0.2 * shape**2)  # as many above the mean as below it would make it the median
     return total
 
 

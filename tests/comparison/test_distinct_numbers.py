@@ -127,6 +127,8 @@ def test_no_two_statistics_of_the_study_are_written_alike() -> None:
     for pair, body in ROWS:
         written = {f"{abs(value):.1e}" for value in of_sizes(pair, body).values()}
         assert len(written) == 5, f"{pair}, body {body}"
+        signed = pair_sizes(pair, body)
+        assert f"{signed.mean():.1e}" != f"{np.median(signed):.1e}", f"{pair}, body {body}"
     means = [of_sizes(pair, body)["mean"] for pair, body in ROWS]
     assert min(means) < 0.0 < max(means), "of both signs"
 

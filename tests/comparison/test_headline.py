@@ -182,6 +182,15 @@ def test_no_sentence_denies_geometry_and_blames_it(seed: int) -> None:
         assert "exact" not in (*result.cause.models, *result.maximum_cause.models, *result.cause.offset)
 
 
+def test_geometry_is_not_denied_where_the_bars_at_the_largest_show_it() -> None:
+    study, surfaces = planted({"spatial": -0.1})
+    assert "Cause: turning of the bodies, not geometry." in told(study, surfaces).sentence
+    place = {"body": 1, "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][4]}
+    for key in KEYS:
+        surfaces["mu"].loc[{"model": key, **place}] *= 0.97  # -3 % of geometry beside -10 % of turning, at one pair
+    assert "Cause: turning of the bodies." in told(study, surfaces).sentence
+
+
 def test_headline_bars_and_table_have_one_mean_where_values_are_missing() -> None:
     study, surfaces = planted(dict(zip(KEYS, (0.02, -0.07, -0.05, -0.06, 0.1))))
     surfaces = scattered(surfaces)
