@@ -218,7 +218,7 @@ def _causes(numbers: Headline, models: Mapping[str, Model], bars: Waterfall) -> 
         return f"{named} (partly offset by {offset})" if offset else named
 
     mean, largest = words(numbers.cause), words(numbers.maximum_cause)
-    if mean == largest:
+    if set(numbers.cause.models) == set(numbers.maximum_cause.models):
         shown = (bars.bars, numbers.cause), (bars.largest.bars, numbers.maximum_cause)
         denied = ", not geometry" if all(_without_geometry(*each, models) for each in shown) else ""
         return [f"Cause: {mean}{denied}."] if mean else []

@@ -158,6 +158,14 @@ def test_a_cause_has_the_sign_of_the_difference_and_what_offsets_it_is_said() ->
     assert result.cause.offset == ("exact",)
 
 
+def test_the_same_causes_in_another_order_are_named_once() -> None:
+    study, surfaces = planted({"exact": -0.03, **dict.fromkeys(KEYS[1:4], -0.03), "spatial": -0.07})
+    place = {"body": 1, "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][4]}
+    for key in KEYS:
+        surfaces["mu"].loc[{"model": key, **place}] *= 0.97  # geometry of -6 % beside turning of -4 % there
+    assert "Cause: turning of the bodies and geometry." in told(study, surfaces).sentence
+
+
 def test_another_cause_at_the_largest_is_in_the_same_sentence() -> None:
     study, surfaces = planted({"spatial": -0.05})
     place = {"body": 1, "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][4]}
