@@ -181,6 +181,13 @@ def test_paper_and_engine_have_one_scale_of_colors(visit: Visit) -> None:
     assert "%" in difference.inner_text()
 
 
+def test_a_largest_value_names_its_grid_and_what_is_known_over_all_phases(visit: Visit) -> None:
+    """The smooth fake model: mu_1 = 3 + cos a1 + sin a2 is at most 5, at (0, 90 degrees); nothing was searched."""
+    notes = visit.page.locator("#viewer figure .notes").first
+    assert "largest of 4 × 4 phases: 5 at (0°, 90°) ▾" in notes.inner_text()
+    assert "largest over all phases: not searched" in notes.inner_text()
+
+
 def test_a_spatial_model_on_few_phases_is_drawn_as_points(visit: Visit) -> None:
     visit.page.locator("[data-part=pair]").select_option("total")
     assert visit.page.evaluate("shown.map(panel => panel.sheet)") == [True, False, False]
