@@ -156,10 +156,10 @@ def _run(
                 complete = computed_level(level, runner)
                 if level.last or reports.is_due:
                     before = reports.results
-                    reports.write(complete, runner)
+                    said = reports.write(complete, runner)
                     deadline.keep_free(reports.seconds)
                     if not level.last:
-                        print_level(console, reports.written, before, level, reports.place)
+                        print_level(console, said, before, level, reports.place)
         except TimeUpError:
             deadline.keep_free(0.0)
             with suppress(TimeUpError):  # then the report before stays

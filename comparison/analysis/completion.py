@@ -130,8 +130,7 @@ class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
                 if not _is_completed(study, model) or _finer(study, scene, model) is None:
                     continue
                 phases = phase_grid(study.grid)[held_out_places(study, scene, model)]
-                asked = {"full": True} if study.full else {}
-                settings = {**model.settings, "tolerance": model.tolerance(study.tolerance), **asked}
+                settings = model.arguments(study.tolerance, study.full)
                 parts = [phases[first : first + POINTS] for first in range(0, len(phases), POINTS)]
                 tasks = [
                     Task(held_out_values, (scene, model, settings, part), self.stage, about=scene) for part in parts
@@ -223,7 +222,7 @@ def completions(
     models, listed = study.compared(scene), []
     for model in models:
         few = len(study.axis(model)) < MIN_SPATIAL_PER_AXIS
-        if study.stride(model) == 1 and not (few and _is_spatial(model)):
+        if study.stride(model) == 1 and not (few and model.is_spatial):
             continue
         finer, unused = _finer(study, scene, model), (held_out or {}).get((scene.name, model.key))
         for body in range(1, len(scene.bodies) + 1):
@@ -270,13 +269,9 @@ def with_completed(surfaces: xr.Dataset, listed: Sequence[Completion]) -> xr.Dat
     return surfaces.assign({"completed": completed, **stated})
 
 
-def _is_spatial(model: Model) -> bool:
-    return model.settings.get("model") == "spatial"
-
-
 def _is_completed(study: Study, model: Model) -> bool:
     """Whether the model lacks phases that an interpolation may give: with supports that stop one by one, none may."""
-    return study.stride(model) > 1 and not _is_spatial(model) and study.points(model) >= MIN_VALUES
+    return study.stride(model) > 1 and not model.is_spatial and study.points(model) >= MIN_VALUES
 
 
 def _finer(study: Study, scene: Scene, model: Model) -> Model | None:
@@ -311,7 +306,7 @@ def _completion(
     fine = mu(finer, finer)
     gap = values - mu(finer, model)
     computed = int(np.isfinite(gap).sum())
-    if _is_spatial(model):
+    if model.is_spatial:
         if count < MIN_SPATIAL_PER_AXIS:
             return refused(f"{count} × {count} phases are too few for a surface", computed)
         return refused("its supports stop one by one: between the computed phases it is not smooth", computed)

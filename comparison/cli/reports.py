@@ -89,17 +89,11 @@ class Reports:
         self.seconds = 0.0
 
     @property
-    def written(self) -> Results:
-        """What the last report says, where there is one."""
-        assert self.results is not None
-        return self.results
-
-    @property
     def is_due(self) -> bool:
         """Whether a level that is complete gets a report although others follow."""
         return time.monotonic() - self._last >= PATIENCE
 
-    def write(self, complete: Complete, runner: Runner, stopped: bool = False) -> None:
+    def write(self, complete: Complete, runner: Runner, stopped: bool = False) -> Results:
         """Write the report of a level; that of the last one, unless the run was ended, with drawings and a PDF."""
         from comparison.report.report import drawing_tasks, write_report  # plotting: not needed to refuse or to plan
 
@@ -116,20 +110,22 @@ class Reports:
         self.place = self._options.out if report.place == self._options.out.resolve() else report.place
         self.results, self.level, self._last = results, complete.level, time.monotonic()
         self.seconds = max(self.seconds, self._last - begin)
+        return results
 
     def write_stopped(self, complete: Complete | None, runner: Runner) -> None:
         """Write the report of the last complete level of a run that was ended, with the analyses that are finished."""
         if complete is None:
             return
-        later = set(complete.study.selection.later)
-        for analysis in chosen_analyses(replace(complete.study, selection=complete.study.selection.without(()))):
+        later = complete.study.selection.later
+        whole = replace(complete.study, selection=complete.study.selection.without(()))
+        unfinished = []
+        for analysis in chosen_analyses(whole):
             if analysis.key in later:
-                asked = replace(complete.study, selection=complete.study.selection.without(later - {analysis.key}))
-                tasks = analysis.tasks(asked.selecting(analysis.key), complete.surfaces)
-                if tasks and not runner.results.missing(tasks):
-                    later.remove(analysis.key)
-        if self.level is not complete.level or later != set(complete.study.selection.later):
-            study = replace(complete.study, selection=complete.study.selection.without(sorted(later)))
+                tasks = analysis.tasks(whole.selecting(analysis.key), complete.surfaces)
+                if not tasks or runner.results.missing(tasks):
+                    unfinished.append(analysis.key)
+        if self.level is not complete.level or set(unfinished) != set(later):
+            study = replace(complete.study, selection=whole.selection.without(unfinished))
             self.write(replace(complete, study=study), runner, stopped=True)
 
     def _said(self, complete: Complete, runner: Runner, no_pdf: str) -> tuple[Results, Findings]:

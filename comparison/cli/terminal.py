@@ -18,7 +18,7 @@ from comparison.execution.task_results import TaskResults
 from comparison.registry import chosen_analyses, first_tasks, levels
 from comparison.study.batches import refusal_of
 from comparison.study.costs import COMPILING, STARTING, WRITING, seconds_of_analysis, seconds_of_model
-from comparison.study.models import Model, models_of, why_not_spatial
+from comparison.study.models import models_of, why_not_spatial
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
 
@@ -62,12 +62,10 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
 
 def _grids(study: Study) -> str:
     """The grids of a level: of the equations, and of the engine's models."""
-    grids = {_kind(model): len(study.axis(model)) for model in study.hierarchy}
+    grids = {
+        "equations" if model.side == "reference" else model.title: len(study.axis(model)) for model in study.hierarchy
+    }
     return ", ".join(f"{kind} {count} x {count} phases" for kind, count in grids.items())
-
-
-def _kind(model: Model) -> str:
-    return "equations" if model.side == "reference" else model.title
 
 
 def _number_of_tasks(study: Study, analysis: Analysis[Any]) -> str:

@@ -86,15 +86,15 @@ class Runner:
         batches = study.batches()
         keys = [batch_key(batch) for batch in batches]
         cache = self.results.cache
+        weights = self._weights(study, batches) | self._task_weights(tasks)
         for key, batch in zip(keys, batches):
             if key not in self.answers and cache and (stored := cached_batch(cache, batch)):
                 self.answers[key] = stored
                 self.stored.add(key)
-                self._skip(self._weights(study, [batch]))
+                self._skip([batch], weights)
         missing = [batch for key, batch in zip(keys, batches) if key not in self.answers]
-        weights = self._weights(study, missing) | self._task_weights(tasks)
         left = self.results.missing(tasks)
-        self._skip_but(tasks, left, weights)
+        self._skip(tasks, weights, left)
         if missing or left:
             titles = {model.key: model.title for model in study.hierarchy}
             waiting = {model.key for model in study.hierarchy if model.side == "reference"}
@@ -111,7 +111,7 @@ class Runner:
         """
         left = sorted(self.results.missing(tasks), key=lambda task: -task.seconds)
         weights = self._task_weights(tasks)
-        self._skip_but(tasks, left, weights)
+        self._skip(tasks, weights, left)
         if left:
             pending = compile_first and any(task.needs_compiled_reference for task in left)
             first = [compiling_task(COMPILING)] if pending else []
@@ -131,14 +131,11 @@ class Runner:
             id(task): task.seconds * self.stages.get(task.stage, sums[task.stage]) / sums[task.stage] for task in tasks
         }
 
-    def _skip_but(self, tasks: Sequence[Task], left: Sequence[Task], weights: Mapping[int, float]) -> None:
-        """The tasks that are not left need no work."""
+    def _skip(self, pieces: Sequence[Piece], weights: Mapping[int, float], left: Sequence[Piece] = ()) -> None:
+        """The pieces need no work, but for those that are left."""
         missing = set(map(id, left))
-        self._skip({id(task): weights[id(task)] for task in tasks if id(task) not in missing})
-
-    def _skip(self, weights: Mapping[int, float]) -> None:
         if self.display is not None:
-            self.display.skip(sum(weights.values()))
+            self.display.skip(sum(weights[id(piece)] for piece in pieces if id(piece) not in missing))
 
     @contextmanager
     def _shown(self, weights: Mapping[int, float]) -> Iterator[Display]:
@@ -186,8 +183,8 @@ class Runner:
             sweep(pieces, _execute, _unfinished, done, self.jobs, self.executor, ready, _split, _merge, given_up)
         message = f"{GIVEN_UP_AFTER} calls hung or ended their process: not asked for the other phase pairs"
         for piece in pieces:
-            if isinstance(piece, Batch) and piece is not first and batch_key(piece) not in self.answers:
-                self.answers[batch_key(piece)] = unanswered(piece, Outcome.TIME_LIMIT, message)
+            if isinstance(piece, Batch) and given_up(piece):
+                self.answers.setdefault(batch_key(piece), unanswered(piece, Outcome.TIME_LIMIT, message))
 
     def _keep(self, piece: Piece, answer: BatchResult | TaskResult) -> None:
         if isinstance(piece, Task):
@@ -197,9 +194,10 @@ class Runner:
         assert isinstance(answer, BatchResult)
         if piece.lane and {Outcome.TIME_LIMIT.value, Outcome.WORKER_DIED.value} & {*answer.status}:
             self.lost[piece.lane] += 1
-        self.answers[batch_key(piece)] = answer
+        key = batch_key(piece)
+        self.answers[key] = answer
         if self.results.cache is not None:
-            self.results.cache.put(batch_key(piece), answer)
+            self.results.cache.put(key, answer)
 
 
 def _name(piece: Piece, titles: Mapping[str, str]) -> str:

@@ -75,7 +75,10 @@ def _work(study: Study) -> tuple[object, ...]:
 
 def _coarser(study: Study, most: Mapping[str, float]) -> Study:
     """The study on the finest of the nested grids of every model that has no more phases per axis than its `most`."""
-    strides = {model.key: _stride(study, model, most[_kind(model)]) for model in study.hierarchy}
+    strides = {
+        model.key: _stride(study, model, most["spatial" if model.is_spatial else model.side])
+        for model in study.hierarchy
+    }
     shared = gcd(*strides.values())  # the equations have every phase of the coarser study
     if study.grid % shared:
         return study
@@ -94,7 +97,3 @@ def _stride(study: Study, model: Model, most: float) -> int:
         return stride
     chain = nested_grids(phases)
     return stride * phases // max((grid for grid in chain if grid <= most), default=chain[0])
-
-
-def _kind(model: Model) -> str:
-    return "spatial" if model.settings.get("model") == "spatial" else model.side

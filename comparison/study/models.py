@@ -114,6 +114,16 @@ class Model:
         """Key in the table of costs: bars that are softer cost as much."""
         return self.key.removeprefix(SOFTENED)
 
+    @property
+    def is_spatial(self) -> bool:
+        """Whether bodies turn in it."""
+        return self.settings.get("model") == "spatial"
+
+    def arguments(self, tolerance: float, full: bool) -> dict[str, object]:
+        """Keyword arguments of its amplification in a study of this tolerance."""
+        asked = {"full": True} if full else {}
+        return {**self.settings, "tolerance": self.tolerance(tolerance), **asked}
+
     def tolerance(self, asked: float) -> float:
         """Relative error this model asks of its own numbers when the study asks for `asked`."""
         return min(asked, REFERENCE_TOLERANCE) if self.side == "reference" else asked

@@ -163,8 +163,7 @@ class Study:
 
     def _batches_of(self, scene: Scene, model: Model) -> list[Batch]:
         phases = phase_grid(self.grid)
-        asked = {"full": True} if self.full else {}
-        settings = {**model.settings, "tolerance": model.tolerance(self.tolerance), **asked}
+        settings = model.arguments(self.tolerance, self.full)
         batches, first = [], 0
         for level, places in enumerate(self.solved_by_level(scene, model)):
             for start in range(0, len(places), model.batch):

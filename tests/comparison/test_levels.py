@@ -77,10 +77,11 @@ def test_each_level_has_a_whole_report_that_names_it(
 ) -> None:
     write, seen = reports.Reports.write, []
 
-    def copying(self: reports.Reports, complete: reports.Complete, *rest: Any, **more: Any) -> None:
-        write(self, complete, *rest, **more)
+    def copying(self: reports.Reports, complete: reports.Complete, *rest: Any, **more: Any) -> Any:
+        said = write(self, complete, *rest, **more)
         seen.append(tmp_path / f"level{complete.level.number}")
         _copied(self.place, seen[-1])
+        return said
 
     monkeypatch.setattr(reports.Reports, "write", copying)
     run = command(*WORDS)

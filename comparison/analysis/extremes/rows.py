@@ -36,7 +36,7 @@ class Column:
     tolerance: float  # relative error asked
     # how a value is confirmed, in this order until one answers: function, settings, relative error asked
     finer: tuple[tuple[str, Mapping[str, Any], float], ...]
-    seconds: float = 0.5  # processor time of a cell with its finer runs, recorded as `costs.seconds_per_point`
+    seconds: float = 0.5  # rough processor time of a cell with its finer runs
     like: str = ""  # of an engine of the user: the column whose rows concern it, too
 
 
