@@ -47,7 +47,7 @@ from comparison.execution.runner import Runner
 from comparison.execution.task_results import TaskResults
 from comparison.execution.workers import workers
 from comparison.registry import chosen_analyses, first_tasks, levels
-from comparison.study.costs import STARTING, WRITING, seconds_of_analysis, seconds_of_model
+from comparison.study.costs import WRITING, seconds_of_analysis, seconds_of_model
 from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work, with_softened_bars
 from comparison.study.study import Study
 from reference.problem.command import stoppable
@@ -145,7 +145,7 @@ def _run(
     results = TaskResults(store, options.fresh)
     print_stored(console, store, keys, first, options.fresh)
     stages = {analysis.stage: seconds_of_analysis(study, analysis.key, analysis.stage) for analysis in analyses}
-    total = STARTING + WRITING + sum(stages.values()) + sum(seconds_of_model(study, model) for model in study.hierarchy)
+    total = WRITING + sum(stages.values()) + sum(seconds_of_model(study, model) for model in study.hierarchy)
     reports = Reports(options, jobs, words, began)
     complete: Complete | None = None
     stopped: KeyboardInterrupt | None = None
