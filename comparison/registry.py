@@ -5,22 +5,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from comparison.analysis.assumptions.validity import Assumptions
-from comparison.analysis.claims.table import Claims
-from comparison.analysis.completion import CompletedSurfaces
-from comparison.analysis.convergence import Convergence
-from comparison.analysis.demand_surfaces import DemandSurfaces
-from comparison.analysis.effective import EffectiveValues
-from comparison.analysis.errata import Errata
-from comparison.analysis.measured import MeasuredPeaks
-from comparison.analysis.protocol import Analysis
-from comparison.analysis.scaling import Scaling
-from comparison.analysis.trajectories import Motions
-from comparison.analysis.worst_phases import WorstPhases
-from comparison.execution.task import Task
-from comparison.report.figures.pictures import Pictures
+from comparison.analyses.assumptions.validity import Assumptions
+from comparison.analyses.claims.table import Claims
+from comparison.analyses.convergence.analysis import Convergence
+from comparison.analyses.demands.analysis import DemandSurfaces
+from comparison.analyses.effective_values.analysis import EffectiveValues
+from comparison.analyses.errata.analysis import Errata
+from comparison.analyses.measured.analysis import MeasuredPeaks
+from comparison.analyses.motions.analysis import Motions
+from comparison.analyses.scaling.analysis import Scaling
+from comparison.analyses.worst_phases.analysis import WorstPhases
+from comparison.runner.analysis import Analysis
+from comparison.runner.task import Task
 from comparison.study.levels import Level, levels_of
 from comparison.study.study import Study
+from comparison.surfaces.completion import CompletedSurfaces
+from comparison.surfaces.figures.pictures import Pictures
 
 ANALYSES: tuple[Analysis[Any], ...] = (
     EffectiveValues(),

@@ -35,18 +35,18 @@ from comparison.cli.options import Options, parsed
 from comparison.cli.reports import Complete, Reports, computed_level
 from comparison.cli.start import Clock, start_time
 from comparison.cli.terminal import print_models_left_out, print_plan, print_stored
-from comparison.execution.cache import Cache, store_beside
-from comparison.execution.deadline import Deadline, TimeUpError
-from comparison.execution.executors import Pool
-from comparison.execution.keys import batch_key, task_key
-from comparison.execution.output import clear_dead
-from comparison.execution.processes import process_pool
-from comparison.execution.progress import progress, wide_console
-from comparison.execution.resume import changed, resume_hint
-from comparison.execution.runner import Runner
-from comparison.execution.task_results import TaskResults
-from comparison.execution.workers import workers
 from comparison.registry import chosen_analyses, first_tasks, levels
+from comparison.runner.cache import Cache, store_beside
+from comparison.runner.deadline import Deadline, TimeUpError
+from comparison.runner.executors import Pool
+from comparison.runner.keys import batch_key, task_key
+from comparison.runner.output import clear_dead
+from comparison.runner.processes import process_pool
+from comparison.runner.progress import progress, wide_console
+from comparison.runner.resume import changed, resume_hint
+from comparison.runner.runner import Runner
+from comparison.runner.task_results import TaskResults
+from comparison.runner.workers import workers
 from comparison.study.costs import WRITING, seconds_of_analysis, seconds_of_model
 from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work, with_softened_bars
 from comparison.study.study import Study

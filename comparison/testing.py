@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from comparison.analysis.differences import pair_step
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.unanswered import unanswered
 from comparison.study.batches import execute_batch
 from comparison.study.entered import entered_model
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, with_softened_bars
 from comparison.study.study import Study
+from comparison.surfaces.differences import pair_step
+from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.unanswered import unanswered
 from reference.problem import Scene, load_scene
 from reference.problem.ranges import TOLERANCE, Range, checked_choice, checked_number, checked_whole_number
 

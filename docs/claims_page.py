@@ -17,21 +17,21 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from PIL import Image
 from rich.console import Console
 
-from comparison.analysis.claims.cases import CASES
-from comparison.analysis.claims.evidence import without_value
-from comparison.analysis.claims.readings import LIGHT_BODY, LITERAL, OWN_PERIOD, READINGS, Reading
-from comparison.analysis.claims.search import RANGES, SEARCH_GRID, Selection, best_readings, searched_readings
-from comparison.analysis.claims.settled import GRIDS, Settled, Settling
-from comparison.analysis.claims.spike import PHASES, no_spike, spike_over_the_step
-from comparison.analysis.claims.table import GRID, SIGNS, Claims, ClaimTable
-from comparison.analysis.forced_ratio import forced_ratios
-from comparison.execution.cache import Cache, store_beside
-from comparison.execution.executors import cores
-from comparison.execution.processes import process_pool
-from comparison.execution.runner import Runner
-from comparison.execution.task import Task
-from comparison.execution.task_results import TaskResults
-from comparison.report.figures.claims import draw_reading, draw_spike
+from comparison.analyses.claims.cases import CASES
+from comparison.analyses.claims.evidence import without_value
+from comparison.analyses.claims.figure import draw_reading, draw_spike
+from comparison.analyses.claims.forced_ratio import forced_ratios
+from comparison.analyses.claims.readings import LIGHT_BODY, LITERAL, OWN_PERIOD, READINGS, Reading
+from comparison.analyses.claims.search import RANGES, SEARCH_GRID, Selection, best_readings, searched_readings
+from comparison.analyses.claims.settled import GRIDS, Settled, Settling
+from comparison.analyses.claims.spike import PHASES, no_spike, spike_over_the_step
+from comparison.analyses.claims.table import GRID, SIGNS, Claims, ClaimTable
+from comparison.runner.cache import Cache, store_beside
+from comparison.runner.executors import cores
+from comparison.runner.processes import process_pool
+from comparison.runner.runner import Runner
+from comparison.runner.task import Task
+from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 from reference.problem import builtin_scenes, load_scene
 

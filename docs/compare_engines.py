@@ -21,8 +21,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import reference
-from comparison.execution.environment import PACKAGES
-from comparison.execution.processes import Workers
+from comparison.runner.environment import PACKAGES
+from comparison.runner.processes import Workers
 from comparison.study.entered import amplification
 from reference.problem import load_scene, phase_grid
 from reference.problem.symmetry import sources

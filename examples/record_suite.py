@@ -6,7 +6,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from comparison.cli.ensemble import main
+from comparison.analyses.ensemble.command import main
 
 MOTIONS = 6
 

@@ -18,8 +18,8 @@ import pytest
 from hypothesis import settings
 from numba.core.dispatcher import Dispatcher
 
-from comparison.execution.executors import cores
-from comparison.execution.processes import one_thread_each
+from comparison.runner.executors import cores
+from comparison.runner.processes import one_thread_each
 
 try:
     import fcntl

@@ -15,8 +15,8 @@ from functools import wraps
 from pathlib import Path
 from typing import Concatenate, ParamSpec
 
-from comparison.execution.executors import cores
-from comparison.execution.resume import invocation
+from comparison.runner.executors import cores
+from comparison.runner.resume import invocation
 from reference.problem import SceneError
 from reference.problem.command import OneLineParser, UsageError
 

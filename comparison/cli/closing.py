@@ -12,12 +12,12 @@ from rich.console import Console
 
 from comparison.cli.options import Options
 from comparison.cli.terminal import new_table
-from comparison.execution.resume import changed, command_line
-from comparison.report.results.alerts import Alert
-from comparison.report.results.differences import Headline
-from comparison.report.results.scene import SceneResult
-from comparison.report.results.study import Results
+from comparison.report.results import Results
+from comparison.report.scene_result import SceneResult
+from comparison.runner.resume import changed, command_line
 from comparison.study.levels import Level
+from comparison.surfaces.alert_result import Alert
+from comparison.surfaces.result import Headline
 from comparison.wording import percent, signed
 from reference.problem import builtin_scenes, example_scenes
 

@@ -18,16 +18,16 @@ from typing import Any
 from rich.console import Console
 
 from comparison.cli.arguments import EndedEarlyError, jobs
-from comparison.execution.cache import Cache, StoreError, refuse_foreign_store, store_beside
-from comparison.execution.executors import ExecutorLostError, Pool
-from comparison.execution.keys import task_key
-from comparison.execution.output import destination
-from comparison.execution.provenance import provenance
-from comparison.execution.resume import command_line, resume_hint, without_scheduler
-from comparison.execution.runner import Runner
-from comparison.execution.task import Task
-from comparison.execution.task_results import TaskResults
-from comparison.execution.workers import workers
+from comparison.runner.cache import Cache, StoreError, refuse_foreign_store, store_beside
+from comparison.runner.executors import ExecutorLostError, Pool
+from comparison.runner.keys import task_key
+from comparison.runner.output import destination
+from comparison.runner.provenance import provenance
+from comparison.runner.resume import command_line, resume_hint, without_scheduler
+from comparison.runner.runner import Runner
+from comparison.runner.task import Task
+from comparison.runner.task_results import TaskResults
+from comparison.runner.workers import workers
 
 
 def run_facts(command: str, options: argparse.Namespace, words: Sequence[str], begin: float) -> dict[str, Any]:

@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Any
 
 from comparison.cli.arguments import CommandParser, number
-from comparison.execution.environment import engine_fingerprint
-from comparison.execution.executors import TimeLimitError, WorkerDiedError
-from comparison.execution.processes import Workers
+from comparison.runner.environment import engine_fingerprint
+from comparison.runner.executors import TimeLimitError, WorkerDiedError
+from comparison.runner.processes import Workers
 from comparison.study.entered import (
     LIKE,
     TIME_LIMIT,

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from comparison.cli.arguments import command, writing
 from comparison.cli.requirement import requirement
-from comparison.execution.output import destination, make_parents, refuse_unwritable
+from comparison.runner.output import destination, make_parents, refuse_unwritable
 from reference.problem import SceneError
 from reference.problem.command import OneLineParser
 from reference.problem.files import NEW, staging

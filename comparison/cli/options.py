@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 
-from comparison.analysis.taken_up import TAKEN_UP
+from comparison.analyses.earlier_results import TAKEN_UP
 from comparison.cli.arguments import CommandParser, jobs, number, whole_number
 from comparison.cli.entered import add_models, entered_models
-from comparison.execution.cache import refuse_foreign_store
-from comparison.execution.output import destination, refuse_foreign_report
+from comparison.runner.cache import refuse_foreign_store
+from comparison.runner.output import destination, refuse_foreign_report
 from comparison.study.models import Model
 from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.study import refuse_same_names

@@ -11,23 +11,23 @@ from typing import Any
 
 import xarray as xr
 
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.taken_up import TAKEN_UP
-from comparison.analysis.unanswered import with_silent_models
+from comparison.analyses.earlier_results import TAKEN_UP
 from comparison.cli.arguments import writing
 from comparison.cli.options import Options
 from comparison.cli.start import Clock
-from comparison.execution.output import atomic_replace, on_stderr
-from comparison.execution.provenance import provenance
-from comparison.execution.resume import command_line
-from comparison.execution.runner import Computed, Runner
 from comparison.registry import chosen_analyses, first_tasks
 from comparison.report.assemble import assemble
 from comparison.report.findings import Fault, Findings, collect_findings
 from comparison.report.pdf import why_no_pdf
-from comparison.report.results.study import Results
+from comparison.report.results import Results
+from comparison.runner.output import atomic_replace, on_stderr
+from comparison.runner.provenance import provenance
+from comparison.runner.resume import command_line
+from comparison.runner.runner import Computed, Runner
 from comparison.study.levels import Level
 from comparison.study.study import Study
+from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.unanswered import with_silent_models
 
 WITH_THE_LAST = "it comes with the last level of a run"
 PATIENCE = 3.0  # s: a level that is done sooner after the report before has none of its own, unless it is the last

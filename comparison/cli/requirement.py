@@ -11,7 +11,7 @@ from typing import Any
 from urllib.parse import urlsplit, urlunsplit
 from urllib.request import url2pathname
 
-from comparison.execution.provenance import git
+from comparison.runner.provenance import git
 from reference.problem.version import __version__
 
 NAME = "phase-resonance"

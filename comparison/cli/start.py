@@ -26,12 +26,15 @@ COLLECTIONS = 50_000, 20, 100
 
 COMMANDS = {  # module whose `main` is the command, and what it does
     "run": ("comparison.run", "compare the equations with the engine and write the report"),
-    "claims": ("comparison.cli.claims", "the paper's claims against readings of what it leaves open"),
-    "assumptions": ("comparison.cli.assumptions", "how far the paper's assumptions carry"),
-    "benchmarks": ("comparison.cli.benchmarks", "numbers published elsewhere, by the equations and by the engine"),
-    "extremes": ("comparison.cli.extremes", "every model at the extremes of every quantity"),
-    "tradeoff": ("comparison.cli.tradeoff", "error against compute time"),
-    "ensemble": ("comparison.cli.ensemble", "demands under a suite of motions at many intensities"),
+    "claims": ("comparison.analyses.claims.command", "the paper's claims against readings of what it leaves open"),
+    "assumptions": ("comparison.analyses.assumptions.command", "how far the paper's assumptions carry"),
+    "benchmarks": (
+        "comparison.analyses.benchmarks.command",
+        "numbers published elsewhere, by the equations and by the engine",
+    ),
+    "extremes": ("comparison.analyses.extremes.command", "every model at the extremes of every quantity"),
+    "tradeoff": ("comparison.analyses.tradeoff.command", "error against compute time"),
+    "ensemble": ("comparison.analyses.ensemble.command", "demands under a suite of motions at many intensities"),
     "init": ("comparison.cli.init", "a directory with a study to start from"),
     "animate": ("multibody.animate", "a film of the motion"),
 }

@@ -9,13 +9,13 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from comparison.analysis.protocol import Analysis
 from comparison.cli.options import Options
-from comparison.execution.cache import Cache, Key, store_beside
-from comparison.execution.keys import batch_key
-from comparison.execution.task import Task
-from comparison.execution.task_results import TaskResults
 from comparison.registry import chosen_analyses, first_tasks, levels
+from comparison.runner.analysis import Analysis
+from comparison.runner.cache import Cache, Key, store_beside
+from comparison.runner.keys import batch_key
+from comparison.runner.task import Task
+from comparison.runner.task_results import TaskResults
 from comparison.study.batches import refusal_of
 from comparison.study.costs import COMPILING, STARTING, WRITING, seconds_of_analysis, seconds_of_model
 from comparison.study.models import models_of, why_not_spatial

@@ -6,39 +6,39 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from comparison.analysis.claims.table import ClaimTable
-from comparison.analysis.demand_surfaces import DemandStatistics as StatisticsOfDemand
-from comparison.analysis.demand_surfaces import demand_statistics
-from comparison.analysis.distribution import distributions
-from comparison.analysis.errata import ERRATA
-from comparison.analysis.forced_ratio import forced_ratios
-from comparison.analysis.grid_maxima import grid_maxima
-from comparison.analysis.headline import headline
-from comparison.analysis.parameter import (
+from comparison.analyses.claims.forced_ratio import forced_ratios
+from comparison.analyses.claims.result import Assumptions, Claim, Claims, Effect, Erratum, Spike
+from comparison.analyses.claims.table import ClaimTable
+from comparison.analyses.demands.analysis import DemandStatistics as StatisticsOfDemand
+from comparison.analyses.demands.analysis import demand_statistics
+from comparison.analyses.errata.analysis import ERRATA
+from comparison.analyses.families.analysis import (
     family_curves,
     family_demands,
     family_demands_over_phases,
     family_steps,
 )
-from comparison.analysis.surfaces import largest_cap_share, largest_travel_share, outcome_counts
-from comparison.analysis.trends import Trend as FittedTrend
-from comparison.analysis.unanswered import advice
-from comparison.analysis.waterfall import Waterfall as BodyWaterfall
-from comparison.analysis.waterfall import waterfall
-from comparison.report.alerts import alerts
+from comparison.analyses.families.result import FamilyCurve, FamilyDemand, FamilyResult, FamilyStep, Trend
+from comparison.analyses.measured.result import MeasuredPeak
+from comparison.analyses.motions.page_data import significant_digits
+from comparison.analyses.motions.result import Effective, FloorSpectra, MotionDemands
+from comparison.analyses.trends import Trend as FittedTrend
+from comparison.analyses.worst_phases.result import DemandStatistics, Distribution, GridMaximum, RecordValue, Worst
 from comparison.report.findings import Findings
-from comparison.report.motion_data import significant_digits
-from comparison.report.results.alerts import Unanswered
-from comparison.report.results.differences import BudgetEntry, Completion, Difference, Headline, Waterfall
-from comparison.report.results.measured import MeasuredPeak
-from comparison.report.results.motions import Effective, FloorSpectra, MotionDemands
-from comparison.report.results.over_phases import DemandStatistics, Distribution, GridMaximum, RecordValue, Worst
-from comparison.report.results.paper import Assumptions, Claim, Claims, Effect, Erratum, Spike
-from comparison.report.results.run import ModelDescription, Run
-from comparison.report.results.scene import ForcedRatio, Limit, ModelOutcome, SceneResult
-from comparison.report.results.study import Results
-from comparison.report.results.trends import FamilyCurve, FamilyDemand, FamilyResult, FamilyStep, Trend
+from comparison.report.results import Results
+from comparison.report.run_result import ModelDescription, Run
+from comparison.report.scene_result import ForcedRatio, Limit, ModelOutcome, SceneResult
 from comparison.study.models import Model, models_of
+from comparison.surfaces.alert_result import Unanswered
+from comparison.surfaces.alerts import alerts
+from comparison.surfaces.distribution import distributions
+from comparison.surfaces.grid_maxima import grid_maxima
+from comparison.surfaces.headline import headline
+from comparison.surfaces.result import BudgetEntry, Completion, Difference, Headline, Waterfall
+from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share, outcome_counts
+from comparison.surfaces.unanswered import advice
+from comparison.surfaces.waterfall import Waterfall as BodyWaterfall
+from comparison.surfaces.waterfall import waterfall
 from reference.problem import Family, Outcome, Scene
 from reference.problem import FloorSpectra as SpectraOfMotion
 from reference.problem.analyses import ANALYSES

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import xarray as xr
 
-from comparison.analysis.assumptions.variations import Cell
-from comparison.analysis.completion import Completion
-from comparison.execution.task import Task
-from comparison.report.figures.file_names import assumption_figure_name
-from comparison.report.figures.pictures import SHOWN, Files, Pictures
+from comparison.analyses.assumptions.variations import Cell
 from comparison.report.findings import Findings
+from comparison.runner.task import Task
 from comparison.study.models import Model
+from comparison.surfaces.completion import Completion
+from comparison.surfaces.figures.file_names import assumption_figure_name
+from comparison.surfaces.figures.pictures import SHOWN, Files, Pictures
 from reference.problem import Scene
 
 
@@ -61,7 +61,7 @@ def drawn(findings: Findings, task: Task) -> Files:
 
 def draw_print_maps(maps: PrintMaps) -> Files:
     """One SVG. Runs inside a worker process."""
-    from comparison.report.figures import print_maps  # matplotlib: only a worker that draws needs it
+    from comparison.surfaces.figures import print_maps  # matplotlib: only a worker that draws needs it
 
     content = print_maps.draw_maps(maps.surfaces, maps.scene, maps.models, maps.bodies, maps.completed)
     return (("maps.svg", content),)
@@ -69,7 +69,7 @@ def draw_print_maps(maps: PrintMaps) -> Files:
 
 def draw_assumption_figure(figure: AssumptionFigure) -> Files:
     """PNG and PDF. Runs inside a worker process."""
-    from comparison.report.figures import assumptions  # likewise
+    from comparison.analyses.assumptions import figure as assumptions  # likewise
 
     with tempfile.TemporaryDirectory() as name:
         place = Path(name) / assumption_figure_name(figure.scene)

@@ -8,25 +8,25 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from comparison.analysis.acceptance import Limit, checked_limits
-from comparison.analysis.assumptions.validity import ValidityRanges
-from comparison.analysis.benchmarks.table import Benchmarks
-from comparison.analysis.budget import Entry, budget
-from comparison.analysis.claims.table import ClaimTable
-from comparison.analysis.completion import Completion, completions, with_completed
-from comparison.analysis.differences import Difference, differences
-from comparison.analysis.effective import Effective
-from comparison.analysis.ensemble_file import StoredEnsemble
-from comparison.analysis.errata import Effect
-from comparison.analysis.extremes.matrix import Matrix
-from comparison.analysis.growth import MeasuredGrowth
-from comparison.analysis.measured import MeasuredPeak
-from comparison.analysis.tradeoff.trade import Trade
-from comparison.analysis.trajectories import StoredMotion
-from comparison.analysis.trends import Trend
-from comparison.analysis.unanswered import Unanswered, unanswered
-from comparison.analysis.worst_phases import Worst
+from comparison.analyses.assumptions.validity import ValidityRanges
+from comparison.analyses.benchmarks.table import Benchmarks
+from comparison.analyses.claims.table import ClaimTable
+from comparison.analyses.effective_values.analysis import Effective
+from comparison.analyses.ensemble.result import StoredEnsemble
+from comparison.analyses.errata.analysis import Effect
+from comparison.analyses.extremes.matrix import Matrix
+from comparison.analyses.measured.analysis import MeasuredPeak
+from comparison.analyses.motions.analysis import StoredMotion
+from comparison.analyses.tradeoff.growth import MeasuredGrowth
+from comparison.analyses.tradeoff.trade import Trade
+from comparison.analyses.trends import Trend
+from comparison.analyses.worst_phases.analysis import Worst
 from comparison.study.study import Study
+from comparison.surfaces.acceptance import Limit, checked_limits
+from comparison.surfaces.budget import Entry, budget
+from comparison.surfaces.completion import Completion, completions, with_completed
+from comparison.surfaces.differences import Difference, differences
+from comparison.surfaces.unanswered import Unanswered, unanswered
 from reference.problem import Family
 
 

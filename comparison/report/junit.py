@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from xml.etree import ElementTree
 
-from comparison.report.results.scene import Limit, SceneResult
-from comparison.report.results.study import Results
+from comparison.report.results import Results
+from comparison.report.scene_result import Limit, SceneResult
 
 FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # what XML 1.0 cannot hold
 

@@ -15,21 +15,20 @@ from typing import Any
 import jinja2
 import numpy as np
 
-from comparison.analysis.benchmarks.page import stated, with_error
-from comparison.analysis.benchmarks.table import MEANING as BENCHMARK_VERDICTS
-from comparison.analysis.benchmarks.table import Verdict as BenchmarkVerdict
-from comparison.analysis.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE
-from comparison.analysis.claims.table import SIGNS
-from comparison.analysis.effective import PHASES
-from comparison.analysis.extremes.matrix import PICTURE, describe
-from comparison.analysis.extremes.verdicts import MEANING, Verdict
-from comparison.analysis.growth import PICTURE as GROWTH_PICTURE
+from comparison.analyses.benchmarks.page import stated, with_error
+from comparison.analyses.benchmarks.table import MEANING as BENCHMARK_VERDICTS
+from comparison.analyses.benchmarks.table import Verdict as BenchmarkVerdict
+from comparison.analyses.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE
+from comparison.analyses.claims.result import Claim, ClaimVerdict, Effect, Erratum
+from comparison.analyses.claims.table import SIGNS
+from comparison.analyses.effective_values.analysis import PHASES
+from comparison.analyses.extremes.matrix import PICTURE, describe
+from comparison.analyses.extremes.verdicts import MEANING, Verdict
+from comparison.analyses.motions.page_data import packed, packed_motions
+from comparison.analyses.tradeoff.growth import PICTURE as GROWTH_PICTURE
 from comparison.report.drawings import assumption_tasks, drawn
-from comparison.report.figures.file_names import assumption_figure_name, tradeoff_figure_name
-from comparison.report.figures.pictures import smaller
 from comparison.report.findings import Findings
 from comparison.report.glossary import emphasized, term
-from comparison.report.motion_data import packed, packed_motions
 from comparison.report.page_data import page_data
 from comparison.report.page_plots import (
     claim_heat,
@@ -45,14 +44,15 @@ from comparison.report.page_plots import (
     trend_panels,
     worst_lines,
 )
-from comparison.report.results.alerts import Alert
-from comparison.report.results.differences import Waterfall
-from comparison.report.results.paper import Claim, ClaimVerdict, Effect, Erratum
-from comparison.report.results.scene import SceneResult
-from comparison.report.results.study import Results
+from comparison.report.results import Results
+from comparison.report.scene_result import SceneResult
 from comparison.report.verification import CHECKS
-from comparison.report.waterfall_chart import Scale, charts, log_scale, scales
 from comparison.study.study import Study
+from comparison.surfaces.alert_result import Alert
+from comparison.surfaces.figures.file_names import assumption_figure_name, tradeoff_figure_name
+from comparison.surfaces.figures.pictures import smaller
+from comparison.surfaces.result import Waterfall
+from comparison.surfaces.waterfall_chart import Scale, charts, log_scale, scales
 from comparison.wording import degrees, percent, scientific, signed, significant, symbols
 from reference.problem import Outcome
 from reference.problem.distribution import FRACTILES
@@ -96,14 +96,14 @@ def draw_all_assumptions(figures: Path, findings: Findings) -> None:
 
 def draw_all_families(figures: Path, findings: Findings) -> None:
     """The pictures of every family."""
-    from comparison.report.figures.families import draw_families  # matplotlib, as in `draw_all_trades`
+    from comparison.analyses.families.figure import draw_families  # matplotlib, as in `draw_all_trades`
 
     draw_families(figures, findings)
 
 
 def draw_matrix(figures: Path, findings: Findings) -> None:
     """The picture of the extremes."""
-    from comparison.report.figures.extremes import draw_extremes  # likewise
+    from comparison.analyses.extremes.figure import draw_extremes  # likewise
 
     if findings.extremes:
         draw_extremes(figures / PICTURE, findings.extremes)
@@ -111,8 +111,10 @@ def draw_matrix(figures: Path, findings: Findings) -> None:
 
 def draw_all_trades(figures: Path, findings: Findings) -> None:
     """The diagrams of every scene that has them, and that of how the cost grows."""
-    from comparison.report.figures.growth import draw_growth  # matplotlib: only a report that draws here needs it
-    from comparison.report.figures.tradeoff import draw_tradeoff
+    from comparison.analyses.tradeoff.figure import draw_tradeoff
+    from comparison.analyses.tradeoff.growth_figure import (
+        draw_growth,  # matplotlib: only a report that draws here needs it
+    )
 
     for trade in findings.tradeoff or ():
         draw_tradeoff(figures / tradeoff_figure_name(trade.scene), trade)

@@ -10,13 +10,13 @@ import contourpy
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.analysis.completion import Completion
-from comparison.analysis.differences import pair_step
-from comparison.analysis.surfaces import common_phases
-from comparison.analysis.worst_phases import nearest_search
+from comparison.analyses.motions.page_data import contact_geometry, places, spectrum_axis, starts_of
+from comparison.analyses.worst_phases.analysis import nearest_search
 from comparison.report.findings import Findings
-from comparison.report.motion_data import contact_geometry, places, spectrum_axis, starts_of
 from comparison.study.models import Model, Pair, models_of
+from comparison.surfaces.completion import Completion
+from comparison.surfaces.differences import pair_step
+from comparison.surfaces.surfaces import common_phases
 from reference.problem import Scene
 
 Array = NDArray[np.float64]

@@ -7,15 +7,15 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import Any
 
-from comparison.analysis.claims.spike import PHASES as SPIKE_PHASES
-from comparison.analysis.distribution import CURVE
-from comparison.analysis.ensemble_file import StoredCurve
-from comparison.analysis.stored import finite_or_none
-from comparison.analysis.tradeoff.trade import Answered, Entry, Trade
-from comparison.report.results.over_phases import Worst
-from comparison.report.results.scene import SceneResult
-from comparison.report.results.study import Results
-from comparison.report.results.trends import FamilyResult, Trend
+from comparison.analyses.claims.spike import PHASES as SPIKE_PHASES
+from comparison.analyses.ensemble.result import StoredCurve
+from comparison.analyses.families.result import FamilyResult, Trend
+from comparison.analyses.tradeoff.trade import Answered, Entry, Trade
+from comparison.analyses.worst_phases.result import Worst
+from comparison.json_file import finite_or_none
+from comparison.report.results import Results
+from comparison.report.scene_result import SceneResult
+from comparison.surfaces.distribution import CURVE
 from comparison.wording import MAX_NAMES, scientific, significant
 from reference.problem.peak_demands import QUANTITIES, unit_of
 

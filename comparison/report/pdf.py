@@ -11,15 +11,15 @@ from importlib.util import find_spec
 from math import isfinite
 from pathlib import Path
 
-from comparison.analysis.worst_phases import nearest_search
-from comparison.execution.task import Task
+from comparison.analyses.worst_phases.analysis import nearest_search
 from comparison.report.drawings import drawn, map_task
 from comparison.report.findings import Findings
 from comparison.report.pdf_data import largest_headlines, pdf_data, short_title, size_of
-from comparison.report.results.differences import Headline
-from comparison.report.results.scene import SceneResult
-from comparison.report.results.study import Results
+from comparison.report.results import Results
+from comparison.report.scene_result import SceneResult
+from comparison.runner.task import Task
 from comparison.study.models import Model
+from comparison.surfaces.result import Headline
 
 MAX_MAPS = 4  # scenes
 TEMPLATE = "report.typ"

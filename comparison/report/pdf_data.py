@@ -6,13 +6,13 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from comparison.analysis.assumptions.validity import ASSUMPTIONS
-from comparison.report.pdf_demands import HEADINGS, demand_rows, demands_note
-from comparison.report.results.differences import Headline, Waterfall
-from comparison.report.results.run import ModelDescription
-from comparison.report.results.scene import Limit, ModelOutcome, SceneResult
-from comparison.report.results.study import Results
-from comparison.report.waterfall_chart import Scale, bars_of, scale_of
+from comparison.analyses.assumptions.validity import ASSUMPTIONS
+from comparison.analyses.demands.pdf import HEADINGS, demand_rows, demands_note
+from comparison.report.results import Results
+from comparison.report.run_result import ModelDescription
+from comparison.report.scene_result import Limit, ModelOutcome, SceneResult
+from comparison.surfaces.result import Headline, Waterfall
+from comparison.surfaces.waterfall_chart import Scale, bars_of, scale_of
 from comparison.wording import percent, shortened, significant
 
 MAX_ALERTS, MAX_SENTENCES, MAX_WATERFALLS, MAX_LINES, MAX_ROWS = 5, 10, 8, 8, 16  # what fits on four pages

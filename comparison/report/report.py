@@ -7,16 +7,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from comparison.analysis.demand_surfaces import with_demands
-from comparison.execution.output import netcdf, on_stderr
-from comparison.execution.task import Task
+from comparison.analyses.demands.analysis import with_demands
 from comparison.report.drawings import assumption_tasks
 from comparison.report.findings import Findings
 from comparison.report.junit import junit
 from comparison.report.page import SECTIONS, page
 from comparison.report.pdf import map_tasks, write_pdf
-from comparison.report.results.study import Results, schema_json
+from comparison.report.results import Results, schema_json
 from comparison.report.summary_text import summary_text
+from comparison.runner.output import netcdf, on_stderr
+from comparison.runner.task import Task
 
 
 def drawing_tasks(results: Results, findings: Findings) -> list[Task]:

@@ -6,8 +6,8 @@ import re
 from collections.abc import Sequence
 from math import isnan
 
-from comparison.report.results.differences import WaterfallBar
-from comparison.report.results.study import Results
+from comparison.report.results import Results
+from comparison.surfaces.result import WaterfallBar
 from comparison.wording import degrees, percent, signed
 from reference.problem import Outcome
 

@@ -13,13 +13,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparison.analysis.completion import CompletedSurfaces, completions, held_out_places
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.execution.task import execute
-from comparison.execution.task_results import TaskResults
+from comparison.runner.task import execute
+from comparison.runner.task_results import TaskResults
 from comparison.study.batches import execute_batch, imported
 from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL
 from comparison.study.study import Study
+from comparison.surfaces.completion import CompletedSurfaces, completions, held_out_places
+from comparison.surfaces.surfaces import labeled_surfaces
 from reference.problem import load_scene, phase_grid
 from reference.problem.symmetry import sources
 

@@ -20,7 +20,7 @@ import pytest
 from numba import carray, cfunc
 
 import reference
-from comparison.analysis.tradeoff.outside import constants_of, factors, motion, slope
+from comparison.analyses.tradeoff.outside import constants_of, factors, motion, slope
 from reference.solver.error_estimate import MAX_STEP_TOLERANCE, peaks_at, peaks_with_error
 from reference.surface import checked_demand
 

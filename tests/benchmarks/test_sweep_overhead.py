@@ -24,12 +24,12 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "comparison"))
 from fake_models import fake_hierarchy
 from local_cluster import LocalCluster
 
-from comparison.execution.cache import Cache
-from comparison.execution.dask import cluster
-from comparison.execution.executors import Pool
-from comparison.execution.processes import process_pool
-from comparison.execution.runner import Runner
-from comparison.execution.task_results import TaskResults
+from comparison.runner.cache import Cache
+from comparison.runner.dask import cluster
+from comparison.runner.executors import Pool
+from comparison.runner.processes import process_pool
+from comparison.runner.runner import Runner
+from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
 

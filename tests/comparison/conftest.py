@@ -13,10 +13,11 @@ from fake_models import fake_hierarchy, known_motions
 from known_analyses import analyses_are, known_others
 from PIL import Image
 
-from comparison.analysis.errata import Effect
-from comparison.report.figures import assumptions, budget, pairs, paper, print_maps
+from comparison.analyses.assumptions import figure as assumptions
+from comparison.analyses.errata.analysis import Effect
 from comparison.run import main
 from comparison.study.models import Model
+from comparison.surfaces.figures import budget, pairs, paper, print_maps
 
 try:
     import fcntl

@@ -8,8 +8,8 @@ import signal
 import threading
 from typing import Any
 
-from comparison.execution.cache import Cache
-from comparison.execution.keys import BATCH
+from comparison.runner.cache import Cache
+from comparison.runner.keys import BATCH
 
 
 def end_after(results: int, seconds: float, analyses: bool = False) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.analysis.trajectories import StoredMotion, chosen_places, shown_models
+from comparison.analyses.motions.analysis import StoredMotion, chosen_places, shown_models
 from comparison.study.models import MODEL_HIERARCHY, Model, never
 from comparison.study.study import Study
 from reference.problem import GRAVITY, Amplification, Demands, Estimate, FloorSpectra, Outcome, Scene, Trajectory

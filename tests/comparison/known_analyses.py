@@ -13,17 +13,17 @@ import xarray as xr
 from rich.console import Console
 
 import comparison.registry
-from comparison.analysis.claims.checks import Finding, Verdict
-from comparison.analysis.claims.claims import CLAIMS
-from comparison.analysis.claims.readings import READINGS
-from comparison.analysis.claims.spike import Spike
-from comparison.analysis.claims.table import ClaimTable
-from comparison.analysis.protocol import Analysis
-from comparison.analysis.trends import trend
-from comparison.execution.executors import Pool
-from comparison.execution.runner import Runner
-from comparison.execution.task import Task
-from comparison.execution.task_results import TaskResults
+from comparison.analyses.claims.checks import Finding, Verdict
+from comparison.analyses.claims.claims import CLAIMS
+from comparison.analyses.claims.readings import READINGS
+from comparison.analyses.claims.spike import Spike
+from comparison.analyses.claims.table import ClaimTable
+from comparison.analyses.trends import trend
+from comparison.runner.analysis import Analysis
+from comparison.runner.executors import Pool
+from comparison.runner.runner import Runner
+from comparison.runner.task import Task
+from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 
 SCALES = (1.0, 0.5, 0.25)

@@ -13,8 +13,10 @@ from fake_models import fake_hierarchy
 from known_analyses import collected
 from matplotlib.image import imread
 
-from comparison.analysis.assumptions.validity import ASSUMPTIONS, Assumptions, ValidityRanges, describe
-from comparison.analysis.assumptions.variations import (
+from comparison.analyses.assumptions.command import main
+from comparison.analyses.assumptions.figure import draw_assumptions
+from comparison.analyses.assumptions.validity import ASSUMPTIONS, Assumptions, ValidityRanges, describe
+from comparison.analyses.assumptions.variations import (
     FEW,
     MANY,
     PHASES,
@@ -25,11 +27,9 @@ from comparison.analysis.assumptions.variations import (
     variation_arguments,
     varied,
 )
-from comparison.cli.assumptions import main
-from comparison.report.figures.assumptions import draw_assumptions
-from comparison.report.figures.file_names import assumption_figure_name
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
+from comparison.surfaces.figures.file_names import assumption_figure_name
 from multibody import amplification
 from reference.problem import Scene, load_scene, parse_scene
 

@@ -15,8 +15,8 @@ from heated_pendulum import ranges
 from known_analyses import collected
 
 import reference
-from comparison.analysis.benchmarks import readings
-from comparison.analysis.benchmarks.analysis import (
+from comparison.analyses.benchmarks import readings
+from comparison.analyses.benchmarks.analysis import (
     ENGINE,
     EQUATIONS,
     SMOOTHED,
@@ -26,11 +26,11 @@ from comparison.analysis.benchmarks.analysis import (
     _benchmark,
     solve,
 )
-from comparison.analysis.benchmarks.cases import Case, Published, Reading, cases, shipped
-from comparison.analysis.benchmarks.mastodon import mastodon
-from comparison.analysis.benchmarks.page import HEAD, page
-from comparison.analysis.benchmarks.table import STORED, Benchmarks, Verdict
-from comparison.cli.benchmarks import main
+from comparison.analyses.benchmarks.cases import Case, Published, Reading, cases, shipped
+from comparison.analyses.benchmarks.command import main
+from comparison.analyses.benchmarks.mastodon import mastodon
+from comparison.analyses.benchmarks.page import HEAD, page
+from comparison.analyses.benchmarks.table import STORED, Benchmarks, Verdict
 from reference.analytical import den_hartog
 from reference.problem import GRAVITY, SceneError, State
 

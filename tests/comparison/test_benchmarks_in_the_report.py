@@ -9,8 +9,8 @@ from pathlib import Path
 from conftest import Run
 from jsonschema import Draft202012Validator
 
-from comparison.analysis.benchmarks.table import FILE, PAGE, STORED, Benchmark, Benchmarks, Number, Row, Verdict
-from comparison.execution.output import publish
+from comparison.analyses.benchmarks.table import FILE, PAGE, STORED, Benchmark, Benchmarks, Number, Row, Verdict
+from comparison.runner.output import publish
 
 SMALL = ["fig3-I", "--grid", "2"]
 NUMBERS = {

@@ -10,13 +10,13 @@ import xarray as xr
 from fake_models import errors_in, fake_hierarchy
 from numpy.typing import NDArray
 
-from comparison.analysis.budget import TOTAL, Entry, budget, closure, steps, torus_distance
-from comparison.analysis.differences import differences
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.waterfall import waterfall
 from comparison.study.batches import execute_batch
 from comparison.study.models import Model
 from comparison.study.study import Study
+from comparison.surfaces.budget import TOTAL, Entry, budget, closure, steps, torus_distance
+from comparison.surfaces.differences import differences
+from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.waterfall import waterfall
 from reference.problem import load_scene
 
 GRID = 8

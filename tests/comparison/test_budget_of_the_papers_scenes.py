@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparison.analysis.acceptance import checked_limits
-from comparison.analysis.budget import budget, closure, steps
-from comparison.analysis.differences import differences
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.unanswered import unanswered
 from comparison.study.batches import execute_batch, imported
 from comparison.study.models import Model
 from comparison.study.study import Study
+from comparison.surfaces.acceptance import checked_limits
+from comparison.surfaces.budget import budget, closure, steps
+from comparison.surfaces.differences import differences
+from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.unanswered import unanswered
 from reference.problem import builtin_scenes, load_scene
 
 pytestmark = pytest.mark.long

@@ -14,12 +14,12 @@ from fake_models import fake_hierarchy
 from rich.console import Console
 
 import multibody.models.engine
-from comparison.execution.cache import MAGIC, Cache
-from comparison.execution.environment import source_digest
-from comparison.execution.keys import batch_key, cached_batch
-from comparison.execution.provenance import provenance
-from comparison.execution.runner import Runner
-from comparison.execution.task_results import TaskResults
+from comparison.runner.cache import MAGIC, Cache
+from comparison.runner.environment import source_digest
+from comparison.runner.keys import batch_key, cached_batch
+from comparison.runner.provenance import provenance
+from comparison.runner.runner import Runner
+from comparison.runner.task_results import TaskResults
 from comparison.study.batches import BatchResult, execute_batch, unanswered
 from comparison.study.study import Study
 from reference.problem import Outcome, load_scene
@@ -58,7 +58,7 @@ def test_a_tile_belongs_to_scene_model_settings_versions_and_source(
     assert cached_batch(store, replace(batch, scene=renamed)) is not None, "a name changes no number"
     for name, value in (("_version", "9.9"), ("source_digest", "changed")):
         with monkeypatch.context() as patch:
-            patch.setattr(f"comparison.execution.environment.{name}", lambda package, value=value: value)
+            patch.setattr(f"comparison.runner.environment.{name}", lambda package, value=value: value)
             assert cached_batch(store, batch) is None, name
 
 

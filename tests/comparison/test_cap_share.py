@@ -9,15 +9,15 @@ import pytest
 
 import multibody
 import reference
-from comparison.analysis.surfaces import labeled_surfaces, largest_cap_share
-from comparison.execution.cache import Cache
-from comparison.execution.keys import batch_key, cached_batch
-from comparison.execution.splitting import merge, split_batch
-from comparison.report.alerts import alerts
 from comparison.report.findings import collect_findings
+from comparison.runner.cache import Cache
+from comparison.runner.keys import batch_key, cached_batch
+from comparison.runner.splitting import merge, split_batch
 from comparison.study.batches import execute_batch
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
+from comparison.surfaces.alerts import alerts
+from comparison.surfaces.surfaces import labeled_surfaces, largest_cap_share
 from reference.problem import Outcome, Scene, load_scene
 
 PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (4.0, 5.5)])

@@ -13,13 +13,13 @@ from conftest import Run
 from fake_models import fake_hierarchy
 
 import reference
-from comparison.analysis.acceptance import checked_limits
-from comparison.analysis.differences import differences
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.unanswered import unanswered
 from comparison.study.batches import execute_batch
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
+from comparison.surfaces.acceptance import checked_limits
+from comparison.surfaces.differences import differences
+from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.unanswered import unanswered
 from reference.problem import builtin_scenes
 
 SMALL = ["fig3-I", "--grid", "2"]

@@ -9,19 +9,19 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from comparison.analysis.claims.cases import CASES
-from comparison.analysis.claims.checks import Finding, Verdict
-from comparison.analysis.claims.claims import CLAIMS
-from comparison.analysis.claims.evidence import Evidence, Question, gathered
-from comparison.analysis.claims.literal import literal_peaks
-from comparison.analysis.claims.peaks_and_valleys import Counts, profiled
-from comparison.analysis.claims.readings import LIGHT_BODY, LITERAL, OWN_PERIOD, READINGS, Reading
-from comparison.analysis.claims.search import BEST, RANGES, Selection, best_readings, searched_readings
-from comparison.analysis.claims.settled import Settled, describe
-from comparison.analysis.claims.spike import Spike, spike_over_the_step
-from comparison.analysis.claims.table import ClaimTable
-from comparison.analysis.forced_ratio import forced_ratios
-from comparison.report.figures.claims import PANELS, draw_reading, draw_spike
+from comparison.analyses.claims.cases import CASES
+from comparison.analyses.claims.checks import Finding, Verdict
+from comparison.analyses.claims.claims import CLAIMS
+from comparison.analyses.claims.evidence import Evidence, Question, gathered
+from comparison.analyses.claims.figure import PANELS, draw_reading, draw_spike
+from comparison.analyses.claims.forced_ratio import forced_ratios
+from comparison.analyses.claims.literal import literal_peaks
+from comparison.analyses.claims.peaks_and_valleys import Counts, profiled
+from comparison.analyses.claims.readings import LIGHT_BODY, LITERAL, OWN_PERIOD, READINGS, Reading
+from comparison.analyses.claims.search import BEST, RANGES, Selection, best_readings, searched_readings
+from comparison.analyses.claims.settled import Settled, describe
+from comparison.analyses.claims.spike import Spike, spike_over_the_step
+from comparison.analyses.claims.table import ClaimTable
 from reference import amplification, load_scene, modes
 from reference.problem import ground_peak, phase_grid
 

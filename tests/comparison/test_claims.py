@@ -13,18 +13,18 @@ from known_analyses import collected
 from numpy.typing import NDArray
 
 import reference
-from comparison.analysis.claims import evidence
-from comparison.analysis.claims import table as table_module  # table: what a test made
-from comparison.analysis.claims.cases import CASES
-from comparison.analysis.claims.checks import Finding, Verdict, judged, similar
-from comparison.analysis.claims.claims import CLAIMS, Claim
-from comparison.analysis.claims.evidence import Evidence, Question
-from comparison.analysis.claims.readings import EVERY_READING, READINGS, Reading, without_effect
-from comparison.analysis.claims.smoothness import Bend
-from comparison.analysis.claims.table import Claims, questions, tabulated
-from comparison.cli.claims import main
-from comparison.execution import runner
-from comparison.execution.task import Task
+from comparison.analyses.claims import evidence
+from comparison.analyses.claims import table as table_module  # table: what a test made
+from comparison.analyses.claims.cases import CASES
+from comparison.analyses.claims.checks import Finding, Verdict, judged, similar
+from comparison.analyses.claims.claims import CLAIMS, Claim
+from comparison.analyses.claims.command import main
+from comparison.analyses.claims.evidence import Evidence, Question
+from comparison.analyses.claims.readings import EVERY_READING, READINGS, Reading, without_effect
+from comparison.analyses.claims.smoothness import Bend
+from comparison.analyses.claims.table import Claims, questions, tabulated
+from comparison.runner import runner
+from comparison.runner.task import Task
 from comparison.study.study import Study
 from reference.problem import builtin_scenes, load_scene
 

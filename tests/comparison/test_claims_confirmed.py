@@ -13,11 +13,11 @@ from scipy.linalg import eigh
 from second_integration import LITERAL as LITERAL_LAW
 from second_integration import SET_VALUED, by_scipy, fast, ground_tops, stepped
 
-from comparison.analysis.claims.cases import CASES
-from comparison.analysis.claims.claims import CLAIMS
-from comparison.analysis.claims.evidence import MOTIONS, Evidence, gathered
-from comparison.analysis.claims.literal import literal_peaks
-from comparison.analysis.claims.readings import (
+from comparison.analyses.claims.cases import CASES
+from comparison.analyses.claims.claims import CLAIMS
+from comparison.analyses.claims.evidence import MOTIONS, Evidence, gathered
+from comparison.analyses.claims.literal import literal_peaks
+from comparison.analyses.claims.readings import (
     LIGHT_BODY,
     LITERAL,
     OWN_PERIOD,
@@ -27,8 +27,8 @@ from comparison.analysis.claims.readings import (
     settings,
     without_effect,
 )
-from comparison.analysis.claims.smoothness import bends
-from comparison.analysis.claims.table import Claims
+from comparison.analyses.claims.smoothness import bends
+from comparison.analyses.claims.table import Claims
 from reference import amplification
 from reference.problem import GRAVITY, Scene
 

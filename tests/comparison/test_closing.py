@@ -21,10 +21,10 @@ import comparison.run
 from comparison.cli import reports
 from comparison.cli.start import Clock
 from comparison.cli.terminal import new_table
-from comparison.execution.keys import ANALYSIS
-from comparison.execution.processes import process_pool
-from comparison.execution.resume import changed, resume_hint, without_scheduler
 from comparison.run import main
+from comparison.runner.keys import ANALYSIS
+from comparison.runner.processes import process_pool
+from comparison.runner.resume import changed, resume_hint, without_scheduler
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"
 

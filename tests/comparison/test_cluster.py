@@ -14,14 +14,14 @@ from local_cluster import LocalCluster
 from rich.console import Console
 from test_time_limit import doubled, hangs_in_compiled_code
 
-from comparison.execution.cache import Cache, Key
-from comparison.execution.dask import cluster
-from comparison.execution.keys import BATCH, batch_key
-from comparison.execution.runner import Runner
-from comparison.execution.splitting import merge, split_batch
-from comparison.execution.sweep import sweep
-from comparison.execution.task import Task
-from comparison.execution.task_results import TaskResults
+from comparison.runner.cache import Cache, Key
+from comparison.runner.dask import cluster
+from comparison.runner.keys import BATCH, batch_key
+from comparison.runner.runner import Runner
+from comparison.runner.splitting import merge, split_batch
+from comparison.runner.sweep import sweep
+from comparison.runner.task import Task
+from comparison.runner.task_results import TaskResults
 from comparison.study.batches import Batch, BatchResult, execute_batch, unanswered
 from comparison.study.study import Study
 from reference.problem import Outcome, load_scene
@@ -138,7 +138,7 @@ def test_no_scheduler_is_a_wrong_option(command: Callable[..., Run], address: st
 def test_workers_with_other_code_are_refused(
     workers: LocalCluster, command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("comparison.execution.environment._version", lambda name: "9.9")
+    monkeypatch.setattr("comparison.runner.environment._version", lambda name: "9.9")
     run = command("fig3-I", "--scheduler", workers.address, hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert "here it is 9.9: install the same" in run.err

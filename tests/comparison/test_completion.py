@@ -13,8 +13,12 @@ from known_analyses import collected
 from numpy.typing import NDArray
 from scipy.stats import binom
 
-from comparison.analysis import completion
-from comparison.analysis.completion import (
+from comparison.runner.task_results import TaskResults
+from comparison.study.batches import execute_batch, unanswered
+from comparison.study.models import EXACT, TRANSLATIONAL, Model, never
+from comparison.study.study import Study
+from comparison.surfaces import completion
+from comparison.surfaces.completion import (
     CONFIDENCE,
     CompletedSurfaces,
     Completion,
@@ -24,11 +28,7 @@ from comparison.analysis.completion import (
     largest_share,
     with_completed,
 )
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.execution.task_results import TaskResults
-from comparison.study.batches import execute_batch, unanswered
-from comparison.study.models import EXACT, TRANSLATIONAL, Model, never
-from comparison.study.study import Study
+from comparison.surfaces.surfaces import labeled_surfaces
 from reference.problem import Outcome, Scene, load_scene
 
 Array = NDArray[np.float64]

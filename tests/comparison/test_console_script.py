@@ -94,7 +94,7 @@ def test_workers_of_a_program_elsewhere_import_nothing_from_there(script: Path) 
     imported = planted(script)
     script.write_text(
         "import os\n"
-        "from comparison.execution.processes import process_pool\n"
+        "from comparison.runner.processes import process_pool\n"
         "if __name__ == '__main__':\n"
         "    with process_pool(1) as workers:\n"
         "        print(workers.submit(os.getenv, 'PYTHONSAFEPATH').result(), os.getenv('PYTHONSAFEPATH'))\n",
@@ -187,7 +187,7 @@ print("loaded", flush=True)
 
 
 def main():
-    from comparison.execution.processes import process_pool
+    from comparison.runner.processes import process_pool
 
     with process_pool(1) as workers:
         workers.submit(len, "").result()

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 import multibody
 import reference
-from comparison.analysis import convergence
-from comparison.analysis.convergence import LIMITS, PENETRATIONS, Convergence, limit_trends
+from comparison.analyses.convergence import analysis as convergence
+from comparison.analyses.convergence.analysis import LIMITS, PENETRATIONS, Convergence, limit_trends
 from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
 

@@ -16,7 +16,7 @@ from known_analyses import analyses_are, collected
 from test_distinct_numbers import Tables
 
 import reference
-from comparison.analysis.demand_surfaces import PREFIX, DemandSurfaces, demand_statistics, with_demands
+from comparison.analyses.demands.analysis import PREFIX, DemandSurfaces, demand_statistics, with_demands
 from comparison.study.models import EXACT, REGULARIZED, SMALL
 from comparison.study.study import Study
 from reference.problem import Demands, Scene, load_scene, phase_axis

@@ -24,16 +24,16 @@ from numpy.typing import NDArray
 from test_pdf import flat, text_of
 from test_texts_of_scenes import RUN
 
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.worst_phases import Worst
+from comparison.analyses.worst_phases.analysis import Worst
 from comparison.report.assemble import assemble
-from comparison.report.figures import pairs, print_maps
 from comparison.report.findings import collect_findings
 from comparison.report.page_data import page_data
 from comparison.report.pdf import map_tasks
 from comparison.run import main
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
+from comparison.surfaces.figures import pairs, print_maps
+from comparison.surfaces.surfaces import labeled_surfaces
 from reference.problem import load_scene
 
 GRID, COARSE = 8, 4  # of the equations, and of the engine

@@ -12,7 +12,7 @@ from conftest import Run
 from fake_models import fake_hierarchy
 from known_analyses import collected
 
-from comparison.analysis.effective import PHASES, EffectiveValues, read_back, stated
+from comparison.analyses.effective_values.analysis import PHASES, EffectiveValues, read_back, stated
 from comparison.study.models import MODEL_HIERARCHY, SOFTENED_SPATIAL, SOFTENED_TRANSLATIONAL, Model
 from comparison.study.study import Study
 from reference.problem import ground_acceleration, load_scene

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import reference
-from comparison.analysis.ensemble import (
+from comparison.analyses.ensemble.analysis import (
     SCALE,
     Ensemble,
     EnsembleResult,
@@ -25,8 +25,8 @@ from comparison.analysis.ensemble import (
     stripes,
     uncertain_fractile,
 )
-from comparison.cli.ensemble import FILES, main, table_text
-from comparison.report.figures.ensemble import draw_ensemble
+from comparison.analyses.ensemble.command import FILES, main, table_text
+from comparison.analyses.ensemble.figure import draw_ensemble
 from reference.problem import Demands, Estimate, load_family, phase_distribution
 from reference.problem.distribution import FRACTILES
 
@@ -63,7 +63,7 @@ def run(*words: str) -> int:
 @pytest.fixture
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is drawn, which takes most of the time."""
-    monkeypatch.setattr("comparison.report.figures.ensemble.draw_ensemble", lambda path, result: None)
+    monkeypatch.setattr("comparison.analyses.ensemble.figure.draw_ensemble", lambda path, result: None)
 
 
 def content() -> dict:  # type: ignore[type-arg]
@@ -166,7 +166,7 @@ def test_the_columns_of_the_table_are_the_shares_that_they_name() -> None:
 def test_the_picture_has_the_numbers_in_the_units_of_its_axes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Displacements in m of eleven motions, and the engine with its error bar."""
     figures = []
-    monkeypatch.setattr("comparison.report.figures.ensemble.save", lambda figure, path: figures.append(figure))
+    monkeypatch.setattr("comparison.analyses.ensemble.figure.save", lambda figure, path: figures.append(figure))
     points = [demanding(float(number), 0.0, Estimate(1.0, 0.0)) for number in range(11)]
     engine = [demanding(5.5, 0.25, Estimate(1.0, 0.0), "translational")]
     listed = list(stripes(points)), list(bounds(points, engine, engine))
@@ -300,5 +300,7 @@ def test_a_plan_says_what_it_would_cost_and_computes_nothing(folder: Path, capsy
 def test_a_text_that_a_spreadsheet_would_compute_stands_behind_an_apostrophe(
     monkeypatch: pytest.MonkeyPatch, text: str
 ) -> None:
-    monkeypatch.setattr("comparison.cli.ensemble.as_rows", lambda result: [{"motion": text, "scale": -1.0}])
+    monkeypatch.setattr(
+        "comparison.analyses.ensemble.command.as_rows", lambda result: [{"motion": text, "scale": -1.0}]
+    )
     assert list(csv.reader(io.StringIO(table_text(None), newline="")))[1] == [f"'{text}", "-1.0"]  # type: ignore[arg-type]

@@ -11,13 +11,13 @@ import pytest
 from conftest import Run
 from jsonschema import Draft202012Validator
 
-from comparison.analysis.ensemble_file import FILE, SCHEMA, STORED, StoredCurve, StoredEngine, StoredEnsemble
-from comparison.analysis.ensemble_file import StoredDifference as Difference
-from comparison.analysis.ensemble_file import StoredFractile as Fractile
-from comparison.analysis.ensemble_file import StoredStripe as Stripe
-from comparison.execution.output import publish
+from comparison.analyses.ensemble.result import FILE, SCHEMA, STORED, StoredCurve, StoredEngine, StoredEnsemble
+from comparison.analyses.ensemble.result import StoredDifference as Difference
+from comparison.analyses.ensemble.result import StoredFractile as Fractile
+from comparison.analyses.ensemble.result import StoredStripe as Stripe
 from comparison.report.page_plots import ensemble_panels
-from comparison.report.results.study import Results
+from comparison.report.results import Results
+from comparison.runner.output import publish
 
 SMALL = ["fig3-I", "--grid", "2"]
 RUN = {"command": "made <by a test>", "began": "then", "compute_seconds": 1.0,

@@ -22,28 +22,28 @@ from fake_models import fake_hierarchy, smooth
 from known_analyses import collected
 
 import reference
-from comparison.analysis.budget import budget
-from comparison.analysis.differences import differences, pair_step
-from comparison.analysis.extremes.cells import cells
-from comparison.analysis.extremes.rows import entered_column, rows
-from comparison.analysis.extremes.verdicts import Reply, judged
-from comparison.analysis.headline import headline
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.tradeoff import analysis
-from comparison.analysis.tradeoff.analysis import TradeOff
-from comparison.analysis.tradeoff.settings import QUESTIONS, entered_settings
-from comparison.analysis.unanswered import unanswered, with_silent_models
-from comparison.analysis.waterfall import waterfall
+from comparison.analyses.extremes.cells import cells
+from comparison.analyses.extremes.rows import entered_column, rows
+from comparison.analyses.extremes.verdicts import Reply, judged
+from comparison.analyses.tradeoff import analysis
+from comparison.analyses.tradeoff.analysis import TradeOff
+from comparison.analyses.tradeoff.figure import draw_tradeoff
+from comparison.analyses.tradeoff.settings import QUESTIONS, entered_settings
 from comparison.cli.entered import as_words, entered_models, look_at
-from comparison.execution.environment import engine_fingerprint, source_digest
-from comparison.execution.keys import batch_key
-from comparison.execution.processes import process_pool
-from comparison.report.figures.tradeoff import draw_tradeoff
+from comparison.runner.environment import engine_fingerprint, source_digest
+from comparison.runner.keys import batch_key
+from comparison.runner.processes import process_pool
 from comparison.study.batches import execute_batch
 from comparison.study.entered import amplification, entered_model
 from comparison.study.levels import levels_of
 from comparison.study.models import Model, pairs_of
 from comparison.study.study import Study
+from comparison.surfaces.budget import budget
+from comparison.surfaces.differences import differences, pair_step
+from comparison.surfaces.headline import headline
+from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.unanswered import unanswered, with_silent_models
+from comparison.surfaces.waterfall import waterfall
 from reference.problem import Outcome, SceneError, load_scene
 
 DOCS = Path(__file__).parents[2] / "docs/other-engines.md"

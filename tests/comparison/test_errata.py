@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from known_analyses import collected
 
-from comparison.analysis import errata
-from comparison.analysis.errata import ERRATA, PHASES, Errata, Erratum, cut_platform, measured
-from comparison.analysis.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
+from comparison.analyses.errata import analysis as errata
+from comparison.analyses.errata.analysis import ERRATA, PHASES, Errata, Erratum, cut_platform, measured
+from comparison.analyses.errata.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
 from comparison.study.models import V_REG
 from comparison.study.study import Study
 from reference import amplification, trajectory

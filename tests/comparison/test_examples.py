@@ -24,4 +24,4 @@ def test_an_example_gives_what_it_shows(name: str) -> None:
 
 
 def test_there_are_examples() -> None:
-    assert "comparison.analysis.tradeoff.trade" in MODULES
+    assert "comparison.analyses.tradeoff.trade" in MODULES

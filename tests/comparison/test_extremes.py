@@ -15,19 +15,19 @@ from matplotlib.image import imread
 from rich.console import Console
 
 import reference
-from comparison.analysis.extremes.analysis import Extremes, reduced
-from comparison.analysis.extremes.causes import CAUSES
-from comparison.analysis.extremes.cells import Cell, answers, cells, read_scene, solve_cell
-from comparison.analysis.extremes.engine import amplification
-from comparison.analysis.extremes.matrix import FILE, STORED, Entry, Extreme, Matrix, describe
-from comparison.analysis.extremes.rows import COLUMNS, PLAIN_RADIUS, Column, Row, rows, scene
-from comparison.analysis.extremes.verdicts import Reply, Verdict
-from comparison.cli.extremes import main
-from comparison.execution.cache import Cache
-from comparison.execution.processes import process_pool
-from comparison.execution.runner import Runner
-from comparison.execution.task_results import TaskResults
-from comparison.report.figures.extremes import draw_extremes
+from comparison.analyses.extremes.analysis import Extremes, reduced
+from comparison.analyses.extremes.causes import CAUSES
+from comparison.analyses.extremes.cells import Cell, answers, cells, read_scene, solve_cell
+from comparison.analyses.extremes.command import main
+from comparison.analyses.extremes.engine import amplification
+from comparison.analyses.extremes.figure import draw_extremes
+from comparison.analyses.extremes.matrix import FILE, STORED, Entry, Extreme, Matrix, describe
+from comparison.analyses.extremes.rows import COLUMNS, PLAIN_RADIUS, Column, Row, rows, scene
+from comparison.analyses.extremes.verdicts import Reply, Verdict
+from comparison.runner.cache import Cache
+from comparison.runner.processes import process_pool
+from comparison.runner.runner import Runner
+from comparison.runner.task_results import TaskResults
 from reference.problem import Outcome
 
 PLAIN = Row("anything", "plain", scene(), ("fake",))
@@ -179,8 +179,8 @@ def forbidden(jobs: int) -> Executor:
 
 
 def test_a_failed_cell_is_an_exit_code_and_in_the_picture(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("comparison.cli.extremes.COLUMNS", (fake("calls_nan_ok"),))
-    monkeypatch.setattr("comparison.cli.extremes.rows", lambda: iter([PLAIN]))
+    monkeypatch.setattr("comparison.analyses.extremes.command.COLUMNS", (fake("calls_nan_ok"),))
+    monkeypatch.setattr("comparison.analyses.extremes.command.rows", lambda: iter([PLAIN]))
     assert main(["--jobs", "1", "--out", str(tmp_path / "report")], ThreadPoolExecutor) == 1
     assert "FAILED: anything plain" in capsys.readouterr().out
 

@@ -9,9 +9,9 @@ from pathlib import Path
 from conftest import Run
 from jsonschema import Draft202012Validator
 
-from comparison.analysis.extremes.matrix import FILE, PICTURE, STORED, Entry, Extreme, Matrix
-from comparison.execution.output import made_by, publish
-from comparison.report.figures.extremes import draw_extremes
+from comparison.analyses.extremes.figure import draw_extremes
+from comparison.analyses.extremes.matrix import FILE, PICTURE, STORED, Entry, Extreme, Matrix
+from comparison.runner.output import made_by, publish
 
 SMALL = ["fig3-I", "--grid", "2"]
 RUN = {"command": "made by a test", "began": "then", "seconds": 1.0, "cpu_seconds": 2.0, "jobs": 1}

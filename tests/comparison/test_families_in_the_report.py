@@ -15,19 +15,19 @@ from matplotlib.axes import Axes
 from matplotlib.image import imread
 from test_texts_of_scenes import RUN
 
-from comparison.analysis.budget import budget
-from comparison.analysis.demand_surfaces import DemandStatistics, Extreme
-from comparison.analysis.distribution import Fractile
-from comparison.analysis.parameter import family_demands, family_demands_over_phases, family_steps
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.trajectories import Place, StoredMotion
-from comparison.analysis.waterfall import waterfall
+from comparison.analyses.demands.analysis import DemandStatistics, Extreme
+from comparison.analyses.families.analysis import family_demands, family_demands_over_phases, family_steps
+from comparison.analyses.families.figure import draw_family, family_figure_name
+from comparison.analyses.motions.analysis import Place, StoredMotion
 from comparison.report.assemble import assemble
-from comparison.report.figures.families import draw_family, family_figure_name
 from comparison.report.findings import collect_findings
 from comparison.report.page_plots import family_panels
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
+from comparison.surfaces.budget import budget
+from comparison.surfaces.distribution import Fractile
+from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.waterfall import waterfall
 from reference.problem import Demands, Estimate, load_family
 from reference.problem.distribution import FRACTILES
 

@@ -11,10 +11,10 @@ import pytest
 from conftest import Run
 from jsonschema import Draft202012Validator
 
-from comparison.analysis.effective import read_back
-from comparison.analysis.errata import ERRATA
-from comparison.report.results.motions import Effective
-from comparison.report.results.study import Results
+from comparison.analyses.effective_values.analysis import read_back
+from comparison.analyses.errata.analysis import ERRATA
+from comparison.analyses.motions.result import Effective
+from comparison.report.results import Results
 from comparison.study.models import MODEL_HIERARCHY, models_of
 from multibody.film import drawing
 from reference import demands, trajectory

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from known_analyses import collected
 
-from comparison.analysis.growth import (
+from comparison.analyses.tradeoff import growth_command as command
+from comparison.analyses.tradeoff.growth import (
     QUANTITIES,
     SCHEMA,
     STORED,
@@ -21,7 +22,6 @@ from comparison.analysis.growth import (
     tall,
     with_slope,
 )
-from comparison.cli import growth as command
 from comparison.study.study import Study
 from reference.problem import load_scene
 

@@ -11,13 +11,13 @@ import xarray as xr
 from fake_models import errors_in, fake_hierarchy
 from test_waterfall import GRID, KEYS, planted, scattered
 
-from comparison.analysis.differences import differences
-from comparison.analysis.headline import Cause, Headline, headline
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.unanswered import with_silent_models
-from comparison.analysis.waterfall import waterfall
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
+from comparison.surfaces.differences import differences
+from comparison.surfaces.headline import Cause, Headline, headline
+from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.unanswered import with_silent_models
+from comparison.surfaces.waterfall import waterfall
 from reference.problem import Scene, load_scene
 
 

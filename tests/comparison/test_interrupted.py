@@ -13,7 +13,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from comparison.execution.output import publish
+from comparison.runner.output import publish
 from comparison.study.models import MODEL_HIERARCHY
 
 HERE = Path(__file__).parent
@@ -22,7 +22,7 @@ SCRIPT = """
 import signal, sys
 signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background inherits it ignored
 sys.path[:0] = [{here!r}, {root!r}]
-from comparison.execution.cache import Cache
+from comparison.runner.cache import Cache
 from comparison.run import main
 from fake_models import fake_hierarchy
 put = Cache.put

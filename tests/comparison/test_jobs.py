@@ -7,10 +7,10 @@ from concurrent.futures import ThreadPoolExecutor
 import xarray as xr
 from fake_models import fake_hierarchy
 
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.execution.sweep import sweep
+from comparison.runner.sweep import sweep
 from comparison.study.batches import execute_batch, unanswered
 from comparison.study.study import Study
+from comparison.surfaces.surfaces import labeled_surfaces
 from reference.problem import load_scene
 
 

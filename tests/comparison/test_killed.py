@@ -20,11 +20,11 @@ from conftest import Run
 from fake_models import fake_hierarchy
 from rich.console import Console
 
-from comparison.analysis.trajectories import Place, StoredMotion
-from comparison.execution.cache import Cache, store_beside
-from comparison.execution.runner import Runner
-from comparison.execution.task import Task
-from comparison.execution.task_results import TaskResults
+from comparison.analyses.motions.analysis import Place, StoredMotion
+from comparison.runner.cache import Cache, store_beside
+from comparison.runner.runner import Runner
+from comparison.runner.task import Task
+from comparison.runner.task_results import TaskResults
 from comparison.study.batches import BatchResult
 from comparison.study.study import Study
 from reference.problem import load_scene

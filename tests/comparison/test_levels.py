@@ -20,11 +20,11 @@ from fake_models import fake_hierarchy
 
 from comparison import run as command_module
 from comparison.cli import reports
-from comparison.execution.cache import Cache
-from comparison.execution.deadline import Deadline, TimeUpError
-from comparison.execution.keys import batch_key
-from comparison.execution.progress import Display
 from comparison.registry import levels
+from comparison.runner.cache import Cache
+from comparison.runner.deadline import Deadline, TimeUpError
+from comparison.runner.keys import batch_key
+from comparison.runner.progress import Display
 from comparison.study.levels import levels_of
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
@@ -184,8 +184,8 @@ def test_analyses_that_are_finished_beyond_the_level_are_in_the_report_of_a_stop
 
 def test_the_time_is_up_at_the_deadline_less_what_is_kept_free(monkeypatch: pytest.MonkeyPatch) -> None:
     armed: list[float] = []
-    monkeypatch.setattr("comparison.execution.deadline.signal.setitimer", lambda which, seconds: armed.append(seconds))
-    monkeypatch.setattr("comparison.execution.deadline.time.monotonic", lambda: 100.0)
+    monkeypatch.setattr("comparison.runner.deadline.signal.setitimer", lambda which, seconds: armed.append(seconds))
+    monkeypatch.setattr("comparison.runner.deadline.time.monotonic", lambda: 100.0)
     with Deadline(90.0, 30.0) as deadline:
         deadline.keep_free(4.0)
     assert armed == pytest.approx([19.7, 15.7, 0.0])
@@ -202,7 +202,7 @@ def test_the_alarm_ends_what_the_main_thread_does() -> None:
 
 def test_the_time_left_is_what_is_left_times_what_the_work_so_far_took(monkeypatch: pytest.MonkeyPatch) -> None:
     now = iter([0.0, 20.0, 30.0, 30.0])
-    monkeypatch.setattr("comparison.execution.progress.time.monotonic", lambda: next(now))
+    monkeypatch.setattr("comparison.runner.progress.time.monotonic", lambda: next(now))
     display = Display(100.0, 2)
     display.advance("compiling", "1 of 1 tasks", 0.0)  # at 20 s: does not count
     display.advance("engine", "1 of 9 tasks", 10.0)
@@ -220,7 +220,7 @@ from ending import end_after
 from fake_models import fake_hierarchy
 from known_analyses import ASKED, analyses_are
 from conftest import quick_figures
-from comparison.report.figures import assumptions
+from comparison.surfaces.figures import assumptions
 import conftest, pytest
 patch = pytest.MonkeyPatch()
 patch.setattr(assumptions, "draw_assumptions", conftest.quick_figure)

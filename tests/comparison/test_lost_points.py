@@ -12,7 +12,7 @@ import xarray as xr
 from conftest import Run
 from fake_models import DEADLY, fake_hierarchy
 
-from comparison.execution.processes import process_pool
+from comparison.runner.processes import process_pool
 
 GRID = ["fig3-I", "--grid", "4", "--jobs", "2"]
 

@@ -15,7 +15,7 @@ from jsonschema import Draft202012Validator
 from known_analyses import collected
 
 import reference
-from comparison.analysis.measured import MeasuredPeaks
+from comparison.analyses.measured.analysis import MeasuredPeaks
 from comparison.study.entered import entered_model
 from comparison.study.models import EXACT, MODEL_HIERARCHY, RESOLVED, SMALL, TRANSLATIONAL
 from comparison.study.study import Study

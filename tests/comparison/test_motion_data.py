@@ -16,10 +16,17 @@ from numpy.typing import NDArray
 
 import multibody
 import reference
-from comparison.analysis.thinning import SHARE, swing
-from comparison.analysis.trajectories import Place, StoredMotion, moved
-from comparison.execution.cache import Cache, Key
-from comparison.report.motion_data import ROUNDING, contact_geometry, packed_motions, places, spectrum_axis, starts_of
+from comparison.analyses.motions.analysis import Place, StoredMotion, moved
+from comparison.analyses.motions.decimation import SHARE, swing
+from comparison.analyses.motions.page_data import (
+    ROUNDING,
+    contact_geometry,
+    packed_motions,
+    places,
+    spectrum_axis,
+    starts_of,
+)
+from comparison.runner.cache import Cache, Key
 from comparison.study.models import REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL, Model
 from multibody.film import contact_paths
 from reference.problem import Scene, builtin_scenes, demands, load_scene

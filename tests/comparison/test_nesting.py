@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from fake_models import fake_hierarchy
 
-from comparison.execution.keys import batch_key
+from comparison.runner.keys import batch_key
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.nesting import levels, nested_grids
 from comparison.study.study import Study

@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
-from comparison.analysis.claims.table import Claims
-from comparison.analysis.convergence import Convergence
-from comparison.analysis.scaling import Scaling
-from comparison.execution.task_results import TaskResults
+from comparison.analyses.claims.table import Claims
+from comparison.analyses.convergence.analysis import Convergence
+from comparison.analyses.scaling.analysis import Scaling
+from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 from reference.problem import builtin_scenes, load_scene
 

@@ -21,7 +21,7 @@ from matplotlib.image import imread
 from playwright.sync_api import Browser, Locator, Page, sync_playwright
 
 import comparison.run
-from comparison.report.motion_data import ROUNDING
+from comparison.analyses.motions.page_data import ROUNDING
 from reference.problem import load_scene
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import pytest
 
-from comparison.analysis.tradeoff.trade import Answered, Entry, Trade
+from comparison.analyses.families.result import Trend
+from comparison.analyses.tradeoff.trade import Answered, Entry, Trade
 from comparison.report.glossary import GLOSSARY, emphasized, explained
 from comparison.report.page import content_policy
 from comparison.report.page_plots import MAX_CURVES, tradeoff_answers, tradeoff_panels, trend_panels
-from comparison.report.results.trends import Trend
 
 
 def _entry(method: str, seconds: float, error: float | None, value: float = 1e-3) -> Entry:

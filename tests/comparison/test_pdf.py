@@ -12,16 +12,16 @@ from fake_models import fake_hierarchy, known_motions, silenced
 from pypdf import PdfReader
 from test_texts_of_scenes import RUN
 
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.unanswered import with_silent_models
+from comparison.analyses.demands.pdf import demand_rows
 from comparison.report import pdf
 from comparison.report.assemble import assemble
 from comparison.report.findings import Fault, Findings, collect_findings
-from comparison.report.pdf_demands import demand_rows
-from comparison.report.results.study import Results
+from comparison.report.results import Results
 from comparison.study.batches import execute_batch
 from comparison.study.models import Model
 from comparison.study.study import Study
+from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.unanswered import with_silent_models
 from reference.problem import Scene, load_scene
 
 SCENES = ("fig3-I", "fig3-II", "fig4-dry", "fig4-viscous")

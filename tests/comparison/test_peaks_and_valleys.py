@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from comparison.analysis.claims.peaks_and_valleys import Counts, drawn, periodic, relief
+from comparison.analyses.claims.peaks_and_valleys import Counts, drawn, periodic, relief
 
 Array = NDArray[np.float64]
 N = 16

@@ -14,13 +14,13 @@ from fake_models import fake_hierarchy
 from known_analyses import collected
 from rich.console import Console
 
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.execution.cache import Cache
-from comparison.execution.runner import Runner
-from comparison.execution.task_results import TaskResults
-from comparison.report.figures.pictures import Pictures
+from comparison.runner.cache import Cache
+from comparison.runner.runner import Runner
+from comparison.runner.task_results import TaskResults
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
+from comparison.surfaces.figures.pictures import Pictures
+from comparison.surfaces.surfaces import labeled_surfaces
 from reference.problem import load_scene
 
 

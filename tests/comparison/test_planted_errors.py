@@ -17,15 +17,15 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from comparison.analysis.acceptance import checked_limits
-from comparison.analysis.budget import TOTAL, closure, steps
-from comparison.analysis.differences import differences
-from comparison.analysis.steps import RESOLVED
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.unanswered import unanswered
 from comparison.study.batches import execute_batch
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.study import Study
+from comparison.surfaces.acceptance import checked_limits
+from comparison.surfaces.budget import TOTAL, closure, steps
+from comparison.surfaces.differences import differences
+from comparison.surfaces.steps import RESOLVED
+from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.unanswered import unanswered
 from reference.problem import load_scene
 
 GRID = 2

@@ -16,16 +16,16 @@ from known_analyses import analyses_are
 from playwright.sync_api import sync_playwright
 from test_page_in_a_browser import CHROMIUM, FLAGS, LAPTOP, OVERLAPS, PHONE, _opened, _unfolded, _until
 
-from comparison.analysis.budget import budget
-from comparison.analysis.surfaces import NOT_ASKED, labeled_surfaces
-from comparison.analysis.trajectories import chosen_places
-from comparison.cli.assumptions import main as assumptions
+from comparison.analyses.assumptions.command import main as assumptions
+from comparison.analyses.motions.analysis import chosen_places
 from comparison.registry import ANALYSES, first_tasks
-from comparison.report.figures.pictures import Pictures
 from comparison.run import main
 from comparison.study.batches import execute_batch
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
+from comparison.surfaces.budget import budget
+from comparison.surfaces.figures.pictures import Pictures
+from comparison.surfaces.surfaces import NOT_ASKED, labeled_surfaces
 from reference.problem import example_scenes, load_family, load_scene
 
 MIXED = ("synthetic-pair", "fig4-viscous")

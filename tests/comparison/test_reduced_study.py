@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import multibody
-from comparison.analysis.surfaces import labeled_surfaces
 from comparison.study.batches import execute_batch
 from comparison.study.models import (
     EXACT,
@@ -25,6 +24,7 @@ from comparison.study.models import (
 )
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
+from comparison.surfaces.surfaces import labeled_surfaces
 from reference.problem import Scene, builtin_scenes, load_scene, mirror_symmetric
 from reference.problem.symmetry import sources
 

@@ -12,13 +12,13 @@ import pytest
 from conftest import Run
 from fake_models import fake_hierarchy, silenced
 
-from comparison.analysis.budget import TOTAL, closure, steps
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.trajectories import motion_arguments, moved
-from comparison.analysis.unanswered import unanswered, with_silent_models
-from comparison.analysis.waterfall import waterfall
+from comparison.analyses.motions.analysis import motion_arguments, moved
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
+from comparison.surfaces.budget import TOTAL, closure, steps
+from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.unanswered import unanswered, with_silent_models
+from comparison.surfaces.waterfall import waterfall
 from reference.problem import load_scene
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"

@@ -16,8 +16,8 @@ import pytest
 from fake_models import errors_in, fake_hierarchy
 from jsonschema import Draft202012Validator
 
-from comparison.report.results.differences import WaterfallBar
-from comparison.report.results.study import Results
+from comparison.report.results import Results
+from comparison.surfaces.result import WaterfallBar
 from reference.problem import load_scene
 
 LIMITS = ("median", "maximum", "ratio", "closure", "failed")

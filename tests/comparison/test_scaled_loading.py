@@ -10,8 +10,8 @@ from known_analyses import collected
 from numpy.typing import NDArray
 
 import reference
-from comparison.analysis.scaling import PRINTED, STEP, Scaling, scaled
-from comparison.analysis.trends import Trend
+from comparison.analyses.scaling.analysis import PRINTED, STEP, Scaling, scaled
+from comparison.analyses.trends import Trend
 from comparison.study.study import Study
 from reference import trajectory
 from reference.problem import Amplification, Scene, load_scene

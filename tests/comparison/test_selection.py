@@ -14,13 +14,13 @@ import xarray as xr
 from conftest import Run
 from fake_models import fake_hierarchy
 
-from comparison.analysis.surfaces import labeled_surfaces
 from comparison.cli.options import parsed
 from comparison.registry import chosen_analyses, first_tasks
-from comparison.report.figures.pictures import Pictures, pictures
 from comparison.report.page import SECTIONS
 from comparison.study.selection import Selection
 from comparison.study.study import Study
+from comparison.surfaces.figures.pictures import Pictures, pictures
+from comparison.surfaces.surfaces import labeled_surfaces
 from reference.problem import load_scene
 from reference.problem.analyses import ANALYSES, selected
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from comparison.analysis.claims.smoothness import bends
+from comparison.analyses.claims.smoothness import bends
 from reference import amplification
 from reference.problem import Amplification, Scene, half_turn, load_scene, own_axes, phase_grid
 from reference.problem.symmetry import surface

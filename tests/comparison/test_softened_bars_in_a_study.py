@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 import multibody
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.unanswered import advice
 from comparison.study.batches import execute_batch, refusal_of
 from comparison.study.costs import seconds_per_point
 from comparison.study.models import (
@@ -19,6 +17,8 @@ from comparison.study.models import (
     with_softened_bars,
 )
 from comparison.study.study import Study
+from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.unanswered import advice
 from reference.problem import Outcome, Scene, load_scene
 
 PLAIN = load_scene("fig3-I")

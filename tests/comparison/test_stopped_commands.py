@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 from test_extremes import PLAIN, fake
 
-from comparison.analysis.extremes.matrix import PICTURE, STORED
-from comparison.cli import extremes
+from comparison.analyses.extremes import command as extremes
+from comparison.analyses.extremes.matrix import PICTURE, STORED
 
 HERE = Path(__file__).parent
 COUNT, INSTANTS = 40, 12  # cells, and runs that are killed
@@ -50,7 +50,7 @@ import signal, sys
 signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background inherits it ignored
 sys.path[:0] = [{here!r}, {root!r}]
 from test_stopped_commands import run
-from comparison.execution.processes import process_pool
+from comparison.runner.processes import process_pool
 if __name__ == "__main__":
     sys.exit(run(process_pool, ("honest", "waits_for_ever")))
 """

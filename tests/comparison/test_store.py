@@ -13,8 +13,8 @@ import pytest
 from conftest import Run
 from fake_models import fake_hierarchy
 
-from comparison.execution.output import atomic_replace, clear_dead, publish
 from comparison.report import page
+from comparison.runner.output import atomic_replace, clear_dead, publish
 
 SMALL = ["fig3-I", "--grid", "2"]
 
@@ -89,7 +89,7 @@ KILLED = """
 import os, signal, sys
 from pathlib import Path
 sys.path.insert(0, {root!r})
-from comparison.execution import output as store
+from comparison.runner import output as store
 def killed(*rest):
     os.kill(os.getpid(), signal.SIGKILL)
 if {late}:

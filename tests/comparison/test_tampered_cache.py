@@ -18,20 +18,20 @@ import pytest
 from fake_models import fake_hierarchy
 from numpy.typing import NDArray
 
-from comparison.analysis.assumptions.variations import varied
-from comparison.analysis.claims.evidence import Evidence, gathered
-from comparison.analysis.claims.smoothness import Bend
-from comparison.analysis.convergence import limit_trends
-from comparison.analysis.effective import read_back
-from comparison.analysis.errata import measured
-from comparison.analysis.scaling import scene_trends
-from comparison.analysis.trajectories import Place, StoredMotion, moved
-from comparison.execution.cache import LENGTH, MAGIC, Cache, Key
-from comparison.execution.encoding import array_of
-from comparison.execution.keys import batch_key, cached_batch
-from comparison.report.figures.pictures import drawn
+from comparison.analyses.assumptions.variations import varied
+from comparison.analyses.claims.evidence import Evidence, gathered
+from comparison.analyses.claims.smoothness import Bend
+from comparison.analyses.convergence.analysis import limit_trends
+from comparison.analyses.effective_values.analysis import read_back
+from comparison.analyses.errata.analysis import measured
+from comparison.analyses.motions.analysis import Place, StoredMotion, moved
+from comparison.analyses.scaling.analysis import scene_trends
+from comparison.runner.cache import LENGTH, MAGIC, Cache, Key
+from comparison.runner.encoding import array_of
+from comparison.runner.keys import batch_key, cached_batch
 from comparison.study.batches import BatchResult, execute_batch
 from comparison.study.study import Study
+from comparison.surfaces.figures.pictures import drawn
 from reference.problem import load_scene
 
 KEY = Key('{"a": 1}', "0" * 64, "answer")
@@ -259,4 +259,4 @@ def test_no_module_of_the_study_unpickles_what_is_stored() -> None:
         if "pickle" in path.read_text(encoding="utf-8").replace("allow_pickle=False", "")
     ]
     # a pipe to a process that the study starts itself, and words about the cache
-    assert set(users) <= {"comparison/execution/processes.py", "comparison/execution/cache.py"}
+    assert set(users) <= {"comparison/runner/processes.py", "comparison/runner/cache.py"}

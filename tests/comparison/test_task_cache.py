@@ -17,17 +17,17 @@ from known_analyses import collected
 from light_tasks import dies, doubled, raises
 from rich.console import Console
 
-from comparison.analysis import errata
-from comparison.analysis.claims.table import paper_complete
-from comparison.analysis.effective import Effective
-from comparison.analysis.errata import Effect
-from comparison.analysis.trajectories import Place, StoredMotion
-from comparison.execution.cache import Cache
-from comparison.execution.processes import process_pool
-from comparison.execution.runner import Runner
-from comparison.execution.task import Task, TaskResult, fingerprint
-from comparison.execution.task_results import TaskResults
+from comparison.analyses.claims.table import paper_complete
+from comparison.analyses.effective_values.analysis import Effective
+from comparison.analyses.errata import analysis as errata
+from comparison.analyses.errata.analysis import Effect
+from comparison.analyses.motions.analysis import Place, StoredMotion
 from comparison.registry import ANALYSES, first_tasks
+from comparison.runner.cache import Cache
+from comparison.runner.processes import process_pool
+from comparison.runner.runner import Runner
+from comparison.runner.task import Task, TaskResult, fingerprint
+from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 from reference.problem import Outcome, builtin_scenes, load_scene
 
@@ -92,7 +92,7 @@ def test_it_belongs_to_function_task_versions_and_source(tmp_path: Path, monkeyp
         assert TaskResults(Cache(tmp_path)).missing([other]), name
     for name in ("_version", "source_digest"):
         with monkeypatch.context() as patch:
-            patch.setattr(f"comparison.execution.environment.{name}", lambda package: "changed")
+            patch.setattr(f"comparison.runner.environment.{name}", lambda package: "changed")
             assert TaskResults(Cache(tmp_path)).missing([task]), name
     assert not TaskResults(Cache(tmp_path)).missing([task])
 
@@ -102,7 +102,7 @@ def test_a_model_is_known_by_its_source_too(monkeypatch: pytest.MonkeyPatch) -> 
     before = fingerprint(model)
     assert fingerprint(replace(model, settings={"gap": 2.0})) != before
     assert fingerprint(replace(model, most=8)) == before, "a study with another grid asks it the same"
-    monkeypatch.setattr("comparison.execution.environment.source_digest", lambda name: "changed")
+    monkeypatch.setattr("comparison.runner.environment.source_digest", lambda name: "changed")
     assert fingerprint(model) != before
 
 

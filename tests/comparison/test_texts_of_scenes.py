@@ -13,20 +13,20 @@ from conftest import Run
 from fake_models import fake_hierarchy
 from rich.console import Console
 
-from comparison.analysis.assumptions.variations import FEW, Cell
-from comparison.analysis.parameter import FamilyStep
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.execution.progress import progress, wide_console
+from comparison.analyses.assumptions.figure import draw_assumptions
+from comparison.analyses.assumptions.variations import FEW, Cell
+from comparison.analyses.families.analysis import FamilyStep
+from comparison.analyses.families.figure import draw_family
 from comparison.report.assemble import assemble
-from comparison.report.figures.assumptions import draw_assumptions
-from comparison.report.figures.families import draw_family
-from comparison.report.figures.file_names import figure_file, with_ending
-from comparison.report.figures.paper import draw_paper_figure, paper_figure_name
 from comparison.report.findings import collect_findings
 from comparison.report.junit import junit
 from comparison.report.summary_text import summary_text
+from comparison.runner.progress import progress, wide_console
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
+from comparison.surfaces.figures.file_names import figure_file, with_ending
+from comparison.surfaces.figures.paper import draw_paper_figure, paper_figure_name
+from comparison.surfaces.surfaces import labeled_surfaces
 from reference.problem import Family, Scene, load_family, load_scene
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"

@@ -10,11 +10,11 @@ import pytest
 from light_tasks import doubled, hangs, hangs_in_compiled_code, is_kept_waiting, raises, waits_for_ever
 from rich.console import Console
 
-from comparison.execution.cache import Cache
-from comparison.execution.processes import process_pool
-from comparison.execution.runner import Runner
-from comparison.execution.task import Task, TaskResult
-from comparison.execution.task_results import TaskResults
+from comparison.runner.cache import Cache
+from comparison.runner.processes import process_pool
+from comparison.runner.runner import Runner
+from comparison.runner.task import Task, TaskResult
+from comparison.runner.task_results import TaskResults
 from reference.problem import Outcome
 
 pytest.importorskip("resource", reason="the system limits no processor time")
@@ -24,7 +24,7 @@ pytest.importorskip("resource", reason="the system limits no processor time")
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
     """Only processor time counts, however long the machine keeps a worker waiting."""
     for name in ("STALLED", "SPARE"):
-        monkeypatch.setattr(f"comparison.execution.processes.{name}", 1e9)
+        monkeypatch.setattr(f"comparison.runner.processes.{name}", 1e9)
 
 
 def _run(tasks: list[Task], folder: Path, make: object = process_pool, jobs: int = 2) -> list[TaskResult]:
@@ -77,7 +77,7 @@ def test_what_a_busy_machine_keeps_waiting_does_not_hang(tmp_path: Path) -> None
 
 
 def test_what_computes_nothing_any_more_is_ended_in_the_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("comparison.execution.processes.STALLED", 4.0)
+    monkeypatch.setattr("comparison.runner.processes.STALLED", 4.0)
     (result,) = _run([Task(waits_for_ever, "", "test", 1.0, timeout=1.0)], tmp_path)
     assert result.reason == "time limit: no answer within 4 s"
 

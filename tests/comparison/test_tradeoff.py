@@ -17,11 +17,12 @@ import pytest
 import xarray as xr
 from known_analyses import collected
 
-from comparison.analysis.tradeoff import analysis, measure
-from comparison.analysis.tradeoff.analysis import MeasuredTrade, TradeOff, entry
-from comparison.analysis.tradeoff.measure import Measured, Measurement, sample
-from comparison.analysis.tradeoff.settings import QUESTIONS, RUN, Question, Setting, settings
-from comparison.analysis.tradeoff.trade import (
+from comparison.analyses.tradeoff import analysis, command, measure
+from comparison.analyses.tradeoff.analysis import MeasuredTrade, TradeOff, entry
+from comparison.analyses.tradeoff.figure import MAX_TICKS, round_ticks
+from comparison.analyses.tradeoff.measure import Measured, Measurement, sample
+from comparison.analyses.tradeoff.settings import QUESTIONS, RUN, Question, Setting, settings
+from comparison.analyses.tradeoff.trade import (
     FILE,
     SCHEMA,
     STORED,
@@ -32,8 +33,6 @@ from comparison.analysis.tradeoff.trade import (
     quantile,
     with_pareto_fronts,
 )
-from comparison.cli import tradeoff as command
-from comparison.report.figures.tradeoff import MAX_TICKS, round_ticks
 from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
 

@@ -12,12 +12,12 @@ import xarray as xr
 from conftest import Run
 from jsonschema import Draft202012Validator
 
-from comparison.analysis.growth import FILE as GROWTH
-from comparison.analysis.growth import SCHEMA, STORED, MeasuredGrowth, with_slope
-from comparison.analysis.tradeoff.analysis import MeasuredTrade
-from comparison.analysis.tradeoff.trade import FILE, Answered, Entry, Trade, with_pareto_fronts
-from comparison.cli import tradeoff as tradeoff
-from comparison.execution.output import publish
+from comparison.analyses.tradeoff import command as tradeoff
+from comparison.analyses.tradeoff.analysis import MeasuredTrade
+from comparison.analyses.tradeoff.growth import FILE as GROWTH
+from comparison.analyses.tradeoff.growth import SCHEMA, STORED, MeasuredGrowth, with_slope
+from comparison.analyses.tradeoff.trade import FILE, Answered, Entry, Trade, with_pareto_fronts
+from comparison.runner.output import publish
 from reference.problem import load_scene
 
 SMALL = ["fig3-I", "--grid", "2"]

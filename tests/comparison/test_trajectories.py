@@ -11,12 +11,12 @@ from fake_models import fake_hierarchy, sliding
 from known_analyses import collected
 from numpy.typing import NDArray
 
-import comparison.analysis.trajectories
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.thinning import SHARE, thinned
-from comparison.analysis.trajectories import Motions, chosen_places, moved, shown_models
+from comparison.analyses.motions import analysis
+from comparison.analyses.motions.analysis import Motions, chosen_places, moved, shown_models
+from comparison.analyses.motions.decimation import SHARE, thinned
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
+from comparison.surfaces.surfaces import labeled_surfaces
 from reference.problem import Scene, Trajectory, load_scene
 
 
@@ -72,11 +72,13 @@ def test_a_model_with_a_coarse_grid_moves_at_its_own_phases_only(monkeypatch: py
     study, surfaces = _studied(12)
     asked: list[tuple[str, int, int]] = []
 
-    def noted(task: comparison.analysis.trajectories.Arguments) -> comparison.analysis.trajectories.StoredMotion:
+    def noted(
+        task: analysis.Arguments,
+    ) -> analysis.StoredMotion:
         asked.append((task[1].key, task[3].row, task[3].column))
-        return comparison.analysis.trajectories._nothing(task[3], task[1].key, "ok", "")  # type: ignore[arg-type]
+        return analysis._nothing(task[3], task[1].key, "ok", "")  # type: ignore[arg-type]
 
-    monkeypatch.setattr(comparison.analysis.trajectories, "moved", noted)
+    monkeypatch.setattr(analysis, "moved", noted)
     motions = collected(Motions(), study, surfaces)
     stride = study.strides["spatial"]
     assert stride > 1

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from comparison.analysis.trends import Slope, fitted, trend
+from comparison.analyses.trends import Slope, fitted, trend
 
 Array = NDArray[np.float64]
 SCALES = (1.0, 0.5, 0.25, 0.125)

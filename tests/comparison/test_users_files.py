@@ -16,12 +16,12 @@ from conftest import Run
 from fake_models import fake_hierarchy
 from test_extremes_in_the_report import FOUND
 
-from comparison.cli import extremes as extremes
+from comparison.analyses.extremes import command as extremes
+from comparison.analyses.tradeoff import command as tradeoff
 from comparison.cli import reports
-from comparison.cli import tradeoff as tradeoff
-from comparison.execution.cache import Cache
-from comparison.execution.keys import batch_key
-from comparison.execution.output import (
+from comparison.runner.cache import Cache
+from comparison.runner.keys import batch_key
+from comparison.runner.output import (
     MANIFEST,
     Own,
     atomic_replace,
@@ -155,7 +155,7 @@ DYING = """
 import os, signal, sys
 from pathlib import Path
 sys.path.insert(0, {root!r})
-from comparison.execution.output import atomic_replace
+from comparison.runner.output import atomic_replace
 move = os.rename
 def die_between(source, target):
     if Path(source).name == "new":

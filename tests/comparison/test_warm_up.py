@@ -7,8 +7,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 from fake_models import fake_hierarchy
 
-from comparison.execution.sweep import sweep
-from comparison.execution.warm_up import WARM_UP, warm_up
+from comparison.runner.sweep import sweep
+from comparison.runner.warm_up import WARM_UP, warm_up
 from comparison.study.study import Study
 from reference.problem import Outcome, load_scene
 

@@ -9,12 +9,12 @@ import pytest
 import xarray as xr
 from fake_models import errors_in
 
-from comparison.analysis.independent import independent_phases
-from comparison.analysis.surfaces import labeled_surfaces
-from comparison.analysis.waterfall import waterfall
 from comparison.study.batches import execute_batch
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
+from comparison.surfaces.independent import independent_phases
+from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.waterfall import waterfall
 from reference.problem import load_scene
 
 GRID = 8

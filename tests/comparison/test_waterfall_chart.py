@@ -6,8 +6,8 @@ import math
 
 import pytest
 
-from comparison.report.results.differences import WaterfallBar
-from comparison.report.waterfall_chart import bars_of, log_scale, scale_of
+from comparison.surfaces.result import WaterfallBar
+from comparison.surfaces.waterfall_chart import bars_of, log_scale, scale_of
 
 NAN = float("nan")
 

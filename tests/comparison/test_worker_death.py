@@ -15,10 +15,10 @@ import pytest
 from fake_models import fake_hierarchy
 from light_tasks import counted
 
-from comparison.execution.executors import ExecutorLostError
-from comparison.execution.processes import process_pool
-from comparison.execution.splitting import merge, split_batch
-from comparison.execution.sweep import sweep
+from comparison.runner.executors import ExecutorLostError
+from comparison.runner.processes import process_pool
+from comparison.runner.splitting import merge, split_batch
+from comparison.runner.sweep import sweep
 from comparison.study.batches import Batch, BatchResult, execute_batch, unanswered
 from comparison.study.study import Study
 from reference.problem import Outcome, load_scene

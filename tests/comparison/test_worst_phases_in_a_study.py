@@ -10,9 +10,16 @@ import pytest
 import xarray as xr
 
 import reference
-from comparison.analysis.worst_phases import ENGINE_POINTS, NOWHERE, Worst, WorstPhases, _engine_beside, worst_of
-from comparison.execution.task import unfinished
-from comparison.execution.task_results import TaskResults
+from comparison.analyses.worst_phases.analysis import (
+    ENGINE_POINTS,
+    NOWHERE,
+    Worst,
+    WorstPhases,
+    _engine_beside,
+    worst_of,
+)
+from comparison.runner.task import unfinished
+from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, TRANSLATIONAL
 from comparison.study.study import Study
 from reference.phase_maximum import GRID
@@ -56,7 +63,7 @@ def test_an_engine_without_an_answer_there_says_why(monkeypatch: pytest.MonkeyPa
         answer.mu[:], answer.error[:], answer.status[:] = math.nan, math.nan, Outcome.STEP_LIMIT.value
         return answer
 
-    monkeypatch.setattr("comparison.analysis.worst_phases.imported", lambda path: refusing)
+    monkeypatch.setattr("comparison.analyses.worst_phases.analysis.imported", lambda path: refusing)
     worst = Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
     engine = _engine_beside(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
     assert math.isnan(engine.value)
@@ -81,7 +88,7 @@ def test_the_engine_is_asked_where_its_ratio_to_the_equations_says_that_it_is_la
         return amplification
 
     sides = {TRANSLATIONAL.amplification: answering(engine), REGULARIZED.amplification: answering(equations)}
-    monkeypatch.setattr("comparison.analysis.worst_phases.imported", sides.__getitem__)
+    monkeypatch.setattr("comparison.analyses.worst_phases.analysis.imported", sides.__getitem__)
     monkeypatch.setattr("reference.problem.climb.ground_peak", lambda scene, phases: np.ones(len(phases)))
     worst = Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
     beside = _engine_beside(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)

@@ -10,7 +10,7 @@ from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
 import reference
-from comparison.analysis.scaling import scaled
+from comparison.analyses.scaling.analysis import scaled
 from reference.analytical.frictionless import frictionless_motion
 from reference.problem import GRAVITY, Outcome, Scene, SceneError, State, load_scene, phase_grid
 

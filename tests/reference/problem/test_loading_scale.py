@@ -9,7 +9,7 @@ import pytest
 
 import multibody
 import reference
-from comparison.analysis.scaling import scaled
+from comparison.analyses.scaling.analysis import scaled
 from reference.problem import Scene, SceneError, builtin_scenes, in_plane, load_family, load_scene
 
 PHASES = np.array([(0.3, 1.1), (2.0, 0.7)])

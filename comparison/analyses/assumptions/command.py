@@ -1,0 +1,111 @@
+"""
+How far the paper's assumptions carry: `python -m comparison.assumptions [SCENE ...]`.
+
+Varies the ring of supports, the heights of the bodies, their centers of mass and their angles. Prints how far mu_i then
+is from the translational result, where it stays within 1 % and 5 %, and how far uneven bodies turn. Every variation is
+stored as it is finished: the same command goes on where it stopped. Exit codes: 0 done; 2 a wrong scene or option;
+others as in `run_command`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+
+from comparison.analyses.assumptions.validity import Assumptions, ValidityRanges
+from comparison.analyses.assumptions.variations import CLOSE_ENOUGH, DURATION, MANY, PHASES, Cell
+from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, jobs, writing
+from comparison.cli.computing import computed
+from comparison.runner.executors import Pool
+from comparison.runner.output import destination, made_by, publish, refuse_foreign_files
+from comparison.runner.processes import process_pool
+from comparison.runner.progress import wide_console
+from comparison.study.models import has_spatial_data
+from comparison.study.study import Study, refuse_same_names
+from comparison.surfaces.figures.file_names import assumption_figure_name, figure_file
+from reference.problem import Scene, SceneError, builtin_scenes, load_scene
+
+ENGINE = "multibody:amplification"  # what the workers ask
+
+
+@command
+def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
+    """Vary the scenes the command line names and print what that does; the exit code."""
+    parser = CommandParser(
+        "assumptions", "How far mu_i of the spatial model is from the translational one, over the ring and the heights."
+    )
+    parser.add_scenes("the paper's")
+    parser.add_out(STORED_RESULTS)
+    parser.add_computing()
+    parser.add_argument("--figures", type=Path, metavar="DIR", help="write one picture per scene into this directory")
+    options = parser.parse_args(argv)
+    jobs(options)  # refused before anything else is looked at
+    names = options.scenes or builtin_scenes()
+    scenes = [_spatial(name) for name in names]
+    refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
+    figures = destination(options.figures, "--figures") if options.figures else None
+    if figures:
+        pictures = [figure_file(s.name, "assumptions", ending=end) for s in scenes for end in (".png", ".pdf")]
+        refuse_foreign_files(figures, pictures, "--figures")
+    console = wide_console()
+    about = f"{len(MANY)} variations at {len(PHASES)} phase pairs over {DURATION:g} s of motion"
+    console.print(f"{about}: minutes for each scene.")
+    assumptions, study = Assumptions(MANY), Study(tuple(scenes), 1, CLOSE_ENOUGH)
+    results = computed("assumptions", options, argv, assumptions.tasks(study), {ENGINE}, console, executor)
+    validity = assumptions.collect(study, None, results)
+    assert validity is not None, "every scene has both models of the engine"
+    for scene in scenes:
+        cells = [cell for cell in validity.cells if cell.scene == scene.name]
+        _print(console, scene, cells)
+        if figures:
+            with writing(figures, "--figures"):
+                _draw(figures, scene, cells)
+    return 0
+
+
+def _draw(folder: Path, scene: Scene, cells: Sequence[Cell]) -> None:
+    """Write the picture of a scene."""
+    from comparison.analyses.assumptions.figure import draw_assumptions  # plotting: not needed to refuse
+
+    files = made_by(lambda new: draw_assumptions(new / assumption_figure_name(scene), scene, cells))
+    publish(folder, files, "comparison.assumptions")
+
+
+def _spatial(name: str) -> Scene:
+    scene = load_scene(name)
+    if scene.recorded:
+        rule = (
+            "rings and heights are varied at phases, which a recorded motion has not: give a scene of two frequencies"
+        )
+        raise SceneError(name, "excitation.record", scene.name, rule)
+    if not has_spatial_data(scene):
+        rule = "the spatial model needs supports, ring and sphere_radius of the isolator, height and size of every body"
+        raise SceneError(name, "isolator, bodies", scene.name, rule)
+    return scene
+
+
+def _print(console: Console, scene: Scene, cells: Sequence[Cell]) -> None:
+    console.print(f"{scene.title} ({scene.name}): largest change of mu_i against the translational model, per body")
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for heading in ("ring, m", "heights x", "supports", "offset, m", "yaw, rad", "change, %", "u_D, %", "outcomes"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    bodies = range(1, len(scene.bodies) + 1)
+    for cell in cells:
+        table.add_row(
+            f"{cell.variation.ring * (scene.support_radius or 0.0):g}",
+            f"{cell.variation.height:g}",
+            str(cell.variation.supports or scene.isolator.support_count),
+            f"{cell.variation.offset * (scene.support_radius or 0.0):g}",
+            f"{cell.variation.yaw:g}",
+            "  ".join(f"{100.0 * cell.largest(body):.3f}" for body in bodies),
+            "  ".join(f"{100.0 * cell.error_estimate(body):.3f}" for body in bodies),
+            ", ".join(sorted(set(cell.status))),
+        )
+    console.print(table)
+    console.print(f"{sum(cell.cost for cell in cells):.0f} s of compute")
+    for line in ValidityRanges([scene], cells).lines(scene):
+        console.print(line)

@@ -1,0 +1,225 @@
+"""
+The paper's assumptions (i)-(vi): what the engine's models do with each, and how far they carry.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+import numpy as np
+import xarray as xr
+
+from comparison.analyses.assumptions.variations import (
+    DURATION,
+    FEW,
+    PHASES,
+    UNDER_LOAD,
+    Cell,
+    Range,
+    Variation,
+    assumption_cells,
+    ranges,
+    variation_tasks,
+)
+from comparison.runner.analysis import Analysis
+from comparison.runner.task import Task
+from comparison.runner.task_results import TaskResults
+from comparison.study.study import Study
+from reference.problem import Scene
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """One of (i)-(vi): what the paper says, what the engine's models do with it, and what measures the rest."""
+
+    number: str
+    statement: str
+    engine: str
+    relaxed: Literal["yes", "partly", "no"]
+
+
+ASSUMPTIONS = (
+    Assumption(
+        "(i)",
+        "all supports touch the platform along one circle",
+        "The circle stays, its radius and the number of supports are free. In the translational model neither matters, "
+        "because every support sees the same slip and the loads only enter by their sum.",
+        "partly",
+    ),
+    Assumption(
+        "(ii)",
+        "the centers of mass lie on one axis through the center of the circle",
+        "Kept by the equations and the translational model. Dropped in the spatial model where a scene states "
+        "the offset of a center of mass or positions of supports: links stand on the axis, so eccentric bodies turn "
+        "about it. The heights above the contacts, which the paper's equations do not contain, are free.",
+        "yes",
+    ),
+    Assumption(
+        "(iii)",
+        "the principal axes of inertia of all bodies are parallel",
+        "Kept by the equations and the translational model. Dropped in the spatial model where a scene states "
+        "the yaw of a body: its box and the directions of its link's stiffness are turned. Moments of inertia, which "
+        "do not enter translation, follow from masses and sizes.",
+        "yes",
+    ),
+    Assumption(
+        "(iv)",
+        "flexible bars that neither stretch nor move vertically",
+        "Bars stretch by 1e-5 rho under the weight of all bodies and bend likewise, so that every body has its own "
+        "vertical motion. Real clamped bars shorten by 0.6 u^2/l when they sway by u, ten times the rise of the "
+        "pendulum, and become softer by the weight. The spatial model has both where a scene states the "
+        "axial stiffness of its bars; else it is the weakest assumption of the study.",
+        "partly",
+    ),
+    Assumption(
+        "(v)",
+        "friction acts at the contacts of supports and depressions only",
+        "Kept, but every support has a contact force and a slip velocity of its own, so that friction can twist the "
+        "platform. The balls stand still on the plate, as in the paper.",
+        "partly",
+    ),
+    Assumption(
+        "(vi)",
+        "the bodies move translationally",
+        "Dropped: six degrees of freedom for every body, contacts that open. What this changes grows with the heights "
+        "over the radius of the ring. With all heights zero the weight of the bodies above the platform still shifts "
+        "with their displacement, and friction twists the platform.",
+        "yes",
+    ),
+)
+
+
+@dataclass(frozen=True)
+class ValidityRanges:
+    """How far the assumptions carry in some scenes: the cells computed and what they say, for the report."""
+
+    scenes: Sequence[Scene]
+    cells: Sequence[Cell]
+    assumptions: Sequence[Assumption] = ASSUMPTIONS
+    phases: Sequence[Sequence[float]] = tuple(map(tuple, PHASES.tolist()))  # rad
+    duration: float = DURATION  # s
+
+    def lines(self, scene: Scene) -> list[str]:
+        """One line per body, share and direction, and one per uneven variation."""
+        uneven = [cell for cell in self.cells if cell.scene == scene.name and cell.variation.is_uneven]
+        within = [describe(validity) for validity in ranges([scene], self.cells)]
+        loaded = [cell for cell in self.cells if cell.scene == scene.name and cell.variation in UNDER_LOAD]
+        return within + [describe_torsion(scene, cell) for cell in uneven] + describe_shortening(scene, loaded)
+
+    def listed(self) -> dict[str, Any]:
+        """For summary.json: assumptions, phase pairs, duration, every cell and every range."""
+        return {
+            "assumptions": [asdict(assumption) for assumption in self.assumptions],
+            "phases": [list(pair) for pair in self.phases],
+            "duration": self.duration,
+            "cells": [asdict(cell) for cell in self.cells],
+            "ranges": [asdict(validity) for validity in ranges(self.scenes, self.cells)],
+        }
+
+
+@dataclass(frozen=True)
+class Assumptions(Analysis[ValidityRanges]):
+    """How far the assumptions carry in the scenes of a study: a few variations, or as many as a command asks for."""
+
+    key, stage = "assumptions", "assumptions"
+    variations: Sequence[Variation] = FEW
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """The translational model and every variation of the spatial one, for every scene to which both apply."""
+        return variation_tasks(study, self.stage, self.variations)
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> ValidityRanges | None:
+        """The cells; None if no scene has both models of the engine."""
+        cells = assumption_cells(self.tasks(study), results)
+        names = {cell.scene for cell in cells}
+        return ValidityRanges([scene for scene in study.scenes if scene.name in names], cells) if cells else None
+
+
+def describe(validity: Range) -> str:
+    """
+    One line for people: where mu_i stays within a share of the translational result.
+
+    Parameters
+    ----------
+    validity : Range
+
+    Returns
+    -------
+    str
+    """
+    what = f"mu_{validity.body} stays within {100.0 * validity.share:g} %"
+    if validity.key == "ring":
+        if validity.holds is None:
+            return f"{what} at no ring tried, up to {validity.fails:g} m"
+        fails = "every smaller one tried too" if validity.fails is None else f"no longer at {validity.fails:g} m"
+        return f"{what} with rings from {validity.holds:g} m, {fails}"
+    if validity.key in ("offset", "yaw"):
+        stated, moved, unit = "angles", "bodies and links turned", "rad"
+        if validity.key == "offset":
+            stated, moved, unit = "offsets", "centers of mass moved along x and along y", "m"
+        if validity.holds is None:
+            return f"{what} at none of the {stated} tried, the stated ones among them"
+        if validity.holds == 0.0:
+            return f"{what} with the stated {stated}, no longer with {moved} by {validity.fails:g} {unit}"
+        fails = "the largest tried" if validity.fails is None else f"no longer by {validity.fails:g} {unit}"
+        return f"{what} with {moved} by up to {validity.holds:g} {unit}, {fails}"
+    if validity.holds is None:
+        return f"{what} at no heights tried"
+    fails = "the largest tried" if validity.fails is None else f"no longer at {validity.fails:g} times"
+    return f"{what} with heights up to {validity.holds:g} times the stated ones, {fails}"
+
+
+def describe_shortening(scene: Scene, loaded: Sequence[Cell]) -> list[str]:
+    """
+    One line for people on assumption (iv): what it changes that bars shorten as they sway.
+
+    Parameters
+    ----------
+    scene : Scene
+    loaded : sequence of Cell
+        Of UNDER_LOAD, in that order; or none.
+
+    Returns
+    -------
+    list of str
+        Empty without cells.
+    """
+    if len(loaded) != len(UNDER_LOAD):
+        return []
+    softened, shortened = (1.0 + np.array(cell.change) for cell in loaded)
+    change = np.abs(shortened / softened - 1.0).max(axis=0)
+    error = np.hypot(*(np.array(cell.uncertainty) for cell in loaded)).max(axis=0)
+    if not np.isfinite(change).all():
+        return ["no value says what it changes that bars shorten as they sway"]
+    pairs = enumerate(zip(change, error), start=1)
+    changes = ", ".join(
+        f"mu_{body} by up to {100.0 * size:.2g} ± {100.0 * about:.1g} %" for body, (size, about) in pairs
+    )
+    return [f"bars that shorten as they sway, and not only soften under the weight, change {changes}"]
+
+
+def describe_torsion(scene: Scene, cell: Cell) -> str:
+    """
+    One line for people: what an uneven variation changes, and how far its bodies turn about the vertical.
+
+    Parameters
+    ----------
+    scene : Scene
+    cell : Cell
+
+    Returns
+    -------
+    str
+    """
+    moved = [f"off the axis by {cell.variation.offset * (scene.support_radius or 0.0):g} m along x and y"]
+    turned = [f"with their links at {cell.variation.yaw:g} rad to the axes"]
+    where = " and ".join((moved if cell.variation.offset else []) + (turned if cell.variation.yaw else []))
+    bodies = range(1, len(scene.bodies) + 1)
+    changes = ", ".join(f"mu_{body} by up to {100.0 * cell.largest(body):.2g} %" for body in bodies)
+    turns = np.array(cell.torsion)
+    known = turns.shape == (len(PHASES), len(scene.bodies)) and np.isfinite(turns).all()
+    unknown = f"no motion says how far they turn{f' ({cell.error_message})' if cell.error_message else ''}"
+    torsion = f"they turn by up to {1e3 * turns.max():.3g} mrad" if known else unknown
+    return f"the bodies above the platform {where} change {changes}; {torsion}"

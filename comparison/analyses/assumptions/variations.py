@@ -1,0 +1,354 @@
+"""
+How far the paper's assumptions carry: the spatial model with other supports, heights, centers of mass and angles.
+
+The translational model, which no such variation changes, is what they are held against.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparison.runner.task import Task, TaskResult
+from comparison.runner.task_results import TaskResults
+from comparison.study.batches import imported
+from comparison.study.models import Model, models_of
+from comparison.study.study import Study
+from reference.problem import Scene, Trajectory, demands, ground_peak, untilted
+from reference.problem.bar_links import bar_links
+from reference.problem.demands import ANSWERED
+
+Array = NDArray[np.float64]
+
+PHASES = np.array([(0.0, 0.0), (0.3, 1.1), (2.0, 0.7)])  # rad; the first is where turning tells most in fig3-I
+DURATION = 6.0  # s: the loading is strongest in its first seconds
+WITHIN = (0.01, 0.05)  # of mu_i
+CLOSE_ENOUGH = 0.2 * WITHIN[0]  # relative error of mu_i that says whether it stays within: no smaller one is asked for
+
+
+@dataclass(frozen=True)
+class Variation:
+    """
+    The scene with another ring and other heights, as multiples of its own, other supports, uneven, or with loaded bars.
+
+    supports: how many on a ring, None: its own. offset: by which the centers of mass above the platform are moved along
+    x and along y, over the radius of the ring. yaw: by which the bodies above it and their links are turned, rad. bars:
+    what the weight above does to all bars that give way; other bars only soften.
+    """
+
+    ring: float = 1.0
+    height: float = 1.0
+    supports: int | None = None
+    offset: float = 0.0
+    yaw: float = 0.0
+    bars: Literal["softening", "shortening"] | None = None
+
+    @property
+    def is_uneven(self) -> bool:
+        """Whether centers of mass leave the axis, or bodies and links their common directions."""
+        return self.offset != 0.0 or self.yaw != 0.0
+
+    @property
+    def is_usual(self) -> bool:
+        """Whether it only varies the ring and the heights."""
+        return self.supports is None and not self.is_uneven and self.bars is None
+
+    def of(self, scene: Scene) -> Scene:
+        """The scene with this variation."""
+        radius, stated = scene.support_radius, scene.isolator.supports
+        assert radius is not None
+        values: dict[str, Any] = {"isolator.supports": self.supports or stated, "isolator.ring": radius * self.ring}
+        if isinstance(stated, list) and self.supports is None:
+            values = {"isolator.supports": self.ring * np.array(stated)}
+        for number, body in enumerate(scene.bodies):
+            assert body.height is not None
+            values[f"bodies.{number}.height"] = body.height * self.height
+            if number and self.offset:
+                values[f"bodies.{number}.offset"] = scene.offsets[number] + self.offset * radius
+            if number and self.yaw:
+                values[f"bodies.{number}.yaw"] = float(scene.yaws[number] + self.yaw)
+            if self.bars and body.bars is not None:
+                gives_way = body.bars.axial_stiffness is not None
+                values[f"bodies.{number}.bars.load_effect"] = self.bars if gives_way else "softening"
+        return scene.with_values(values)
+
+
+FEW = (
+    *(Variation(ring=ring) for ring in (0.5, 1.0, 2.0, 8.0)),
+    *(Variation(height=height) for height in (0.0, 0.25, 0.5)),
+    Variation(supports=3),
+    Variation(offset=0.1),  # a twentieth of the width: what codes take for accidental
+    Variation(yaw=0.2),
+)
+MANY = (
+    *(Variation(ring, height) for ring in (0.5, 1.0, 2.0, 4.0, 8.0) for height in (0.0, 0.25, 0.5, 1.0)),
+    *(Variation(ring, 2.0) for ring in (1.0, 2.0, 4.0, 8.0)),  # on the narrowest ring the scenes would topple
+    Variation(supports=3),
+    *(Variation(offset=offset) for offset in (0.025, 0.05, 0.1, 0.2)),
+    *(Variation(yaw=yaw) for yaw in (0.05, 0.1, 0.2, 0.4)),
+)
+
+UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # of scenes whose bars give way
+
+
+@dataclass(frozen=True)
+class Cell:
+    """
+    The spatial model of one variation against the translational model, which no variation changes.
+
+    change: mu over mu of the translational model minus one, per phase pair and body, NaN without a value; uncertainty:
+    of it, the two error estimates together. status: of each phase pair. error_message: what went wrong, or "". cost: s
+    of compute of the spatial model. torsion: rad, largest rotation of every body about the vertical per phase pair, of
+    an uneven variation; else empty.
+    """
+
+    scene: str
+    variation: Variation
+    change: tuple[tuple[float, ...], ...]
+    uncertainty: tuple[tuple[float, ...], ...]
+    status: tuple[str, ...]
+    error_message: str = ""
+    cost: float = 0.0
+    torsion: tuple[tuple[float, ...], ...] = ()
+
+    def largest(self, body: int) -> float:
+        """Largest |change| of mu_i over the phase pairs; NaN if one has no value: nothing is claimed then."""
+        return float(np.abs([row[body - 1] for row in self.change]).max())
+
+    def error_estimate(self, body: int) -> float:
+        """Largest uncertainty of mu_i over the phase pairs; NaN likewise."""
+        return float(np.max([row[body - 1] for row in self.uncertainty]))
+
+    def holds(self, body: int, share: float) -> bool:
+        """Whether mu_i stays within `share` at every phase pair, uncertainty included."""
+        return self.largest(body) + self.error_estimate(body) <= share
+
+
+@dataclass(frozen=True)
+class Range:
+    """
+    Where mu_i stays within `share` on one line of variations. key: "ring", m, "height", times the stated ones,
+    "offset", m, or "yaw", rad. holds: the last value up to which every value tried does, coming from where bodies turn
+    least (wide rings, low heights, even bodies), None if none; fails: the next one tried, None if all hold.
+    """
+
+    scene: str
+    body: int
+    share: float
+    key: str
+    holds: float | None
+    fails: float | None
+
+
+Arguments = tuple[Scene, Model, Variation | None, float]
+Rows = tuple[tuple[float, ...], ...]  # by phase pair and body
+
+
+@dataclass(frozen=True)
+class Solved:
+    """mu (M, N) at PHASES, its errors, statuses, what went wrong, or "", the cost, s, and torsion as `Cell` has it."""
+
+    mu: Array
+    error: Array
+    status: tuple[str, ...]
+    error_message: str
+    cost: float
+    torsion: Rows = ()
+
+    def __post_init__(self) -> None:
+        if self.mu.ndim != 2 or self.error.shape != self.mu.shape or len(self.status) != len(self.mu):
+            raise ValueError(f"mu {self.mu.shape}, error {self.error.shape}, {len(self.status)} statuses")
+
+
+def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> list[Arguments]:
+    """
+    What has to be computed: the translational model and every variation of the spatial one.
+
+    Parameters
+    ----------
+    study : Study
+        Every scene with phases to which both models of the engine apply.
+    variations : sequence of Variation
+        UNDER_LOAD is added where bars give way.
+
+    Returns
+    -------
+    list of tuple
+        Scene, model, variation (None: the scene itself), tolerance.
+    """
+    asked: list[Arguments] = []
+    for scene in study.phased:
+        models = models_of(scene, study.hierarchy)
+        engines = [model for model in models if model.side == "engine" and "softened" not in model.settings]
+        if len(engines) == 2:
+            plain, spatial = engines
+            of_plain, tolerance = (max(engine.tolerance(study.tolerance), CLOSE_ENOUGH) for engine in engines)
+            asked.append((scene, plain, None, of_plain))
+            loaded = UNDER_LOAD if any(link is not None for link in bar_links(scene)) else ()
+            asked += [(scene, spatial, variation, tolerance) for variation in (*variations, *loaded)]
+    return asked
+
+
+def variation_tasks(study: Study, stage: str, variations: Sequence[Variation] = FEW) -> list[Task]:
+    """
+    `variation_arguments` as tasks.
+
+    Parameters
+    ----------
+    study : Study
+    stage : str
+        Stage of the tasks.
+    variations : sequence of Variation
+
+    Returns
+    -------
+    list of Task
+    """
+    return [
+        Task(
+            varied,
+            argument,
+            stage,
+            about=argument[0],
+            needs_compiled_reference=False,
+        )
+        for argument in variation_arguments(study, variations)
+    ]
+
+
+def assumption_cells(tasks: Sequence[Task], results: TaskResults) -> list[Cell]:
+    """
+    Every variation against the translational model of its scene.
+
+    Parameters
+    ----------
+    tasks : sequence of Task
+        `variation_tasks`.
+    results : TaskResults
+        Their results.
+
+    Returns
+    -------
+    list of Cell
+    """
+    answers = [(task.argument, results.value(task, _without_value)) for task in tasks]
+    held_against = {scene.name: answer for (scene, _, variation, _), answer in answers if variation is None}
+    return [
+        _cell(scene, variation, answer, held_against[scene.name])
+        for (scene, _, variation, _), answer in answers
+        if variation is not None
+    ]
+
+
+def varied(task: Arguments) -> Solved:
+    """
+    One variation at PHASES. Runs inside a worker process.
+
+    Parameters
+    ----------
+    task : tuple
+        As in `variation_arguments`.
+
+    Returns
+    -------
+    Solved
+    """
+    scene, model, variation, tolerance = task
+    short = scene.with_values({"duration": min(scene.duration, DURATION)})
+    changed = short if variation is None else variation.of(short)
+    without_torsion = ""
+    if variation is not None and variation.is_uneven and model.trajectory is not None:
+        try:
+            return _moved(changed, model, tolerance)
+        except Exception as error:  # the factors are known without motions
+            without_torsion = f"no motion: {type(error).__name__}: {error}"
+    whole = {"full": True} if untilted(changed) else {}  # a check of assumption (vi) must not make use of it
+    result = imported(model.amplification)(changed, PHASES, **model.settings, tolerance=tolerance, **whole)
+    return Solved(result.mu, result.error, tuple(map(str, result.status)), without_torsion, float(result.cost))
+
+
+def _moved(scene: Scene, model: Model, tolerance: float) -> Solved:
+    """The same from whole motions, which show how far the bodies turn; NaN where one ends early."""
+    clock = time.process_time()
+    trajectory: Callable[..., Trajectory] = imported(str(model.trajectory))
+    motions = [trajectory(scene, phase, **model.settings, tolerance=tolerance) for phase in PHASES]
+    nothing = np.full(len(scene.bodies), np.nan)
+    known = [motion.status in ANSWERED and motion.accuracy is not None for motion in motions]
+    peaks = [motion.peak if whole else nothing for motion, whole in zip(motions, known)]
+    errors = [
+        motion.accuracy.peak_error if motion.accuracy and whole else nothing for motion, whole in zip(motions, known)
+    ]
+    ground = ground_peak(scene, PHASES)[:, None]
+    turns = tuple(tuple(turn.value for turn in demands(motion).torsion or ()) for motion in motions)
+    status, cost = tuple(str(motion.status) for motion in motions), time.process_time() - clock
+    return Solved(np.array(peaks) / ground, np.array(errors) / ground, status, "", cost, turns)
+
+
+def _without_value(task: Arguments, failed: TaskResult) -> Solved:
+    nothing = np.full((len(PHASES), len(task[0].bodies)), np.nan)
+    return Solved(nothing, nothing, (failed.outcome.value,) * len(PHASES), failed.error_message, 0.0)
+
+
+def _cell(scene: Scene, variation: Variation, spatial: Solved, plain: Solved) -> Cell:
+    change = spatial.mu / plain.mu - 1.0
+    uncertainty = np.hypot(spatial.error, plain.error) / plain.mu
+    error_message = spatial.error_message or plain.error_message
+    rows = _rows(change), _rows(uncertainty)
+    return Cell(scene.name, variation, *rows, spatial.status, error_message, spatial.cost, spatial.torsion)
+
+
+def _rows(array: Array) -> Rows:
+    return tuple(tuple(map(float, row)) for row in array)
+
+
+def ranges(scenes: Sequence[Scene], cells: Sequence[Cell]) -> list[Range]:
+    """
+    Where every mu_i stays within each share of WITHIN.
+
+    Over rings at the stated heights, over heights at the stated ring, over offsets and over angles at both.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+    cells : sequence of Cell
+
+    Returns
+    -------
+    list of Range
+    """
+    validity = []
+    for scene in scenes:
+        of_scene = [cell for cell in cells if cell.scene == scene.name]
+        usual = [cell for cell in of_scene if cell.variation.is_usual]
+        stated = [cell for cell in usual if cell.variation == Variation()]
+        moved = [cell for cell in of_scene if cell.variation.offset]
+        angled = [cell for cell in of_scene if cell.variation.yaw]
+        for body in range(1, len(scene.bodies) + 1):
+            for share in WITHIN:
+                wide = [cell for cell in usual if cell.variation.height == 1.0]
+                low = [cell for cell in usual if cell.variation.ring == 1.0]
+                ring = scene.support_radius or float("nan")
+                rings = sorted(((cell.variation.ring * ring, cell) for cell in wide), key=lambda pair: -pair[0])
+                heights = sorted(((cell.variation.height, cell) for cell in low), key=lambda pair: pair[0])
+                offsets = sorted(
+                    ((cell.variation.offset * ring, cell) for cell in stated + moved), key=lambda pair: pair[0]
+                )
+                yaws = sorted(((cell.variation.yaw, cell) for cell in stated + angled), key=lambda pair: pair[0])
+                uneven = ([("offset", offsets)] if moved else []) + ([("yaw", yaws)] if angled else [])
+                for key, line in (("ring", rings), ("height", heights), *uneven):
+                    validity.append(Range(scene.name, body, share, key, *_bracket(line, body, share)))
+    return validity
+
+
+def _bracket(line: Sequence[tuple[float, Cell]], body: int, share: float) -> tuple[float | None, float | None]:
+    last = None
+    for value, cell in line:
+        if not cell.holds(body, share):
+            return last, value
+        last = value
+    return last, None

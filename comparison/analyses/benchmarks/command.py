@@ -1,0 +1,96 @@
+"""
+Numbers published elsewhere, each solved by the equations and by the engine: `python -m comparison.benchmarks`.
+
+Every benchmark is stored as it is solved: the same command goes on where it stopped. Writes benchmarks.json and
+benchmarks.md. Exit codes: 0 every number is met or its difference explained; 1 not; 2 a wrong option; 3 the files could
+not be written; others as in `run_command`.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from rich.console import Console
+
+from comparison.analyses.benchmarks.analysis import MODELS, BenchmarkTable
+from comparison.analyses.benchmarks.cases import Case, cases
+from comparison.analyses.benchmarks.mastodon import mastodon
+from comparison.analyses.benchmarks.page import page, with_error
+from comparison.analyses.benchmarks.table import ENGINE, EQUATIONS, PAGE, STORED, Benchmarks, Verdict
+from comparison.cli.arguments import CommandParser, command, jobs, writing
+from comparison.cli.computing import computed, run_facts
+from comparison.cli.terminal import new_table
+from comparison.runner.executors import Pool
+from comparison.runner.output import destination, publish, refuse_foreign_files
+from comparison.runner.processes import process_pool
+from comparison.runner.progress import wide_console
+from reference.problem import SceneError
+
+DIGITS = 6  # of a number on the terminal
+SOLVERS = {model.trajectory for model in MODELS.values()}  # what the workers ask
+
+
+@command
+def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
+    """Solve the benchmarks that the command line asks for; the exit code."""
+    begin = time.monotonic()
+    options = _parser().parse_args(argv)
+    jobs(options)  # refused before anything else is looked at
+    analysis = BenchmarkTable(_chosen(options.only, options.mastodon))
+    out = destination(options.out)
+    refuse_foreign_files(out, [STORED.name, PAGE])
+    console = wide_console()
+    results = computed("benchmarks", options, argv, analysis.tasks(), SOLVERS, console, executor)
+    solved = analysis.collect(None, None, results)
+    table = replace(solved, run=run_facts("benchmarks", options, argv, begin))
+    with writing(out):
+        files = publish(out, {STORED.name: STORED.as_json(table), PAGE: page(table).encode()}, "comparison.benchmarks")
+    print_benchmarks(console, table)
+    console.print(f"Tables: {', '.join(map(str, files))}", soft_wrap=True)
+    console.print("A report written into the same directory by comparison.run shows them.")
+    counts = table.counts()
+    return 1 if counts[Verdict.OFF] or counts[Verdict.NONE] else 0
+
+
+def print_benchmarks(console: Console, table: Benchmarks) -> None:
+    """A row for every published number, what is explained, and the counts."""
+    lines = new_table("scene", "quantity", "published", "equations", "", "engine", "")
+    for each in table.benchmarks:
+        for row in each.rows:
+            cells = [f"{row.published:g}"]
+            for side in (EQUATIONS, ENGINE):
+                cells += [with_error(row.numbers[side], DIGITS), row.numbers[side].verdict]
+            lines.add_row(each.name, ", ".join(filter(None, (row.quantity, row.unit))), *cells)
+    console.print(lines)
+    for each in table.benchmarks:
+        if each.difference:
+            console.print(f"{each.name}: {each.difference}", soft_wrap=True)
+    counts = ", ".join(f"{count} {name}" for name, count in table.counts().items())
+    console.print(f"{sum(table.counts().values())} numbers: {counts}.", soft_wrap=True)
+
+
+def _chosen(only: str, mastodon_input: Path | None) -> list[Case]:
+    """The benchmarks that the options leave. Raises SceneError."""
+    known = cases() + ([] if mastodon_input is None else [mastodon(mastodon_input)])
+    chosen = [case for case in known if only in case.scene.name]
+    if not chosen:
+        names = ", ".join(case.scene.name for case in known)
+        raise SceneError("command line", "--only", only, f"no benchmark is left: take part of a name, {names}")
+    return chosen
+
+
+def _parser() -> CommandParser:
+    parser = CommandParser("benchmarks", "Numbers published elsewhere, each by the equations and by the engine.")
+    parser.add_out(f"where {STORED.name} and {PAGE} go")
+    parser.add_computing()
+    parser.add_argument("--only", default="", metavar="TEXT", help="the benchmarks whose name contains this")
+    parser.add_argument(
+        "--mastodon",
+        type=Path,
+        metavar="FILE",
+        help="CSV with the input of MASTODON's friction pendulum test, which is not shipped: adds that benchmark",
+    )
+    return parser

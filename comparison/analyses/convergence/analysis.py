@@ -1,0 +1,211 @@
+"""
+What the steps of friction law and contact tend to: regularization to nothing, contact stiffness to infinity.
+
+Friction linear below v_reg against the set-valued law read at rest and above v_c = v_reg: the same motion but for what
+happens below that speed, so that the difference must vanish with it. The supremum also holds what lies below every
+v_reg and is approached, if at all, like a power so low that no v_reg in use is small enough. The engine's contact,
+pressed in by the weight by a share p of rho, that is of stiffness 1/p, against the rigid one under the same law; at a
+constant step, and another of half its length for the error bar, so that nothing but the stiffness changes.
+
+With bodies that turn there is no set-valued answer to compare with. The spatial model is compared with itself at a
+v_reg ten times smaller than the smallest one: unequal support forces keep the supports from stopping together, so that
+its peaks converge where those of the translational model climb towards the supremum.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+import multibody
+import reference
+from comparison.analyses.trends import Trend, trend
+from comparison.runner.analysis import Analysis
+from comparison.runner.task import Task, TaskResult
+from comparison.runner.task_results import TaskResults
+from comparison.study.models import has_spatial_data
+from comparison.study.study import Study
+from reference.problem import Outcome, Scene, exponents, ground_peak, loading_period
+
+Array = NDArray[np.float64]
+Values = tuple[Array, Array]  # relative sizes and their errors, (P, S, N)
+
+PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad
+FEW = PHASES[[0, 3]]  # for the engine
+PERIODS = 6.0  # of the slower harmonic: the loading is strongest in the first of them
+FEW_PERIODS = 3.0  # for the engine
+FEWEST_PERIODS = 2.5  # for the engine at constant step
+REGULARIZATIONS = (3e-3, 1e-3, 3e-4, 1e-4, 3e-5)  # m/s
+ENGINE_REGULARIZATIONS = (1e-2, 3e-3, 1e-3)  # m/s
+PENETRATIONS = (3e-3, 1e-3, 3e-4)  # of rho, under the weight
+SMALLEST = 1e-4  # m/s, for bodies that turn: stands for their limit
+V_REG = 1e-2  # m/s, for the stiffness: a constant step resolves it
+STEPS_PER_PERIOD = 2250  # of the faster harmonic, and twice as many
+MOST_STEPS = 20_000
+REFERENCE_TOLERANCE, ENGINE_TOLERANCE = 1e-7, 1e-3
+NEWTON, RESIDUAL = 1e-8, 1e-12  # of the engine's steps
+SAFETY = 1.5  # on the difference of two steps, which is half to once the error of the coarser one
+
+
+def _regularized(scene: Scene) -> Values:
+    """The equations at v_reg against the resolved peak at the same speed."""
+    return _against(scene, PHASES, REGULARIZATIONS, _by_equations, lambda v: v)
+
+
+def _to_supremum(scene: Scene) -> Values:
+    return _against(scene, PHASES, REGULARIZATIONS, _by_equations, lambda v: None)
+
+
+def _by_engine(scene: Scene) -> Values:
+    def solved(scene: Scene, phases: Array, v: float) -> Values:
+        answer = multibody.amplification(scene, phases, regularization=v, tolerance=ENGINE_TOLERANCE)
+        return answer.mu, answer.error
+
+    return _against(_short(scene, FEW_PERIODS), FEW, ENGINE_REGULARIZATIONS, solved, lambda v: v)
+
+
+def _with_turning(scene: Scene) -> Values:
+    """The spatial model at v_reg against itself at the smallest one."""
+    short = _short(scene, FEW_PERIODS)
+    limit, *answers = (
+        multibody.amplification(short, FEW, model="spatial", regularization=v, tolerance=ENGINE_TOLERANCE)
+        for v in (SMALLEST, *ENGINE_REGULARIZATIONS)
+    )
+    sizes = np.stack([answer.mu / limit.mu - 1.0 for answer in answers], axis=1)
+    return sizes, np.stack([np.hypot(answer.error, limit.error) / limit.mu for answer in answers], axis=1)
+
+
+def _by_equations(scene: Scene, phases: Array, v: float) -> Values:
+    answer = reference.amplification(scene, phases, tolerance=REFERENCE_TOLERANCE, regularization=v)
+    return answer.mu, answer.error
+
+
+def _against(
+    scene: Scene,
+    phases: Array,
+    speeds: tuple[float, ...],
+    solved: Callable[[Scene, Array, float], Values],
+    cutoff: Callable[[float], float | None],
+) -> Values:
+    """A regularized motion against the set-valued one."""
+    short = _short(scene, PERIODS)
+    sizes, errors = [], []
+    for v in speeds:
+        mu, error = solved(short, phases, v)
+        exact = reference.amplification(short, phases, tolerance=REFERENCE_TOLERANCE, cutoff=cutoff(v))
+        sizes.append(mu / exact.mu - 1.0)
+        errors.append(np.hypot(error, exact.error) / exact.mu)
+    return np.stack(sizes, axis=1), np.stack(errors, axis=1)
+
+
+def _short(scene: Scene, periods: float) -> Scene:
+    longest = float(2.0 * np.pi / exponents(scene).imag.min())
+    return scene.with_values({"duration": min(scene.duration, periods * longest)})
+
+
+def _stiffened(scene: Scene) -> Values:
+    """The engine with ever stiffer contacts against the rigid contact of the exact equations."""
+    short = _short(scene, FEWEST_PERIODS)
+    v_reg = None if scene.lubricated else V_REG
+    exact = reference.amplification(short, FEW, tolerance=REFERENCE_TOLERANCE, regularization=v_reg)
+    coarse, fine = (
+        np.stack([_at_constant_step(short, v_reg, penetration, factor) for penetration in PENETRATIONS], axis=1)
+        for factor in (1, 2)
+    )
+    scale = exact.mu[:, None]
+    errors = np.hypot(SAFETY * np.abs(fine - coarse), exact.error[:, None]) / scale
+    return fine / scale - 1.0, errors
+
+
+def _at_constant_step(scene: Scene, v_reg: float | None, penetration: float, factor: int) -> Array:
+    """mu of the translational model at FEW, (P, N), with `factor` times the steps; NaN where the engine gives up."""
+    mu = np.full((len(FEW), len(scene.bodies)), np.nan)
+    count = factor * min(MOST_STEPS, math.ceil(scene.duration / loading_period(scene) * STEPS_PER_PERIOD))
+    step = scene.duration / count
+    for row, phase in enumerate(FEW):
+        run = multibody.single_run(
+            scene, phase, regularization=v_reg, step=step, penetration=penetration, newton=NEWTON, residual=RESIDUAL
+        )
+        if run.status == Outcome.OK:
+            mu[row] = run.peak / ground_peak(scene, [phase])[0]
+    return mu
+
+
+@dataclass(frozen=True)
+class Limit:
+    """One row for each body of the table: what tends to what, with which parameter, like which power of it."""
+
+    what: str
+    parameter: tuple[float, ...]
+    expected: float | None
+    measure: Callable[[Scene], Values]
+    applies: Callable[[Scene], bool]
+
+
+def _dry(scene: Scene) -> bool:
+    return not scene.lubricated and scene.friction_coefficient > 0.0
+
+
+def _dry_on_supports(scene: Scene) -> bool:
+    return _dry(scene) and has_spatial_data(scene)
+
+
+def _any(scene: Scene) -> bool:
+    return True
+
+
+LIMITS = (
+    Limit("exact equations: regularized against resolved", REGULARIZATIONS, 1.0, _regularized, _dry),
+    Limit("exact equations: regularized against supremum", REGULARIZATIONS, None, _to_supremum, _dry),
+    Limit("engine against resolved", ENGINE_REGULARIZATIONS, 1.0, _by_engine, _dry),
+    Limit("bodies that turn: against v_reg = 1e-4 m/s", ENGINE_REGULARIZATIONS, 1.0, _with_turning, _dry_on_supports),
+    Limit("elastic contact against rigid", PENETRATIONS, 1.0, _stiffened, _any),
+)
+
+Arguments = tuple[Scene, int]  # and the number of the limit
+
+
+class Convergence(Analysis[list[Trend]]):
+    """Every limit in every scene that has it, for each body, in the order of LIMITS."""
+
+    key, stage = "convergence", "convergence"
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """One task for each limit and scene."""
+        return [
+            Task(limit_trends, (scene, number), self.stage, about=scene)
+            for number, limit in enumerate(LIMITS)
+            for scene in study.phased
+            if limit.applies(scene)
+        ]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Trend] | None:
+        """The trends, in the order of the tasks; None for a study without phases."""
+        if not study.phased:
+            return None
+        return [trend for task in self.tasks(study) for trend in results.value(task, _without_value)]
+
+
+def limit_trends(task: Arguments) -> list[Trend]:
+    """One limit in one scene. Runs inside a worker process."""
+    scene, number = task
+    limit = LIMITS[number]
+    sizes, errors = limit.measure(scene)
+    return [
+        trend(scene.name, body + 1, limit.what, limit.parameter, sizes[..., body], errors[..., body], limit.expected)
+        for body in range(len(scene.bodies))
+    ]
+
+
+def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
+    scene, number = task
+    limit = LIMITS[number]
+    return [
+        Trend(scene.name, body + 1, limit.what, limit.parameter, (), (), limit.expected, failed.reason)
+        for body in range(len(scene.bodies))
+    ]

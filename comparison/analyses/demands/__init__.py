@@ -1,0 +1,1 @@
+"""Demands over all phases."""

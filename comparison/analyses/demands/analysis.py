@@ -1,0 +1,236 @@
+"""
+Demands of every phase pair: surfaces of displacement, base shear, drifts, contact forces, and their statistics.
+
+Every model moves at the phases of its own surface. Motions go to their end, which takes many times as long as mu: a
+study makes this analysis where it is asked for by name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from comparison.runner.analysis import Analysis
+from comparison.runner.task import Task, TaskResult
+from comparison.runner.task_results import TaskResults
+from comparison.study.batches import imported
+from comparison.study.models import Model, steps_of
+from comparison.study.study import Study
+from comparison.surfaces.distribution import CURVE, Fractile
+from comparison.surfaces.surfaces import NOT_ASKED
+from reference.problem import Estimate, Estimates, Scene, phase_axis, phase_distribution, phase_grid
+from reference.problem.distribution import FRACTILES, fractile
+from reference.problem.peak_demands import PER_BODY, QUANTITIES, demands_of_motions
+
+Array = NDArray[np.float64]
+
+BATCH = {"reference": 32, "engine": 4}  # motions of one task: about two seconds
+PREFIX = "demand_"  # of a demand in surfaces.nc
+
+# scene, model, relative error asked, phases (M, 2), rad
+Arguments = tuple[Scene, Model, float, Array]
+
+
+@dataclass(frozen=True)
+class DemandBatch:
+    """Demands of some phase pairs."""
+
+    estimates: dict[str, Estimates]
+    status: list[str]
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """The largest or smallest value on the phases that were computed."""
+
+    value: float
+    error: float
+    phases: tuple[float, float]  # rad
+
+
+@dataclass(frozen=True)
+class DemandStatistics:
+    """One demand of one model over uniform phases; under a record its one value."""
+
+    model: str  # key
+    quantity: str  # field of `Demands`
+    body: int  # from 1; 0 where the demand is of the isolator
+    points: int  # phase pairs
+    unknown: float  # share of them without an answer
+    mean: Estimate
+    fractiles: tuple[Fractile, ...]
+    lowest: Extreme
+    highest: Extreme
+    curve: tuple[float, ...]  # the demand at the probabilities CURVE
+
+    def fractile(self, probability: float) -> float:
+        """The value at one of FRACTILES."""
+        return self.fractiles[FRACTILES.index(probability)].value
+
+
+class DemandSurfaces(Analysis[xr.Dataset]):
+    """Demands at every phase pair of every model's surface."""
+
+    key, stage, level = "demands", "demands", 2
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """Motions of about two seconds each."""
+        phases = phase_grid(study.grid)
+        return [
+            Task(
+                moved_demands, (scene, model, model.tolerance(study.tolerance), phases[places]), self.stage, about=scene
+            )
+            for scene, model, places in _batches(study)
+        ]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> xr.Dataset | None:
+        """
+        Demands on dimensions scene, model, body, alpha1, alpha2.
+
+        By the names of the fields of `Demands`; "_error" behind the name of the estimated absolute errors. `status`
+        names the outcome of each pair.
+        """
+        names = [scene.name for scene in study.scenes]
+        models = [model.key for model in study.hierarchy]
+        bodies = max(len(scene.bodies) for scene in study.scenes)
+        plane = (len(names), len(models), study.grid**2)
+        status = np.full(plane, NOT_ASKED, dtype=object)
+        numbers: dict[str, Array] = {}
+        for (scene, model, places), task in zip(_batches(study), self.tasks(study), strict=True):
+            batch: DemandBatch = results.value(task, _without_value)
+            where = names.index(scene.name), models.index(model.key)
+            status[where][places] = batch.status
+            for name, estimates in batch.estimates.items():
+                for key, values in ((name, estimates.value), (f"{name}_error", estimates.error)):
+                    table = numbers.setdefault(key, np.full((*plane, bodies if name in PER_BODY else 1), np.nan))
+                    first, count = PER_BODY.get(name, 0), values[0].size
+                    table[where][places, first : first + count] = values.reshape(len(places), count)
+        for row, scene in enumerate(study.scenes):
+            for model in _moving(study, scene):
+                place, source = study.places(model, scene), study.sources(scene, model)
+                for array in (status, *numbers.values()):
+                    array[row, models.index(model.key), place] = array[row, models.index(model.key), source]
+        return _labeled(names, models, study.grid, status, numbers)
+
+
+def _moving(study: Study, scene: Scene) -> list[Model]:
+    """The models whose motions differ: a resolved peak is another reading of the same motion."""
+    return [model for model in steps_of(scene, study.hierarchy) if "cutoff" not in model.settings]
+
+
+def _batches(study: Study) -> Iterator[tuple[Scene, Model, NDArray[np.intp]]]:
+    """Scene, model, places on the whole grid."""
+    for scene in study.scenes:
+        for model in _moving(study, scene):
+            places, size = study.solved(scene, model), BATCH[model.side]
+            for first in range(0, len(places), size):
+                yield scene, model, places[first : first + size]
+
+
+def moved_demands(task: Arguments) -> DemandBatch:
+    """Demands of the motions of one task. Runs inside a worker process."""
+    scene, model, tolerance, phases = task
+    trajectory, settings = imported(model.trajectory), dict(model.settings)
+    demands = demands_of_motions(scene, phases, lambda phase: trajectory(scene, phase, tolerance=tolerance, **settings))
+    return DemandBatch(dict(demands), [str(status) for status in demands.status])
+
+
+def _without_value(task: Arguments, failed: TaskResult) -> DemandBatch:
+    return DemandBatch({}, [failed.outcome.value] * len(task[3]))
+
+
+def _labeled(
+    names: list[str], models: list[str], grid: int, status: NDArray[np.object_], numbers: dict[str, Array]
+) -> xr.Dataset:
+    square, axis = (len(names), len(models), grid, grid), phase_axis(grid)
+    point, surface = ("scene", "model", "alpha1", "alpha2"), ("scene", "model", "body", "alpha1", "alpha2")
+    variables: dict[str, Any] = {"status": (point, status.reshape(square), {"long_name": "named outcome of the pair"})}
+    bodies = 1
+    for name, table in numbers.items():
+        quantity = name.removesuffix("_error")
+        meaning, unit = QUANTITIES.get(quantity, (quantity, "1"))
+        about = {"units": unit, "long_name": meaning if name == quantity else f"estimated absolute error: {meaning}"}
+        if quantity in PER_BODY:
+            bodies = table.shape[-1]
+            variables[name] = (surface, np.moveaxis(table.reshape(*square, bodies), -1, 2), about)
+        else:
+            variables[name] = (point, table.reshape(square), about)
+    coordinates = {"scene": names, "model": models, "alpha1": axis, "alpha2": axis, "body": np.arange(1, bodies + 1)}
+    return xr.Dataset(variables, coordinates)
+
+
+def with_demands(surfaces: xr.Dataset, demands: xr.Dataset | None) -> xr.Dataset:
+    """The surfaces with those of the demands beside them, as surfaces.nc has them."""
+    if demands is None:
+        return surfaces
+    renamed = demands.rename({name: f"{PREFIX}{name}" for name in demands.data_vars})
+    empty: dict[Any, Any] = dict.fromkeys(renamed.data_vars, np.nan)
+    empty[f"{PREFIX}status"] = NOT_ASKED
+    aligned = renamed.reindex(scene=surfaces["scene"], body=surfaces["body"], fill_value=empty)
+    return surfaces.assign(aligned.data_vars)
+
+
+def demand_statistics(study: Study, demands: xr.Dataset, scene: Scene) -> list[DemandStatistics]:
+    """
+    One for each demand, body and model with an answer.
+
+    Parameters
+    ----------
+    study : Study
+    demands : xr.Dataset
+        From `DemandSurfaces`.
+    scene : Scene
+
+    Returns
+    -------
+    list of DemandStatistics
+        In the order of QUANTITIES; none for a scene without this analysis.
+    """
+    if scene.name not in demands["scene"]:
+        return []
+    return [
+        statistics
+        for name in QUANTITIES
+        if name in demands
+        for body in (range(1, len(scene.bodies) + 1) if name in PER_BODY else [0])
+        for model in _moving(study, scene)
+        for statistics in _statistics(study, demands, scene, model, name, body)
+    ]
+
+
+def _statistics(
+    study: Study, demands: xr.Dataset, scene: Scene, model: Model, name: str, body: int
+) -> Iterator[DemandStatistics]:
+    """At most one."""
+    place = {"scene": scene.name, "model": model.key} | ({"body": body} if body else {})
+    axis = study.axis(model, scene)
+    value, error = (np.asarray(demands[key].sel(place), float)[np.ix_(axis, axis)] for key in (name, f"{name}_error"))
+    known = np.isfinite(value)
+    if not known.any():
+        return
+    taken = phase_distribution(value, np.where(np.isfinite(error), error, np.inf))
+    mean = Estimate(taken.mean.value, taken.mean.error if np.isfinite(taken.mean.error) else np.nan)
+
+    def extreme(index: int) -> Extreme:
+        row, column = np.unravel_index(index, value.shape)
+        phases = phase_axis(study.grid)[axis]
+        pair = (np.nan, np.nan) if scene.recorded else (float(phases[row]), float(phases[column]))
+        return Extreme(float(value[row, column]), float(error[row, column]), pair)
+
+    yield DemandStatistics(
+        model=model.key,
+        quantity=name,
+        body=body,
+        points=taken.points,
+        unknown=taken.unknown,
+        mean=mean,
+        fractiles=tuple(Fractile(p, each.value, each.error) for p, each in zip(FRACTILES, taken.fractiles)),
+        lowest=extreme(int(np.nanargmin(value))),
+        highest=extreme(int(np.nanargmax(value))),
+        curve=tuple(fractile(value[known], p) for p in CURVE),
+    )

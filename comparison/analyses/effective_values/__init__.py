@@ -1,0 +1,1 @@
+"""Values read back from each model."""

@@ -1,0 +1,198 @@
+"""
+What each model really computed with, read back from one of its motions and not from its inputs.
+
+Codes that take the same numbers may use different ones: contact laws combine stiffness and friction in their own
+ways, and an elastic contact moves on another sphere. Here the motion itself is measured.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from comparison.runner.analysis import Analysis
+from comparison.runner.task import Task, TaskResult
+from comparison.runner.task_results import TaskResults
+from comparison.study.batches import imported
+from comparison.study.models import Model, steps_of
+from comparison.study.study import Study
+from reference.problem import GRAVITY, Outcome, Scene, Trajectory, ground_acceleration
+
+Array = NDArray[np.float64]
+
+PHASES = (0.3, 1.1)  # rad, of the motion that is measured
+DURATION = 6.0  # s: two frequencies are strongest in their first seconds; a record is followed to its end
+LEAST_SHARE = 0.1  # of the change from slow to fast friction: motions that see less of it do not tell the fast one
+LEVEL = 1e-5  # rise of a flat slider over its displacement that counts as none: what contacts give way by
+FASTEST = 0.9  # friction is measured where the platform slides faster than this part of its largest speed
+
+
+@dataclass(frozen=True)
+class Effective:
+    """
+    Values read back from one motion, NaN where the motion does not tell.
+
+    radius: m, of the sphere the platform moves on, (x^2 + y^2 + z^2) / 2z at its largest excursion; inf where a flat
+    slider does not rise. friction: tangential over normal part of the contact force while sliding, over |v| in a
+    lubricated scene (s/m), and where it depends on the velocity the coefficient at high speed that follows from it.
+    contact: N,
+    contact force at t = 0. mass: kg, total, the contact force at t = 0 over the apparent gravity. acceleration: m/s^2,
+    absolute, of the platform at t = 0: that of the ground where friction holds it, 0 where friction begins with
+    the speed. damping: N s/m, of the top link along x, fitted with its stiffness to the force on the top body; NaN
+    without dampers and where bodies turn. stiffness: N/m, of the top link along x where it is given by bars, fitted
+    likewise; half-way up, where bodies turn. error_message: why there are none, or "".
+    """
+
+    scene: str
+    model: str
+    radius: float = float("nan")
+    friction: float = float("nan")
+    contact: float = float("nan")
+    mass: float = float("nan")
+    acceleration: float = float("nan")
+    damping: float = float("nan")
+    stiffness: float = float("nan")
+    error_message: str = ""
+
+
+def stated(scene: Scene) -> Effective:
+    """The same values as the scene states them; the platform begins at rest on the plate and moves with it."""
+    ground = ground_acceleration(scene, PHASES, [0.0])[0]
+    return Effective(
+        scene=scene.name,
+        model="scene",
+        radius=scene.radius,
+        friction=scene.dry_friction.fast if scene.dry_friction.varies else scene.friction_coefficient,
+        contact=float(scene.total_mass * (GRAVITY + ground[2])),
+        mass=scene.total_mass,
+        acceleration=float(np.linalg.norm(ground)),
+        damping=float(scene.damping[-1, 0]) if scene.damping.any() else float("nan"),
+        stiffness=float(scene.stiffness[-1, 0]) if scene.bodies[-1].bars is not None else float("nan"),
+    )
+
+
+class EffectiveValues(Analysis[list[Effective]]):
+    """For every scene what it states, then what the motion of each model shows."""
+
+    key, stage, level = "effective", "effective values", 2
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """Every model of every scene."""
+        return [task for scene in study.scenes for task in self._of(study, scene)]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Effective]:
+        """In the order scene, model; what the scene states comes first."""
+        return [
+            value
+            for scene in study.scenes
+            for value in (stated(scene), *(results.value(task, _without_value) for task in self._of(study, scene)))
+        ]
+
+    def _of(self, study: Study, scene: Scene) -> list[Task]:
+        return [Task(read_back, (scene, model), self.stage, about=scene) for model in steps_of(scene, study.hierarchy)]
+
+
+def read_back(task: tuple[Scene, Model]) -> Effective:
+    """The values of one model. What goes wrong is said in `error_message`; a value is never made up."""
+    scene, model = task
+    nothing = Effective(scene.name, model.key)
+    lasting = scene.duration if scene.recorded else min(scene.duration, DURATION)
+    short = scene.with_values({"duration": lasting})
+    settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
+    try:
+        motion: Trajectory = imported(model.trajectory)(short, PHASES, **settings)
+        if motion.status != Outcome.OK:
+            return replace(nothing, error_message=f"the motion ended: {motion.status}")
+        return replace(nothing, **_measured(short, motion))
+    except Exception as error:
+        return replace(nothing, error_message=f"{type(error).__name__}: {error}")
+
+
+def _without_value(task: tuple[Scene, Model], failed: TaskResult) -> Effective:
+    scene, model = task
+    return Effective(scene.name, model.key, error_message=failed.reason)
+
+
+def _measured(scene: Scene, motion: Trajectory) -> dict[str, Any]:
+    place = motion.position[:, 0]
+    ground = ground_acceleration(scene, PHASES, motion.time)
+    swing = (place**2).sum(axis=1)
+    far = int(np.argmax(swing))
+    radius = float(swing[far] / (2.0 * place[far, 2])) if place[far, 2] > 0.0 else float("nan")
+    if scene.flat and abs(place[far, 2]) <= LEVEL * float(np.hypot(*place[far, :2])):
+        radius = float("inf")
+    return {
+        "radius": radius,
+        "friction": _friction(scene, motion, radius),
+        "contact": float(motion.contact_force[0]),
+        "mass": float(motion.contact_force[0] / (GRAVITY + ground[0, 2])),
+        "acceleration": float(np.linalg.norm(motion.absolute_acceleration[0, 0])),
+        "damping": _damping(scene, motion),
+        "stiffness": _stiffness(scene, motion),
+    }
+
+
+def _damping(scene: Scene, motion: Trajectory) -> float:
+    """The force on the top body as a spring and a damper of the link below it, by least squares."""
+    if not scene.damping.any() or "turns" in motion.extra:
+        return float("nan")
+    stretch, rate = (part[:, -1, 0] - part[:, -2, 0] for part in (motion.position, motion.velocity))
+    force = -scene.masses[-1] * motion.absolute_acceleration[:, -1, 0]
+    fitted = np.linalg.lstsq(np.column_stack([stretch, rate]), force)
+    return float(fitted[0][1]) if fitted[2] == 2 else float("nan")
+
+
+def _stiffness(scene: Scene, motion: Trajectory) -> float:
+    """
+    The force on the top body as a spring and a damper of the bars below it, by least squares.
+
+    Where bodies turn, the force acts half-way up and leans with the bars, by which the weight has a part along x.
+    """
+    if scene.bodies[-1].bars is None or scene.offsets.any() or scene.yaws.any():
+        return float("nan")
+    stretch, rate = (part[:, -1, 0] - part[:, -2, 0] for part in (motion.position, motion.velocity))
+    force = -scene.masses[-1] * motion.absolute_acceleration[:, -1, 0]
+    if "turns" in motion.extra:
+        lower, upper = scene.bodies[-2].height, scene.bodies[-1].height
+        assert lower is not None
+        assert upper is not None
+        lean = motion.extra["turns"][:, -2:, 1].mean(axis=1)
+        stretch = stretch - (upper - lower) * lean
+        force = force + scene.masses[-1] * (GRAVITY + motion.absolute_acceleration[:, -1, 2]) * lean
+        rate = np.gradient(stretch, motion.time)
+    columns = [stretch, rate] if scene.damping.any() else [stretch]
+    fitted = np.linalg.lstsq(np.column_stack(columns), force)
+    return float(fitted[0][0]) if fitted[2] == len(columns) else float("nan")
+
+
+def _friction(scene: Scene, motion: Trajectory, radius: float) -> float:
+    """
+    The contact force is what accelerates all bodies together; split along and across the sphere's normal.
+
+    Median over the instants of fast sliding.
+    """
+    if np.isnan(radius):
+        return float("nan")
+    force = np.einsum("i,tik->tk", scene.masses, motion.absolute_acceleration)
+    force[:, 2] += scene.total_mass * GRAVITY
+    if radius == np.inf:
+        normal = np.broadcast_to([0.0, 0.0, 1.0], motion.position[:, 0].shape)
+    else:
+        normal = np.array([0.0, 0.0, radius]) - motion.position[:, 0]
+        normal = normal / np.linalg.norm(normal, axis=1)[:, None]
+    along = np.einsum("tk,tk->t", force, normal)
+    across = np.linalg.norm(force - along[:, None] * normal, axis=1)
+    speed = np.linalg.norm(motion.velocity[:, 0], axis=1)
+    fast = speed > FASTEST * speed.max()
+    ratio = across[fast] / along[fast]
+    law = scene.dry_friction
+    if law.varies:
+        share = -np.expm1(-law.rate * speed[fast])  # of the change from slow to fast
+        if not share.min() > LEAST_SHARE:
+            return float("nan")
+        ratio = law.slow + (ratio - law.slow) / share
+    return float(np.median(ratio / speed[fast] if scene.lubricated else ratio))

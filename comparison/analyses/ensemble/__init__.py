@@ -1,0 +1,1 @@
+"""Demands under many ground motions."""

@@ -1,0 +1,1 @@
+"""Effect of the errata of the paper."""

@@ -1,0 +1,248 @@
+"""
+Errata in the printed text: what is printed, what it should be, why, and what the printed form does to mu_i.
+
+The effect is measured on a few phase pairs of every scene to which it applies, over the first seconds of the motion,
+in which the loading is strongest: mu_i with the erratum over mu_i without it, minus one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+import reference
+from comparison.analyses.errata.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
+from comparison.runner.analysis import Analysis
+from comparison.runner.task import Task, TaskResult
+from comparison.runner.task_results import TaskResults
+from comparison.study.models import V_REG
+from comparison.study.study import Study
+from reference.problem import Scene
+
+Array = NDArray[np.float64]
+
+PHASES = np.array([(0.3, 1.1), (4.0, 5.5)])  # rad
+DURATION = 6.0  # s
+
+RIGID_PERIOD = 1e-3  # s, of half of the platform on its other half, critically damped; moves exact mu_i by 1e-4
+
+Measure = Callable[[Scene], Array | None]  # relative change of mu (M, N), NaN where the printed form has no answer
+
+
+def _softened(scene: Scene) -> Array | None:
+    """Every link 144 times softer: 12 n E J / l^3 read as n E J / (12 l^3)."""
+    softer: dict[str, Any] = {}
+    for number, link in enumerate(scene.stiffness, start=1):
+        softer |= {f"bodies.{number}.{key}": None for key in ("period", "bars")}
+        softer |= {f"bodies.{number}.stiffness": link / 144.0}
+    return _change(
+        reference.amplification(scene.with_values(softer), PHASES).mu, reference.amplification(scene, PHASES).mu
+    )
+
+
+def _without_coefficient(scene: Scene) -> Array | None:
+    """Friction as large as the normal force: mu = 1."""
+    if scene.lubricated:
+        return None
+    rough = scene.with_values({"isolator.friction": 1.0})
+    return _change(reference.amplification(rough, PHASES).mu, reference.amplification(scene, PHASES).mu)
+
+
+def _printed_rest(scene: Scene) -> Array | None:
+    if scene.lubricated:
+        return None
+    printed, mended = (
+        reference.amplification(scene, PHASES, equations="small", rest_condition=rule).mu
+        for rule in ("printed", "consistent")
+    )
+    return _change(printed, mended)
+
+
+def _wrong_spring(scene: Scene) -> Array | None:
+    if scene.flat or len(scene.bodies) < 2 or scene.stiffness[0, 0] == scene.stiffness[0, 1]:
+        return None
+    return _change(printed_amplification(scene, PHASES, [WRONG_SPRING]), printed_amplification(scene, PHASES))
+
+
+def _wrong_damping(scene: Scene) -> Array | None:
+    if scene.flat or not scene.lubricated:  # (3.9) is multiplied by Delta, which is infinite on a plane
+        return None
+    return _change(printed_amplification(scene, PHASES, [WRONG_DAMPING]), printed_amplification(scene, PHASES))
+
+
+def cut_platform(scene: Scene) -> Scene:
+    """The scene with its platform cut in two halves: a link between them that is rigid but for RIGID_PERIOD."""
+    half = 0.5 * float(scene.masses[0])
+    stiffness = half * (2.0 * np.pi / RIGID_PERIOD) ** 2
+    rigid = {"mass": half, "stiffness": [stiffness] * 2, "damping": [np.sqrt(2.0 * stiffness * half)] * 2}
+    above = [
+        {"mass": float(mass), "stiffness": spring.tolist(), **({"damping": damper.tolist()} if damper.any() else {})}
+        for mass, spring, damper in zip(scene.masses[1:], scene.stiffness, scene.damping)
+    ]
+    return scene.with_values({"bodies": [{"mass": half}, rigid, *above], "measured": None})
+
+
+def _change_by_cut(scene: Scene, **settings: Any) -> Array:
+    """Change of mu by the cut, (M, N): of the platform that of its lower half."""
+    cut = reference.amplification(cut_platform(scene), PHASES, **settings).mu
+    return _change(np.delete(cut, 1, axis=1), reference.amplification(scene, PHASES, **settings).mu)
+
+
+def _cut_small(scene: Scene) -> Array | None:
+    """With regularized friction, which keeps the one-sided limits at stops out."""
+    return _change_by_cut(scene, equations="small", regularization=None if scene.lubricated else V_REG)
+
+
+def _cut_supremum(scene: Scene) -> Array | None:
+    return None if scene.lubricated else _change_by_cut(scene)
+
+
+def _change(printed: Array, mended: Array) -> Array:
+    return printed / mended - 1.0
+
+
+@dataclass(frozen=True)
+class Erratum:
+    """One erratum. `measure`: the change of mu it makes in a scene, None in a scene without it; `none`: why there is no
+    such measure."""
+
+    where: str
+    printed: str
+    corrected: str
+    why: str
+    measure: Measure | None = None
+    none: str = ""
+
+
+_NAME = "a name or an index; no number depends on it"
+ERRATA: tuple[Erratum, ...] = (
+    Erratum(
+        "after (2.3)",
+        "k = n E J / (12 l^3)",
+        "k = 12 n E J / l^3",
+        "a bar clamped at both ends yields F l^3 / (12 E J) to a lateral force F; printed, links are 144 times softer",
+        _softened,
+    ),
+    Erratum(
+        "after (2.5)",
+        "F_F = -2 lambda_1 sign(lambda_1) rho tau",
+        "F_F = -2 mu lambda_1 sign(lambda_1) rho tau",
+        "(2.5) makes the printed force the whole normal force; (3.2) has the factor mu",
+        _without_coefficient,
+    ),
+    Erratum(
+        "(3.1)", "dPhi_1/dz_i = -1", "dPhi_i/dz_1 = -1", "Phi_i = z_i - z_1, and Phi_1 does not know z_i", none=_NAME
+    ),
+    Erratum(
+        "(3.11)-(3.13)",
+        "w and zeta in the brackets",
+        "W of (3.5) and zeta''",
+        "(3.6)-(3.7) carry W - zeta'' - g; a displacement cannot be added to accelerations",
+        none="w is not defined, and zeta = zeta'' = 0 in the paper's scenes",
+    ),
+    Erratum(
+        "(3.12)",
+        "c_24 = -k^x_21 Delta",
+        "c_24 = -k^y_21 Delta",
+        "(3.7) has the spring of y; printed, the springs of y do work in every cycle unless T_3x = T_3y",
+        _wrong_spring,
+    ),
+    Erratum(
+        "(3.12)",
+        "c_1e = 0 for e = 4 ... N, c_2e = 0 for e = 5 ... N",
+        "up to 2 N",
+        "q has 2 N components (3.9)",
+        none=_NAME,
+    ),
+    Erratum(
+        "(3.15)",
+        "h_12, h_21 without rho; h_22 with xi'' Q; h_21 called h_11",
+        "factor rho; eta'' Q; its own name",
+        "mu = f_c v put into (3.11); the same mu = f_c v also enters M (3.10) and E (3.13)",
+        _wrong_damping,
+    ),
+    Erratum(
+        "(4.3)",
+        "friction terms xi'' x_1 / rho and eta'' y_1 / rho without x_1'' x_1 / rho and k (x_2 - x_1) x_1 / rho",
+        "all terms of this order, or none",
+        "the terms kept grow with m_1 alone: a platform cut in two by a rigid link is the same platform, and (4.3) "
+        "alone moves it differently; the exact equations with regularized friction do not",
+        _cut_small,
+    ),
+    Erratum(
+        "(4.6)",
+        "components of F_F are mu N each; F_3 has minus signs before g x_1 / rho and k (x_1 - x_2)",
+        "|F_F| = mu N in every direction; F_3 = -(xi'' + (m_sum / m_1)(zeta'' + g) x_1 / rho + (k / m_1)(x_1 - x_2))",
+        "printed, |F_F| is sqrt(2) mu N at the origin, and a displaced platform is pushed away; (4.3) at rest",
+        _printed_rest,
+    ),
+    Erratum(
+        "after (4.7)",
+        "motion along x + beta y = 0",
+        "along x - beta y = 0",
+        "v_i = x_i - beta y_i = 0 is the solution (4.7)",
+        none="a statement about the motion; the motion itself stays in the plane x = beta y",
+    ),
+    Erratum(
+        "(5.1)",
+        "the maximum of the platform's acceleration",
+        "its resolved peak, or the peak with regularized friction",
+        "under Coulomb friction the maximum is a one-sided limit at a stop, which depends on how mass is lumped: cut "
+        "in two by a rigid link, the same platform has another one",
+        _cut_supremum,
+    ),
+    Erratum("section 5", "solution (5.7)", "solution (4.7)", "there is no (5.7)", none=_NAME),
+)
+
+
+@dataclass(frozen=True)
+class Effect:
+    """
+    Effect of erratum number `erratum` in a scene: `change` of mu (M, N) at PHASES, NaN where the printed form has no
+    answer; empty where the erratum does not touch the scene. error_message: what went wrong, or "".
+    """
+
+    scene: str
+    erratum: int
+    change: tuple[tuple[float, ...], ...] = ()
+    error_message: str = ""
+
+
+class Errata(Analysis[list[Effect]]):
+    """Every measurable erratum in every scene, in the order scene, erratum."""
+
+    key, stage, level = "errata", "errata", 2
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """One task for each effect."""
+        return [
+            Task(measured, (scene, number), self.stage, about=scene)
+            for scene in study.phased
+            for number, erratum in enumerate(ERRATA)
+            if erratum.measure
+        ]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Effect]:
+        """The effects, in the order of the tasks."""
+        return [results.value(task, _without_value) for task in self.tasks(study)]
+
+
+def measured(task: tuple[Scene, int]) -> Effect:
+    """The effect of one erratum in one scene."""
+    scene, number = task
+    measure = ERRATA[number].measure
+    assert measure is not None
+    try:
+        change = measure(scene.with_values({"duration": min(scene.duration, DURATION)}))
+    except Exception as error:
+        return Effect(scene.name, number, error_message=f"{type(error).__name__}: {error}")
+    return Effect(scene.name, number, () if change is None else tuple(tuple(map(float, row)) for row in change))
+
+
+def _without_value(task: tuple[Scene, int], failed: TaskResult) -> Effect:
+    return Effect(task[0].name, task[1], error_message=failed.reason)

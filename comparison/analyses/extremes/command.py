@@ -1,0 +1,132 @@
+"""
+Numerical stability at the extremes: `python -m comparison.extremes [--out DIR]`.
+
+Every model meets every extreme of `rows` in a process that can be ended, and its answer is judged by a finer run. Every
+cell is stored as it is finished: the same command goes on where it stopped. Writes extremes.json and extremes.png. Exit
+codes: 0 no cell failed; 1 some did; 2 a wrong option; 3 the files could not be written; others as in `run_command`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+
+from rich.console import Console
+
+from comparison.analyses.extremes.analysis import LIMIT, Extremes, reduced
+from comparison.analyses.extremes.cells import cells
+from comparison.analyses.extremes.matrix import FILE, PICTURE, STORED, Matrix
+from comparison.analyses.extremes.rows import COLUMNS, ENGINE, EQUATIONS, STATED, entered_column, rows
+from comparison.analyses.extremes.verdicts import Verdict
+from comparison.cli.arguments import CommandParser, command, jobs, number, writing
+from comparison.cli.computing import computed, run_facts
+from comparison.cli.entered import add_models, entered_models
+from comparison.runner.executors import Pool
+from comparison.runner.output import destination, made_by, publish, refuse_foreign_files
+from comparison.runner.processes import process_pool
+from comparison.runner.progress import wide_console
+from reference.problem import SceneError
+
+MODELS = {EQUATIONS, ENGINE, STATED}  # what the workers ask
+
+
+@command
+def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
+    """Judge the cells that the command line asks for; the exit code."""
+    options = _parser().parse_args(argv)
+    extremes = _chosen(options)
+    out = destination(options.out)
+    refuse_foreign_files(out, [FILE, PICTURE])
+    console = wide_console()
+    matrix = judged_matrix(extremes, options, argv, console, executor)
+    from comparison.analyses.extremes.figure import draw_extremes  # matplotlib: not needed to refuse a command
+
+    picture = made_by(lambda folder: draw_extremes(folder / PICTURE, matrix))
+    with writing(out):
+        files = publish(out, {FILE: STORED.as_json(matrix), **picture}, "comparison.extremes")
+    print_matrix(console, matrix)
+    console.print(f"Matrix: {', '.join(map(str, files))}", soft_wrap=True)
+    console.print("A report written into the same directory by comparison.run shows it.")
+    return 1 if matrix.counts()[Verdict.FAILED] else 0
+
+
+def judged_matrix(
+    extremes: Extremes, options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
+) -> Matrix:
+    """
+    The matrix with all that is known of its run; stored cells are not judged again.
+
+    Parameters
+    ----------
+    extremes : Extremes
+        The cells.
+    options : argparse.Namespace
+        Of the command line.
+    words : sequence of str
+        The command line.
+    console : Console
+    executor : Executor or callable
+        What makes the processes of this machine, or an executor in their place.
+
+    Returns
+    -------
+    Matrix
+    """
+    begin = time.monotonic()
+    tasks = extremes.tasks()
+    results = computed("extremes", options, words, tasks, MODELS, console, executor)
+    matrix = extremes.collect(None, None, results)
+    totals = [entry.total for row in matrix.rows for entry in row.entries.values() if entry.total is not None]
+    run = {
+        **run_facts("extremes", options, words, begin),
+        "cpu_seconds": round(sum(totals), 1),
+        "stored_before": results.parts[extremes.stage].stored,
+        "limit": extremes.limit,
+        "reduced": len([task for task in tasks if not task.lane]) < len(cells(list(rows()))),
+    }
+    return replace(matrix, run=run)
+
+
+def print_matrix(console: Console, matrix: Matrix) -> None:
+    """Counts, and what a model cannot do."""
+    for verdict in (Verdict.LIMIT, Verdict.FAILED):
+        for row, title, entry in matrix.listed(verdict):
+            console.print(f"{verdict}: {row.group} {row.title}, {title}: {entry.reason}", soft_wrap=True)
+    counts = ", ".join(f"{count} {name}" for name, count in matrix.counts().items())
+    spent = f"{matrix.run['seconds']} s, {matrix.run['cpu_seconds']} s of processor time"
+    console.print(f"{sum(matrix.counts().values())} cells in {spent}: {counts}.", soft_wrap=True)
+
+
+def _chosen(options: argparse.Namespace) -> Extremes:
+    """The cells that the options leave. Raises SceneError."""
+    if options.only is not None:
+        rule = "selects analyses of a study; the extremes are chosen with --rows TEXT"
+        raise SceneError("command line", "--only", options.only, rule)
+    limit = LIMIT if options.limit is None else number("--limit", options.limit, 0.1, 1e6, "s of processor time")
+    jobs(options)  # refused before anything else is looked at
+    entered = entered_models(options.model, options.model_limit, options.scheduler)
+    every = list(rows())
+    kept = [row for row in (reduced(every) if options.reduced else every) if options.rows in row.name]
+    columns = [column for column in COLUMNS if not options.models or column.key in options.models]
+    columns += [entered_column(model) for model in entered]
+    if not cells(kept, columns):
+        raise SceneError("command line", "--rows", options.rows, "no cell is left: take part of a row's name")
+    return Extremes(kept, columns, limit)
+
+
+def _parser() -> CommandParser:
+    parser = CommandParser(
+        "extremes", "Every model at the extremes of every quantity, judged by finer runs, as a matrix."
+    )
+    parser.add_out(f"where {FILE} goes")
+    parser.add_computing()
+    parser.add_argument("--limit", metavar="SECONDS", help=f"most processor time of one cell (default {LIMIT:g})")
+    parser.add_argument("--rows", default="", metavar="TEXT", help="the extremes whose name contains this")
+    parser.add_argument("--only", help=argparse.SUPPRESS)  # answered with the name of the option that is meant
+    keys = [column.key for column in COLUMNS]
+    parser.add_argument("--models", nargs="+", choices=keys, metavar="KEY", help=f"some of {', '.join(keys)}")
+    add_models(parser)
+    parser.add_argument("--reduced", action="store_true", help="what takes little: mostly the equations alone")
+    return parser

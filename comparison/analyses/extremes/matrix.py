@@ -1,0 +1,133 @@
+"""The matrix of extremes as data: what every model made of every extreme, as a file and as the report needs it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, Field
+
+from comparison.analyses.extremes.verdicts import Verdict
+from comparison.json_file import FILE_FORMAT, StoredFile
+
+FILE, PICTURE = "extremes.json", "extremes.png"
+
+
+VerdictName = Annotated[
+    str,
+    AfterValidator(lambda name: Verdict(name).value),
+    Field(json_schema_extra={"enum": [verdict.value for verdict in Verdict]}),
+]
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One cell of the matrix."""
+
+    __pydantic_config__ = FILE_FORMAT
+
+    verdict: VerdictName
+    """converged: error confirmed by a finer run; refused: against a rule or outside the model; limit: the model says
+    that it cannot; FAILED: all else"""
+    reason: str
+    """in a few words"""
+    status: str
+    """outcome that decides the verdict, in the words of `reference.problem.Outcome`; empty for an input against a rule
+    and for an error that was raised"""
+    error: float | None
+    """largest relative error estimate; null without a value"""
+    seconds: float | None
+    """processor time of the model's answer, s; null without an answer"""
+    total: float | None
+    """processor time of the cell with its finer runs, s; null without an answer"""
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """One row of the matrix: one extreme."""
+
+    __pydantic_config__ = FILE_FORMAT
+
+    group: str
+    """the quantity"""
+    title: str
+    """its extreme value"""
+    entries: Mapping[str, Entry]
+    """what came of it, by key of the model; none for a model that the extreme does not concern"""
+
+
+@dataclass(frozen=True)
+class Matrix:
+    """
+    Every model at the extremes of every quantity, judged by finer runs.
+
+    Attributes
+    ----------
+    columns : mapping of str to str
+        Titles of the models by key.
+    rows : sequence of Extreme
+        One for each extreme.
+    run : mapping
+        How it was made; empty until a command says so.
+    """
+
+    __pydantic_config__ = FILE_FORMAT
+
+    columns: Mapping[str, str]
+    """titles of the models by key"""
+    rows: Sequence[Extreme]
+    """one per extreme"""
+    run: Mapping[str, Any]
+    """command, times, provenance, and whether it is the reduced form"""
+
+    def counts(self) -> dict[str, int]:
+        """
+        Number of cells of each verdict.
+
+        Returns
+        -------
+        dict of str to int
+            From the best verdict to the worst, zeros included.
+        """
+        seen = Counter(entry.verdict for row in self.rows for entry in row.entries.values())
+        return {verdict.value: seen[verdict.value] for verdict in Verdict}
+
+    def groups(self) -> list[list[Extreme]]:
+        """The rows that share a quantity."""
+        return [list(rows) for _, rows in groupby(self.rows, key=lambda row: row.group)]
+
+    def listed(self, verdict: str) -> list[tuple[Extreme, str, Entry]]:
+        """
+        The cells of one verdict.
+
+        Parameters
+        ----------
+        verdict : str
+            A `Verdict`.
+
+        Returns
+        -------
+        list of tuple
+            Row, title of the column, entry.
+        """
+        return [
+            (row, self.columns[key], entry)
+            for row in self.rows
+            for key, entry in row.entries.items()
+            if entry.verdict == verdict
+        ]
+
+
+STORED = StoredFile(FILE, Matrix, "a matrix of extremes", "python -m comparison.extremes")
+
+
+def describe(entry: Entry) -> str:
+    """What stands in the field: the error claimed, or the status in its own words."""
+    if entry.verdict == Verdict.CONVERGED and entry.error is not None:
+        return f"{entry.error:.0e}"
+    if entry.verdict == Verdict.FAILED:
+        return "FAILED"
+    return entry.status or "against a rule"

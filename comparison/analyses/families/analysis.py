@@ -1,0 +1,173 @@
+"""A family of scenes in which one value runs: mu of every model, and every bar of the waterfalls, over that value."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+import xarray as xr
+
+from comparison.analyses.demands.analysis import DemandStatistics
+from comparison.analyses.motions.analysis import StoredMotion
+from comparison.study.models import Model, models_of
+from comparison.study.study import Study
+from comparison.surfaces.budget import TOTAL
+from comparison.surfaces.steps import known_mu
+from comparison.surfaces.surfaces import common_phases
+from comparison.surfaces.waterfall import NAN, Waterfall, WaterfallBar
+from reference.problem import Demands, Estimate, Family, Scene
+
+
+@dataclass(frozen=True)
+class FamilyCurve:
+    """mu of one model and body over the value that runs, one number for each scene; NaN without a value."""
+
+    model: str  # key
+    body: int  # from 1
+    mean: tuple[float, ...]  # over the phase pairs that have a value
+    lowest: tuple[float, ...]
+    highest: tuple[float, ...]
+    error: tuple[float, ...]  # mean of the estimated absolute errors
+
+
+@dataclass(frozen=True)
+class FamilyStep:
+    """One bar of the waterfalls of a body over the value that runs, one number for each scene."""
+
+    model: str  # key of the model that the step leads to, or "total"
+    body: int  # from 1
+    size: tuple[float, ...]  # signed, relative to mu of the first model; NaN where a scene does not have the step
+    error: tuple[float, ...]
+    real: tuple[bool, ...]
+
+
+def family_curves(study: Study, surfaces: xr.Dataset, family: Family) -> list[FamilyCurve]:
+    """One per model and body. A record has one value, which is mean, lowest and highest."""
+    keys = {model.key: model for scene in family.scenes for model in models_of(scene, study.hierarchy)}
+    curves = []
+    for model in keys.values():
+        for body in range(1, family.bodies + 1):
+            columns = zip(*(_numbers(surfaces, scene, model, body) for scene in family.scenes))
+            mean, lowest, highest, error = map(tuple, columns)
+            curves.append(FamilyCurve(model.key, body, mean, lowest, highest, error))
+    return curves
+
+
+def family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfall]]) -> list[FamilyStep]:
+    """
+    One per bar and body, then the total of the body.
+
+    Parameters
+    ----------
+    waterfalls : mapping of str to sequence of Waterfall
+        By name of the scene, one per body.
+    """
+    steps = []
+    for body in range(1, family.bodies + 1):
+        bars = [_bars(waterfalls[scene.name][body - 1]) for scene in family.scenes]
+        keys = list(dict.fromkeys(key for scene in bars for key in scene if key != TOTAL))
+        for key in (*keys, TOTAL):
+            column = [scene.get(key, WaterfallBar(key, NAN, NAN)) for scene in bars]
+            sizes, errors = tuple(bar.size for bar in column), tuple(bar.error for bar in column)
+            steps.append(FamilyStep(key, body, sizes, errors, tuple(bar.real for bar in column)))
+    return steps
+
+
+@dataclass(frozen=True)
+class FamilyDemand:
+    """One demand of the motions of a model over the value that runs, one number for each scene; NaN without."""
+
+    model: str  # key
+    quantity: str  # field of `Demands`
+    body: int  # from 1; 0 where the demand is of the isolator
+    median: tuple[float, ...]  # over the motions, in the unit of the field
+    lowest: tuple[float, ...]
+    highest: tuple[float, ...]
+    motions: tuple[int, ...]  # how many have the demand
+
+
+def family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[FamilyDemand]:
+    """One per model, quantity and body of which a motion is stored, in the order of `Demands`."""
+    numbers: dict[tuple[str, str, int], dict[str, list[float]]] = {}
+    for motion in motions:
+        if motion.demands is not None and motion.place.scene in {scene.name for scene in family.scenes}:
+            for quantity, body, estimate in listed_demands(motion.demands):
+                if math.isfinite(estimate.value):
+                    column = numbers.setdefault((motion.model, quantity, body), {})
+                    column.setdefault(motion.place.scene, []).append(estimate.value)
+    demands = []
+    for (model, quantity, body), column in numbers.items():
+        rows = [np.array(column.get(scene.name, [])) for scene in family.scenes]
+        median, lowest, highest = (
+            tuple(float(function(row)) if row.size else NAN for row in rows) for function in (np.median, np.min, np.max)
+        )
+        demands.append(FamilyDemand(model, quantity, body, median, lowest, highest, tuple(row.size for row in rows)))
+    return demands
+
+
+def family_demands_over_phases(
+    family: Family, statistics: Mapping[str, Sequence[DemandStatistics]]
+) -> list[FamilyDemand]:
+    """
+    One per model, quantity and body, from all phases instead of stored motions.
+
+    Parameters
+    ----------
+    statistics : mapping of str to sequence of DemandStatistics
+        By name of the scene.
+    """
+    found = {
+        (scene.name, row.model, row.quantity, row.body): row
+        for scene in family.scenes
+        for row in statistics.get(scene.name, ())
+    }
+    demands = []
+    for model, quantity, body in dict.fromkeys(key[1:] for key in found):
+        rows = [found.get((scene.name, model, quantity, body)) for scene in family.scenes]
+        median = tuple(row.fractile(0.5) if row else NAN for row in rows)
+        lowest = tuple(row.lowest.value if row else NAN for row in rows)
+        highest = tuple(row.highest.value if row else NAN for row in rows)
+        points = tuple(round(row.points * (1.0 - row.unknown)) if row else 0 for row in rows)
+        demands.append(FamilyDemand(model, quantity, body, median, lowest, highest, points))
+    return demands
+
+
+def listed_demands(demands: Demands) -> Iterator[tuple[str, int, Estimate]]:
+    """
+    Every demand of a motion.
+
+    Parameters
+    ----------
+    demands : Demands
+
+    Yields
+    ------
+    tuple of str, int and Estimate
+        Field of `Demands`; body from 1, 0 where the demand is of the isolator, of a drift the upper body; the number.
+    """
+    for field in fields(demands):
+        estimates = getattr(demands, field.name)
+        if isinstance(estimates, Estimate):
+            listed = [(0, estimates)]
+        elif isinstance(estimates, tuple):
+            listed = list(enumerate(estimates, start=2 if field.name == "drift" else 1))
+        else:
+            continue  # the status, or a demand that the model does not have
+        for body, estimate in listed:
+            yield field.name, body, estimate
+
+
+def _bars(waterfall: Waterfall) -> dict[str, WaterfallBar]:
+    return {**{bar.model: bar for bar in waterfall.bars}, TOTAL: waterfall.total}
+
+
+def _numbers(surfaces: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[float, float, float, float]:
+    data = common_phases(surfaces, scene.name, [model.key]).sel(body=body)
+    mu = known_mu(data, model)
+    known = np.isfinite(mu)
+    if not known.any():
+        return NAN, NAN, NAN, NAN
+    error = np.asarray(data["error"].sel(model=model.key), float)[known]
+    return float(mu[known].mean()), float(mu[known].min()), float(mu[known].max()), float(error.mean())

@@ -1,0 +1,1 @@
+"""Measured peaks beside the models."""

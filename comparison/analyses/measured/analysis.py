@@ -1,0 +1,173 @@
+"""
+Measured peaks of the scenes beside what every model computes at the phases of the test, with both errors.
+
+The difference of a model from a measurement is known to exceed their uncertainties where |D| > u + e: u of the
+measurement, e of the computation. That of the input (motion, masses, stiffness, friction) is not in either.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import xarray as xr
+
+from comparison.runner.analysis import Analysis
+from comparison.runner.task import Task, TaskResult
+from comparison.runner.task_results import TaskResults
+from comparison.study.batches import imported
+from comparison.study.models import Model, steps_of
+from comparison.study.study import Study
+from reference.problem import Estimate, Outcome, Scene, demands
+from reference.problem.measured import OF_BODIES, Measured
+
+LACKING = Estimate(math.nan, math.nan, "the model has no such value")
+
+Arguments = tuple[Scene, Model, float, tuple[float, float], list[tuple[str, int]]]
+
+
+@dataclass(frozen=True)
+class Peaks:
+    """What one model computes at one phase pair: value and error, NaN without an answer, and why, or how it ended."""
+
+    values: list[float]
+    errors: list[float]
+    statuses: list[str]
+
+
+@dataclass(frozen=True)
+class ComputedPeak:
+    """One measured peak by one model; NaN without an answer."""
+
+    model: str  # key
+    value: float
+    error: float
+    difference: float  # computed less measured
+    exceeds: bool | None  # whether its size exceeds both uncertainties together; None where it is not known
+    status: str  # how the motion ended, or why it lacks this value
+
+
+@dataclass(frozen=True)
+class MeasuredPeak:
+    """One measured peak beside the models."""
+
+    scene: str
+    quantity: str
+    body: int  # 0 where the quantity is of the isolator
+    phases: tuple[float, float]  # rad; NaN under a record
+    value: float
+    uncertainty: float
+    source: str
+    computed: Sequence[ComputedPeak]
+
+
+class MeasuredPeaks(Analysis[list[MeasuredPeak]]):
+    """Every measured peak of every scene by every model that has its quantity."""
+
+    key, stage, level = "measured", "measured", 2
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """One task for each scene, phase pair of a test, and model."""
+        return [self._task(study, *point) for point in _points(study)]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[MeasuredPeak] | None:
+        """In the order of the scene files; None where no scene has measured peaks."""
+        known: dict[tuple[str, tuple[float, float], str], Mapping[tuple[str, int], tuple[float, float, str]]] = {}
+        for scene, phases, model in _points(study):
+            peaks: Peaks = results.value(self._task(study, scene, phases, model), _failed)
+            numbers = zip(peaks.values, peaks.errors, peaks.statuses, strict=True)
+            known[scene.name, phases, model.key] = dict(zip(_asked(scene, phases, model), numbers, strict=True))
+        listed = [
+            _beside(
+                scene,
+                peak,
+                [(model.key, known[scene.name, phases_of(peak), model.key]) for model in _models(study, scene)],
+            )
+            for scene in study.scenes
+            for peak in scene.measured or ()
+        ]
+        return listed or None
+
+    def _task(self, study: Study, scene: Scene, phases: tuple[float, float], model: Model) -> Task:
+        arguments = scene, model, model.tolerance(study.tolerance), phases, _asked(scene, phases, model)
+        return Task(peaks_at, arguments, self.stage, about=scene)
+
+
+def phases_of(peak: Measured) -> tuple[float, float]:
+    """Phases at which a model is asked, rad; a record has none, and any do."""
+    return (0.0, 0.0) if peak.phases is None else (peak.phases[0], peak.phases[1])
+
+
+def _models(study: Study, scene: Scene) -> list[Model]:
+    return steps_of(scene, study.hierarchy)
+
+
+def _points(study: Study) -> Iterator[tuple[Scene, tuple[float, float], Model]]:
+    """Scene, phases and model of every task that has something to compute."""
+    for scene in study.scenes:
+        for phases in dict.fromkeys(map(phases_of, scene.measured or ())):
+            for model in _models(study, scene):
+                yield scene, phases, model
+
+
+def _asked(scene: Scene, phases: tuple[float, float], model: Model) -> list[tuple[str, int]]:
+    """Quantities and bodies, 0 for the isolator; of a model that reads the same motion otherwise mu alone."""
+    return [
+        (peak.quantity, peak.body or 0)
+        for peak in scene.measured or ()
+        if phases_of(peak) == phases and (peak.quantity == "mu" or "cutoff" not in model.settings)
+    ]
+
+
+def peaks_at(task: Arguments) -> Peaks:
+    """The peaks of one model at one phase pair. Runs inside a worker process."""
+    scene, model, tolerance, phases, asked = task
+    settings: dict[str, Any] = dict(model.settings)
+    status = Outcome.OK.value
+    mu: Any = None
+    numbers: Any = None
+    if any(quantity == "mu" for quantity, _ in asked):
+        mu = imported(model.amplification)(scene, [phases], tolerance=tolerance, **settings)
+        status = str(mu.status[0])
+    if any(quantity != "mu" for quantity, _ in asked):
+        motion = imported(model.trajectory)(scene, phases, tolerance=tolerance, **settings)
+        numbers, status = demands(motion), str(motion.status)
+    found = []
+    for quantity, body in asked:
+        if quantity == "mu":
+            found.append(Estimate(float(mu.mu[0, body - 1]), float(mu.error[0, body - 1])))
+        else:
+            found.append(_demand(getattr(numbers, quantity), quantity, body))
+    statuses = [each.reason or status for each in found]
+    return Peaks([each.value for each in found], [each.error for each in found], statuses)
+
+
+def _demand(numbers: Estimate | tuple[Estimate, ...] | None, quantity: str, body: int) -> Estimate:
+    """The number of a body, or of the isolator."""
+    if numbers is None:
+        return LACKING
+    return numbers if isinstance(numbers, Estimate) else numbers[body - OF_BODIES[quantity]]
+
+
+def _beside(
+    scene: Scene, peak: Measured, models: Sequence[tuple[str, Mapping[tuple[str, int], tuple[float, float, str]]]]
+) -> MeasuredPeak:
+    computed = []
+    for model, known in models:
+        if (peak.quantity, peak.body or 0) in known:
+            value, error, status = known[peak.quantity, peak.body or 0]
+            difference = value - peak.value
+            decided = math.isfinite(difference) and math.isfinite(error)
+            exceeds = abs(difference) > peak.uncertainty + error if decided else None
+            computed.append(ComputedPeak(model, value, error, difference, exceeds, status))
+    phases = (math.nan, math.nan) if peak.phases is None else phases_of(peak)
+    return MeasuredPeak(
+        scene.name, peak.quantity, peak.body or 0, phases, peak.value, peak.uncertainty, peak.source or "", computed
+    )
+
+
+def _failed(task: Arguments, failed: TaskResult) -> Peaks:
+    nothing = [math.nan] * len(task[4])
+    return Peaks(nothing, nothing, [failed.outcome.value] * len(nothing))

@@ -1,0 +1,1 @@
+"""Motions at chosen phase pairs."""

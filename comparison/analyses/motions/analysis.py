@@ -1,0 +1,220 @@
+"""
+Motions kept for the report: a few phase pairs of every scene, by the models of its two differences.
+
+A motion is thinned only as far as straight lines between the instants left reproduce every instant dropped.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from comparison.analyses.motions.decimation import thinned
+from comparison.runner.analysis import Analysis
+from comparison.runner.task import Task, TaskResult
+from comparison.runner.task_results import TaskResults
+from comparison.study.batches import imported
+from comparison.study.models import Model
+from comparison.study.study import Study
+from comparison.surfaces.differences import pair_step
+from reference.problem import Demands, FloorSpectra, Outcome, Scene, Trajectory, demands, floor_spectra
+from reference.problem.demands import ANSWERED
+
+Array = NDArray[np.float64]
+
+SPREAD = 5  # phase pairs (k, 2k) 2 pi/5: evenly over the square, and no two of them mirror images of each other
+
+
+@dataclass(frozen=True)
+class Place:
+    """A phase pair of the grid, by its indices, and why it was chosen, "" for one of an even spread."""
+
+    scene: str
+    row: int
+    column: int
+    why: str
+
+
+def _none() -> Array:
+    return np.zeros(0)
+
+
+@dataclass(frozen=True)
+class StoredMotion:
+    """
+    One motion at a place, thinned.
+
+    Attributes
+    ----------
+    place : Place
+    model : str
+        Key of the model.
+    time : ndarray, (T,), s
+    position, acceleration : ndarray, (T, N, 2), m and m/s^2
+        Displacement relative to the plate, and absolute acceleration.
+    stick : tuple of (float, float), s
+        Intervals of rest, or of creep below v_reg.
+    status : str
+        How the motion ended.
+    error_message : str
+        Why there is no motion, or "".
+    contact_force : ndarray, (T,), N
+        Normal force of the isolator. This and the arrays below are empty in a motion that lacks them.
+    isolator_force : ndarray, (T, 2), N
+        Horizontal force of the bodies on the isolator.
+    support_force : ndarray, (T, K), N
+        Normal force of every support of the spatial model.
+    yaw : ndarray, (T,), rad
+        Turn of the platform about the vertical, of the spatial model.
+    demands : Demands or None
+        Of the motion before it was thinned. None if it was not computed.
+    spectra : FloorSpectra or None
+        Likewise.
+    """
+
+    place: Place
+    model: str
+    time: Array
+    position: Array
+    acceleration: Array
+    stick: tuple[tuple[float, float], ...] = ()
+    status: str = Outcome.OK.value
+    error_message: str = ""
+    contact_force: Array = field(default_factory=_none)
+    isolator_force: Array = field(default_factory=_none)
+    support_force: Array = field(default_factory=_none)
+    yaw: Array = field(default_factory=_none)
+    demands: Demands | None = None
+    spectra: FloorSpectra | None = None
+
+    def __post_init__(self) -> None:
+        bodies = self.position.shape[1:2]
+        shape = (len(self.time), *bodies, 2)
+        if self.time.ndim != 1 or self.position.shape != shape or self.acceleration.shape != shape:
+            raise ValueError(f"{self.time.shape} instants of {self.position.shape} and {self.acceleration.shape}")
+        for name, values in self.blocks().items():
+            if len(values) != len(self.time):
+                raise ValueError(f"{self.time.shape} instants of {name} {values.shape}")
+
+    def blocks(self) -> dict[str, Array]:
+        """What the motion has, (T, C) each, by name; "time" comes first."""
+        names = ("time", "position", "acceleration", "contact_force", "isolator_force", "support_force", "yaw")
+        arrays = {name: np.asarray(getattr(self, name)) for name in names}
+        return {name: values.reshape(len(values), -1) for name, values in arrays.items() if values.size}
+
+
+Arguments = tuple[Scene, Model, float, Place, tuple[float, float]]
+
+
+def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Place]:
+    """
+    Where the difference of each body is largest, total and translational, then an even spread over the phases.
+
+    No place is listed twice.
+    """
+    if scene.recorded:
+        return [Place(scene.name, 0, 0, "")]
+    places: dict[tuple[int, int], str] = {}
+    largest = {"total": "largest difference of body {}", "translational": "largest difference in translation, body {}"}
+    for pair in study.pairs(scene):
+        for body in range(1, len(scene.bodies) + 1):
+            if pair.key in largest and (place := pair_step(surfaces, scene.name, pair, body).place):
+                places.setdefault(place, largest[pair.key].format(body))
+    for k in range(SPREAD):
+        row, column = (round(study.grid * (factor * k % SPREAD) / SPREAD) % study.grid for factor in (1, 2))
+        places.setdefault((row, column), "")
+    return [Place(scene.name, row, column, why) for (row, column), why in places.items()]
+
+
+def motion_arguments(study: Study, surfaces: xr.Dataset) -> list[Arguments]:
+    """
+    Every place of every scene with every model, in the order scene, place, model.
+
+    A model too expensive for every phase of the study moves at its own phases only.
+    """
+    axes = np.asarray(surfaces["alpha1"]), np.asarray(surfaces["alpha2"])
+    return [
+        (scene, model, model.tolerance(study.tolerance), place, (axes[0][place.row], axes[1][place.column]))
+        for scene in study.scenes
+        for place in chosen_places(study, surfaces, scene)
+        for model in shown_models(study, scene)
+        if place.row % study.stride(model, scene) == place.column % study.stride(model, scene) == 0
+    ]
+
+
+class Motions(Analysis[list[StoredMotion]]):
+    """Motions kept for the report, at phases that the surfaces choose."""
+
+    key, stage, needs_surfaces = "motions", "motions", True
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """One task for each motion, in the order of `motion_arguments`."""
+        assert surfaces is not None, "the places are chosen by the surfaces"
+        return [
+            Task(moved, arguments, self.stage, about=arguments[0]) for arguments in motion_arguments(study, surfaces)
+        ]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[StoredMotion]:
+        """The motions, in the order of the tasks."""
+        return [results.value(task, _without_value) for task in self.tasks(study, surfaces)]
+
+
+def shown_models(study: Study, scene: Scene) -> list[Model]:
+    """The models whose surfaces the page shows, each once; those that have motions."""
+    shown = {model.key: model for pair in study.pairs(scene) for model in (pair.first, pair.second)}
+    return [model for model in shown.values() if model.trajectory]
+
+
+def moved(task: Arguments) -> StoredMotion:
+    """The motion of one task, thinned; what goes wrong is said in `error_message`."""
+    scene, model, tolerance, place, phase = task
+    settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
+    try:
+        motion: Trajectory = imported(model.trajectory)(scene, phase, tolerance=tolerance, **settings)
+        if len(motion.time) == 0:  # refused before its first step
+            return replace(_nothing(place, model.key, Outcome(motion.status), ""), demands=demands(motion))
+        return _stored(place, model, motion)
+    except Exception as error:
+        return _nothing(place, model.key, Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}")
+
+
+def _stored(place: Place, model: Model, motion: Trajectory) -> StoredMotion:
+    """The motion with its demands and spectra, thinned. Raises ValueError for numbers that are not finite."""
+    whole = StoredMotion(
+        place,
+        model.key,
+        motion.time,
+        motion.position[:, :, :2],
+        motion.absolute_acceleration[:, :, :2],
+        tuple((float(start), float(end)) for start, end in motion.stick),
+        str(motion.status),
+        contact_force=motion.contact_force,
+        isolator_force=motion.isolator_force,
+        support_force=motion.support_force,
+        yaw=motion.extra.get("yaw", _none()),
+        demands=demands(motion),
+        spectra=floor_spectra(motion) if motion.status in ANSWERED else None,
+    )
+    values = np.hstack([block for name, block in whole.blocks().items() if name != "time"])
+    size = np.linalg.norm(motion.absolute_acceleration, axis=2)
+    if not (np.isfinite(size).all() and np.isfinite(values).all()):
+        raise ValueError("the motion holds numbers that are not finite")
+    extremes = [size.argmax(axis=0), values.argmax(axis=0), values.argmin(axis=0)]
+    extremes += [np.linalg.norm(part, axis=1).argmax()[None] for part in (whole.position[:, 0], whole.isolator_force)]
+    kept = thinned(whole.time, values, np.unique(np.concatenate(extremes)))
+    arrays = {name: getattr(whole, name)[kept] for name in whole.blocks()}
+    return replace(whole, **arrays)
+
+
+def _nothing(place: Place, model: str, outcome: Outcome, error_message: str) -> StoredMotion:
+    empty = np.zeros((0, 0, 2))
+    return StoredMotion(
+        place, model, np.zeros(0), empty, empty.copy(), status=outcome.value, error_message=error_message
+    )
+
+
+def _without_value(task: Arguments, failed: TaskResult) -> StoredMotion:
+    return _nothing(task[3], task[1].key, failed.outcome, failed.error_message)

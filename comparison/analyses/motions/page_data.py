@@ -1,0 +1,189 @@
+"""
+The motions that the page's script draws: their numbers packed, and where each stands among them.
+
+Packed numbers: 32-bit integers, little-endian, gzip, base64. One motion after the other, each column by column: T
+numbers of one component. A motion in `places` has
+
+    start      index of its first number
+    count      T
+    blocks     by name, the first column and the number of columns; what a motion lacks is not listed
+    exponents  of every column: its unit is 2^exponent
+    demands    by the names of `reference.problem.Demands`: [value, error], null for what is not known, one pair per
+               body or link in a list; null as a whole where the motion was not computed
+    spectra    floor response spectra, m/s^2: of body 1 in x and y, of body 2, ..., at the periods of the scene
+               (`spectrum_axis`); null where the motion ended early
+
+so that column c of a block begins at `start + count * (blocks[name][0] + c)`. Its first number is a value, those behind
+it are changes: value i is the sum of the numbers up to i, times 2^exponent.
+
+| block | columns | unit |
+|---|---|---|
+| time | 1 | s |
+| position | x and y of body 1, of body 2, ...: relative to the plate | m |
+| acceleration | likewise, absolute | m/s^2 |
+| contact_force | 1, the normal force of the isolator | N |
+| isolator_force | x and y: horizontal force of the bodies on the isolator | N |
+| support_force | one for each support of the spatial model | N |
+| yaw | 1, turn of the platform of the spatial model | rad |
+
+The isolator's loop is `isolator_force` over the position of body 1. The path of the contact point on the sphere of
+support k, at (X, Y) from the center of mass of body 1, begins at the sphere's top and is
+-lever (x - yaw Y, y + yaw X), with `lever` and `supports` from `contact_geometry`; without yaw it is
+-lever (x, y) at every support.
+
+A column is rounded to at most ROUNDING of its swing, less than thinning leaves, so that it compresses well.
+"""
+
+from __future__ import annotations
+
+import base64
+import gzip
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparison.analyses.motions.analysis import Place, StoredMotion
+from comparison.analyses.motions.decimation import swing
+from comparison.report.findings import Findings
+from reference.problem import Demands, Estimate, Scene
+
+Starts = dict[tuple[Place, str], int]
+
+LEVEL = 6  # of compression: the next one takes half as long again for 2 % less
+ROUNDING = 7e-4  # of the swing of a column
+DIGITS = 4  # of a spectrum: a line on a screen shows no more
+TIME_ROUNDING = 1e-6  # of the duration
+
+
+def packed_motions(findings: Findings) -> str:
+    """The numbers of every motion, packed."""
+    return packed(b"".join(_numbers(motion) for motion in findings.motions or []))
+
+
+def packed(content: bytes) -> str:
+    """Compressed and written in letters; the browser undoes both."""
+    return base64.b64encode(gzip.compress(content, LEVEL, mtime=0)).decode()
+
+
+def places(findings: Findings, scene: Scene, starts: Starts) -> Iterator[dict[str, Any]]:
+    """The phase pairs of a scene that have motions, each with its motions by every model."""
+    of_scene = [motion for motion in findings.motions or [] if motion.place.scene == scene.name]
+    alpha1, alpha2 = (np.asarray(findings.surfaces[name]) for name in ("alpha1", "alpha2"))
+    for place, motions in groupby(of_scene, key=lambda motion: motion.place):
+        yield {
+            "row": place.row,
+            "column": place.column,
+            "phases": None if scene.recorded else [float(alpha1[place.row]), float(alpha2[place.column])],
+            "why": place.why,
+            "motions": [
+                {
+                    "model": motion.model,
+                    "status": motion.status,
+                    "error_message": motion.error_message,
+                    "stick": [[round(start, 4), round(end, 4)] for start, end in motion.stick],
+                    "start": starts[place, motion.model],
+                    "count": len(motion.time),
+                    "blocks": _blocks(motion),
+                    "exponents": _exponents(motion).tolist(),
+                    "demands": None if motion.demands is None else _listed(motion.demands),
+                    "spectra": None
+                    if motion.spectra is None
+                    else significant_digits(motion.spectra.acceleration, DIGITS),
+                }
+                for motion in motions
+            ],
+        }
+
+
+def spectrum_axis(findings: Findings, scene: Scene) -> dict[str, Any]:
+    """Periods, s, and damping ratio of the scene's floor response spectra."""
+    for motion in findings.motions or []:
+        if motion.place.scene == scene.name and motion.spectra is not None:
+            return {"period": significant_digits(motion.spectra.period, DIGITS), "damping": motion.spectra.damping}
+    return {"period": [], "damping": 0.0}
+
+
+def contact_geometry(scene: Scene) -> dict[str, Any]:
+    """
+    Where the contact points are.
+
+    lever: radius of the spheres over rho, null where the scene does not state it or is flat. supports: [x, y] of each
+    from the center of mass of the platform at rest, m, null where the scene does not state them.
+    """
+    sphere, supports = scene.isolator.sphere_radius, scene.support_places
+    return {
+        "lever": None if sphere is None or scene.flat else sphere / scene.radius,
+        "supports": None if supports is None else (supports - scene.offsets[0]).tolist(),
+    }
+
+
+def _exponents(motion: StoredMotion) -> NDArray[np.int_]:
+    """Of the unit that each column is rounded to."""
+    values = _columns(motion)
+    steps = ROUNDING * swing(values)
+    steps[:1] = TIME_ROUNDING * values[-1:, :1].max(initial=1e-300)
+    return np.floor(np.log2(steps)).astype(int)
+
+
+def _columns(motion: StoredMotion) -> NDArray[np.float64]:
+    blocks = list(motion.blocks().values())
+    return np.hstack(blocks) if blocks else np.zeros((0, 0))
+
+
+def _numbers(motion: StoredMotion) -> bytes:
+    """The columns of a motion in their units: the first value, then the changes."""
+    values = np.round(_columns(motion) / 2.0 ** _exponents(motion))
+    return np.diff(values, axis=0, prepend=np.zeros((min(len(values), 1), values.shape[1]))).T.astype("<i4").tobytes()
+
+
+def starts_of(motions: Sequence[StoredMotion]) -> Starts:
+    """Where the first number of every motion stands among all of them."""
+    sizes = [sum(block.size for block in motion.blocks().values()) for motion in motions]
+    keys = [(motion.place, motion.model) for motion in motions]
+    return dict(zip(keys, np.concatenate([[0], np.cumsum(sizes)]).astype(int).tolist()))
+
+
+def _blocks(motion: StoredMotion) -> dict[str, list[int]]:
+    """By name, the first column and the number of columns of what the motion has."""
+    widths = {name: block.shape[1] for name, block in motion.blocks().items()}
+    firsts = np.concatenate([[0], np.cumsum(list(widths.values()))]).astype(int).tolist()
+    return {name: [first, width] for (name, width), first in zip(widths.items(), firsts)}
+
+
+def significant_digits(values: NDArray[np.float64], digits: int) -> list[Any]:
+    """
+    Nested lists of numbers with so many significant digits.
+
+    Parameters
+    ----------
+    values : ndarray
+    digits : int
+
+    Returns
+    -------
+    list
+    """
+    if values.ndim > 1:
+        return [significant_digits(part, digits) for part in values]
+    return [float(f"{value:.{digits}g}") for value in values]
+
+
+def _listed(demands: Demands) -> dict[str, Any]:
+    """The demands as JSON."""
+
+    def pair(estimate: Estimate) -> list[float | str | None]:
+        numbers = [float(f"{n:.7g}") if np.isfinite(n) else None for n in (estimate.value, estimate.error)]
+        return [*numbers, estimate.reason] if estimate.reason else [*numbers]
+
+    listed: dict[str, Any] = {}
+    for name, value in vars(demands).items():
+        if isinstance(value, Estimate):
+            listed[name] = pair(value)
+        elif isinstance(value, tuple):
+            listed[name] = [pair(estimate) for estimate in value]
+        elif name != "status":  # which the motion has, too
+            listed[name] = None
+    return listed

@@ -1,0 +1,119 @@
+"""
+The scaling test: what is left of the step from small to exact equations when loading and friction grow small together.
+
+Loading and dry friction scaled by s (the rate at which it changes with the speed by 1/s) scale the motion by s, and the
+geometry that the small equations drop is of the
+order of its square: the step must fall like s^2. A step that does not is no geometry. Viscous friction mu = f_c |v|
+scales by itself. The printed small equations are not quite invariant either: their friction terms with xi'' x_1 / rho
+shrink like s^2 too, which the second trend shows.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+import reference
+from comparison.analyses.trends import Trend, trend
+from comparison.runner.analysis import Analysis
+from comparison.runner.task import Task, TaskResult
+from comparison.runner.task_results import TaskResults
+from comparison.study.study import Study
+from reference.problem import Scene
+
+Array = NDArray[np.float64]
+
+SCALES = (1.0, 0.5, 0.25, 0.125)
+PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad
+TOLERANCE = 1e-8  # relative: the step at the smallest scale is 1e-5
+CUTOFF = 1e-3  # m/s at s = 1, of the resolved peak; it scales with the motion
+STEP = "exact minus small"
+PRINTED = "small, s minus s/2"
+
+Arguments = tuple[Scene, bool]  # and whether the supremum is taken
+
+
+def scaled(scene: Scene, s: float) -> Scene:
+    """The scene with loading, dry friction and travel times s, the rate of friction with speed over s."""
+    values: dict[str, Any] = {"excitation.scale": s * (scene.excitation.scale or 1.0)}
+    law = scene.dry_friction
+    if law.varies:
+        values["isolator.friction"] = {"slow": s * law.slow, "fast": s * law.fast, "rate": law.rate / s}
+    elif not scene.lubricated:
+        values["isolator.friction"] = s * scene.friction_coefficient
+    if scene.isolator.travel is not None:
+        values["isolator.travel"] = s * scene.isolator.travel
+    return scene.with_values(values)
+
+
+class Scaling(Analysis[list[Trend]]):
+    """The trends of every scene and body, for the supremum and, where that differs, the resolved peak."""
+
+    key, stage, level = "scaling", "scaling test", 2
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """One task for each scene and reading of the peak."""
+        return [
+            Task(scene_trends, (scene, supremum), self.stage, about=scene)
+            for scene in study.phased
+            for supremum in (True, False)
+            if supremum or _dry(scene)
+        ]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Trend] | None:
+        """The trends, in the order of the tasks; None for a study without phases."""
+        if not study.phased:
+            return None
+        return [trend for task in self.tasks(study) for trend in results.value(task, _without_value)]
+
+
+def scene_trends(task: Arguments) -> list[Trend]:
+    """Both trends of one scene for each body. Runs inside a worker process."""
+    scene, supremum = task
+    answers = [_both(scaled(scene, s), supremum, s) for s in SCALES]
+    mu, error = (np.array([answer[part] for answer in answers]) for part in (0, 1))  # (S, 2, P, N)
+    (small, exact), (small_error, exact_error) = np.moveaxis(mu, 1, 0), np.moveaxis(error, 1, 0)
+    step, step_error = exact / small - 1.0, np.hypot(exact_error, small_error) / small
+    halving = small[:-1] / small[1:] - 1.0
+    halving_error = np.hypot(small_error[:-1], small_error[1:]) / small[1:]
+    name = _peak(scene, supremum)
+    return [
+        trend(
+            scene.name,
+            body + 1,
+            f"{what}, {name}",
+            SCALES[: len(size)],
+            size[..., body].T,
+            error_estimate[..., body].T,
+            2.0,
+        )
+        for body in range(len(scene.bodies))
+        for what, size, error_estimate in ((STEP, step, step_error), (PRINTED, halving, halving_error))
+    ]
+
+
+def _both(scene: Scene, supremum: bool, s: float) -> tuple[Array, Array]:
+    """mu and error, (2, P, N): small, exact."""
+    cutoff = None if supremum else CUTOFF * s
+    answers = [
+        reference.amplification(scene, PHASES, equations=equations, tolerance=TOLERANCE, cutoff=cutoff)
+        for equations in ("small", "exact")
+    ]
+    return np.array([answer.mu for answer in answers]), np.array([answer.error for answer in answers])
+
+
+def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
+    scene, supremum = task
+    what = f"{STEP}, {_peak(scene, supremum)}"
+    return [Trend(scene.name, body + 1, what, SCALES, (), (), 2.0, failed.reason) for body in range(len(scene.bodies))]
+
+
+def _peak(scene: Scene, supremum: bool) -> str:
+    return "peak" if not _dry(scene) else "supremum" if supremum else "resolved peak"
+
+
+def _dry(scene: Scene) -> bool:
+    return not scene.lubricated and scene.friction_coefficient > 0.0

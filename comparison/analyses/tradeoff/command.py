@@ -1,0 +1,190 @@
+"""
+Speed for accuracy: `python -m comparison.tradeoff [SCENE ...] [--quick | --growth] [--out DIR]`.
+
+Measures the error of mu_i against compute time per point, for every model and every numerical parameter. Every part of
+a measurement is stored as it is finished: the same command goes on where it stopped, with the times measured then.
+Writes tradeoff.json, in which other scenes stay, SCENE-tradeoff.nc and SCENE-tradeoff.png. Exit codes: 0 done; 2 a
+wrong scene or option; 3 the files could not be written; others as in `run_command`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+
+from comparison.analyses.tradeoff.analysis import MeasuredTrade, TradeOff
+from comparison.analyses.tradeoff.growth import FILE as GROWTH
+from comparison.analyses.tradeoff.growth_command import FILES, growth_files, measured_growth, print_growth
+from comparison.analyses.tradeoff.settings import CONSTANT, ENGINE, LEVEL, REFERENCE, RUN, SCIPY
+from comparison.analyses.tradeoff.trade import FILE, SCHEMA, STORED, Trade, TradeFile, load
+from comparison.cli.arguments import CommandParser, command, jobs, writing
+from comparison.cli.computing import computed, run_facts
+from comparison.cli.entered import add_models, entered_models
+from comparison.runner.executors import Pool
+from comparison.runner.output import destination, made_by, netcdf, publish, refuse_foreign_files
+from comparison.runner.processes import process_pool
+from comparison.runner.progress import wide_console
+from comparison.study.study import Study, refuse_same_names
+from comparison.surfaces.figures.file_names import figure_file, tradeoff_figure_name, with_ending
+from reference.problem import Scene, SceneError, load_scene
+from reference.problem.command import UsageError
+
+DEFAULT = "fig3-I"
+COMMAND = "comparison.tradeoff"
+ENDINGS = "png", "pdf", "nc"  # of the files of a scene
+STARTING = 8.0  # s of a worker before its first task: imports, compiled code loaded
+MODELS = {REFERENCE, ENGINE, RUN, LEVEL, CONSTANT, SCIPY}  # what the workers ask
+TOLERANCE = 1e-3  # of a study; every setting has one of its own
+
+
+@command
+def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
+    """Measure the scenes of the command line; the exit code."""
+    options = _parser().parse_args(argv)
+    jobs(options)  # refused before anything else is looked at
+    scenes = [_phased(name) for name in options.scenes or [DEFAULT]]
+    refuse_same_names((scene.name, scene.name) for scene in scenes)
+    out = destination(options.out)
+    _stored(out)  # a file that is no trade is refused before anything is measured
+    pictures = [figure_file(scene.name, "tradeoff", ending=f".{end}") for scene in scenes for end in ENDINGS]
+    refuse_foreign_files(out, [FILE, *pictures, *(FILES if options.growth else ())])
+    console = wide_console()
+    if options.growth:
+        return _grown(scenes[0], options, argv, out, console, executor)
+    measured = measured_trades(scenes, options, argv, console, executor)
+    for scene_trade in measured:
+        with writing(out):
+            publish(out, _files(scene_trade), COMMAND)
+    before = {trade.scene: trade for trade in _stored(out)}
+    trades = {scene_trade.trade.scene: scene_trade.trade for scene_trade in measured}
+    with writing(out):
+        (file,) = publish(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list((before | trades).values())))}, COMMAND)
+    for trade in trades.values():
+        print_trade(console, trade)
+    console.print(f"Trade: {file}, and SCENE-tradeoff.png and .nc beside it.", soft_wrap=True)
+    return 0
+
+
+def _grown(
+    scene: Scene, options: argparse.Namespace, words: Sequence[str], out: Path, console: Console, executor: Pool
+) -> int:
+    """Measure how the cost grows; the exit code."""
+    growth = measured_growth(scene, options, words, console, executor)
+    with writing(out):
+        publish(out, growth_files(growth), COMMAND)
+    print_growth(console, growth.series)
+    console.print(f"Growth: {out / GROWTH}, and growth.png beside it.", soft_wrap=True)
+    return 0
+
+
+def _phased(name: str) -> Scene:
+    scene = load_scene(name)
+    if scene.recorded:
+        rule = "reference solutions need phases, which a recorded motion has not: give a scene of two frequencies"
+        raise SceneError(name, "excitation.record", scene.name, rule)
+    return scene
+
+
+def _stored(out: Path) -> list[Trade]:
+    """The trades that are in the folder. Raises UsageError for a file that is none."""
+    try:
+        return load(out) or []
+    except (OSError, ValueError) as error:
+        raise UsageError(str(error)) from None
+
+
+def measured_trades(
+    scenes: Sequence[Scene], options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
+) -> list[MeasuredTrade]:
+    """
+    The trades of the scenes with all that is known of their run; what is stored is not measured again.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+    options : argparse.Namespace
+        Of the command line.
+    words : sequence of str
+        The command line.
+    console : Console
+    executor : Executor or callable
+        What makes the processes of this machine, or an executor in their place.
+
+    Returns
+    -------
+    list of MeasuredTrade
+        In the order of the scenes.
+    """
+    entered = entered_models(options.model, options.model_limit, options.scheduler)
+    tradeoff, study = TradeOff(options.quick, entered), Study(tuple(scenes), 1, TOLERANCE)
+    tasks, width = tradeoff.tasks(study), jobs(options)
+    about = STARTING + sum(task.seconds for task in tasks) / width
+    for scene in scenes:
+        console.print(f"{scene.title} ({scene.name})")
+    console.print(f"Unless they are stored: about {about:.0f} s with {width} workers.")
+    begin = time.monotonic()
+    results = computed("tradeoff", options, words, tasks, MODELS, console, executor)
+    run = {
+        **run_facts("tradeoff", options, words, begin),
+        "quick": options.quick,
+        "stored_before": results.parts[tradeoff.stage].stored,
+    }
+    attributes = {"command": run["command"], **run["provenance"]}
+    return [
+        MeasuredTrade(replace(measured.trade, run=run), measured.values.assign_attrs(attributes))
+        for measured in tradeoff.collect(study, None, results)
+    ]
+
+
+def _files(measured: MeasuredTrade) -> dict[str, bytes]:
+    """Values and pictures of one scene."""
+    from comparison.analyses.tradeoff.figure import draw_tradeoff  # plotting: not needed to refuse
+
+    picture = tradeoff_figure_name(measured.trade.scene)
+    return made_by(
+        lambda folder: with_ending(folder / picture, ".nc").write_bytes(netcdf(measured.values)),
+        lambda folder: draw_tradeoff(folder / picture, measured.trade),
+    )
+
+
+def print_trade(console: Console, trade: Trade) -> None:
+    """The fronts: what to take for which accuracy; and how each reference solution was checked."""
+    for question in trade.questions:
+        console.print(f"{trade.scene}, {question.title}: {question.points} phase pairs", style="bold")
+        console.print(
+            f"  reference solution: {question.reference_solution}; {'; '.join(question.checks)}", soft_wrap=True
+        )
+        table = Table(box=SIMPLE_HEAD, pad_edge=False)
+        table.add_column("on the Pareto front of a mu", no_wrap=True)
+        for heading in ("value", "s per point", "median error", "95 %"):
+            table.add_column(heading, justify="right", no_wrap=True)
+        for entry in sorted(trade.of(question.key), key=lambda setting: setting.seconds):
+            if any(entry.pareto_front):
+                sizes = ("  ".join(f"{part:.0e}" for part in parts) for parts in (entry.median, entry.most))
+                value = f"{entry.value:.0e} {entry.unit}".strip()
+                table.add_row(entry.method, value, f"{entry.seconds:.4f}", *sizes)
+        console.print(table)
+
+
+def _parser() -> CommandParser:
+    parser = CommandParser(
+        "tradeoff", "Error of mu_i against compute time for every model and every numerical parameter."
+    )
+    parser.add_scenes(DEFAULT)
+    parser.add_out("where the files go")
+    parser.add_computing()
+    parser.add_argument(
+        "--growth",
+        action="store_true",
+        help="instead: cost against bodies, duration, phase pairs and workers, with slopes",
+    )
+    add_models(parser)
+    parser.add_argument("--quick", action="store_true", help="fewer points and values: under a minute")
+    return parser

@@ -1,0 +1,218 @@
+"""
+How the cost of a phase pair grows with bodies and duration, and that of a call with its phase pairs.
+
+Every measurement is one task with a limit on its processor time. An exponent is the slope of a line through the
+logarithms of the larger half of the values, where fixed costs count least.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+import xarray as xr
+
+from comparison.analyses.tradeoff.measure import Measurement, measure, sample, without_value
+from comparison.json_file import FILE_FORMAT, StoredFile, finite_or_none
+from comparison.runner.analysis import Analysis
+from comparison.runner.task import Task
+from comparison.runner.task_results import TaskResults
+from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, Model
+from comparison.study.study import Study
+from reference.problem import Scene
+
+TOLERANCE = 1e-3  # asked of the engine; the equations are asked for their own
+
+FILE, PICTURE = "growth.json", "growth.png"
+SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"
+BODIES = (2, 4, 8, 16, 32, 64, 100)
+DURATIONS = (10.0, 30.0, 100.0, 300.0, 1000.0)  # s
+PHASES = (1, 4, 16, 64, 256)
+POINTS = {"reference": 16, "engine": 1}  # phase pairs of a measurement over bodies and durations
+TALL_DURATION = 5.0  # s, of scenes with many bodies
+SHAKEN = 3.0  # times the loading of the scene: else friction holds a tall platform, which costs nothing
+STOREY = 1.0  # m between the bodies of a tall scene; its ring is as wide as it is high
+LIMIT = 60.0  # s of processor time of one measurement
+MAX_WORK = 1e9  # steps of the engine: the limit ends what takes too long, not a refusal
+
+
+def tall(scene: Scene, bodies: int) -> Scene:
+    """The scene with its upper body cut into so many less one, each above the other on links of the same period."""
+    table = scene.model_dump(exclude_none=True)
+    first, second = table["bodies"][0], table["bodies"][min(1, len(table["bodies"]) - 1)]
+    height = second.get("height", STOREY)
+    mass = second["mass"] / (bodies - 1)
+    above = [{**second, "mass": mass, "height": height + STOREY * number} for number in range(bodies - 1)]
+    isolator = {**table["isolator"], "ring": max(table["isolator"].get("ring", 1.0), STOREY * bodies)}
+    changed = {"isolator": isolator, "bodies": [first, *above], "duration": TALL_DURATION, "acceptance": {}}
+    return Scene.model_validate(table | changed).with_values(
+        {"excitation.scale": SHAKEN * (scene.excitation.scale or 1.0)}
+    )
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What grows. scene: of a value, from the scene of the study. points: phase pairs of a measurement."""
+
+    name: str
+    unit: str
+    values: tuple[float, ...]
+    scene: Callable[[Scene, float], Scene]
+    points: Callable[[Model, float], int]
+    models: tuple[Model, ...]
+
+
+def _usual_points(model: Model, value: float) -> int:
+    return POINTS[model.side]
+
+
+QUANTITIES = (
+    Quantity(
+        "bodies", "", BODIES, lambda scene, n: tall(scene, int(n)), _usual_points, (EXACT, TRANSLATIONAL, SPATIAL)
+    ),
+    Quantity(
+        "duration",
+        "s",
+        DURATIONS,
+        lambda scene, duration: scene.with_values({"duration": duration}),
+        _usual_points,
+        (EXACT, TRANSLATIONAL, SPATIAL),
+    ),
+    Quantity("phase pairs", "", PHASES, lambda scene, n: scene, lambda model, n: int(n), (EXACT,)),
+)
+
+
+@dataclass(frozen=True)
+class Series:
+    """What one model costs over the values of one quantity."""
+
+    __pydantic_config__ = FILE_FORMAT
+
+    quantity: str
+    """what grows"""
+    unit: str
+    """its unit; empty for a pure number"""
+    model: str
+    """title of the model"""
+    values: Sequence[float]
+    """of the quantity"""
+    seconds: Sequence[float | None]
+    """processor time of a phase pair, over phase pairs and workers of a call; null above the limit, or without an
+    answer"""
+    slope: float | None
+    """exponent of the larger half of the values before the first null; null for fewer than three"""
+    uncertainty: float | None
+    """standard error of the slope"""
+
+
+@dataclass(frozen=True)
+class MeasuredGrowth:
+    """Content of the file."""
+
+    __pydantic_config__ = FILE_FORMAT
+
+    schema: Literal["phase-resonance/growth"]
+    """what the file is"""
+    scene: str
+    """name of the scene that grows"""
+    title: str
+    """title of the scene"""
+    series: Sequence[Series]
+    """one per quantity and model"""
+    run: Mapping[str, Any]
+    """command, times, provenance"""
+
+
+STORED = StoredFile(FILE, MeasuredGrowth, "a measured growth", "python -m comparison.tradeoff --growth")
+
+
+def with_slope(quantity: str, unit: str, model: str, values: Sequence[float], seconds: Sequence[float]) -> Series:
+    """
+    The series with its slope.
+
+    Parameters
+    ----------
+    quantity, unit, model : str
+    values, seconds : sequence of float
+        As in `Series`; NaN where there is no measurement.
+
+    Returns
+    -------
+    Series
+    """
+    slope, uncertainty = fitted_slope(values, seconds)
+    numbers = finite_or_none(slope), finite_or_none(uncertainty)
+    return Series(quantity, unit, model, list(values), [finite_or_none(each) for each in seconds], *numbers)
+
+
+def fitted_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:
+    """
+    Exponent of seconds over values, and its standard error.
+
+    Parameters
+    ----------
+    values, seconds : sequence of float
+        NaN where there is no measurement.
+
+    Returns
+    -------
+    tuple of float
+        Of the larger half of the values up to the first without a measurement, three at least; NaN for fewer.
+
+    Examples
+    --------
+    >>> [round(number, 6) for number in fitted_slope([1, 2, 4, 8], [3, 12, 48, 192])]
+    [2.0, 0.0]
+    """
+    known = int(np.isfinite([*seconds, np.nan]).argmin())  # what is behind one without a measurement is no trend
+    if known < 3:
+        return float("nan"), float("nan")
+    x, y = np.log(values[:known]), np.log(seconds[:known])
+    larger = slice(-max(3, (len(x) + 1) // 2), None)
+    (slope, _), covariance = np.polyfit(x[larger], y[larger], 1, cov=True)
+    return float(slope), float(np.sqrt(max(covariance[0, 0], 0.0)))
+
+
+@dataclass(frozen=True)
+class Growth(Analysis[list[Series]]):
+    """The series of the first scene with phases; quantities: what grows."""
+
+    key, stage = "growth", "growth"
+    quantities: Sequence[Quantity] = QUANTITIES
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """One task for every quantity, model and value."""
+        return [task for _, _, tasks in self._series(study) for task in tasks]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Series]:
+        """In the order of quantities and models."""
+        collected = []
+        for quantity, model, tasks in self._series(study):
+            answers = [results.value(task, without_value) for task in tasks]
+            seconds = tuple(
+                answer.seconds / (1 if quantity.name == "phase pairs" else len(answer.mu))
+                if np.isfinite(answer.mu).all()
+                else float("nan")
+                for answer in answers
+            )
+            collected.append(with_slope(quantity.name, quantity.unit, model.title, quantity.values, seconds))
+        return collected
+
+    def _series(self, study: Study) -> list[tuple[Quantity, Model, list[Task]]]:
+        scene = study.phased[0]
+        return [
+            (quantity, model, [self._task(quantity, model, scene, value) for value in quantity.values])
+            for quantity in self.quantities
+            for model in quantity.models
+            if model.applies(scene)
+        ]
+
+    def _task(self, quantity: Quantity, model: Model, scene: Scene, value: float) -> Task:
+        settings: dict[str, Any] = {**model.settings, "tolerance": model.tolerance(TOLERANCE)}
+        if model.side == "engine":
+            settings["max_work"] = MAX_WORK
+        phases = sample(quantity.points(model, value))
+        measurement = Measurement(quantity.scene(scene, value), (model.amplification, settings), 0, phases)
+        return Task(measure, measurement, self.stage, about=scene, timeout=LIMIT)

@@ -1,0 +1,1 @@
+"""Largest values over all phases."""

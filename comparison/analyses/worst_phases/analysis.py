@@ -1,0 +1,227 @@
+"""
+The worst phases of every scene: the largest mu_i and displacement over all phases, and what the engine has there.
+
+The search of `reference.worst_phases` is made for the exact equations, and for those that the engine answers for.
+Beside these the engine is searched in a square around the worst phases, so that its own maximum nearby is known, too:
+its ratio to the equations, which hardly changes there, says where that is. The searches begin at the hills of the
+surfaces, if these are as fine as the search's own grid.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+import reference
+from comparison.runner.analysis import Analysis
+from comparison.runner.task import Task, TaskResult
+from comparison.runner.task_results import TaskResults
+from comparison.study.batches import imported
+from comparison.study.models import Model, models_of, pairs_of
+from comparison.study.study import Study
+from comparison.surfaces.steps import known_mu
+from comparison.surfaces.surfaces import asked_of
+from reference.problem import Scene
+from reference.problem.climb import Climb, Points, Surface, predicted, square_of
+from reference.problem.hills import GRID, hills
+
+Array = NDArray[np.float64]
+
+TOLERANCE = 1e-5  # relative error of mu by the equations
+POINTS = 600  # of the equations that a search takes
+ENGINE_HALF_WIDTH = 0.02  # rad, of the square in which the engine is searched
+ENGINE_POINTS = 6  # of it: the middle and the corners of the square, and where it is predicted to be largest
+SOLVED_BY = "reference:amplification"  # the models that `reference.worst_phases` searches
+NOWHERE = (math.nan, math.nan)
+
+
+@dataclass(frozen=True)
+class Worst:
+    """
+    The largest value of one model over all phases.
+
+    Attributes
+    ----------
+    scene : str
+    model : str
+        Key of the model.
+    quantity : str
+        "amplification" or "displacement".
+    body : int
+        From 1.
+    value, error : float
+        mu_i, or m, with its estimated absolute error. NaN without an answer.
+    phases : tuple of float, rad
+        (alpha_1, alpha_2).
+    kind : str
+        "smooth", "kink" or "jump" (`reference.PhaseMaximum`), or "nearby": the largest of the engine beside `start`.
+    side : tuple of float
+        From which direction a jump is approached. NaN otherwise.
+    runner_up : float
+        The highest other value at which a climb ended. NaN without one.
+    climbs, reached, evaluations : int
+        Climbs, those that ended at the maximum, and phase pairs that were computed.
+    at_start, start_error : float
+        Of the engine: its value at the worst phases of the equations, with its error. NaN otherwise.
+    reason : str
+        Why there is no value, or "".
+    """
+
+    scene: str
+    model: str
+    quantity: str
+    body: int
+    value: float = math.nan
+    error: float = math.nan
+    phases: tuple[float, float] = NOWHERE
+    kind: str = ""
+    side: tuple[float, float] = NOWHERE
+    runner_up: float = math.nan
+    climbs: int = 0
+    reached: int = 0
+    evaluations: int = 0
+    at_start: float = math.nan
+    start_error: float = math.nan
+    reason: str = ""
+
+
+# scene, model, engine, quantity, body, tolerance of the engine, starts of the climbs (K, 2) or None
+Arguments = tuple[Scene, Model, Model | None, str, int, float, Array | None]
+
+
+class WorstPhases(Analysis[list[Worst]]):
+    """Searches of every scene and body; one more for the displacement."""
+
+    key, stage, needs_surfaces = "worst_phases", "worst phases", True
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """One task for each search, of the engine with that of its counterpart."""
+        tasks = []
+        for scene in study.phased:
+            for model, engine, quantity, body in _searches(study, scene):
+                starts = _starts(study, surfaces, scene, model, quantity, body)
+                argument = (scene, model, engine, quantity, body, study.tolerance, starts)
+                tasks.append(Task(worst_of, argument, self.stage, about=scene))
+        return tasks
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Worst] | None:
+        """In the order of the tasks; None for a study without phases."""
+        if not study.phased:
+            return None
+        return [worst for task in self.tasks(study, surfaces) for worst in results.value(task, _without_value)]
+
+
+def nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, model: str, body: int) -> Any | None:
+    """
+    The largest mu over all phases of a model or, where it was not searched, of another one near it.
+
+    Parameters
+    ----------
+    found : sequence of Worst
+    models : sequence of str
+        Keys of the models of the scene in their order.
+    scene, model : str
+    body : int
+
+    Returns
+    -------
+    Worst or None
+        Of the model, else of the next one that was searched, else of the last one before; None without any.
+    """
+    searched = {
+        worst.model: worst
+        for worst in found
+        if (worst.scene, worst.quantity, worst.body) == (scene, "amplification", body) and math.isfinite(worst.value)
+    }
+    place = models.index(model)
+    order = [*models[place:], *reversed(models[:place])]
+    return next((searched[key] for key in order if key in searched), None)
+
+
+def _searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, str, int]]:
+    """Model, engine beside it, quantity and body."""
+    equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SOLVED_BY]
+    exact = [model for model in equations if model.settings == {"equations": "exact", "regularization": None}]
+    engines = {pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"}
+    bodies = range(1, len(scene.bodies) + 1)
+    searched = [model for model in equations if model in exact or model.key in engines]
+    searches = [(model, engines.get(model.key), "amplification", body) for model in searched for body in bodies]
+    return searches + [(model, None, "displacement", 1) for model in exact]
+
+
+def _starts(
+    study: Study, surfaces: xr.Dataset | None, scene: Scene, model: Model, quantity: str, body: int
+) -> Array | None:
+    """The hills of the surface, if it is as fine as the grid of the search."""
+    if surfaces is None or len(study.axis(model, scene)) < GRID:
+        return None
+    asked = asked_of(surfaces, scene, model)
+    displacement = np.asarray(asked["displacement"].sel(model=model.key), float)
+    starts = hills(displacement if quantity == "displacement" else known_mu(asked.sel(body=body), model), scene)
+    return starts if len(starts) else None
+
+
+def worst_of(task: Arguments) -> list[Worst]:
+    """The largest value of the equations, and of the engine beside it. Runs inside a worker process."""
+    scene, model, engine, quantity, body, tolerance, starts = task
+    settings: dict[str, Any] = dict(model.settings)
+    maximum = reference.worst_phases(scene, body, quantity, tolerance=TOLERANCE, starts=starts, **settings)
+    worst = Worst(scene.name, model.key, quantity, body, **vars(maximum))
+    return [worst] if engine is None else [worst, _engine_beside(worst, scene, model, engine, tolerance)]
+
+
+def _without_value(task: Arguments, failed: TaskResult) -> list[Worst]:
+    scene, model, engine, quantity, body, *_ = task
+    models = [model] if engine is None else [model, engine]
+    return [Worst(scene.name, each.key, quantity, body, reason=failed.reason) for each in models]
+
+
+def _engine_beside(worst: Worst, scene: Scene, like: Model, model: Model, tolerance: float) -> Worst:
+    """The engine at the worst phases of the equations `like` it, and its largest value in a square around them."""
+    engine = _surface(scene, model, model.tolerance(tolerance), worst.body)
+    start = engine.at(np.array([worst.phases]))
+    climb = Climb(start.phases[0], float(start.value[0]), float(start.error[0]), ENGINE_HALF_WIDTH)
+    (corners, _), (square, _) = square_of(2), square_of(3)
+    computed = engine.at(climb.phases + ENGINE_HALF_WIDTH * corners)
+    equations = _surface(scene, like, TOLERANCE, worst.body).at(climb.phases + ENGINE_HALF_WIDTH * square)
+    highest, _ = predicted(engine, climb, _estimated(start, computed, equations))
+    climb.take(computed)
+    climb.take(engine.at(highest[None]))
+    if not math.isfinite(climb.value):
+        return Worst(scene.name, model.key, worst.quantity, worst.body, reason=engine.outcome)
+    alpha1, alpha2 = (climb.phases % (2.0 * np.pi)).tolist()
+    return Worst(
+        scene=scene.name,
+        model=model.key,
+        quantity=worst.quantity,
+        body=worst.body,
+        value=climb.value,
+        error=climb.error,
+        phases=(alpha1, alpha2),
+        kind="nearby",
+        climbs=1,
+        reached=1,
+        evaluations=engine.evaluations,
+        at_start=float(start.numerator[0] / start.denominator[0]),
+        start_error=float(start.error[0]),
+    )
+
+
+def _surface(scene: Scene, model: Model, tolerance: float, body: int) -> Surface:
+    return Surface(scene, imported(model.amplification), {**model.settings, "tolerance": tolerance}, body - 1)
+
+
+def _estimated(middle: Points, corners: Points, equations: Points) -> Points:
+    """The engine at the 3 x 3 places of a square that the equations have, from its ratio to them at five of these."""
+    like = equations.numerator.reshape(3, 3)
+    ratio = np.empty((3, 3))
+    ratio[::2, ::2] = corners.numerator.reshape(2, 2) / like[::2, ::2]
+    ratio[1, ::2], ratio[::2, 1] = ratio[::2, ::2].mean(axis=0), ratio[::2, ::2].mean(axis=1)
+    ratio[1, 1] = middle.numerator[0] / like[1, 1]
+    return replace(equations, numerator=(ratio * like).ravel())

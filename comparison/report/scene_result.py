@@ -1,0 +1,120 @@
+"""The results of one scene."""
+
+from __future__ import annotations
+
+from comparison.analyses.motions.result import Effective, MotionDemands
+from comparison.analyses.worst_phases.result import DemandStatistics, Distribution, GridMaximum, RecordValue
+from comparison.result_types import Number, Part, Radius, Text
+from comparison.surfaces.result import BudgetEntry, Completion, Difference, Headline, Waterfall
+from reference.problem.acceptance import Acceptance
+
+
+class ModelOutcome(Part):
+    """What one model did in one scene."""
+
+    phases_per_axis: int
+    """values of alpha1, and of alpha2"""
+    points: int
+    """phase pairs that the model was asked for"""
+    computed: int
+    """of these, computed; the others are their mirror images"""
+    outcomes: dict[str, int]
+    """how many phase pairs ended in each named outcome, most frequent first"""
+    advice: dict[str, Text]
+    """by outcome that is not ok: what it means and what to try"""
+    cap_share: Number
+    """largest horizontal displacement of the platform over rho; null without an answer"""
+    travel_share: Number
+    """the same over the isolator's travel; null without a travel"""
+    cost: float
+    """compute time, s"""
+
+
+class Breach(Part):
+    """Where an acceptance limit is broken."""
+
+    body: int
+    """number of the body; 0 where the limit is of the scene"""
+    found: Number
+    """value that exceeds the limit; null without one"""
+    reason: Text
+    """why there is no value, or what was counted; empty otherwise"""
+
+
+class Limit(Part):
+    """An acceptance limit that the scene states, held against the results."""
+
+    key: str
+    """as written below acceptance"""
+    allowed: float
+    """largest value that holds it"""
+    breaches: list[Breach]
+    """where it is broken; empty if it holds"""
+    broken: list[Text]
+    """the same in words, one line each"""
+
+
+class ForcedRatio(Part):
+    """Amplitude of a body over that of the platform under one harmonic, by (4.4) alone."""
+
+    body: int
+    """from 2"""
+    harmonic: int
+    """1 or 2"""
+    axis: str
+    """x or y"""
+    period: float
+    """period of the harmonic, s"""
+    ratio: Radius
+    """with the decay of the loading"""
+    steady: Radius
+    """without it; "inf" at resonance"""
+
+
+class SceneResult(Part):
+    """One scene."""
+
+    name: Text
+    """file stem or built-in name"""
+    title: Text
+    """as the scene states it"""
+    digest: str
+    """hash of the scene"""
+    bodies: int
+    """number of bodies"""
+    duration: float
+    """duration of the motion, s"""
+    recorded: bool
+    """whether the scene has a recorded motion and so no phases"""
+    analyses: list[str]
+    """names of the analyses that the report has of the scene"""
+    acceptance: Acceptance
+    """limits stated by the scene for --check; null where none"""
+    models: dict[str, ModelOutcome]
+    """by key of the model"""
+    differences: list[Difference]
+    """one per body and pair"""
+    budget: list[BudgetEntry]
+    """one per body and step, then the total"""
+    headlines: list[Headline]
+    """one per body"""
+    waterfalls: list[Waterfall]
+    """one per body"""
+    completions: list[Completion]
+    """one per body of every model that lacks phases of the study"""
+    distributions: list[Distribution]
+    """mu over uniform phases by model and body; empty under a record"""
+    grid_maxima: list[GridMaximum]
+    """one per model and body"""
+    values: list[RecordValue]
+    """one per model and body under a recorded motion; empty for a scene with phases"""
+    limits: list[Limit]
+    """every acceptance limit that the scene states"""
+    effective: list[Effective]
+    """the scene, then every model"""
+    forced: list[ForcedRatio]
+    """one per axis, harmonic and body above the platform; empty under a recorded motion"""
+    demands: list[MotionDemands]
+    """one per stored phase pair and model; empty without stored motions"""
+    demand_statistics: list[DemandStatistics]
+    """one per demand, body and model; empty unless demands of every phase pair were asked for"""

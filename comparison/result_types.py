@@ -1,0 +1,44 @@
+"""
+What every part of the results is made of.
+
+Three types hold what JSON cannot: `Number` writes NaN as null, `Radius` writes infinity as "inf" besides, and `Text`
+replaces what UTF-8 does not know.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainSerializer
+
+from comparison.json_file import finite_or_none
+
+
+def _finite_or_inf(value: float) -> float | Literal["inf"] | None:
+    return "inf" if value == math.inf else finite_or_none(value)
+
+
+def _nan(value: Any) -> Any:
+    return math.nan if value is None else value
+
+
+def _encodable(value: Any) -> Any:
+    """The text with single surrogates, which no UTF-8 holds, replaced."""
+    return value.encode("utf-16", "surrogatepass").decode("utf-16", "replace") if isinstance(value, str) else value
+
+
+Number = Annotated[float, BeforeValidator(_nan), PlainSerializer(finite_or_none, return_type=float | None)]
+Radius = Annotated[
+    float,
+    BeforeValidator(_nan),
+    PlainSerializer(_finite_or_inf, return_type=float | Literal["inf"] | None),
+]
+Text = Annotated[str, BeforeValidator(_encodable)]
+Phases = tuple[Number, Number]
+
+
+class Part(BaseModel):
+    """A part of the results: read from the attributes of what an analysis returns; unknown keys are refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, from_attributes=True, use_attribute_docstrings=True)

@@ -1,0 +1,110 @@
+"""What a computed number depends on besides the question: code and versions, as text that is hashed or compared."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import os
+import platform
+import sys
+from functools import cache
+from importlib.metadata import PackageNotFoundError, packages_distributions, version
+from importlib.util import find_spec
+from pathlib import Path
+
+PACKAGES = ("exudyn", "llvmlite", "numba", "numpy", "scipy")
+OURS = ("reference", "multibody", "comparison")
+ENTERED = "comparison.study.entered"  # engines of the user are called through it; their own source is in the settings
+SHARED = ("reference.problem", "comparison.study.batches")  # what every model is asked through
+DRAWING = ("matplotlib", "pillow", "xarray")
+ANSWERING = ("reference", "multibody", "comparison.study", "comparison.analyses", "comparison.wording")
+
+
+def environment_fingerprint(model: str) -> dict[str, str]:
+    """Versions of the packages that compute, and hashes of the source behind the function `model` ("package:name")."""
+    module = model.split(":")[0]
+    package = module.split(".")[0]
+    sources = dict.fromkeys((*SHARED, module if module == ENTERED else package))
+    return {
+        "python": platform.python_version(),
+        "machine": platform.machine(),
+        "exudyn module": os.environ.get("EXUDYN_MODULE", ""),
+        **{name: _version(name) for name in PACKAGES},
+        **{f"source of {name}": source_digest(name) for name in sources},
+    }
+
+
+def task_environment_fingerprint(module: str) -> dict[str, str]:
+    """The same for what the module computes beside the surfaces: it asks both sides and may draw."""
+    sources = (*ANSWERING, module.rpartition(".")[0] or module)
+    return {
+        "python": platform.python_version(),
+        "machine": platform.machine(),
+        "exudyn module": os.environ.get("EXUDYN_MODULE", ""),
+        **{name: _version(name) for name in (*PACKAGES, *DRAWING)},
+        **{f"source of {name}": source_digest(name) for name in sources},
+    }
+
+
+def engine_fingerprint(module: str) -> dict[str, str]:
+    """
+    What the numbers of an engine that a user enters depend on.
+
+    Parameters
+    ----------
+    module : str
+        Full name of the module that has its function.
+
+    Returns
+    -------
+    dict of str to str
+        Hashes of the source of the module's package and of what the module imports, and versions of what is installed.
+    """
+    package = module.split(".")[0]
+    spec = find_spec(package)
+    names = {package if spec is not None and spec.origin is not None else module}  # a folder alone has no source
+    file = find_spec(module)
+    if file is not None and file.origin is not None and file.origin.endswith(".py"):
+        names |= _imported_packages(Path(file.origin).read_text(encoding="utf-8"))
+    installed = packages_distributions()
+    versions = {part: version(part) for name in names for part in installed.get(name.split(".")[0], ())}
+    local = {name for name in names if name in OURS or name.split(".")[0] not in installed}
+    return {
+        **{name: versions[name] for name in sorted(versions)},
+        **{f"source of {name}": source_digest(name) for name in sorted(local)},
+    }
+
+
+def _imported_packages(source: str) -> set[str]:
+    """The packages that a module imports anywhere in its text, without those of Python."""
+    names = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            names |= {alias.name.split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            names.add(node.module.split(".")[0])
+    return names - set(sys.stdlib_module_names)
+
+
+@cache
+def source_digest(name: str) -> str:
+    """Hash of the Python files of a module or package, with their places in it; "absent" if there is none."""
+    spec = find_spec(name)
+    if spec is None or spec.origin is None:
+        return "absent"
+    origin = Path(spec.origin)
+    folder = origin.parent
+    files = sorted(folder.rglob("*.py")) if spec.submodule_search_locations else [origin]
+    digest = hashlib.sha256()
+    for file in files:
+        text = file.read_bytes()
+        digest.update(f"{file.relative_to(folder).as_posix()} {len(text)}\n".encode() + text)
+    return digest.hexdigest()[:16]
+
+
+@cache
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "absent"

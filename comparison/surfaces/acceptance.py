@@ -1,0 +1,127 @@
+"""The limits that a scene states before the run, held against what was found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import isnan
+
+import xarray as xr
+
+from comparison.study.models import pairs_of
+from comparison.study.study import Study
+from comparison.surfaces.budget import closure, steps
+from comparison.surfaces.differences import Difference
+from comparison.surfaces.unanswered import Unanswered
+from reference.problem import Scene
+
+
+@dataclass(frozen=True)
+class Breach:
+    """Where a limit is broken."""
+
+    body: int  # 0 where the limit is of the scene
+    found: float  # value beyond the limit, NaN without one
+    reason: str = ""  # why there is no value, or what was counted
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A limit of a scene, held against what was found."""
+
+    scene: str
+    key: str  # as written below `acceptance`
+    allowed: float
+    breaches: tuple[Breach, ...]  # none if it holds
+
+    @property
+    def broken_texts(self) -> list[str]:
+        """One text for each breach, without the scene."""
+        return [
+            f"{f'body {breach.body}: ' if breach.body else ''}acceptance.{self.key}: "
+            f"{breach.reason or f'{breach.found:.3g} found'}, {self.allowed:g} allowed"
+            for breach in self.breaches
+        ]
+
+    @property
+    def broken(self) -> list[str]:
+        """One line for each breach."""
+        return [f"{self.scene}: {text}" for text in self.broken_texts]
+
+
+def checked_limits(
+    study: Study, surfaces: xr.Dataset, rows: Sequence[Difference], lacking: Sequence[Unanswered]
+) -> list[Limit]:
+    """
+    Every limit that the scenes of a study state, held against what was found.
+
+    Parameters
+    ----------
+    rows
+        Differences of the pairs of models that could be compared.
+    lacking
+        Models without a value somewhere.
+
+    Returns
+    -------
+    list of Limit
+        In the order of scenes and keys. A scene that states no limit has none.
+    """
+    limits = []
+    for scene in study.scenes:
+        gaps = [gap for gap in lacking if gap.scene == scene.name]
+        differences = [row for row in rows if row.scene == scene.name]
+        checked = _breaches(study, surfaces, scene, differences, gaps)
+        limits += [Limit(scene.name, key, allowed, tuple(breaches)) for key, allowed, breaches in checked]
+    return limits
+
+
+def _breaches(
+    study: Study, surfaces: xr.Dataset, scene: Scene, rows: Sequence[Difference], gaps: Sequence[Unanswered]
+) -> Iterator[tuple[str, float, list[Breach]]]:
+    """Key, limit and what breaks it, of every limit that the scene states."""
+    stated = scene.acceptance
+    for key, pair, measure, allowed in stated.differences():
+        compared = [row for row in rows if row.pair == _same(study, scene, pair)]
+        if any(row.asked > row.unanswered for row in compared):
+            missing = "an error estimate is missing" if measure == "ratio" else "no phase pair to compare"
+            yield key, allowed, _beyond([(row.body, getattr(row, measure)) for row in compared], allowed, missing)
+        else:
+            reason = f"nothing to compare ({_why_not(study, scene, pair, gaps)})"
+            yield key, allowed, [Breach(0, float("nan"), reason)]
+    if stated.closure is not None:
+        bodies = range(1, len(scene.bodies) + 1)
+        remainders = [(body, closure(steps(study, surfaces, scene.name, body))) for body in bodies]
+        yield "closure", stated.closure, _beyond(remainders, stated.closure)
+    if (allowed_points := stated.failures) is not None:
+        lacks = {gap: gap.points + gap.unusable for gap in gaps}
+        count = sum(lacks.values())
+        models = ", ".join(f"{gap.title} {points} of {gap.asked}" for gap, points in lacks.items())
+        excess = f"{count} points without an answer ({models})"
+        yield "failed", allowed_points, [Breach(0, count, excess)] if count > allowed_points else []
+
+
+def _beyond(
+    values: Sequence[tuple[int, float]], allowed: float, missing: str = "no phase pair to compare"
+) -> list[Breach]:
+    """The bodies whose value is not within the limit; no value is not within any, for the reason `missing`."""
+    return [Breach(body, value, missing if isnan(value) else "") for body, value in values if not value <= allowed]
+
+
+def _same(study: Study, scene: Scene, pair: str) -> str:
+    """The pair under which a study compares these models: the translational difference may be the total one."""
+    compared = {known.key: known for known in study.pairs(scene)}
+    engines = [model.key for model in study.compared(scene) if model.side == "engine"]
+    alone = pair == "translational" and pair not in compared and engines == [compared["total"].second.key]
+    return "total" if alone else pair
+
+
+def _why_not(study: Study, scene: Scene, pair: str, gaps: Sequence[Unanswered]) -> str:
+    """Why a pair of models is not compared."""
+    wanted = next((known for known in pairs_of(scene, study.hierarchy) if known.key == pair), None)
+    if wanted is None and pair in scene.acceptance.of_engines:
+        return f"no engine {pair} in this study: --model {pair}=module:function enters it"
+    if wanted is None:
+        return "no engine in this study"
+    reasons = [gap.description for gap in gaps if gap.model in (wanted.first.key, wanted.second.key)]
+    return reasons[0] if reasons else "no phase pair in common"

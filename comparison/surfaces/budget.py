@@ -1,0 +1,153 @@
+"""
+The total difference of a surface, taken apart: what each model of the hierarchy adds, with its uncertainty.
+
+Steps are taken between neighboring models that apply to the scene, so that they add up to the total by construction.
+All are relative to mu of the first model: their sum is then the relative total.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from comparison.study.study import Study
+from comparison.surfaces.steps import Step, step
+from comparison.surfaces.surfaces import common_phases
+from reference.problem.distribution import fractile
+
+Array = NDArray[np.float64]
+
+TOTAL = "total"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """
+    One step in numbers. median, rms, percentile95, maximum: of the absolute size, NaN without a point. The signed mean
+    is the bar of the waterfall.
+
+    phases: (alpha1, alpha2) of the maximum, rad. real: share of the points where the step is known to a fifth of itself
+    or better, |D| > 5 u_D; unresolved: where u_D < |D| <= 5 u_D, not counted as real. error_estimate: median of u_D.
+    peak_moves: rad on the periodic square, how far the highest point of the surface moves at least; points whose error
+    estimates let them be the highest count alike, because symmetric surfaces have several. correlation: of the two
+    surfaces. points: how many phase pairs have a value on both models, of the `asked`.
+    """
+
+    scene: str
+    body: int
+    step: str
+    first: str
+    second: str
+    median: float
+    rms: float
+    percentile95: float
+    maximum: float
+    phases: tuple[float, float]
+    real: float
+    unresolved: float
+    error_estimate: float
+    peak_moves: float
+    correlation: float
+    points: int
+    asked: int
+
+
+def steps(study: Study, surfaces: xr.Dataset, scene: str, body: int) -> list[Step]:
+    """The steps of one body's surface in the order of the hierarchy, named after their second model, and the total."""
+    models = study.compared(next(known for known in study.scenes if known.name == scene))
+    pairs = [(second.key, first, second) for first, second in pairwise(models)]
+    return [
+        step(surfaces, scene, key, first, second, body, per=models[0])
+        for key, first, second in [*pairs, (TOTAL, models[0], models[-1])]
+    ]
+
+
+def budget(study: Study, surfaces: xr.Dataset) -> list[Entry]:
+    """Every entry of the table, in the order scene, body, step."""
+    return [
+        _entry(surfaces, scene.name, step)
+        for scene in study.scenes
+        for body in range(1, len(scene.bodies) + 1)
+        for step in steps(study, surfaces, scene.name, body)
+    ]
+
+
+def known_to_all(steps: Sequence[Step]) -> tuple[int, NDArray[np.bool_]]:
+    """Where every step has a size: the stride of the coarsest of their phases, and which of these phases."""
+    coarsest = max(step.stride for step in steps)
+    return coarsest, np.all([step.every(coarsest, step.known) for step in steps], axis=0)
+
+
+def closure(steps: Sequence[Step]) -> float:
+    """
+    Largest |sum of the steps - total| over the points where every model has a value, relative to mu of the first.
+
+    Rounding if the budget is sound; NaN without such a point.
+    """
+    coarsest = max(step.stride for step in steps)
+    *sizes, total = (step.every(coarsest, step.size) for step in steps)
+    gap = np.abs(np.sum(sizes, axis=0) - total)
+    return float(np.nanmax(gap)) if np.isfinite(gap).any() else float("nan")
+
+
+def torus_distance(first: Sequence[float], second: Sequence[float]) -> float:
+    """Distance of two phase pairs on the square that closes at 2 pi in both directions, rad."""
+    apart = np.abs(np.subtract(first, second)) % (2.0 * np.pi)
+    return float(np.hypot(*np.minimum(apart, 2.0 * np.pi - apart)))
+
+
+def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> Entry:
+    known = step.known
+    names: dict[str, Any] = {
+        "scene": scene,
+        "body": step.body,
+        "step": step.key,
+        "first": step.first.key,
+        "second": step.second.key,
+        "points": int(known.sum()),
+        "asked": known.size,
+        "phases": step.phases,
+    }
+    if not known.any():
+        sizes = ("median", "rms", "percentile95", "maximum")
+        shares = ("real", "unresolved", "error_estimate", "peak_moves", "correlation")
+        nothing: dict[str, Any] = dict.fromkeys((*sizes, *shares), float("nan"))
+        return Entry(**names, **nothing)
+    data = common_phases(surfaces, scene, [step.first.key, step.second.key]).sel(body=step.body)
+    both, errors = (
+        [np.where(known, data[name].sel(model=model.key), np.nan) for model in (step.first, step.second)]
+        for name in ("mu", "error")
+    )
+    highest = [_phases_at(step, mu + error >= np.nanmax(mu - error)) for mu, error in zip(both, errors)]
+    size = np.abs(step.size[known])
+    return Entry(
+        **names,
+        median=float(np.median(size)),
+        rms=float(np.sqrt((size**2).mean())),
+        percentile95=fractile(size, 0.95),
+        maximum=float(size.max()),
+        real=float(step.real[known].mean()),
+        unresolved=float(step.unresolved[known].mean()),
+        error_estimate=float(np.median(step.uncertainty[known])),
+        peak_moves=float("nan")
+        if step.recorded
+        else min(torus_distance(first, second) for first in highest[0] for second in highest[1]),
+        correlation=_correlation(both[0][known], both[1][known]),
+    )
+
+
+def _phases_at(step: Step, where: NDArray[np.bool_]) -> list[tuple[float, float]]:
+    return [(float(step.alpha1[row]), float(step.alpha2[column])) for row, column in np.argwhere(where)]
+
+
+def _correlation(first: Array, second: Array) -> float:
+    """Pearson's, NaN for a flat surface."""
+    a, b = first - first.mean(), second - second.mean()
+    scale = float(np.sqrt((a @ a) * (b @ b)))
+    return float(a @ b) / scale if scale > 0.0 else float("nan")

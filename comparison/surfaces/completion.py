@@ -1,0 +1,383 @@
+"""
+A model that is computed on fewer phases than the study has, completed through the model before it that has them all.
+
+Two neighboring models differ little and smoothly although both surfaces have ridges: the completed surface is the
+finer model plus the interpolated difference of the two. A ridge between the computed phases then stands where the finer
+model has it. How far the interpolation is off is measured at held-out phase pairs: chosen at random, computed by the
+model, and never used in the interpolation. If more than a share s of the phase pairs were off by more than E, the
+probability that n held-out ones all stay within E would be at most (1 - s)^n.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from scipy.interpolate import RBFInterpolator
+
+from comparison.runner.analysis import Analysis
+from comparison.runner.task import Task, TaskResult
+from comparison.runner.task_results import TaskResults
+from comparison.study.batches import imported
+from comparison.study.models import Model
+from comparison.study.study import Study
+from comparison.surfaces.steps import RESOLVED, known, known_mu
+from comparison.surfaces.surfaces import common_phases
+from reference.problem import Scene, phase_axis, phase_grid
+from reference.problem.distribution import fractile
+from reference.problem.symmetry import sources
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+MIN_SPATIAL_PER_AXIS = 9  # phases per axis: fewer of the spatial model are drawn as points
+MIN_VALUES = 16  # phase pairs that an interpolation is made from
+CONFIDENCE = 0.95
+HELD_OUT = 59  # phase pairs of a model and scene: 1 - 0.05^(1/59) = 5 %
+MAX_SHARE = 0.1  # of the phase pairs may be off by more than the stated error; fewer held-out values state nothing
+POINTS = 8  # phase pairs of one task
+
+# scene, model, settings of its amplification, phases (M, 2), rad
+Arguments = tuple[Scene, Model, Mapping[str, object], Array]
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """mu and its estimated absolute error, (n, N), at held-out phase pairs; NaN without an answer."""
+
+    mu: Array
+    error: Array
+
+
+@dataclass(frozen=True)
+class Completion:
+    """
+    One body's surface of one model on all phases of the study, or why there is none.
+
+    With the confidence `CONFIDENCE` at most `share` of the phase pairs that were not computed are off by more than
+    `error`. The surface may be drawn (`accepted`) where `error` is at most the tolerance asked of the model. Its
+    difference from the first model may be drawn (`difference_accepted`) where `error` is at most a fifth of that
+    difference, exceeded at 5 % of the phases: the five-fold rule.
+    """
+
+    scene: str
+    model: str  # key of the model that is completed
+    through: str  # key of the model before it that has all phases; "" without one
+    body: int  # from 1
+    computed: int  # phase pairs where both models have a value
+    held_out: int  # phase pairs with a value that were computed and not used
+    error: float  # largest error at those, relative to the model's mu; NaN without an interpolation
+    model_error: float  # largest error estimate of the model itself at those, relative
+    share: float  # at most so many of the phase pairs are off by more than `error`
+    confidence: float  # of that statement
+    asked: float  # largest `error` of a surface that is drawn: the tolerance
+    difference: float  # 95 % of the absolute differences from the first model are below this, relative to its mu
+    reason: str  # why the surface may not be drawn, "" where it may
+    mu: Array  # (K, K) completed; NaN everywhere where it may not be drawn, and where the finer model has no value
+
+    @property
+    def accepted(self) -> bool:
+        """Whether the surface may be drawn as completed."""
+        return not self.reason
+
+    @property
+    def certificate(self) -> str:
+        """How far the surface is off, in words."""
+        return (
+            f"off by at most {100.0 * self.error:.2g} % at {self.held_out} held-out phase pairs, where the model's own "
+            f"error is up to {100.0 * self.model_error:.2g} %; with {100.0 * self.confidence:g} % confidence at most "
+            f"{100.0 * self.share:.2g} % of the phase pairs between the dots are off by more"
+        )
+
+    @property
+    def difference_accepted(self) -> bool:
+        """Whether its difference from the first model may be drawn as completed."""
+        return self.accepted and RESOLVED * self.error <= self.difference
+
+
+class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
+    """Held-out phase pairs of every model that is completed."""
+
+    key, stage, level = "completion", "held-out phases", 2
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """A few phase pairs each."""
+        return [task for _, _, tasks in self._listed(study) for task in tasks]
+
+    def collect(
+        self, study: Study, surfaces: xr.Dataset | None, results: TaskResults
+    ) -> dict[tuple[str, str], HeldOut] | None:
+        """By name of the scene and key of the model, in the order of `held_out_places`; None where there are none."""
+        found = {}
+        for scene, model, tasks in self._listed(study):
+            if not all(task in results for task in tasks):
+                continue  # of a level of the study that holds out no phase pairs
+            parts = [results.value(task, _without_value) for task in tasks]
+            mu, error = (np.concatenate([getattr(part, name) for part in parts]) for name in ("mu", "error"))
+            found[scene.name, model.key] = HeldOut(mu, error)
+        return found or None
+
+    def _listed(self, study: Study) -> Iterator[tuple[Scene, Model, list[Task]]]:
+        """Scene, model and its tasks."""
+        for scene in study.phased:
+            if not study.selection.has("surfaces", scene.name):
+                continue
+            for model in study.compared(scene):
+                if not _is_completed(study, model) or _finer(study, scene, model) is None:
+                    continue
+                phases = phase_grid(study.grid)[held_out_places(study, scene, model)]
+                settings = model.arguments(study.tolerance, study.full)
+                parts = [phases[first : first + POINTS] for first in range(0, len(phases), POINTS)]
+                tasks = [
+                    Task(held_out_values, (scene, model, settings, part), self.stage, about=scene) for part in parts
+                ]
+                yield scene, model, tasks
+
+
+def held_out_values(task: Arguments) -> HeldOut:
+    """mu of one model at the phase pairs of one task. Runs inside a worker process."""
+    scene, model, settings, phases = task
+    answer = imported(model.amplification)(scene, phases, **settings)
+    return HeldOut(np.asarray(answer.mu, float), np.asarray(answer.error, float))
+
+
+def _without_value(task: Arguments, failed: TaskResult) -> HeldOut:
+    nothing = np.full((len(task[3]), len(task[0].bodies)), np.nan)
+    return HeldOut(nothing, nothing)
+
+
+def held_out_places(study: Study, scene: Scene, model: Model) -> Indices:
+    """
+    Phase pairs that the model does not compute, chosen at random, as places on the whole grid, alpha2 running fastest.
+
+    The same in every run. No two of them are mirror images of each other, and none of a computed phase pair.
+
+    Parameters
+    ----------
+    study : Study
+    scene : Scene
+    model : Model
+
+    Returns
+    -------
+    ndarray, (n,)
+    """
+    mirrored = model.symmetric(scene) and study.grid % study.stride(model) == 0 and not study.full
+    same = sources(scene, study.grid) if mirrored else np.arange(study.grid**2)
+    candidates = np.setdiff1d(same, same[study.places(model)])
+    seed = hashlib.sha256(f"{scene.digest()} {model.key}".encode()).digest()
+    chosen: Indices = np.random.default_rng(list(seed)).permutation(candidates)[:HELD_OUT]
+    return chosen
+
+
+def largest_share(held_out: int) -> float:
+    """
+    The share of phase pairs that may be off by more than the largest error at so many held-out ones.
+
+    Parameters
+    ----------
+    held_out : int
+
+    Returns
+    -------
+    float
+        With the confidence `CONFIDENCE`.
+
+    Examples
+    --------
+    >>> round(largest_share(59), 3), largest_share(0)
+    (0.05, 1.0)
+    """
+    return float(1.0 - (1.0 - CONFIDENCE) ** (1.0 / held_out)) if held_out else 1.0
+
+
+def completions(
+    study: Study, surfaces: xr.Dataset, scene: Scene, held_out: Mapping[tuple[str, str], HeldOut] | None
+) -> list[Completion]:
+    """
+    A completion for every body of every model that lacks phases of the study, in the order of models and bodies.
+
+    The model before it is the nearest in the hierarchy that is compared and has all phases. A spatial model on 8 x 8
+    phases or fewer is listed, too: it is not to be drawn as a surface even where the study has no more.
+
+    Parameters
+    ----------
+    study : Study
+    surfaces : xr.Dataset
+    scene : Scene
+    held_out : mapping or None
+        What `CompletedSurfaces` collected; None where nothing was held out.
+
+    Returns
+    -------
+    list of Completion
+    """
+    if scene.recorded:
+        return []
+    surfaces = surfaces[["mu", "error", "stride"]]
+    models, listed = study.compared(scene), []
+    for model in models:
+        few = len(study.axis(model)) < MIN_SPATIAL_PER_AXIS
+        if study.stride(model) == 1 and not (few and model.is_spatial):
+            continue
+        finer, unused = _finer(study, scene, model), (held_out or {}).get((scene.name, model.key))
+        for body in range(1, len(scene.bodies) + 1):
+            listed.append(_completion(study, surfaces, scene, models[0], finer, model, body, unused))
+    return listed
+
+
+def with_completed(surfaces: xr.Dataset, listed: Sequence[Completion]) -> xr.Dataset:
+    """
+    The surfaces with the variable `completed`, mu where a completed surface may be drawn, and its certificate.
+
+    Parameters
+    ----------
+    surfaces : xr.Dataset
+    listed : sequence of Completion
+
+    Returns
+    -------
+    xr.Dataset
+    """
+    completed, per_body = xr.full_like(surfaces["mu"], np.nan), xr.full_like(surfaces["mu"][..., 0, 0], np.nan)
+    completed.attrs = {
+        "units": "1",
+        "long_name": "mu on all phases, completed through a finer model",
+        "confidence": CONFIDENCE,
+    }
+    certificate = {
+        "error": "largest relative error of `completed` at phase pairs that were computed and not used",
+        "share": "at most so many phase pairs are off by more than completed_error, with the confidence of `completed`",
+        "held_out": "phase pairs that were computed and not used",
+        "model_error": "largest relative error estimate of the model itself at these",
+    }
+    stated = {
+        f"completed_{name}": per_body.drop_vars(["alpha1", "alpha2"], errors="ignore")
+        .copy()
+        .assign_attrs({"units": "1", "long_name": meaning})
+        for name, meaning in certificate.items()
+    }
+    for surface in listed:
+        place = {"scene": surface.scene, "model": surface.model, "body": surface.body}
+        completed.loc[place] = surface.mu
+        for name in certificate:
+            stated[f"completed_{name}"].loc[place] = getattr(surface, name)
+    return surfaces.assign({"completed": completed, **stated})
+
+
+def _is_completed(study: Study, model: Model) -> bool:
+    """Whether the model lacks phases that an interpolation may give: with supports that stop one by one, none may."""
+    return study.stride(model) > 1 and not model.is_spatial and study.points(model) >= MIN_VALUES
+
+
+def _finer(study: Study, scene: Scene, model: Model) -> Model | None:
+    """The nearest model before it that has all phases."""
+    models = study.compared(scene)
+    return next((before for before in reversed(models[: models.index(model)]) if study.stride(before) == 1), None)
+
+
+def _completion(
+    study: Study,
+    surfaces: xr.Dataset,
+    scene: Scene,
+    first: Model,
+    finer: Model | None,
+    model: Model,
+    body: int,
+    unused: HeldOut | None,
+) -> Completion:
+    count, asked = len(study.axis(model)), model.tolerance(study.tolerance)
+
+    def refused(reason: str, computed: int) -> Completion:
+        nothing, nan = np.full((study.grid, study.grid), np.nan), float("nan")
+        about = scene.name, model.key, finer.key if finer else "", body, computed
+        return Completion(*about, 0, nan, nan, 1.0, CONFIDENCE, asked, nan, reason, nothing)
+
+    def mu(model: Model, stride: Model) -> Array:
+        return known_mu(common_phases(surfaces, scene.name, [stride.key]).sel(body=body), model)
+
+    values = mu(model, model)
+    if finer is None:
+        return refused("no model before it has all phases", int(np.isfinite(values).sum()))
+    fine = mu(finer, finer)
+    gap = values - mu(finer, model)
+    computed = int(np.isfinite(gap).sum())
+    if model.is_spatial:
+        if count < MIN_SPATIAL_PER_AXIS:
+            return refused(f"{count} × {count} phases are too few for a surface", computed)
+        return refused("its supports stop one by one: between the computed phases it is not smooth", computed)
+    if computed < MIN_VALUES:
+        return refused(f"{computed} values are too few for a surface", computed)
+    if unused is None:
+        return refused("no phase pairs were held out to check an interpolation", computed)
+    surface = fine + interpolated(gap, phase_axis(study.grid)[study.axis(model)], phase_axis(study.grid))
+    truth, truth_error = unused.mu[:, body - 1], unused.error[:, body - 1]
+    truth = known(truth, truth_error)
+    missed = np.abs(surface.ravel()[held_out_places(study, scene, model)] - truth) / truth
+    checked = np.isfinite(missed)
+    share = largest_share(int(checked.sum()))
+    if share > MAX_SHARE:
+        return refused(f"{checked.sum()} held-out phase pairs with a value are too few", computed)
+    error, model_error = float(missed[checked].max()), float((truth_error / truth)[checked].max())
+    base = mu(first, first)
+    distance = np.abs(surface - base) / base
+    known_distance = distance[np.isfinite(distance)]
+    difference = fractile(known_distance, 0.95) if known_distance.size else float("nan")
+    reason = ""
+    if not error <= asked:
+        reason = (
+            f"interpolation misses held-out phase pairs by up to {100.0 * error:.2g} %, {100.0 * asked:.2g} % asked"
+        )
+        surface = np.full_like(surface, np.nan)
+    return Completion(
+        scene=scene.name,
+        model=model.key,
+        through=finer.key,
+        body=body,
+        computed=computed,
+        held_out=int(checked.sum()),
+        error=error,
+        model_error=model_error,
+        share=share,
+        confidence=CONFIDENCE,
+        asked=asked,
+        difference=difference,
+        reason=reason,
+        mu=surface,
+    )
+
+
+def interpolated(values: Array, phase: Array, every: Array) -> Array:
+    """
+    A function of both phases that is known at some phase pairs, by thin plates.
+
+    Parameters
+    ----------
+    values : (K, K) array
+        At `phase`; NaN where it is not known.
+    phase : (K,) array
+        The phases of either axis, rad.
+    every : (L,) array
+        Those at which the values are wanted, rad.
+
+    Returns
+    -------
+    (L, L) array
+    """
+    known = np.isfinite(values.ravel())
+    made: Array = RBFInterpolator(_torus(phase)[known], values.ravel()[known])(_torus(every))
+    return made.reshape(len(every), len(every))
+
+
+def _torus(phase: Array) -> Array:
+    """
+    The phase pairs of a square grid as places on a torus in four dimensions, (K^2, 4), alpha2 running fastest.
+
+    A function of these places has the period 2 pi in both phases.
+    """
+    alpha1, alpha2 = (axis.ravel() for axis in np.meshgrid(phase, phase, indexing="ij"))
+    return np.stack([np.cos(alpha1), np.sin(alpha1), np.cos(alpha2), np.sin(alpha2)], axis=1)

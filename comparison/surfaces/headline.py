@@ -1,0 +1,246 @@
+"""One plain sentence for every body of a scene: how far the engine and the paper's equations differ, and why."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import xarray as xr
+
+from comparison.study.models import Model, steps_of
+from comparison.study.study import Study
+from comparison.surfaces.budget import known_to_all, steps
+from comparison.surfaces.differences import Difference
+from comparison.surfaces.steps import RESOLVED
+from comparison.surfaces.waterfall import NAN, Waterfall, WaterfallBar
+from comparison.wording import degrees, difference, more_or_less, percent, signed
+from reference.problem import Scene
+
+MAIN_CAUSE = 0.5  # of the largest real step: a step of that size is named as a cause, too
+MOST = 0.5  # fraction of the phase pairs
+SMALL = 0.2  # of the largest: geometry below it is no cause, the two codes agree below it
+
+
+@dataclass(frozen=True)
+class Cause:
+    """Keys of the models whose real steps have the sign of a difference, and of those whose steps offset them."""
+
+    models: tuple[str, ...] = ()  # largest first; none where the difference is not real
+    offset: tuple[str, ...] = ()  # likewise
+
+
+@dataclass(frozen=True)
+class Headline:
+    """The total difference of one body, in numbers and as a sentence. Sizes are relative to mu of the first model."""
+
+    scene: str
+    body: int  # from 1
+    name: str  # of the body: platform, body 2, ...
+    first: str  # key of the first model
+    second: str  # key of the last model
+    mean: float  # of the signed difference over the phase pairs: the total of the waterfall; NaN without any
+    mean_error: float  # error estimate of it
+    spread: float  # standard deviation of the signed difference over the same phase pairs
+    phases_per_axis: int  # of the grid of phase pairs that every compared model was asked for; 1 under a record
+    points: int  # phase pairs of it where every compared model has a value
+    independent: int  # of these, not related by a symmetry of the scene
+    real: float  # fraction of these where the difference is real (the five-fold rule)
+    maximum: float  # signed, the largest absolute difference of the first and any engine model, anywhere
+    maximum_error: float  # error estimate of it
+    maximum_phases: tuple[float, float]  # (alpha1, alpha2), rad; NaN under a record
+    maximum_model: str  # key of the engine model that has it
+    maximum_phases_per_axis: int  # of the grid of phase pairs that this model and the first were asked for
+    cause: Cause  # of the mean
+    maximum_cause: Cause  # of the maximum
+    like_for_like: float  # largest absolute difference of the two codes given the same equations; NaN if not compared
+    sentence: str  # all that in words
+
+
+def headline(study: Study, surfaces: xr.Dataset, scene: Scene, bars: Waterfall, rows: Sequence[Difference]) -> Headline:
+    """
+    The headline of one body.
+
+    Parameters
+    ----------
+    bars : Waterfall
+        Of this body.
+    rows : sequence of Difference
+        Of the study.
+
+    Returns
+    -------
+    Headline
+        Its mean is the total of the bars, its largest difference the largest that the page shows of the first and any
+        engine model.
+    """
+    body, largest = bars.body, bars.largest
+    pair = next(pair for pair in study.pairs(scene) if pair.key == "total")
+    hierarchy = steps(study, surfaces, scene.name, body)
+    stride, common = known_to_all(hierarchy)
+    real = hierarchy[-1].every(stride, hierarchy[-1].real)[common]
+    alike = [row.maximum for row in rows if (row.scene, row.body, row.pair) == (scene.name, body, "like-for-like")]
+    numbers = Headline(
+        scene=scene.name,
+        body=body,
+        name="platform" if body == 1 else f"body {body}",
+        first=pair.first.key,
+        second=pair.second.key,
+        mean=bars.total.size,
+        mean_error=bars.total.error,
+        spread=bars.spread,
+        phases_per_axis=len(common),
+        points=bars.points,
+        independent=bars.independent,
+        real=float(real.mean()) if real.size else NAN,
+        maximum=largest.total.size,
+        maximum_error=largest.total.error,
+        maximum_phases=largest.phases,
+        maximum_model=largest.total.model,
+        maximum_phases_per_axis=largest.phases_per_axis,
+        cause=cause_of(bars.bars, bars.total),
+        maximum_cause=cause_of(largest.bars, largest.total),
+        like_for_like=alike[0] if alike else NAN,
+        sentence="",
+    )
+    return replace(numbers, sentence=_with_engines(study, scene, numbers, bars, rows))
+
+
+def cause_of(bars: Sequence[WaterfallBar], total: WaterfallBar) -> Cause:
+    """
+    What makes a total.
+
+    Its causes are the largest real bar of its sign and those of at least half that size; what offsets them are the bars
+    of the other sign and at least that size. A total that is not real has no cause.
+    """
+    real = sorted((bar for bar in bars if bar.real and total.real), key=lambda bar: -abs(bar.size))
+    along = [bar for bar in real if bar.size * total.size > 0.0]
+    if not along:
+        return Cause()
+    named = [bar for bar in real if abs(bar.size) >= MAIN_CAUSE * abs(along[0].size)]
+    return Cause(
+        tuple(bar.model for bar in named if bar in along), tuple(bar.model for bar in named if bar not in along)
+    )
+
+
+def _with_engines(study: Study, scene: Scene, numbers: Headline, bars: Waterfall, rows: Sequence[Difference]) -> str:
+    """The sentence; those of the user's engines come first and take the place of what it says of the two codes."""
+    engines = _of_engines(study, scene, numbers.body, rows)
+    if not engines:
+        return _sentence(study, scene, numbers, bars)
+    start = f"{scene.name}, {numbers.name}: "
+    rest = _sentence(study, scene, replace(numbers, like_for_like=NAN), bars).removeprefix(start)
+    return f"{start}{' '.join(engines)} {rest[0].upper()}{rest[1:]}"
+
+
+def _of_engines(study: Study, scene: Scene, body: int, rows: Sequence[Difference]) -> list[str]:
+    """How far each engine of the user is from the equations with its friction law."""
+    row_of = {row.pair: row for row in rows if (row.scene, row.body) == (scene.name, body)}
+    sentences = []
+    for pair in study.pairs(scene):
+        if pair.second.side != "entered":
+            continue
+        row = row_of[pair.key]
+        known, axis = row.asked - row.unanswered, math.isqrt(row.asked)
+        if not known:
+            sentences.append(f"{pair.second.title} and the {pair.first.title} have no value in common.")
+            continue
+        places = f"{f'{known} of ' if row.unanswered else ''}{axis} × {axis} initial phases"
+        spread = f"standard deviation {percent(row.spread)}"
+        where = ", ".join(degrees(phase) for phase in row.phases)
+        grid = f" (mean {signed(row.mean)} over {places}; {spread}; largest at ({where}))" if axis > 1 else ""
+        # an unknown error explains no difference
+        how = "agrees to {} with" if row.ratio <= 1.0 else "differs by up to {} from"
+        sentences.append(f"{pair.second.title} {how.format(percent(row.maximum))} the {pair.first.title}{grid}.")
+    return sentences
+
+
+def _sentence(study: Study, scene: Scene, numbers: Headline, bars: Waterfall) -> str:
+    models = {model.key: model for model in study.compared(scene)}
+    asked = steps_of(scene, study.hierarchy)
+    first, second = models[numbers.first], models[numbers.second]
+    paper = "the paper's equations" if first is asked[0] else f"the {first.title}"
+    engine = "the engine" if second is asked[-1] and second.side == "engine" else f"the {second.title}"
+    start = f"{scene.name}, {numbers.name}: "
+    if first is second:
+        return f"{start}only {paper} were computed, there is nothing to compare."
+    if not numbers.points:
+        where = "" if scene.recorded else " at any phase pair"
+        return f"{start}the models from {paper} to {engine} have no value in common{where}."
+    real = bars.total.real or bars.largest.total.real
+    parts = [start + (_difference if real else _agreement)(numbers, models, paper, engine)]
+    parts += _causes(numbers, models, bars) if real else []
+    if math.isfinite(numbers.like_for_like):
+        agree = numbers.like_for_like <= SMALL * abs(numbers.maximum) or not real
+        parts.append(
+            "Given the same equations and friction law, the two codes "
+            f"{'agree to' if agree else 'differ by up to'} {percent(numbers.like_for_like)}."
+        )
+    return " ".join(parts)
+
+
+def _agreement(numbers: Headline, models: Mapping[str, Model], paper: str, engine: str) -> str:
+    start = f"no difference beyond the numerical error: {engine} and {paper} agree"
+    if numbers.phases_per_axis == 1:
+        return f"{start} {_under(numbers)} (difference {difference(numbers.mean, numbers.mean_error)})."
+    return f"{start} (mean difference {difference(numbers.mean, numbers.mean_error)} {_over(numbers, models)})."
+
+
+def _difference(numbers: Headline, models: Mapping[str, Model], paper: str, engine: str) -> str:
+    in_the_mean = abs(numbers.mean) > RESOLVED * numbers.mean_error
+    gives = f"{engine} gives {more_or_less(numbers.mean, numbers.mean_error)} than {paper}"
+    if numbers.phases_per_axis == 1:
+        return f"{gives} {_under(numbers)}."
+    if numbers.real >= MOST and in_the_mean:
+        return f"{gives} (mean {_over(numbers, models)})."
+    apart = "differ at most initial phases, but not in the mean"
+    where = apart if numbers.real >= MOST else "agree at most initial phases"
+    mean = difference(numbers.mean, numbers.mean_error)
+    return f"{engine} and {paper} {where} (mean difference {mean} {_over(numbers, models)})."
+
+
+def _largest(numbers: Headline, models: Mapping[str, Model]) -> str:
+    """The largest difference, which may be that of a model with more phases and fewer effects than the last."""
+    model, count = models[numbers.maximum_model], numbers.maximum_phases_per_axis
+    which = "" if model.key == numbers.second else f" by the {model.title} on {count} × {count} phases"
+    place = ", ".join(degrees(phase) for phase in numbers.maximum_phases)
+    return f"up to {more_or_less(numbers.maximum, numbers.maximum_error)}{which} at ({place})"
+
+
+def _causes(numbers: Headline, models: Mapping[str, Model], bars: Waterfall) -> list[str]:
+    """At most one sentence, from the bars that are shown: the means, and those at the largest difference."""
+
+    def words(cause: Cause) -> str:
+        named, offset = (
+            " and ".join(models[key].effect or f"the step to the {models[key].title}" for key in keys)
+            for keys in (cause.models, cause.offset)
+        )
+        return f"{named} (partly offset by {offset})" if offset else named
+
+    mean, largest = words(numbers.cause), words(numbers.maximum_cause)
+    if set(numbers.cause.models) == set(numbers.maximum_cause.models):
+        shown = (bars.bars, numbers.cause), (bars.largest.bars, numbers.maximum_cause)
+        denied = ", not geometry" if all(_without_geometry(*each, models) for each in shown) else ""
+        return [f"Cause: {mean}{denied}."] if mean else []
+    if mean and largest:
+        return [f"Cause: {mean} in the mean, {largest} at the largest."]
+    return [f"Cause of the mean: {mean}." if mean else f"Cause of the largest: {largest}."]
+
+
+def _without_geometry(bars: Sequence[WaterfallBar], cause: Cause, models: Mapping[str, Model]) -> bool:
+    """Whether there is a bar of the geometry, and it is small beside the largest cause."""
+    size = {bar.model: abs(bar.size) for bar in bars}
+    geometry = [size[key] for key in size if models[key].effect == "geometry"]
+    return bool(geometry and cause.models) and geometry[0] < SMALL * size[cause.models[0]]
+
+
+def _under(numbers: Headline) -> str:
+    return "under the record" if math.isnan(numbers.maximum_phases[0]) else "at the one phase pair"
+
+
+def _over(numbers: Headline, models: Mapping[str, Model]) -> str:
+    """Over which phase pairs the mean is, how far the differences scatter, and the largest of them."""
+    grid = f"{numbers.phases_per_axis} × {numbers.phases_per_axis} initial phases"
+    count = "" if numbers.points == numbers.phases_per_axis**2 else f"{numbers.points} of "
+    over = f"over {count}{grid}, {numbers.independent} of them independent"
+    return f"{over}; standard deviation {percent(numbers.spread)}; {_largest(numbers, models)}"

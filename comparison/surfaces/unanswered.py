@@ -1,0 +1,131 @@
+"""Models without a usable value at some or at every phase pair of a scene: which, why, and what helps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from comparison.study.batches import refusal_of
+from comparison.study.models import Model, models_of, steps_of
+from comparison.study.study import Study
+from comparison.surfaces.steps import known_mu
+from comparison.surfaces.surfaces import asked_of, outcome_counts
+from reference.problem import ADVICE, Outcome, Scene
+
+
+@dataclass(frozen=True)
+class OutcomeNote:
+    """An outcome that is not ok, how many phase pairs ended so, what it means and what helps."""
+
+    outcome: str
+    count: int
+    advice: str
+
+
+@dataclass(frozen=True)
+class Unanswered:
+    """A model without a value, or without one known to half of itself, at some phase pairs of a scene."""
+
+    scene: str
+    model: str
+    title: str
+    points: int  # phase pairs without a value
+    unusable: int  # further phase pairs, with a value that is not known to half of itself
+    asked: int  # phase pairs that the model was asked for
+    used: bool  # whether comparisons use the values that it has
+    outcomes: tuple[OutcomeNote, ...]  # those that are not ok
+
+    @property
+    def why(self) -> str:
+        """The outcomes with their counts, what they mean, and what helps, in one line."""
+        alone = len(self.outcomes) == 1 and self.outcomes[0].count == self.asked
+        return "; ".join(f"{'' if alone else f'{o.count} × '}{o.outcome}: {o.advice}" for o in self.outcomes)
+
+    @property
+    def sentence(self) -> str:
+        """The whole in one line."""
+        return f"{self.scene}: {self.description}."
+
+    @property
+    def description(self) -> str:
+        """The same without the scene."""
+        rest = "" if self.used else ". Comparisons leave this model out"
+        return f"{self.title}: {self.where}{f': {self.why}' if self.why else ''}{rest}"
+
+    @property
+    def where(self) -> str:
+        """At how many phase pairs there is no value, or none known to half of itself."""
+        parts = ("no value", self.points), ("no value known to half of itself", self.unusable)
+        return ", ".join(f"{what}{self._at(count)}" for what, count in parts if count)
+
+    def _at(self, count: int) -> str:
+        if self.asked == 1:
+            return ""
+        return f" at {f'any of {self.asked}' if count == self.asked else f'{count} of {self.asked}'} phase pairs"
+
+
+def with_silent_models(study: Study, surfaces: xr.Dataset) -> Study:
+    """
+    The study whose comparisons leave out, scene by scene, every model that nowhere has a value of all bodies.
+
+    A value that is not known to half of itself is none. Where fewer than two models are left, all stay.
+    """
+    silent = {}
+    for scene in study.scenes:
+        steps = steps_of(scene, study.hierarchy)
+        mute = {model.key for model in models_of(scene, study.hierarchy) if not _usable(surfaces, scene, model).any()}
+        entered = mute - {model.key for model in steps}
+        if len(mute - entered) >= len(steps) - 1:
+            mute = entered
+        if mute:
+            silent[scene.name] = tuple(model.key for model in study.hierarchy if model.key in mute)
+    return replace(study, silent=silent or None)
+
+
+def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
+    """Every model of every scene that lacks a usable value somewhere, in the order of scenes and models."""
+    gaps = []
+    for scene in study.scenes:
+        silent = (study.silent or {}).get(scene.name, ())
+        for model in models_of(scene, study.hierarchy):
+            answered, usable = _answered(surfaces, scene, model), _usable(surfaces, scene, model)
+            lacking, unusable = int((~answered).sum()), int((answered & ~usable).sum())
+            if lacking or unusable:
+                asked = study.points(model, scene)
+                used = model.key not in silent and lacking < asked
+                notes = _notes(study, surfaces, scene, model)
+                gaps.append(Unanswered(scene.name, model.key, model.title, lacking, unusable, asked, used, notes))
+    return gaps
+
+
+def advice(study: Study, scene: Scene, model: Model, outcome: str) -> str:
+    """What an outcome of a model on a scene means, and what helps."""
+    if model.side == "entered" and outcome in (Outcome.SOLVER_FAILED, Outcome.TIME_LIMIT, Outcome.WORKER_DIED):
+        return "see what the solvers reported"
+    refused = ""
+    if outcome in (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED):  # the latter of bars that would buckle
+        refused = refusal_of(scene, model, model.tolerance(study.tolerance), study.full)
+    return refused or ADVICE[Outcome(outcome)]
+
+
+def _notes(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> tuple[OutcomeNote, ...]:
+    counts = outcome_counts(surfaces, scene.name, model.key)
+    return tuple(
+        OutcomeNote(outcome, count, advice(study, scene, model, outcome))
+        for outcome, count in counts.items()
+        if outcome != Outcome.OK
+    )
+
+
+def _answered(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
+    """At which phase pairs asked of a model every body has a value."""
+    mu = np.asarray(asked_of(surfaces, scene, model)["mu"].sel(model=model.key), float)
+    return np.asarray(np.isfinite(mu).all(axis=0))
+
+
+def _usable(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
+    """At which of them every value is known to half of itself."""
+    return np.asarray(np.isfinite(known_mu(asked_of(surfaces, scene, model), model)).all(axis=0))

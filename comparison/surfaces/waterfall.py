@@ -1,0 +1,123 @@
+"""
+The total difference of one body as signed bars that add up: what each model of the hierarchy adds.
+
+The bars are means over the phase pairs where every compared model has a value, relative to mu of the first model there.
+The mean of a sum is the sum of the means, so that the bars end at the total; medians would not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from comparison.study.study import Study
+from comparison.surfaces.budget import known_to_all, steps
+from comparison.surfaces.independent import independent_phases
+from comparison.surfaces.steps import RESOLVED, Step, step
+from reference.problem import Scene
+
+Array = NDArray[np.float64]
+NAN = float("nan")
+
+
+@dataclass(frozen=True)
+class WaterfallBar:
+    """One step, or the total; relative to mu of the first model."""
+
+    model: str  # key of the model that the step leads to
+    size: float  # signed; NaN where a model has no value
+    error: float  # error estimate of the size
+
+    @property
+    def real(self) -> bool:
+        """Whether the size is known to a fifth of itself or better (the five-fold rule)."""
+        return abs(self.size) > RESOLVED * self.error
+
+
+@dataclass(frozen=True)
+class LargestDifference:
+    """The largest absolute difference of an engine model and the first model, taken apart at its phase pair."""
+
+    bars: tuple[WaterfallBar, ...]  # up to the model that has the difference
+    total: WaterfallBar  # the difference itself
+    phases: tuple[float, float]  # (alpha1, alpha2), rad; NaN under a record or without a difference
+    phases_per_axis: int  # of the grid of phase pairs that both models were asked for; 1 under a record
+
+
+@dataclass(frozen=True)
+class Waterfall:
+    """The bars of one body of one scene."""
+
+    scene: str
+    body: int  # from 1
+    bars: tuple[WaterfallBar, ...]  # means, one per step, in the order of the models
+    total: WaterfallBar  # mean of the total difference: the sum of the bars
+    spread: float  # standard deviation of the total difference over the same phase pairs
+    points: int  # phase pairs where every compared model has a value
+    independent: int  # of these, not related by a symmetry of the scene
+    largest: LargestDifference
+
+
+def waterfall(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> Waterfall:
+    """
+    The waterfall of one body.
+
+    The error of a mean is the mean of the errors: error estimates of neighboring phase pairs have the same cause and do
+    not average out.
+    """
+    hierarchy = steps(study, surfaces, scene.name, body)
+    stride, known = known_to_all(hierarchy)
+    bars = tuple(_mean(step, known, stride) for step in hierarchy)
+    models = study.compared(scene)
+    return Waterfall(
+        scene=scene.name,
+        body=body,
+        bars=bars[:-1],
+        total=bars[-1],
+        spread=hierarchy[-1].mean(known, stride)[1],
+        points=int(known.sum()),
+        independent=independent_phases(study, scene, models, known, stride),
+        largest=largest_difference(study, surfaces, scene, body),
+    )
+
+
+def largest_difference(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> LargestDifference:
+    """
+    The largest absolute difference of any engine model and the first model, over all phase pairs where both have one.
+
+    A model on fewer phases may miss a ridge that the model before it shows: the largest difference is not always that
+    of the last model. Without an engine model it is that of the last model.
+    """
+    models = study.compared(scene)
+    later = [model for model in models[1:] if model.side == "engine"] or models[-1:]
+    totals = [step(surfaces, scene.name, "total", models[0], model, body, per=models[0]) for model in later]
+    known = [total for total in totals if total.known.any()]
+    if not known:
+        nothing = WaterfallBar(models[-1].key, NAN, NAN)
+        return LargestDifference((), nothing, (NAN, NAN), 0)
+    total = max(known, key=lambda total: float(np.abs(total.size[total.known]).max()))
+    assert total.place is not None
+    chain = models[: models.index(total.second) + 1]
+    bars = tuple(
+        _at(step(surfaces, scene.name, second.key, first, second, body, per=models[0]), total.place)
+        for first, second in pairwise(chain)
+    )
+    return LargestDifference(bars, _at(total, total.place), total.phases, len(total.size))
+
+
+def _mean(step: Step, known: NDArray[np.bool_], stride: int) -> WaterfallBar:
+    size, _ = step.mean(known, stride)
+    error = float(step.every(stride, step.uncertainty)[known].mean()) if known.any() else NAN
+    return WaterfallBar(step.second.key, size, error)
+
+
+def _at(step: Step, place: tuple[int, int]) -> WaterfallBar:
+    """The step at a place of the study's grid; NaN where it is not computed there."""
+    if place[0] % step.stride or place[1] % step.stride:
+        return WaterfallBar(step.second.key, NAN, NAN)
+    index = place[0] // step.stride, place[1] // step.stride
+    return WaterfallBar(step.second.key, float(step.size[index]), float(step.uncertainty[index]))

@@ -1,0 +1,146 @@
+"""Waterfalls of the page's first screen as bars in percent of a width, all on one scale."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from comparison.report.results import Results
+from comparison.surfaces.result import Waterfall, WaterfallBar
+from comparison.wording import difference
+
+MARGIN = 0.03  # of the scale, beyond the longest bar
+MAX_TICKS = 5
+
+
+@dataclass(frozen=True)
+class Scale:
+    """One horizontal axis: `low` and `high` are relative sizes at its ends, `ticks` round values between them."""
+
+    low: float
+    high: float
+    ticks: tuple[float, ...]
+
+    def at(self, size: float) -> float:
+        """Place of a size on the axis, percent of its length from the left."""
+        return round(100.0 * (size - self.low) / (self.high - self.low), 3)
+
+
+@dataclass(frozen=True)
+class Bar:
+    """One bar: places in percent of the width."""
+
+    model: str  # key of the model that the step leads to, or "total"
+    kind: str  # "up", "down", "total", "unreal" (not known to a fifth of itself) or "none" (no value)
+    left: float
+    width: float
+    error: tuple[float, float]  # ends of the error bar
+    end: float  # where the next bar begins
+    text: str  # size and error in words
+
+
+def bars_of(bars: Sequence[WaterfallBar], total: WaterfallBar, scale: Scale) -> list[Bar]:
+    """
+    The bars of one waterfall, each beginning where the one before it ends, and the total from zero.
+
+    Parameters
+    ----------
+    bars, total : sequence of WaterfallBar, WaterfallBar
+        Relative sizes.
+    scale : Scale
+        The axis.
+
+    Returns
+    -------
+    list of Bar
+        One per step, then the total. A step without a value has no bar and moves nothing.
+    """
+    drawn, start = [], 0.0
+    for bar in bars:
+        drawn.append(_bar(bar, bar.model, start, scale))
+        start += bar.size if math.isfinite(bar.size) else 0.0
+    return [*drawn, _bar(total, "total", 0.0, scale)]
+
+
+def scale_of(waterfalls: Iterable[tuple[Sequence[WaterfallBar], WaterfallBar]]) -> Scale:
+    """The one axis on which all these waterfalls have room, error bars included."""
+    sizes = [0.0]
+    for bars, total in waterfalls:
+        start = 0.0
+        for bar, begin in [*((bar, True) for bar in bars), (total, False)]:
+            if not math.isfinite(bar.size):
+                continue
+            end = (start if begin else 0.0) + bar.size
+            error = bar.error if math.isfinite(bar.error) else 0.0
+            sizes += [end - error, end + error]
+            start = end
+    low, high = min(sizes), max(sizes)
+    if low == high:
+        low, high = -0.01, 0.01
+    room = MARGIN * (high - low)
+    low, high = low - room, high + room
+    return Scale(low, high, tuple(_ticks(low, high)))
+
+
+def scales(results: Results) -> dict[str, Scale]:
+    """The axes of the means and of the largest differences, each one for all scenes and bodies."""
+    every = [waterfall for scene in results.scenes for waterfall in scene.waterfalls]
+    return {
+        "mean": scale_of((waterfall.bars, waterfall.total) for waterfall in every),
+        "largest": scale_of((waterfall.largest.bars, waterfall.largest.total) for waterfall in every),
+    }
+
+
+def charts(waterfall: Waterfall, scales: dict[str, Scale]) -> dict[str, list[Bar]]:
+    """The bars of the means and those at the largest difference."""
+    largest = waterfall.largest
+    return {
+        "mean": bars_of(waterfall.bars, waterfall.total, scales["mean"]),
+        "largest": bars_of(largest.bars, largest.total, scales["largest"]),
+    }
+
+
+@dataclass(frozen=True)
+class LogScale:
+    """A logarithmic axis of relative sizes; `ticks` are the places of the powers of ten, percent."""
+
+    low: float
+    high: float
+
+    def at(self, size: float) -> float:
+        """Place of a size, percent of the length; at the edge what lies beyond."""
+        if not size > self.low:
+            return 1.0
+        return round(min(99.0, 1.0 + 98.0 * math.log(size / self.low) / math.log(self.high / self.low)), 3)
+
+    @property
+    def ticks(self) -> list[float]:
+        """Places of the powers of ten."""
+        powers = range(round(math.log10(self.low)), round(math.log10(self.high)) + 1)
+        return [self.at(10.0**power) for power in powers]
+
+
+def log_scale(sizes: Iterable[float]) -> LogScale:
+    """Powers of ten around all sizes above zero."""
+    powers = [math.log10(size) for size in sizes if math.isfinite(size) and size > 0.0]
+    low, high = (math.floor(min(powers)), math.ceil(max(powers))) if powers else (-4, 0)
+    return LogScale(10.0**low, 10.0 ** max(high, low + 1))
+
+
+def _bar(bar: WaterfallBar, model: str, start: float, scale: Scale) -> Bar:
+    begin = scale.at(start)
+    if not math.isfinite(bar.size):
+        return Bar(model, "none", begin, 0.0, (begin, begin), begin, "no value")
+    end = scale.at(start + bar.size)
+    error = bar.error if math.isfinite(bar.error) else 0.0
+    ends = scale.at(start + bar.size - error), scale.at(start + bar.size + error)
+    kind = "unreal" if not bar.real else "total" if model == "total" else "up" if bar.size >= 0.0 else "down"
+    return Bar(model, kind, min(begin, end), round(abs(end - begin), 3), ends, end, difference(bar.size, error))
+
+
+def _ticks(low: float, high: float) -> list[float]:
+    rough = (high - low) / MAX_TICKS
+    power = 10.0 ** math.floor(math.log10(rough))
+    step = next(digit * power for digit in (1.0, 2.0, 5.0, 10.0) if digit * power >= rough)
+    return [number * step for number in range(math.ceil(low / step), math.floor(high / step) + 1)]
