@@ -1,71 +1,97 @@
-"""The analyses of a study, listed once: what is run, planned, reported, and can be selected by key."""
+"""The features of a study, in the order of the page: what is run, planned, reported, and selected by key."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from comparison.analyses.assumptions.validity import Assumptions
-from comparison.analyses.claims.table import Claims
-from comparison.analyses.convergence.analysis import Convergence
-from comparison.analyses.demands.analysis import DemandSurfaces
-from comparison.analyses.effective_values.analysis import EffectiveValues
-from comparison.analyses.errata.analysis import Errata
-from comparison.analyses.measured.analysis import MeasuredPeaks
+import xarray as xr
+from pydantic import Field, create_model
+
+from comparison.analyses.assumptions import feature as assumptions
+from comparison.analyses.benchmarks import feature as benchmarks
+from comparison.analyses.claims import feature as claims
+from comparison.analyses.convergence import feature as convergence
+from comparison.analyses.demands import feature as demands
+from comparison.analyses.effective_values import feature as effective_values
+from comparison.analyses.ensemble import feature as ensemble
+from comparison.analyses.errata import feature as errata
+from comparison.analyses.extremes import feature as extremes
+from comparison.analyses.families import feature as families
+from comparison.analyses.measured import feature as measured
 from comparison.analyses.motions.analysis import Motions
-from comparison.analyses.scaling.analysis import Scaling
-from comparison.analyses.worst_phases.analysis import WorstPhases
+from comparison.analyses.scaling import feature as scaling
+from comparison.analyses.tradeoff import feature as tradeoff
+from comparison.analyses.worst_phases import feature as worst_phases
+from comparison.report.building import build_report
+from comparison.report.page import BUDGET, DIFFERENCES, MODELS, OUTCOMES, PROVENANCE, SURFACES, VERIFICATION
+from comparison.report.results import Results
+from comparison.report.section import Feature, Report
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
 from comparison.study.levels import Level, levels_of
 from comparison.study.study import Study
+from comparison.surfaces.alerts import Fault
 from comparison.surfaces.completion import CompletedSurfaces
 from comparison.surfaces.figures.pictures import Pictures
 
-ANALYSES: tuple[Analysis[Any], ...] = (
-    EffectiveValues(),
-    Errata(),
-    Scaling(),
-    Convergence(),
-    Claims(),
-    Assumptions(),
-    Motions(),
-    WorstPhases(),
-    DemandSurfaces(),
-    MeasuredPeaks(),
-    CompletedSurfaces(),
-    Pictures(),
+FEATURES: tuple[Feature, ...] = (
+    SURFACES,
+    Feature("motions", analysis=Motions()),
+    families.FEATURE,
+    worst_phases.FEATURE,
+    demands.FEATURE,
+    ensemble.FEATURE,
+    DIFFERENCES,
+    BUDGET,
+    scaling.FEATURE,
+    convergence.FEATURE,
+    OUTCOMES,
+    MODELS,
+    claims.FEATURE,
+    errata.FEATURE,
+    assumptions.FEATURE,
+    measured.FEATURE,
+    benchmarks.FEATURE,
+    extremes.FEATURE,
+    tradeoff.FEATURE,
+    tradeoff.GROWTH,
+    effective_values.FEATURE,
+    VERIFICATION,
+    PROVENANCE,
+    Feature("completion", analysis=CompletedSurfaces()),
+    Feature("pictures", analysis=Pictures()),
 )
+ANALYSES: tuple[Analysis[Any], ...] = tuple(feature.analysis for feature in FEATURES if feature.analysis)
+EARLIER = tuple(feature for feature in FEATURES if feature.load)  # what other commands leave beside a report
+
+_FIELDS: dict[str, Any] = {
+    feature.key: (feature.result | None, Field(description=feature.meaning))
+    for feature in FEATURES
+    if feature.result is not None
+}
+StudyResults: type[Results] = create_model("Results", __base__=Results, __doc__=Results.__doc__, **_FIELDS)
+
+
+def report_of(
+    study: Study,
+    surfaces: xr.Dataset,
+    found: Mapping[str, Any],
+    faults: Sequence[Fault],
+    run: Mapping[str, Any],
+    **more: Any,
+) -> Report:
+    """Everything that the report of a run is made from: `build_report` with every feature."""
+    return build_report(study, surfaces, found, faults, run, FEATURES, StudyResults, **more)
 
 
 def chosen_analyses(study: Study) -> list[Analysis[Any]]:
-    """
-    Those of ANALYSES that are made of a scene of the study.
-
-    Parameters
-    ----------
-    study : Study
-
-    Returns
-    -------
-    list of Analysis
-    """
+    """Those of ANALYSES that are made of a scene of the study."""
     return [analysis for analysis in ANALYSES if study.selecting(analysis.key).scenes]
 
 
 def first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:
-    """
-    What can be computed without knowing the surfaces.
-
-    Parameters
-    ----------
-    study : Study
-    analyses : sequence of Analysis
-
-    Returns
-    -------
-    list of Task
-    """
+    """What can be computed without knowing the surfaces."""
     return [
         task
         for analysis in analyses
@@ -75,15 +101,5 @@ def first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:
 
 
 def levels(study: Study) -> list[Level]:
-    """
-    The levels of a study, from coarse to fine.
-
-    Parameters
-    ----------
-    study : Study
-
-    Returns
-    -------
-    list of Level
-    """
+    """The levels of a study, from coarse to fine."""
     return levels_of(study, {analysis.key: analysis.level for analysis in chosen_analyses(study)})

@@ -20,12 +20,12 @@ from rich.console import Console
 from comparison.analyses.claims.cases import CASES
 from comparison.analyses.claims.evidence import without_value
 from comparison.analyses.claims.figure import draw_reading, draw_spike
-from comparison.analyses.claims.forced_ratio import forced_ratios
 from comparison.analyses.claims.readings import LIGHT_BODY, LITERAL, OWN_PERIOD, READINGS, Reading
 from comparison.analyses.claims.search import RANGES, SEARCH_GRID, Selection, best_readings, searched_readings
 from comparison.analyses.claims.settled import GRIDS, Settled, Settling
 from comparison.analyses.claims.spike import PHASES, no_spike, spike_over_the_step
 from comparison.analyses.claims.table import GRID, SIGNS, Claims, ClaimTable
+from comparison.analyses.effective_values.forced_ratio import forced_ratios
 from comparison.runner.cache import Cache, store_beside
 from comparison.runner.executors import cores
 from comparison.runner.processes import process_pool

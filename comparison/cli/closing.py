@@ -70,7 +70,7 @@ def print_closing(console: Console, results: Results, options: Options, words: S
         console.print(f"{LABELS[alert.kind]}: {alert.line}", style=color, soft_wrap=True)
     for headline in (headline for scene in results.scenes for headline in scene.headlines):
         console.print(headline.sentence, soft_wrap=True)
-    if results.measured is not None:
+    if results.of("measured") is not None:
         console.print(f"{results.measurements}.", soft_wrap=True)
     console.print(f"Report: {report / 'index.html'}", soft_wrap=True)  # a path is copied whole
     console.print(f"In print: {results.no_pdf or report / 'report.pdf'}", soft_wrap=True)

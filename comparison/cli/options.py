@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 
-from comparison.analyses.earlier_results import TAKEN_UP
 from comparison.cli.arguments import CommandParser, jobs, number, whole_number
 from comparison.cli.entered import add_models, entered_models
+from comparison.registry import EARLIER
 from comparison.runner.cache import refuse_foreign_store
 from comparison.runner.output import destination, refuse_foreign_report
 from comparison.study.models import Model
@@ -99,10 +99,11 @@ def parsed(argv: Sequence[str]) -> Options:
         raise SceneError("command line", "--budget", words.budget, "needs a timer that this system does not have")
     if not options.plan:
         try:
-            for _, load in TAKEN_UP.values():
-                load(options.out)
+            for feature in EARLIER:
+                assert feature.load is not None
+                feature.load(options.out)
         except (OSError, ValueError) as error:
-            rule = f"the report cannot take up {error}"
+            rule = f"the report cannot show {error}"
             raise SceneError("command line", "--out", str(options.out), rule) from None
         refuse_foreign_report(options.out)
         refuse_foreign_store(options.out)

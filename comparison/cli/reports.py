@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -11,21 +11,20 @@ from typing import Any
 
 import xarray as xr
 
-from comparison.analyses.earlier_results import TAKEN_UP
 from comparison.cli.arguments import writing
 from comparison.cli.options import Options
 from comparison.cli.start import Clock
-from comparison.registry import chosen_analyses, first_tasks
-from comparison.report.assemble import assemble
-from comparison.report.findings import Fault, Findings, collect_findings
+from comparison.registry import EARLIER, chosen_analyses, first_tasks, report_of
 from comparison.report.pdf import why_no_pdf
 from comparison.report.results import Results
+from comparison.report.section import Feature, Report
 from comparison.runner.output import atomic_replace, on_stderr
 from comparison.runner.provenance import provenance
 from comparison.runner.resume import command_line
 from comparison.runner.runner import Computed, Runner
 from comparison.study.levels import Level
 from comparison.study.study import Study
+from comparison.surfaces.alerts import Fault
 from comparison.surfaces.surfaces import labeled_surfaces
 from comparison.surfaces.unanswered import with_silent_models
 
@@ -95,19 +94,20 @@ class Reports:
 
     def write(self, complete: Complete, runner: Runner, stopped: bool = False) -> Results:
         """Write the report of a level; that of the last one, unless the run was ended, with drawings and a PDF."""
-        from comparison.report.report import drawing_tasks, write_report  # plotting: not needed to refuse or to plan
+        from comparison.report.writing import drawing_tasks, write_report  # plotting: not needed to refuse or to plan
 
         begin = time.monotonic()
         final = complete.level.last and not stopped
-        results, findings = self._said(complete, runner, why_no_pdf() if final else WITH_THE_LAST)
+        report = self._report(complete, runner, why_no_pdf() if final else WITH_THE_LAST)
+        results = report.results
         if final:
-            drawings = drawing_tasks(results, findings)
+            drawings = drawing_tasks(report)
             runner.run_tasks(drawings)
             files = {task.key: runner.results[task].value for task in drawings}
-            findings = replace(findings, drawings={key: value for key, value in files.items() if value})
-        with writing(self._options.out), atomic_replace(self.place) as report:
-            write_report(report.folder, results, findings)
-        self.place = self._options.out if report.place == self._options.out.resolve() else report.place
+            report = replace(report, drawings={key: value for key, value in files.items() if value})
+        with writing(self._options.out), atomic_replace(self.place) as staged:
+            write_report(staged.folder, report)
+        self.place = self._options.out if staged.place == self._options.out.resolve() else staged.place
         self.results, self.level, self._last = results, complete.level, time.monotonic()
         self.seconds = max(self.seconds, self._last - begin)
         return results
@@ -128,7 +128,7 @@ class Reports:
             study = replace(complete.study, selection=whole.selection.without(unfinished))
             self.write(replace(complete, study=study), runner, stopped=True)
 
-    def _said(self, complete: Complete, runner: Runner, no_pdf: str) -> tuple[Results, Findings]:
+    def _report(self, complete: Complete, runner: Runner, no_pdf: str) -> Report:
         study, surfaces, took = complete.study, complete.surfaces, Clock.now().since(self._began)
         run: dict[str, Any] = {
             "command": command_line(self._words),
@@ -146,23 +146,15 @@ class Reports:
             "levels": complete.level.of,
             "provenance": provenance(),
         }
-        findings = collect_findings(
-            study,
-            surfaces,
-            {
-                analysis.key: analysis.collect(study.selecting(analysis.key), surfaces, runner.results)
-                for analysis in chosen_analyses(study)
-            },
-            _faults(study, complete.computed),
-            run,
-            no_pdf=no_pdf,
-            families=[family for family in self._options.families if len(family.scenes) > 1] or None,
-            **{
-                name: None if analysis in study.absent else _taken_up(load, self._options.out)
-                for name, (analysis, load) in TAKEN_UP.items()
-            },
-        )
-        return assemble(findings), findings
+        found = {
+            analysis.key: analysis.collect(study.selecting(analysis.key), surfaces, runner.results)
+            for analysis in chosen_analyses(study)
+        }
+        kept = [feature for feature in EARLIER if feature.selection not in study.absent]
+        found |= {feature.key: _loaded(feature, self._options.out) for feature in kept}
+        families = [family for family in self._options.families if len(family.scenes) > 1]
+        faults = _faults(study, complete.computed)
+        return report_of(study, surfaces, found, faults, run, no_pdf=no_pdf, families=families)
 
 
 def _faults(study: Study, computed: Computed) -> list[Fault]:
@@ -176,10 +168,11 @@ def _faults(study: Study, computed: Computed) -> list[Fault]:
     return sorted(faults, key=lambda fault: fault.line)
 
 
-def _taken_up(load: Callable[[Path], Any], out: Path) -> Any:
+def _loaded(feature: Feature, out: Path) -> Any:
     """What another command left beside the report; None for a file that has come since and cannot be read."""
+    assert feature.load is not None
     try:
-        return load(out)
+        return feature.load(out)
     except (OSError, ValueError) as error:
         on_stderr(str(error))
         return None

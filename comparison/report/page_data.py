@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from comparison.analyses.motions.page_data import contact_geometry, places, spectrum_axis, starts_of
 from comparison.analyses.worst_phases.analysis import nearest_search
-from comparison.report.findings import Findings
+from comparison.report.section import Report
 from comparison.study.models import Model, Pair, models_of
 from comparison.surfaces.completion import Completion
 from comparison.surfaces.differences import pair_step
@@ -25,7 +25,7 @@ Rows = list[list[float | None]]
 DIGITS, ERROR_DIGITS = 7, 2  # significant, of mu and of an error
 
 
-def page_data(findings: Findings) -> str:
+def page_data(report: Report) -> str:
     """
     JSON of all that is drawn; NaN is null.
 
@@ -37,8 +37,8 @@ def page_data(findings: Findings) -> str:
     why, and motions: see `motion_data`); spectra (`spectrum_axis`). A surface is a list of rows, one per alpha1, of
     values, one per alpha2.
     """
-    study = findings.study
-    starts = starts_of(findings.motions or [])
+    study = report.study
+    starts = starts_of(report.found.get("motions") or [])
     data = {
         "grid": study.grid,
         "titles": {model.key: model.title for model in study.hierarchy},
@@ -50,11 +50,11 @@ def page_data(findings: Findings) -> str:
                 "duration": scene.duration,
                 "recorded": scene.recorded,
                 "flat": scene.flat,
-                "pairs": [_pair(findings, scene, pair) for pair in study.pairs(scene)],
-                "models": _models(findings, scene),
+                "pairs": [_pair(report, scene, pair) for pair in study.pairs(scene)],
+                "models": _models(report, scene),
                 "contact": contact_geometry(scene),
-                "places": list(places(findings, scene, starts)),
-                "spectra": spectrum_axis(findings, scene),
+                "places": list(places(report, scene, starts)),
+                "spectra": spectrum_axis(report, scene),
             }
             for scene in study.scenes
         ],
@@ -70,9 +70,9 @@ def crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[f
     return [np.round(np.asarray(line), 4).tolist() for line in lines]
 
 
-def _pair(findings: Findings, scene: Scene, pair: Pair) -> dict[str, Any]:
-    surfaces = not scene.recorded and _surface(findings, scene, pair.first) and _surface(findings, scene, pair.second)
-    steps = [pair_step(findings.surfaces, scene.name, pair, body) for body in range(1, len(scene.bodies) + 1)]
+def _pair(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
+    surfaces = not scene.recorded and _surface(report, scene, pair.first) and _surface(report, scene, pair.second)
+    steps = [pair_step(report.surfaces, scene.name, pair, body) for body in range(1, len(scene.bodies) + 1)]
     return {
         "key": pair.key,
         "title": pair.title,
@@ -85,21 +85,19 @@ def _pair(findings: Findings, scene: Scene, pair: Pair) -> dict[str, Any]:
     }
 
 
-def _surface(findings: Findings, scene: Scene, model: Model) -> bool:
+def _surface(report: Report, scene: Scene, model: Model) -> bool:
     """Whether the values of a model are drawn as a surface as they are: what may need completing is not."""
-    incomplete = any((each.scene, each.model) == (scene.name, model.key) for each in findings.completions)
+    incomplete = any((each.scene, each.model) == (scene.name, model.key) for each in report.completions)
     return model.side != "entered" and not incomplete
 
 
-def _models(findings: Findings, scene: Scene) -> dict[str, Any]:
-    completed = {(each.model, each.body): each for each in findings.completions if each.scene == scene.name}
-    return {
-        model.key: _model(findings, scene, completed, model) for model in models_of(scene, findings.study.hierarchy)
-    }
+def _models(report: Report, scene: Scene) -> dict[str, Any]:
+    completed = {(each.model, each.body): each for each in report.completions if each.scene == scene.name}
+    return {model.key: _model(report, scene, completed, model) for model in models_of(scene, report.study.hierarchy)}
 
 
 def _model(
-    findings: Findings, scene: Scene, completed: Mapping[tuple[str, int], Completion], model: Model
+    report: Report, scene: Scene, completed: Mapping[tuple[str, int], Completion], model: Model
 ) -> dict[str, Any]:
     """
     One model of a scene.
@@ -111,27 +109,27 @@ def _model(
     worst: per body, null or alpha1, alpha2 (rad), the largest mu over all phases, and the model that was searched: this
     one or one near it.
     """
-    data = common_phases(findings.surfaces, scene.name, [model.key]).sel(model=model.key)
+    data = common_phases(report.surfaces, scene.name, [model.key]).sel(model=model.key)
     bodies = range(1, len(scene.bodies) + 1)
-    surface = not scene.recorded and _surface(findings, scene, model)
+    surface = not scene.recorded and _surface(report, scene, model)
 
     def listed(name: str, digits: int) -> list[Rows]:
         return [_rows(np.asarray(data[name].sel(body=body), float), digits) for body in bodies]
 
     return {
-        "phases": len(findings.study.axis(model, scene)),
-        "computed": len(findings.study.solved(scene, model)),
+        "phases": len(report.study.axis(model, scene)),
+        "computed": len(report.study.solved(scene, model)),
         "surface": surface,
         "mu": listed("mu", DIGITS),
         "error": None if surface else listed("error", ERROR_DIGITS),
-        "worst": [_worst(findings, scene, model, body) for body in bodies],
+        "worst": [_worst(report, scene, model, body) for body in bodies],
         "completed": [_completed(completed.get((model.key, body))) for body in bodies],
     }
 
 
-def _worst(findings: Findings, scene: Scene, model: Model, body: int) -> list[float | str] | None:
-    keys = [each.key for each in models_of(scene, findings.study.hierarchy)]
-    worst = nearest_search(findings.worst_phases or (), keys, scene.name, model.key, body)
+def _worst(report: Report, scene: Scene, model: Model, body: int) -> list[float | str] | None:
+    keys = [each.key for each in models_of(scene, report.study.hierarchy)]
+    worst = nearest_search(report.found.get("worst_phases") or (), keys, scene.name, model.key, body)
     if worst is None:
         return None
     return [*(round(phase, 4) for phase in worst.phases), float(f"{worst.value:.{DIGITS}g}"), worst.model]

@@ -13,10 +13,10 @@ from pathlib import Path
 
 from comparison.analyses.worst_phases.analysis import nearest_search
 from comparison.report.drawings import drawn, map_task
-from comparison.report.findings import Findings
 from comparison.report.pdf_data import largest_headlines, pdf_data, short_title, size_of
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
+from comparison.report.section import Report
 from comparison.runner.task import Task
 from comparison.study.models import Model
 from comparison.surfaces.result import Headline
@@ -32,7 +32,7 @@ def why_no_pdf() -> str:
     return ""
 
 
-def write_pdf(path: Path, results: Results, findings: Findings) -> None:
+def write_pdf(path: Path, report: Report) -> None:
     """
     Write report.pdf, the same bytes for the same results.
 
@@ -40,8 +40,8 @@ def write_pdf(path: Path, results: Results, findings: Findings) -> None:
     """
     import typst  # an optional extra
 
-    shown = largest_headlines(results)
-    maps = [(about, drawn(findings, task)[0][1]) for about, task in map_tasks(results, findings)]
+    results, shown = report.results, largest_headlines(report.results)
+    maps = [(about, drawn(report, task)[0][1]) for about, task in map_tasks(report)]
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         source = resources.files("comparison.report") / "templates" / TEMPLATE
@@ -54,12 +54,13 @@ def write_pdf(path: Path, results: Results, findings: Findings) -> None:
         typst.compile(str(folder / TEMPLATE), output=str(path), root=str(folder))
 
 
-def map_tasks(results: Results, findings: Findings) -> list[tuple[dict[str, str], Task]]:
+def map_tasks(report: Report) -> list[tuple[dict[str, str], Task]]:
     """Title, note and task of the maps of the scenes with phases that have the largest differences."""
+    results = report.results
     largest: dict[str, list[Headline]] = {}
     for headline in sorted(largest_headlines(results), key=size_of, reverse=True):
         largest.setdefault(headline.scene, []).append(headline)
-    study, tasks = findings.study, []
+    study, tasks = report.study, []
     phased = [name for name in largest if any(scene.name == name for scene in study.phased)][:MAX_MAPS]
     for scene, result in zip(study.scenes, results.scenes):
         if scene.name not in phased or "surfaces" not in result.analyses:
@@ -77,7 +78,7 @@ def map_tasks(results: Results, findings: Findings) -> list[tuple[dict[str, str]
         )
         note += "; ".join(_highest(results, result, model, body) for body in bodies for model in (models[0], second))
         about = {"title": short_title(result), "note": f"{note}."}
-        tasks.append((about, map_task(findings, scene, (models[0], second), bodies)))
+        tasks.append((about, map_task(report, scene, (models[0], second), bodies)))
     return tasks
 
 
@@ -86,7 +87,7 @@ def _highest(results: Results, scene: SceneResult, model: Model, body: int) -> s
     count = scene.models[model.key].phases_per_axis
     grid = next(each.mu for each in scene.grid_maxima if (each.model, each.body) == (model.key, body))
     largest = f"{grid:.4g} of {count} × {count} phases" if isfinite(grid) else "none"
-    worst = nearest_search(results.worst_phases or (), [*scene.models], scene.name, model.key, body)
+    worst = nearest_search(results.of("worst_phases") or (), [*scene.models], scene.name, model.key, body)
     titles = {each.key: each.title for each in results.models}
     where = "" if worst is None or worst.model == model.key else f" by the {titles[worst.model]}"
     over = "not searched over all phases" if worst is None else f"{worst.value:.4g} over all phases{where}"

@@ -2,20 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Literal
+from collections.abc import Callable, Sequence
+from typing import Literal, NamedTuple
 
-from comparison.report.findings import Findings
+import xarray as xr
+
 from comparison.study.models import Model, models_of
+from comparison.study.study import Study
+from comparison.surfaces.acceptance import Limit
 from comparison.surfaces.alert_result import Alert
 from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share
+from comparison.surfaces.unanswered import Unanswered
 from reference.problem import Scene
 
 NEARLY_ALL = 0.9  # of the travel, that a reader must know of
 WIDE = 0.5  # of rho: a displacement of the platform from the middle that a reader must know of
 
 
-def alerts(findings: Findings) -> list[Alert]:
+class Fault(NamedTuple):
+    """What a solver reported."""
+
+    scene: str  # name of the scene
+    text: str  # model and error message
+
+    @property
+    def line(self) -> str:
+        """With the name of the scene."""
+        return f"{self.scene}, {self.text}"
+
+
+def alerts(
+    study: Study,
+    surfaces: xr.Dataset,
+    unanswered: Sequence[Unanswered],
+    limits: Sequence[Limit],
+    faults: Sequence[Fault],
+) -> list[Alert]:
     """
     Every alert of a run, red before amber, otherwise in the order of the kinds and scenes.
 
@@ -23,13 +45,15 @@ def alerts(findings: Findings) -> list[Alert]:
     phase pairs, a solver reported an error, or a platform moves so far that the report says so: over half of rho, or
     nearly its travel.
     """
-    listed = [*_gaps(findings), *_limits(findings), *_faults(findings), *_swings(findings), *_travels(findings)]
+    faulty = [Alert(level="amber", kind="fault", scene=fault.scene, text=fault.text, help="") for fault in faults]
+    moving = [*_swings(study, surfaces), *_travels(study, surfaces)]
+    listed = [*_gaps(unanswered), *_broken(limits), *faulty, *moving]
     return sorted(listed, key=lambda alert: alert.level != "red")
 
 
-def _gaps(findings: Findings) -> list[Alert]:
+def _gaps(unanswered: Sequence[Unanswered]) -> list[Alert]:
     rows = []
-    for lacking in findings.unanswered:
+    for lacking in unanswered:
         refused = lacking.points + lacking.unusable == lacking.asked
         rest = "" if lacking.used else "; comparisons leave this model out"
         outcomes = ", ".join(
@@ -48,7 +72,7 @@ def _gaps(findings: Findings) -> list[Alert]:
     return rows
 
 
-def _limits(findings: Findings) -> list[Alert]:
+def _broken(limits: Sequence[Limit]) -> list[Alert]:
     return [
         Alert(
             level="red",
@@ -57,33 +81,27 @@ def _limits(findings: Findings) -> list[Alert]:
             text=text,
             help="read the cause of the difference, then correct the scene or the limit in its [acceptance] table",
         )
-        for limit in findings.limits
+        for limit in limits
         for text in limit.broken_texts
     ]
 
 
-def _faults(findings: Findings) -> list[Alert]:
-    return [
-        Alert(level="amber", kind="fault", scene=fault.scene, text=fault.text, help="") for fault in findings.faults
-    ]
-
-
-def _swings(findings: Findings) -> list[Alert]:
+def _swings(study: Study, surfaces: xr.Dataset) -> list[Alert]:
     return _moving_far(
-        findings,
+        study,
         "swing",
-        lambda scene, model: largest_cap_share(findings.surfaces, scene.name, model.key),
+        lambda scene, model: largest_cap_share(surfaces, scene.name, model.key),
         WIDE,
         "moves up to {:.1f} % of rho from the middle",
         "the model assumes a cap that reaches so far: compare with the isolator that is to be built",
     )
 
 
-def _travels(findings: Findings) -> list[Alert]:
+def _travels(study: Study, surfaces: xr.Dataset) -> list[Alert]:
     return _moving_far(
-        findings,
+        study,
         "travel",
-        lambda scene, model: largest_travel_share(findings.surfaces, scene, model.key),
+        lambda scene, model: largest_travel_share(surfaces, scene, model.key),
         NEARLY_ALL,
         "uses up to {:.1f} % of the isolator's travel",
         "a larger displacement ends the motion as travel reached",
@@ -91,7 +109,7 @@ def _travels(findings: Findings) -> list[Alert]:
 
 
 def _moving_far(
-    findings: Findings,
+    study: Study,
     kind: Literal["swing", "travel"],
     share_of: Callable[[Scene, Model], float],
     limit: float,
@@ -99,7 +117,6 @@ def _moving_far(
     advice: str,
 ) -> list[Alert]:
     """Models whose platform moves by more than a share of what it may."""
-    study = findings.study
     return [
         Alert(
             level="amber",

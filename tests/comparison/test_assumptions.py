@@ -14,6 +14,7 @@ from known_analyses import collected
 from matplotlib.image import imread
 
 from comparison.analyses.assumptions.command import main
+from comparison.analyses.assumptions.feature import figure_name
 from comparison.analyses.assumptions.figure import draw_assumptions
 from comparison.analyses.assumptions.validity import ASSUMPTIONS, Assumptions, ValidityRanges, describe
 from comparison.analyses.assumptions.variations import (
@@ -29,7 +30,6 @@ from comparison.analyses.assumptions.variations import (
 )
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
-from comparison.surfaces.figures.file_names import assumption_figure_name
 from multibody import amplification
 from reference.problem import Scene, load_scene, parse_scene
 
@@ -129,7 +129,7 @@ def test_a_model_that_raises_leaves_no_value_and_says_why() -> None:
 
 def test_the_picture_shows_what_was_tried(tmp_path: Path) -> None:
     cells = [_cell(Variation(ring, height), 0.02 * height / ring, 0.0) for ring in (0.5, 1.0) for height in (0.0, 1.0)]
-    path = tmp_path / assumption_figure_name(STATED)
+    path = tmp_path / figure_name(STATED)
     draw_assumptions(path, STATED, [*cells, _cell(Variation(2.0, 1.0), float("nan"), 0.0)])
     assert imread(path)[..., :3].std() > 0.1
 

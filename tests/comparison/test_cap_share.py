@@ -9,7 +9,6 @@ import pytest
 
 import multibody
 import reference
-from comparison.report.findings import collect_findings
 from comparison.runner.cache import Cache
 from comparison.runner.keys import batch_key, cached_batch
 from comparison.runner.splitting import merge, split_batch
@@ -86,7 +85,7 @@ def test_the_share_is_stored_joined_labeled_and_said(tmp_path: Path) -> None:
     surfaces = labeled_surfaces(study, batches, answers)
     largest = max(answer.displacement.max() for answer in answers) / scene.radius
     assert largest_cap_share(surfaces, scene.name, MODEL_HIERARCHY[0].key) == largest > 0.5
-    swings = [alert for alert in alerts(collect_findings(study, surfaces, {}, [], {})) if alert.kind == "swing"]
+    swings = [alert for alert in alerts(study, surfaces, [], [], []) if alert.kind == "swing"]
     assert [alert.level for alert in swings] == ["amber"]
     assert f"{100.0 * largest:.1f} % of rho" in swings[0].text
 

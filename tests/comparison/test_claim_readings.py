@@ -14,7 +14,6 @@ from comparison.analyses.claims.checks import Finding, Verdict
 from comparison.analyses.claims.claims import CLAIMS
 from comparison.analyses.claims.evidence import Evidence, Question, gathered
 from comparison.analyses.claims.figure import PANELS, draw_reading, draw_spike
-from comparison.analyses.claims.forced_ratio import forced_ratios
 from comparison.analyses.claims.literal import literal_peaks
 from comparison.analyses.claims.peaks_and_valleys import Counts, profiled
 from comparison.analyses.claims.readings import LIGHT_BODY, LITERAL, OWN_PERIOD, READINGS, Reading
@@ -22,6 +21,7 @@ from comparison.analyses.claims.search import BEST, RANGES, Selection, best_read
 from comparison.analyses.claims.settled import Settled, describe
 from comparison.analyses.claims.spike import Spike, spike_over_the_step
 from comparison.analyses.claims.table import ClaimTable
+from comparison.analyses.effective_values.forced_ratio import forced_ratios
 from reference import amplification, load_scene, modes
 from reference.problem import ground_peak, phase_grid
 

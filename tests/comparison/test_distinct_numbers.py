@@ -25,8 +25,7 @@ from test_pdf import flat, text_of
 from test_texts_of_scenes import RUN
 
 from comparison.analyses.worst_phases.analysis import Worst
-from comparison.report.assemble import assemble
-from comparison.report.findings import collect_findings
+from comparison.registry import report_of
 from comparison.report.page_data import page_data
 from comparison.report.pdf import map_tasks
 from comparison.run import main
@@ -373,8 +372,8 @@ def test_a_largest_value_names_its_grid_and_the_search_over_all_phases(
         Worst("fig3-I", "exact", "amplification", 1, value=8.765, phases=(1.0, 2.0)),
         Worst("fig3-I", "translational", "amplification", 1, value=7.654, phases=(1.1, 2.1)),
     ]
-    findings = collect_findings(study, surfaces, {"worst_phases": searched}, [], RUN)
-    [(about, _)] = map_tasks(assemble(findings), findings)
+    report = report_of(study, surfaces, {"worst_phases": searched}, [], RUN)
+    [(about, _)] = map_tasks(report)
     fine, coarse = heights("small", 1, GRID).max(), heights("spatial", 1, COARSE).max()
     for words in (
         f"μ_1, small equations: {fine:.4g} of 8 × 8 phases, 8.765 over all phases by the exact equations",
@@ -382,6 +381,6 @@ def test_a_largest_value_names_its_grid_and_the_search_over_all_phases(
         f"μ_2, small equations: {heights('small', 2, GRID).max():.4g} of 8 × 8 phases, not searched over all phases",
     ):
         assert words in about["note"]
-    data = json.loads(page_data(findings))["scenes"][0]["models"]
+    data = json.loads(page_data(report))["scenes"][0]["models"]
     assert data["small"]["worst"] == [[1.0, 2.0, 8.765, "exact"], None]
     assert data["spatial"]["worst"] == [[1.1, 2.1, 7.654, "translational"], None]

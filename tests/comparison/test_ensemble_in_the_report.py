@@ -11,12 +11,12 @@ import pytest
 from conftest import Run
 from jsonschema import Draft202012Validator
 
+from comparison.analyses.ensemble.feature import ensemble_panels
 from comparison.analyses.ensemble.result import FILE, SCHEMA, STORED, StoredCurve, StoredEngine, StoredEnsemble
 from comparison.analyses.ensemble.result import StoredDifference as Difference
 from comparison.analyses.ensemble.result import StoredFractile as Fractile
 from comparison.analyses.ensemble.result import StoredStripe as Stripe
-from comparison.report.page_plots import ensemble_panels
-from comparison.report.results import Results
+from comparison.registry import StudyResults
 from comparison.runner.output import publish
 
 SMALL = ["fig3-I", "--grid", "2"]
@@ -59,8 +59,8 @@ def test_a_panel_in_mm_has_a_thousand_times_the_numbers_in_m(command: Callable[.
     report = command(*SMALL).report
     publish(report, {FILE: STORED.as_json(three_motions())}, "a test")
     command(*SMALL)
-    results = Results.model_validate_json((report / "summary.json").read_bytes())
-    (panel,) = (panel for panel in ensemble_panels(results) if panel["title"] == "isolator displacement")
+    results = StudyResults.model_validate_json((report / "summary.json").read_bytes())
+    (panel,) = (panel for panel in ensemble_panels(results.of("ensemble")) if panel["title"] == "isolator displacement")
     assert panel["plot"]["y"]["title"] == "isolator displacement, mm"
     motions, (band,), (engine,) = (
         [line for line in panel["plot"]["series"] if line["name"].startswith(name)]

@@ -17,11 +17,10 @@ from test_texts_of_scenes import RUN
 
 from comparison.analyses.demands.analysis import DemandStatistics, Extreme
 from comparison.analyses.families.analysis import family_demands, family_demands_over_phases, family_steps
+from comparison.analyses.families.feature import family_panels
 from comparison.analyses.families.figure import draw_family, family_figure_name
 from comparison.analyses.motions.analysis import Place, StoredMotion
-from comparison.report.assemble import assemble
-from comparison.report.findings import collect_findings
-from comparison.report.page_plots import family_panels
+from comparison.registry import report_of
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
 from comparison.surfaces.budget import budget
@@ -94,7 +93,7 @@ def test_the_results_have_every_curve_and_step_over_the_value_that_runs(file: Pa
     study = Study(family.scenes, 4, 1e-3, fake_hierarchy(gap=0.01))
     surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
     surfaces["mu"].loc[{"scene": family.scenes[1].name, "model": "translational"}] = np.nan
-    results = assemble(collect_findings(study, surfaces, {}, [], RUN, families=[family]))
+    results = report_of(study, surfaces, {}, [], RUN, families=[family]).results
     assert results.families is not None
     curves = {(curve.model, curve.body): curve for curve in results.families[0].curves}
     assert len(curves) == 2 * len(study.hierarchy)
@@ -159,7 +158,7 @@ def test_a_value_that_runs_over_decades_has_a_logarithmic_axis(file: Path) -> No
     family = load_family(file)
     study = Study(family.scenes, 2, 1e-3, fake_hierarchy())
     surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
-    results = assemble(collect_findings(study, surfaces, {}, [], RUN, families=[family]))
+    results = report_of(study, surfaces, {}, [], RUN, families=[family]).results
     assert results.families is not None
 
     def axis(*values: float) -> dict[str, object]:
@@ -176,7 +175,7 @@ def test_of_many_named_values_some_are_named_on_the_axis(file: Path) -> None:
     family = load_family(file)
     study = Study(family.scenes, 2, 1e-3, fake_hierarchy())
     surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
-    results = assemble(collect_findings(study, surfaces, {}, [], RUN, families=[family]))
+    results = report_of(study, surfaces, {}, [], RUN, families=[family]).results
     assert results.families is not None
 
     def ticks(count: int) -> list[list[object]]:

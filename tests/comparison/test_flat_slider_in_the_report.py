@@ -14,7 +14,7 @@ from jsonschema import Draft202012Validator
 from comparison.analyses.effective_values.analysis import read_back
 from comparison.analyses.errata.analysis import ERRATA
 from comparison.analyses.motions.result import Effective
-from comparison.report.results import Results
+from comparison.registry import StudyResults
 from comparison.study.models import MODEL_HIERARCHY, models_of
 from multibody.film import drawing
 from reference import demands, trajectory
@@ -54,7 +54,7 @@ def test_the_report_of_a_flat_slider_is_valid_json_and_names_it(command: Callabl
     summary = json.loads(text, parse_constant=lambda word: pytest.fail(f"{word} is no JSON"))
     schema = json.loads((done.report / "summary.schema.json").read_text(encoding="utf-8"))
     assert [error.message for error in Draft202012Validator(schema).iter_errors(summary)] == []
-    assert json.loads(Results.model_validate_json(text).as_json()) == summary
+    assert json.loads(StudyResults.model_validate_json(text).as_json()) == summary
     assert "flat slider" in (done.report / "index.html").read_text(encoding="utf-8")
 
 

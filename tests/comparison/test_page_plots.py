@@ -8,10 +8,12 @@ from dataclasses import replace
 import pytest
 
 from comparison.analyses.families.result import Trend
+from comparison.analyses.tradeoff.feature import tradeoff_answers, tradeoff_panels
 from comparison.analyses.tradeoff.trade import Answered, Entry, Trade
+from comparison.analyses.trend_plots import trend_panels
 from comparison.report.glossary import GLOSSARY, emphasized, explained
 from comparison.report.page import content_policy
-from comparison.report.page_plots import MAX_CURVES, tradeoff_answers, tradeoff_panels, trend_panels
+from comparison.report.plots import MAX_CURVES
 
 
 def _entry(method: str, seconds: float, error: float | None, value: float = 1e-3) -> Entry:

@@ -13,13 +13,13 @@ from pypdf import PdfReader
 from test_texts_of_scenes import RUN
 
 from comparison.analyses.demands.pdf import demand_rows
+from comparison.registry import report_of
 from comparison.report import pdf
-from comparison.report.assemble import assemble
-from comparison.report.findings import Fault, Findings, collect_findings
-from comparison.report.results import Results
+from comparison.report.section import Report
 from comparison.study.batches import execute_batch
 from comparison.study.models import Model
 from comparison.study.study import Study
+from comparison.surfaces.alerts import Fault
 from comparison.surfaces.surfaces import labeled_surfaces
 from comparison.surfaces.unanswered import with_silent_models
 from reference.problem import Scene, load_scene
@@ -27,12 +27,11 @@ from reference.problem import Scene, load_scene
 SCENES = ("fig3-I", "fig3-II", "fig4-dry", "fig4-viscous")
 
 
-def studied(scenes: list[Scene], hierarchy: tuple[Model, ...], grid: int = 4) -> tuple[Results, Findings]:
+def studied(scenes: list[Scene], hierarchy: tuple[Model, ...], grid: int = 4) -> Report:
     study = Study(tuple(scenes), grid, 1e-3, hierarchy)
     surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
     study = with_silent_models(study, surfaces)
-    findings = collect_findings(study, surfaces, {}, [Fault("fig3-I", "engine: it broke")], RUN)
-    return assemble(findings), findings
+    return report_of(study, surfaces, {}, [Fault("fig3-I", "engine: it broke")], RUN)
 
 
 def _called(scene: Scene, name: str, title: str) -> Scene:
@@ -53,11 +52,11 @@ def flat(text: str) -> str:
 
 @pytest.mark.long
 def test_the_papers_scenes_are_on_two_to_four_pages_with_every_sentence(tmp_path: Path) -> None:
-    results, findings = studied([load_scene(name) for name in SCENES], fake_hierarchy(gap=0.01), grid=24)
-    pdf.write_pdf(tmp_path / "report.pdf", results, findings)
+    report = studied([load_scene(name) for name in SCENES], fake_hierarchy(gap=0.01), grid=24)
+    pdf.write_pdf(tmp_path / "report.pdf", report)
     pages, text = text_of(tmp_path / "report.pdf")
     assert 2 <= pages <= 4
-    for scene in results.scenes:
+    for scene in report.results.scenes:
         for headline in scene.headlines:
             assert flat(headline.sentence.removeprefix(f"{scene.name}, ")) in flat(text)
     for words in ("Provenance", "acceptance limits are broken", "cross-verified", "translational engine", "it broke"):
@@ -77,12 +76,11 @@ def test_any_study_has_two_to_four_pages(case: str, tmp_path: Path) -> None:
     if case == "many":
         title = "A long title of a scene of a user. " * 20
         scenes = [_called(scene, f"scene{number}", title) for number in range(30)]
-    results, findings = studied(scenes, hierarchy, 2)
+    report = studied(scenes, hierarchy, 2)
     if case == "nothing":
-        surfaces = findings.surfaces.assign(mu=np.nan * findings.surfaces["mu"])
-        findings = collect_findings(findings.study, surfaces, {}, [], RUN)
-        results = assemble(findings)
-    pdf.write_pdf(tmp_path / "report.pdf", results, findings)
+        surfaces = report.surfaces.assign(mu=np.nan * report.surfaces["mu"])
+        report = report_of(report.study, surfaces, {}, [], RUN)
+    pdf.write_pdf(tmp_path / "report.pdf", report)
     pages, text = text_of(tmp_path / "report.pdf")
     assert 2 <= pages <= 4
     assert "nan" not in text.split()
@@ -93,9 +91,9 @@ def test_any_study_has_two_to_four_pages(case: str, tmp_path: Path) -> None:
 def test_titles_are_text_and_never_markup_and_the_same_results_give_the_same_bytes(tmp_path: Path) -> None:
     title = '#panic("x") *b* _i_ $a$ @ref <label> \\ `raw` = // [c] "q" \ud800'
     scene = _called(load_scene("fig3-I"), "#let", title)
-    results, findings = studied([scene], fake_hierarchy(gap=0.01), 2)
+    report = studied([scene], fake_hierarchy(gap=0.01), 2)
     for name in ("a.pdf", "b.pdf"):
-        pdf.write_pdf(tmp_path / name, results, findings)
+        pdf.write_pdf(tmp_path / name, report)
     assert (tmp_path / "a.pdf").read_bytes() == (tmp_path / "b.pdf").read_bytes()
     text = text_of(tmp_path / "a.pdf")[1]
     assert '#panic("x") *b* _i_ $a$ @ref <label>' in text.replace("”", '"').replace("“", '"')
@@ -115,15 +113,14 @@ def test_without_the_package_one_line_says_how_to_get_it(
 
 
 def test_the_demands_of_the_stored_motions_are_in_a_table(tmp_path: Path) -> None:
-    results, findings = studied([load_scene("fig3-I")], fake_hierarchy(), 2)
-    motions = known_motions(findings.study, findings.surfaces)
-    findings = collect_findings(findings.study, findings.surfaces, {"motions": motions}, [], RUN)
-    results = assemble(findings)
+    report = studied([load_scene("fig3-I")], fake_hierarchy(), 2)
+    motions = known_motions(report.study, report.surfaces)
+    report = report_of(report.study, report.surfaces, {"motions": motions}, [], RUN)
     numbers = ["1500", "", "1.5", "1.5", "1.5", "1500", "1.5"]  # lengths in mm; the residual is not known
-    rows = demand_rows(results)
+    rows = demand_rows(report.results)
     assert [row[2:] for row in rows] == [numbers, numbers]
     assert [row[1] for row in rows] == ["small equations", "spatial engine"]
-    pdf.write_pdf(tmp_path / "report.pdf", results, findings)
+    pdf.write_pdf(tmp_path / "report.pdf", report)
     pages, text = text_of(tmp_path / "report.pdf")
     assert 2 <= pages <= 4
     assert flat("Largest values over the stored motions") in flat(text)
@@ -134,11 +131,10 @@ def test_what_the_pdf_leaves_out_it_counts(tmp_path: Path) -> None:
     record = load_scene("synthetic-pair")
     scenes = [_called(record, f"{'long-' * 20}{number}", "A record") for number in range(9)]
     scenes += [_called(load_scene("fig3-I"), f"phased{number}", "Phases") for number in range(6)]
-    results, findings = studied(scenes, fake_hierarchy(gap=0.01), 2)
-    motions = known_motions(findings.study, findings.surfaces)
-    findings = collect_findings(findings.study, findings.surfaces, {"motions": motions}, [], RUN)
-    results = assemble(findings)
-    pdf.write_pdf(tmp_path / "report.pdf", results, findings)
+    report = studied(scenes, fake_hierarchy(gap=0.01), 2)
+    motions = known_motions(report.study, report.surfaces)
+    report = report_of(report.study, report.surfaces, {"motions": motions}, [], RUN)
+    pdf.write_pdf(tmp_path / "report.pdf", report)
     text = flat(text_of(tmp_path / "report.pdf")[1])
     for words in (
         "The 16 first rows of 18 are shown; the others are in index.html.",  # values under the records
@@ -150,7 +146,7 @@ def test_what_the_pdf_leaves_out_it_counts(tmp_path: Path) -> None:
         "The 8 first scenes of 15 are shown",  # provenance
     ):
         assert flat(words) in text, words
-    name = results.scenes[0].name
-    data = pdf.pdf_data(results, [], [])
+    name = report.results.scenes[0].name
+    data = pdf.pdf_data(report.results, [], [])
     assert data["records"][0][0] == f"{name[:39]}…"
     assert data["demands"][0][0] == f"{name[:39]}…"

@@ -16,7 +16,7 @@ import pytest
 from fake_models import errors_in, fake_hierarchy
 from jsonschema import Draft202012Validator
 
-from comparison.report.results import Results
+from comparison.registry import StudyResults
 from comparison.surfaces.result import WaterfallBar
 from reference.problem import load_scene
 
@@ -95,7 +95,7 @@ def test_every_key_of_the_summary_is_documented_and_as_documented(finished: Path
 
 def test_the_summary_read_back_is_the_results(finished: Path) -> None:
     text = (finished / "summary.json").read_text(encoding="utf-8")
-    assert json.loads(Results.model_validate_json(text).as_json()) == json.loads(text)
+    assert json.loads(StudyResults.model_validate_json(text).as_json()) == json.loads(text)
 
 
 def test_the_page_and_every_text_have_the_sentences_of_the_results(finished: Path) -> None:

@@ -15,8 +15,7 @@ from conftest import Run
 from fake_models import fake_hierarchy
 
 from comparison.cli.options import parsed
-from comparison.registry import chosen_analyses, first_tasks
-from comparison.report.page import SECTIONS
+from comparison.registry import FEATURES, chosen_analyses, first_tasks
 from comparison.study.selection import Selection
 from comparison.study.study import Study
 from comparison.surfaces.figures.pictures import Pictures, pictures
@@ -76,7 +75,7 @@ def test_only_leaves_the_sections_asked_for_and_says_nothing_wrong_of_the_others
     run = command("fig3-I", *GRID, "--only", "surfaces,budget")
     assert (run.code, run.err) == (0, "")
     page = (run.report / "index.html").read_text(encoding="utf-8")
-    selectable = {section.name for section in SECTIONS} & set(ANALYSES)
+    selectable = {feature.key for feature in FEATURES if feature.section} & set(ANALYSES)
     assert sections(page) & selectable == {"surfaces", "budget"}
     assert sections(page) - selectable == {"outcomes", "models", "verification", "provenance"}
     missing = page.split('id="absent">')[1].split("</ul>")[0]

@@ -17,8 +17,7 @@ from comparison.analyses.assumptions.figure import draw_assumptions
 from comparison.analyses.assumptions.variations import FEW, Cell
 from comparison.analyses.families.analysis import FamilyStep
 from comparison.analyses.families.figure import draw_family
-from comparison.report.assemble import assemble
-from comparison.report.findings import collect_findings
+from comparison.registry import report_of
 from comparison.report.junit import junit
 from comparison.report.summary_text import summary_text
 from comparison.runner.progress import progress, wide_console
@@ -134,7 +133,7 @@ def test_junit_and_summary_are_well_formed_whatever_a_scene_is_called() -> None:
     scene = Scene.model_construct(**{**dict(valid), "name": "a\x00\x01\ud800\ufffe<b>", "title": title})
     study = Study((scene,), 2, 1e-3, fake_hierarchy())
     surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
-    results = assemble(collect_findings(study, surfaces, {}, [], RUN))
+    results = report_of(study, surfaces, {}, [], RUN).results
     assert results.broken
     suites = ElementTree.fromstring(junit(results).encode())
     assert suites[0].get("name") == "a\ufffd\ufffd\ufffd\ufffd<b>"

@@ -86,14 +86,14 @@ def test_what_appears_in_out_meanwhile_stays_and_the_report_goes_beside(
 def test_a_study_whose_out_was_used_meanwhile_says_where_its_report_is(
     command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    write = reports.collect_findings
+    write = reports.report_of
 
     def meanwhile(*arguments: object, **options: object) -> object:
         (tmp_path / "report").mkdir()
         (tmp_path / "report" / "thesis.txt").write_text("years of work", encoding="utf-8")
         return write(*arguments, **options)
 
-    monkeypatch.setattr(reports, "collect_findings", meanwhile)
+    monkeypatch.setattr(reports, "report_of", meanwhile)
     run = command(*SMALL)
     assert run.code == 0
     assert (tmp_path / "report" / "thesis.txt").read_text(encoding="utf-8") == "years of work"

@@ -16,6 +16,7 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
+from comparison.analyses.assumptions.feature import figure_name
 from comparison.analyses.assumptions.validity import Assumptions, ValidityRanges
 from comparison.analyses.assumptions.variations import CLOSE_ENOUGH, DURATION, MANY, PHASES, Cell
 from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, jobs, writing
@@ -26,7 +27,7 @@ from comparison.runner.processes import process_pool
 from comparison.runner.progress import wide_console
 from comparison.study.models import has_spatial_data
 from comparison.study.study import Study, refuse_same_names
-from comparison.surfaces.figures.file_names import assumption_figure_name, figure_file
+from comparison.surfaces.figures.file_names import figure_file
 from reference.problem import Scene, SceneError, builtin_scenes, load_scene
 
 ENGINE = "multibody:amplification"  # what the workers ask
@@ -71,7 +72,7 @@ def _draw(folder: Path, scene: Scene, cells: Sequence[Cell]) -> None:
     """Write the picture of a scene."""
     from comparison.analyses.assumptions.figure import draw_assumptions  # plotting: not needed to refuse
 
-    files = made_by(lambda new: draw_assumptions(new / assumption_figure_name(scene), scene, cells))
+    files = made_by(lambda new: draw_assumptions(new / figure_name(scene), scene, cells))
     publish(folder, files, "comparison.assumptions")
 
 

@@ -13,11 +13,11 @@ from rich.console import Console
 from rich.table import Table
 
 from comparison.analyses.claims.checks import Finding
-from comparison.analyses.claims.forced_ratio import forced_ratios
 from comparison.analyses.claims.readings import EVERY_READING, READINGS
 from comparison.analyses.claims.search import SEARCH_GRID, Selection, best_readings, searched_readings
 from comparison.analyses.claims.settled import GRIDS, Settled, Settling, describe
 from comparison.analyses.claims.table import GRID, SIGNS, Claims, ClaimTable
+from comparison.analyses.effective_values.forced_ratio import forced_ratios
 from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, whole_number
 from comparison.cli.computing import computed
 from comparison.runner.executors import Pool

@@ -12,10 +12,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from comparison.analyses.families.analysis import FamilyStep, family_steps
-from comparison.report.findings import Findings
+from comparison.report.section import Report
 from comparison.study.models import Model
-from comparison.surfaces.budget import TOTAL, Entry
+from comparison.surfaces.budget import TOTAL
 from comparison.surfaces.figures.file_names import figure_file
+from comparison.surfaces.result import BudgetEntry
 from comparison.surfaces.waterfall import waterfall
 from comparison.wording import MAX_NAMES
 from reference.problem import Family, verbatim
@@ -29,23 +30,24 @@ def family_figure_name(family: Family, body: int) -> str:
     return figure_file(family.name, f"body{body}", "family")
 
 
-def draw_families(folder: Path, findings: Findings) -> None:
+def draw_families(folder: Path, report: Report) -> None:
     """Write the figure of every body of every family into `folder`, PNG."""
-    study, surfaces = findings.study, findings.surfaces
-    for family in findings.families or ():
+    study, surfaces = report.study, report.surfaces
+    entries = [entry for scene in report.results.scenes for entry in scene.budget]
+    for family in report.found["families"]:
         bodies = range(1, family.bodies + 1)
         bars = {scene.name: [waterfall(study, surfaces, scene, body) for body in bodies] for scene in family.scenes}
         means = family_steps(family, bars)
         for body in bodies:
             path = folder / family_figure_name(family, body)
-            draw_family(path, family, means, findings.budget, study.hierarchy, body)
+            draw_family(path, family, means, entries, study.hierarchy, body)
 
 
 def draw_family(
     path: Path,
     family: Family,
     means: Sequence[FamilyStep],
-    entries: Sequence[Entry],
+    entries: Sequence[BudgetEntry],
     hierarchy: Sequence[Model],
     body: int,
 ) -> None:
@@ -87,7 +89,7 @@ def draw_family(
     figure.savefig(path)
 
 
-def _over(family: Family, entries: Sequence[Entry], body: int, step: str, part: str) -> np.ndarray:
+def _over(family: Family, entries: Sequence[BudgetEntry], body: int, step: str, part: str) -> np.ndarray:
     """One number of one step for every scene of the family, NaN where a scene does not have it."""
     sizes = {entry.scene: getattr(entry, part) for entry in entries if (entry.body, entry.step) == (body, step)}
     return np.array([sizes.get(scene.name, np.nan) for scene in family.scenes], dtype=float)

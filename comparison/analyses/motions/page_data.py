@@ -47,7 +47,7 @@ from numpy.typing import NDArray
 
 from comparison.analyses.motions.analysis import Place, StoredMotion
 from comparison.analyses.motions.decimation import swing
-from comparison.report.findings import Findings
+from comparison.report.section import Report
 from reference.problem import Demands, Estimate, Scene
 
 Starts = dict[tuple[Place, str], int]
@@ -58,9 +58,9 @@ DIGITS = 4  # of a spectrum: a line on a screen shows no more
 TIME_ROUNDING = 1e-6  # of the duration
 
 
-def packed_motions(findings: Findings) -> str:
+def packed_motions(report: Report) -> str:
     """The numbers of every motion, packed."""
-    return packed(b"".join(_numbers(motion) for motion in findings.motions or []))
+    return packed(b"".join(_numbers(motion) for motion in report.found.get("motions") or []))
 
 
 def packed(content: bytes) -> str:
@@ -68,10 +68,10 @@ def packed(content: bytes) -> str:
     return base64.b64encode(gzip.compress(content, LEVEL, mtime=0)).decode()
 
 
-def places(findings: Findings, scene: Scene, starts: Starts) -> Iterator[dict[str, Any]]:
+def places(report: Report, scene: Scene, starts: Starts) -> Iterator[dict[str, Any]]:
     """The phase pairs of a scene that have motions, each with its motions by every model."""
-    of_scene = [motion for motion in findings.motions or [] if motion.place.scene == scene.name]
-    alpha1, alpha2 = (np.asarray(findings.surfaces[name]) for name in ("alpha1", "alpha2"))
+    of_scene = [motion for motion in report.found.get("motions") or [] if motion.place.scene == scene.name]
+    alpha1, alpha2 = (np.asarray(report.surfaces[name]) for name in ("alpha1", "alpha2"))
     for place, motions in groupby(of_scene, key=lambda motion: motion.place):
         yield {
             "row": place.row,
@@ -98,9 +98,9 @@ def places(findings: Findings, scene: Scene, starts: Starts) -> Iterator[dict[st
         }
 
 
-def spectrum_axis(findings: Findings, scene: Scene) -> dict[str, Any]:
+def spectrum_axis(report: Report, scene: Scene) -> dict[str, Any]:
     """Periods, s, and damping ratio of the scene's floor response spectra."""
-    for motion in findings.motions or []:
+    for motion in report.found.get("motions") or []:
         if motion.place.scene == scene.name and motion.spectra is not None:
             return {"period": significant_digits(motion.spectra.period, DIGITS), "damping": motion.spectra.damping}
     return {"period": [], "damping": 0.0}

@@ -32,7 +32,7 @@ from comparison.runner.output import destination, made_by, netcdf, publish, refu
 from comparison.runner.processes import process_pool
 from comparison.runner.progress import wide_console
 from comparison.study.study import Study, refuse_same_names
-from comparison.surfaces.figures.file_names import figure_file, tradeoff_figure_name, with_ending
+from comparison.surfaces.figures.file_names import figure_file, with_ending
 from reference.problem import Scene, SceneError, load_scene
 from reference.problem.command import UsageError
 
@@ -147,7 +147,7 @@ def _files(measured: MeasuredTrade) -> dict[str, bytes]:
     """Values and pictures of one scene."""
     from comparison.analyses.tradeoff.figure import draw_tradeoff  # plotting: not needed to refuse
 
-    picture = tradeoff_figure_name(measured.trade.scene)
+    picture = figure_file(measured.trade.scene, "tradeoff")
     return made_by(
         lambda folder: with_ending(folder / picture, ".nc").write_bytes(netcdf(measured.values)),
         lambda folder: draw_tradeoff(folder / picture, measured.trade),

@@ -5,8 +5,6 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from reference.problem import Scene
-
 ENDINGS = (".png", ".pdf", ".webp", ".nc")
 LONGEST = 200  # bytes of a name before its ending: file systems allow 255 in all
 
@@ -39,13 +37,3 @@ def with_ending(path: Path, ending: str) -> Path:
     """The same file name with another ending. Dots before the ending belong to the name of the scene."""
     old = next((known for known in ENDINGS if path.name.endswith(known)), "")
     return path.with_name(path.name.removesuffix(old) + ending)
-
-
-def assumption_figure_name(scene: Scene) -> str:
-    """File name of the figure of one scene's assumptions."""
-    return figure_file(scene.name, "assumptions")
-
-
-def tradeoff_figure_name(scene: str) -> str:
-    """File name of the trade-off diagrams of one scene."""
-    return figure_file(scene, "tradeoff")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import tempfile
 from dataclasses import dataclass, replace
 from io import BytesIO
@@ -121,3 +122,8 @@ def smaller(png: bytes) -> bytes:
     with Image.open(BytesIO(png)) as picture:
         picture.convert("RGB").save(found, "WEBP", lossless=True, quality=20, method=1)  # hardly smaller with more
     return found.getvalue()
+
+
+def inlined(webp: bytes) -> str:
+    """A picture inside the page."""
+    return "data:image/webp;base64," + base64.b64encode(webp).decode()

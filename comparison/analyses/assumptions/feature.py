@@ -1,0 +1,87 @@
+"""How far the assumptions of the paper carry: in the report."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from comparison.analyses.assumptions.validity import Assumptions, ValidityRanges
+from comparison.analyses.assumptions.variations import Cell
+from comparison.analyses.claims.result import Assumptions as Result
+from comparison.report.drawings import drawing_task, drawn
+from comparison.report.section import Feature, Report, Section
+from comparison.runner.task import Task
+from comparison.surfaces.figures.file_names import figure_file
+from comparison.surfaces.figures.pictures import Files, inlined, smaller
+from reference.problem import Scene
+
+
+@dataclass(frozen=True)
+class AssumptionFigure:
+    """How far the assumptions carry in a scene."""
+
+    scene: Scene
+    cells: Sequence[Cell]
+
+
+def draw_assumption_figure(figure: AssumptionFigure) -> Files:
+    """PNG and PDF. Runs inside a worker process."""
+    from comparison.analyses.assumptions.figure import draw_assumptions  # matplotlib: only a worker that draws needs it
+
+    with tempfile.TemporaryDirectory() as name:
+        draw_assumptions(Path(name) / figure_name(figure.scene), figure.scene, figure.cells)
+        return tuple((file.name, file.read_bytes()) for file in sorted(Path(name).iterdir()))
+
+
+def figure_name(scene: Scene) -> str:
+    """File name of the figure of one scene."""
+    return figure_file(scene.name, "assumptions")
+
+
+def _tasks(report: Report) -> list[Task]:
+    """One figure for each scene whose assumptions were varied."""
+    found: ValidityRanges | None = report.found.get("assumptions")
+    scenes = found.scenes if found else []
+    return [drawing_task(draw_assumption_figure, AssumptionFigure(scene, found.cells)) for scene in scenes]  # type: ignore[union-attr]
+
+
+def _draw(figures: Path, report: Report) -> None:
+    for task in _tasks(report):
+        for name, content in drawn(report, task):
+            (figures / name).write_bytes(content)
+
+
+def _context(report: Report, figures: Path) -> Mapping[str, Any]:
+    found: ValidityRanges = report.found["assumptions"]
+    pictures = [
+        {
+            "title": scene.title,
+            "name": scene.name,
+            "picture": inlined(smaller((figures / figure_name(scene)).read_bytes())),
+            "lines": found.lines(scene),
+        }
+        for scene in found.scenes
+    ]
+    return {"assumption_pictures": pictures}
+
+
+FEATURE = Feature(
+    "assumptions",
+    Result,
+    "how far the paper's assumptions carry; null without a spatial model",
+    analysis=Assumptions(),
+    summary=lambda found: Result.model_validate(found.listed()),
+    section=Section(
+        "assumptions",
+        "How far the paper's assumptions carry",
+        "assumptions/section.html.j2",
+        ("assumptions",),
+        "no scene with phases says where its supports are and how high and large its bodies, as the spatial model asks",
+        _context,
+        _tasks,
+        _draw,
+    ),
+)

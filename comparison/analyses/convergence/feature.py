@@ -1,0 +1,24 @@
+"""What the steps tend to: in the report."""
+
+from __future__ import annotations
+
+from comparison.analyses.convergence.analysis import Convergence
+from comparison.analyses.families.result import Trend
+from comparison.analyses.trend_plots import summarized, trend_panels
+from comparison.report.section import Feature, Section
+
+FEATURE = Feature(
+    "convergence",
+    list[Trend],
+    "what the steps of friction law and contact tend to; null if not computed",
+    analysis=Convergence(),
+    summary=lambda trends: [summarized(trend) for trend in trends],
+    section=Section(
+        "convergence",
+        "What the steps tend to",
+        "convergence/section.html.j2",
+        ("convergence",),
+        "python -m comparison.run makes it, of scenes with phases",
+        lambda report, figures: {"trend_panels": trend_panels},
+    ),
+)

@@ -1,0 +1,71 @@
+"""Demands over all phases: in the report."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from comparison.analyses.demands.analysis import DemandSurfaces
+from comparison.report.plots import DEMANDS, Panel, plain
+from comparison.report.results import Results
+from comparison.report.scene_result import SceneResult
+from comparison.report.section import Feature, Report, Section
+from comparison.surfaces.distribution import CURVE
+from reference.problem.peak_demands import QUANTITIES, unit_of
+
+
+def demand_panels(scene: SceneResult, results: Results) -> list[Panel]:
+    """One panel for each demand: the share of all phases at which it stays below a value, by model."""
+    if scene.recorded:
+        return []
+    titles = {model.key: model.title for model in results.models}
+    colors = {model.key: number for number, model in enumerate(results.models)}
+    panels = []
+    for quantity, body, title, unit, scale in DEMANDS:
+        rows = [row for row in scene.demand_statistics if (row.quantity, row.body) == (quantity, body)]
+        series = [
+            {
+                "name": titles[row.model],
+                "x": plain([scale * value for value in row.curve]),
+                "y": CURVE.tolist(),
+                "color": colors[row.model],
+            }
+            for row in rows
+        ]
+        plot = {
+            "label": f"{scene.name}, {title}: share of the phases at which it stays below a value, by model",
+            "x": {"title": f"{title}, {unit}"},
+            "y": {"title": "share of the phases"},
+            "series": series,
+        }
+        panels += [{"title": f"{scene.name}, {title}", "plot": plot}] if series else []
+    return panels
+
+
+def demand_lines(results: Results) -> list[dict[str, Any]]:
+    """Rows of the table of demands, each with the names of its scene, demand and model."""
+    titles = {model.key: model.title for model in results.models}
+    lines = []
+    for scene in results.scenes:
+        for row in scene.demand_statistics:
+            meaning, _ = QUANTITIES[row.quantity]
+            name = f"{meaning} of body {row.body}" if row.body else meaning
+            name = f"{name}, {unit_of(row.quantity)}".removesuffix(", ")
+            lines.append({"scene": scene.name, "name": name, "title": titles[row.model], "row": row})
+    return lines
+
+
+def _context(report: Report, figures: Path) -> Mapping[str, Any]:
+    results = report.results
+    return {
+        "demand_panels": [panel for scene in results.scenes for panel in demand_panels(scene, results)],
+        "demand_lines": demand_lines(results),
+    }
+
+
+FEATURE = Feature(
+    "demands",
+    analysis=DemandSurfaces(),
+    section=Section("demands", "Demands over all phases", "demands/section.html.j2", context=_context),
+)

@@ -1,0 +1,61 @@
+"""The errata: in the report."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from comparison.analyses.claims.result import Effect, Erratum
+from comparison.analyses.errata.analysis import ERRATA, Errata
+from comparison.analyses.errata.analysis import Effect as MeasuredEffect
+from comparison.report.section import Feature, Report, Section
+from comparison.wording import percent
+
+
+def _listed(effects: Sequence[MeasuredEffect]) -> list[Erratum]:
+    return [
+        Erratum(
+            where=erratum.where,
+            printed=erratum.printed,
+            corrected=erratum.corrected,
+            why=erratum.why,
+            none=erratum.none,
+            effects=[Effect.model_validate(effect) for effect in effects if effect.erratum == number],
+        )
+        for number, erratum in enumerate(ERRATA)
+    ]
+
+
+def _effects(erratum: Erratum) -> list[str]:
+    """One sentence about the largest effect of an erratum in every scene that it touches."""
+    touched = [effect for effect in erratum.effects if effect.change or effect.error_message]
+    return [_effect(effect) for effect in touched] or [erratum.none or "no scene here"]
+
+
+def _effect(effect: Effect) -> str:
+    if effect.error_message:
+        return f"{effect.scene}: {effect.error_message}"
+    change = np.array(effect.change)
+    lost = "" if np.isfinite(change).all() else "no answer at some phases; "
+    sizes = [
+        f"mu_{body} by up to {percent(float(np.nanmax(np.abs(column)))) if np.isfinite(column).any() else 'any size'}"
+        for body, column in enumerate(change.T, start=1)
+    ]
+    return f"{effect.scene}: {lost}{', '.join(sizes)}"
+
+
+def _context(report: Report, figures: Path) -> Mapping[str, Any]:
+    return {"errata": [{"erratum": row, "effects": _effects(row)} for row in report.results.of("errata") or []]}
+
+
+FEATURE = Feature(
+    "errata",
+    list[Erratum],
+    "in the order of the paper; null where they were not asked for",
+    analysis=Errata(),
+    summary=_listed,
+    section=Section("errata", "Errata of the print", "errata/section.html.j2", context=_context),
+)

@@ -1,0 +1,24 @@
+"""Scaling test: in the report."""
+
+from __future__ import annotations
+
+from comparison.analyses.families.result import Trend
+from comparison.analyses.scaling.analysis import Scaling
+from comparison.analyses.trend_plots import summarized, trend_panels
+from comparison.report.section import Feature, Section
+
+FEATURE = Feature(
+    "scaling",
+    list[Trend],
+    "the step from small to exact equations over a common scale of loading and friction; null if not computed",
+    analysis=Scaling(),
+    summary=lambda trends: [summarized(trend) for trend in trends],
+    section=Section(
+        "scaling",
+        "Scaling test",
+        "scaling/section.html.j2",
+        ("scaling",),
+        "python -m comparison.run makes it, of scenes with phases",
+        lambda report, figures: {"trend_panels": trend_panels},
+    ),
+)

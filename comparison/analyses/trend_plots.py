@@ -1,0 +1,53 @@
+"""Plots of trends."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import groupby
+from typing import Any
+
+from comparison.analyses.families.result import Trend
+from comparison.analyses.trends import Trend as FittedTrend
+from comparison.report.plots import MAX_CURVES, Panel, plain
+
+
+def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
+    """One log-log panel for each scene and parameter: median difference over it, the fitted slopes in the legend."""
+    panels = []
+    ordered = sorted(trends, key=lambda trend: (trend.scene, trend.parameter[-1]))
+    for (scene, values), group in groupby(ordered, key=lambda trend: (trend.scene, tuple(trend.parameter))):
+        rows = list(group)
+        series: list[dict[str, Any]] = []
+        for number, trend in enumerate(rows[:MAX_CURVES]):
+            slope = f"{trend.exponent:.2f} ± {trend.uncertainty:.2f}" if math.isfinite(trend.exponent) else "none"
+            points = {"x": list(values), "y": plain(trend.medians), "color": number, "marks": True}
+            series.append({"name": f"μ_{trend.body}, {trend.what}: slope {slope}", **points})
+        axis = parameter or ("penetration, ρ" if "contact" in rows[0].what else "v_reg, m/s")
+        plot = {
+            "label": f"{scene}: median relative difference over {axis}; "
+            + "; ".join(str(line["name"]) for line in series),
+            "x": {"title": axis, "log": True},
+            "y": {"title": "median relative difference", "log": True},
+            "series": series,
+        }
+        cut = f", {MAX_CURVES} of {len(rows)} differences: the table has all" if len(rows) > MAX_CURVES else ""
+        panels.append({"title": f"{scene}{cut}", "plot": plot})
+    return panels
+
+
+def summarized(trend: FittedTrend) -> Trend:
+    slope = trend.slope
+    return Trend(
+        scene=trend.scene,
+        body=trend.body,
+        what=trend.what,
+        parameter=list(trend.parameter),
+        medians=trend.medians,
+        exponent=slope.exponent,
+        uncertainty=slope.uncertainty,
+        points=slope.points,
+        pairs=slope.pairs,
+        expected=trend.expected,
+        verdict=trend.verdict,
+    )

@@ -1,0 +1,84 @@
+"""The largest values over all phases: in the report."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from comparison.analyses.worst_phases.analysis import WorstPhases
+from comparison.analyses.worst_phases.result import Worst
+from comparison.report.plots import Panel, fractile_heads, plain
+from comparison.report.results import Results
+from comparison.report.section import Feature, Report, Section
+from comparison.surfaces.distribution import CURVE
+from comparison.wording import significant
+
+
+def distribution_panels(results: Results) -> list[Panel]:
+    """One panel for each scene and body: the share of all phases at which mu stays below a value, by model."""
+    titles = {model.key: model.title for model in results.models}
+    colors = {model.key: number for number, model in enumerate(results.models)}
+    panels = []
+    for scene in results.scenes_with("worst_phases"):
+        for body in range(1, scene.bodies + 1):
+            curves = [each for each in scene.distributions if each.body == body]
+            series = [
+                {"name": titles[each.model], "x": plain(each.curve), "y": CURVE.tolist(), "color": colors[each.model]}
+                for each in curves
+            ]
+            name = f"{scene.name}, μ_{body}"
+            plot = {
+                "label": f"{name}: share of the phases at which it stays below a value, by model",
+                "x": {"title": f"μ_{body}"},
+                "y": {"title": "share of the phases"},
+                "series": series,
+            }
+            panels += [{"title": name, "plot": plot}] if series else []
+    return panels
+
+
+def worst_lines(results: Results) -> list[dict[str, Any]]:
+    """Rows of the table of worst phases, each with its model's title and what stands there."""
+    titles = {model.key: model.title for model in results.models}
+    searched = results.of("worst_phases") or ()
+    return [{"worst": worst, "title": titles[worst.model], "kind": _kind(worst)} for worst in searched]
+
+
+def _kind(worst: Worst) -> str:
+    if worst.reason:
+        return worst.reason
+    if worst.kind == "nearby":
+        if not math.isfinite(worst.at_start):
+            return "the engine's largest value beside the phases above, at which it has none"
+        return f"the engine's largest value beside the phases above, where it has {significant(worst.at_start)}"
+    if worst.kind == "jump":
+        first, second = (f"{side:+.2f}" for side in worst.side)
+        return f"beside a jump, approached from ({first}, {second})"
+    return "on an edge of the surface" if worst.kind == "kink" else "on a smooth hill"
+
+
+def _context(report: Report, figures: Path) -> Mapping[str, Any]:
+    results = report.results
+    return {
+        "distribution_panels": distribution_panels(results),
+        "worst_lines": worst_lines(results),
+        "fractiles": fractile_heads(),
+    }
+
+
+FEATURE = Feature(
+    "worst_phases",
+    list[Worst],
+    "the largest values over all phases; null if not computed",
+    analysis=WorstPhases(),
+    section=Section(
+        "worst_phases",
+        "Over all phases",
+        "worst_phases/section.html.j2",
+        ("worst_phases",),
+        "python -m comparison.run makes it, of scenes with phases",
+        _context,
+    ),
+)

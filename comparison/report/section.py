@@ -1,0 +1,102 @@
+"""What a report is made from, and the sections of its page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from comparison.report.results import Results
+from comparison.runner.analysis import Analysis
+from comparison.runner.task import Task
+from comparison.study.study import Study
+from comparison.surfaces.completion import Completion
+
+
+@dataclass(frozen=True)
+class Report:
+    """
+    Everything that a report is made from.
+
+    results: what summary.json holds. surfaces: of every model, with the completed ones. found: what each analysis
+    collected, by its key: motions, demands and pictures are not in the results. drawings: files that workers drew, by
+    key of their task.
+    """
+
+    study: Study
+    surfaces: xr.Dataset
+    completions: Sequence[Completion]
+    results: Results
+    found: Mapping[str, Any]
+    sections: Sequence[Section]
+    drawings: Mapping[str, Any] = field(default_factory=dict)
+
+
+def _nothing(report: Report, figures: Path) -> Mapping[str, Any]:
+    return {}
+
+
+@dataclass(frozen=True)
+class Section:
+    """
+    One section of the page, below its heading.
+
+    template: its file in comparison/analyses or comparison/report/templates. shows: fields of the results; where all
+    of them are None the section is left out, and `absent` says which command makes it. context: what the template
+    reads, from the report and the folder of its figures. tasks: drawings for the workers. draw: writes its pictures
+    into the folder of the figures. title_recorded: title where no scene has phases, "" for the same. folded: whether
+    the reader opens it.
+    """
+
+    name: str
+    title: str
+    template: str
+    shows: tuple[str, ...] = ()
+    absent: str = ""
+    context: Callable[[Report, Path], Mapping[str, Any]] = _nothing
+    tasks: Callable[[Report], list[Task]] | None = None
+    draw: Callable[[Path, Report], None] | None = None
+    title_recorded: str = ""
+    folded: bool = True
+
+    def present(self, results: Results) -> bool:
+        """Whether the section was asked for and the results hold any of what it shows."""
+        held = [getattr(results, name) is not None for name in self.shows]
+        return self.name not in results.absent and (not held or any(held))
+
+    def title_of(self, results: Results) -> str:
+        """Title of the section in these results."""
+        return self.title if results.phased else self.title_recorded or self.title
+
+
+def _unchanged(found: Any) -> Any:
+    return found
+
+
+@dataclass(frozen=True)
+class Feature:
+    """
+    A question that a report answers: a line of the registry, a folder of comparison/analyses.
+
+    key: its field of the results, and its name for --only and --skip unless `selected_as` is another. result: type of
+    that field, None where the results hold none. meaning: of the field. analysis: what computes it in a study; or
+    load: what reads it from the folder of the report, where a command left it. summary: what was found, as the results
+    hold it.
+    """
+
+    key: str
+    result: Any = None
+    meaning: str = ""
+    analysis: Analysis[Any] | None = None
+    load: Callable[[Path], Any] | None = None
+    summary: Callable[[Any], Any] = _unchanged
+    section: Section | None = None
+    selected_as: str = ""
+
+    @property
+    def selection(self) -> str:
+        """Its name for --only and --skip."""
+        return self.selected_as or self.key
