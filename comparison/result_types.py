@@ -8,7 +8,8 @@ replaces what UTF-8 does not know.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal, TypeVar, dataclass_transform
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainSerializer
 
@@ -42,3 +43,23 @@ class Part(BaseModel):
     """A part of the results: read from the attributes of what an analysis returns; unknown keys are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, from_attributes=True, use_attribute_docstrings=True)
+
+
+RESULT = ConfigDict(
+    use_attribute_docstrings=True,
+    revalidate_instances="always",
+    json_schema_extra={"additionalProperties": False},
+)
+
+Class = TypeVar("Class")
+
+
+@dataclass_transform(frozen_default=True)
+def result(cls: type[Class]) -> type[Class]:
+    """
+    A frozen dataclass that summary.json holds as it is: the text below a field is its meaning, with the unit.
+
+    What a property adds to the file is a `computed_field`.
+    """
+    cls.__pydantic_config__ = RESULT  # type: ignore[attr-defined]
+    return dataclass(frozen=True)(cls)

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import Any
 
-from comparison.analyses.families.result import Trend
-from comparison.analyses.trends import Trend as FittedTrend
+from comparison.analyses.trends import Trend
 from comparison.report.plots import MAX_CURVES, Panel, plain
 
 
@@ -34,20 +33,3 @@ def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
         cut = f", {MAX_CURVES} of {len(rows)} differences: the table has all" if len(rows) > MAX_CURVES else ""
         panels.append({"title": f"{scene}{cut}", "plot": plot})
     return panels
-
-
-def summarized(trend: FittedTrend) -> Trend:
-    slope = trend.slope
-    return Trend(
-        scene=trend.scene,
-        body=trend.body,
-        what=trend.what,
-        parameter=list(trend.parameter),
-        medians=trend.medians,
-        exponent=slope.exponent,
-        uncertainty=slope.uncertainty,
-        points=slope.points,
-        pairs=slope.pairs,
-        expected=trend.expected,
-        verdict=trend.verdict,
-    )

@@ -8,24 +8,26 @@ scatter about the line and of the error bars together.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from comparison.result_types import Number, Text, result
 from comparison.surfaces.steps import RESOLVED
 
 Array = NDArray[np.float64]
 
+NONE: Array = np.empty((0, 1))  # sizes and errors where nothing has a value
 KNOWN = 1.0 / RESOLVED  # largest error of a value that enters the fit, as its fraction
 SETTLED = 0.25  # largest uncertainty of an exponent that says something
 SLOW = 0.3  # exponent below which a difference is no smaller at any value in use
 AGREES = 0.15  # of an exponent with its theory: the largest parameter is not yet in the asymptotic range
 
 
-@dataclass(frozen=True)
-class Slope:
+class Slope(NamedTuple):
     """
     size ~ parameter^exponent, +- uncertainty; NaN where too few values are known. points: how many were used, of how
     many phase pairs.
@@ -37,50 +39,32 @@ class Slope:
     pairs: int
 
 
-@dataclass(frozen=True)
+@result
 class Trend:
-    """
-    Relative differences of mu_`body` over a parameter, for some phase pairs.
+    """How a difference falls with what causes it."""
 
-    what: the two things that differ. parameter: falling values (S,). sizes, errors: (P, S), signed and absolute, NaN
-    without an answer. expected: exponent that theory gives, or None. error_message: what went wrong, or "".
-    """
-
-    scene: str
+    scene: Text
+    """name of the scene"""
     body: int
+    """number of the body; 1 is the platform"""
     what: str
+    """the two things that differ"""
     parameter: tuple[float, ...]
-    sizes: tuple[tuple[float, ...], ...]
-    errors: tuple[tuple[float, ...], ...]
+    """values of the parameter, falling"""
+    medians: tuple[Number, ...]
+    """median absolute relative difference over the phase pairs, for every value"""
+    exponent: Number
+    """exponent of the power law fitted to the differences above their errors; null without enough of them"""
+    uncertainty: Number
+    """of the exponent"""
+    points: int
+    """differences in the fit"""
+    pairs: int
+    """phase pairs that they are of"""
     expected: float | None
-    error_message: str = ""
-
-    @property
-    def slope(self) -> Slope:
-        """Exponent of the sizes over the parameter."""
-        return fitted(self.parameter, np.array(self.sizes), np.array(self.errors))
-
-    @property
-    def medians(self) -> list[float]:
-        """Median absolute size over the phase pairs, for every value of the parameter."""
-        sizes = np.abs(np.array(self.sizes)).reshape(-1, len(self.parameter))
-        return [float(np.median(column[np.isfinite(column)])) if np.isfinite(column).any() else np.nan
-                for column in sizes.T]  # fmt: skip
-
-    @property
-    def verdict(self) -> str:
-        """What the fit allows to say, in words."""
-        slope = self.slope
-        if self.error_message:
-            return self.error_message
-        if not np.isfinite(slope.exponent):
-            return "within the error bars: no slope can be told"
-        if slope.uncertainty > SETTLED:
-            return "no single slope: phase pairs or values do not agree"
-        if self.expected is None:
-            return "hardly falls: not converged at any value in use" if slope.exponent < SLOW else "falls"
-        agrees = abs(slope.exponent - self.expected) <= max(AGREES, slope.uncertainty)
-        return f"like the power {self.expected:g}" if agrees else f"not like the power {self.expected:g}"
+    """exponent that theory gives, or null"""
+    verdict: Text
+    """what the fit allows to say"""
 
 
 def fitted(parameter: Sequence[float], sizes: Array, errors: Array) -> Slope:
@@ -114,7 +98,25 @@ def trend(
     sizes: Array,
     errors: Array,
     expected: float | None,
+    error_message: str = "",
 ) -> Trend:
-    """A trend from arrays (P, S)."""
-    rows = [tuple(tuple(map(float, row)) for row in values) for values in (sizes, errors)]
-    return Trend(scene, body, what, tuple(parameter), rows[0], rows[1], expected)
+    """A trend from signed sizes and their errors, (P, S), NaN without an answer; error_message: what went wrong."""
+    slope = fitted(parameter, sizes, errors)
+    medians = [math.nan] * len(parameter)
+    for number, column in enumerate(np.abs(sizes).T):
+        if np.isfinite(column).any():
+            medians[number] = float(np.median(column[np.isfinite(column)]))
+    verdict = error_message or _verdict(slope, expected)
+    return Trend(scene, body, what, tuple(parameter), tuple(medians), *slope, expected, verdict)
+
+
+def _verdict(slope: Slope, expected: float | None) -> str:
+    """What the fit allows to say, in words."""
+    if not np.isfinite(slope.exponent):
+        return "within the error bars: no slope can be told"
+    if slope.uncertainty > SETTLED:
+        return "no single slope: phase pairs or values do not agree"
+    if expected is None:
+        return "hardly falls: not converged at any value in use" if slope.exponent < SLOW else "falls"
+    agrees = abs(slope.exponent - expected) <= max(AGREES, slope.uncertainty)
+    return f"like the power {expected:g}" if agrees else f"not like the power {expected:g}"

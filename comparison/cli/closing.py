@@ -17,7 +17,7 @@ from comparison.report.scene_result import SceneResult
 from comparison.runner.resume import changed, command_line
 from comparison.study.levels import Level
 from comparison.surfaces.alert_result import Alert
-from comparison.surfaces.result import Headline
+from comparison.surfaces.headline import Headline
 from comparison.wording import percent, signed
 from reference.problem import builtin_scenes, example_scenes
 

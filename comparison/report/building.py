@@ -17,19 +17,18 @@ from comparison.analyses.families.analysis import (
     family_demands_over_phases,
     family_steps,
 )
-from comparison.analyses.families.result import FamilyCurve, FamilyDemand, FamilyResult, FamilyStep
+from comparison.analyses.families.result import FamilyResult
 from comparison.analyses.motions.analysis import StoredMotion
 from comparison.analyses.motions.page_data import significant_digits
-from comparison.analyses.motions.result import Effective, FloorSpectra, MotionDemands
-from comparison.analyses.worst_phases.result import DemandStatistics, Distribution, GridMaximum, RecordValue
+from comparison.analyses.motions.result import FloorSpectra, MotionDemands
+from comparison.analyses.worst_phases.result import DemandStatistics, Distribution, RecordValue
 from comparison.report.results import Results
 from comparison.report.run_result import ModelDescription, Run
-from comparison.report.scene_result import ForcedRatio, Limit, ModelOutcome, SceneResult
+from comparison.report.scene_result import ModelOutcome, SceneResult
 from comparison.report.section import Feature, Report
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import checked_limits
-from comparison.surfaces.alert_result import Unanswered
 from comparison.surfaces.alerts import Fault, alerts
 from comparison.surfaces.budget import budget
 from comparison.surfaces.completion import completions, with_completed
@@ -37,7 +36,7 @@ from comparison.surfaces.differences import differences
 from comparison.surfaces.distribution import distributions
 from comparison.surfaces.grid_maxima import grid_maxima
 from comparison.surfaces.headline import headline
-from comparison.surfaces.result import BudgetEntry, Completion, Difference, Headline, Waterfall
+from comparison.surfaces.result import Completion
 from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share, outcome_counts
 from comparison.surfaces.unanswered import advice, unanswered
 from comparison.surfaces.waterfall import Waterfall as BodyWaterfall
@@ -124,7 +123,7 @@ def build_report(
         models=[ModelDescription.model_validate(model) for model in study.hierarchy],
         scenes=scenes,
         absent=study.absent,
-        unanswered=[Unanswered.model_validate(each) for each in lacking],
+        unanswered=list(lacking),
         alerts=alerts(study, surfaces, lacking, limits, faults),
         faults=[fault.line for fault in faults],
         no_pdf=no_pdf,
@@ -154,19 +153,19 @@ def _scene(
         analyses=[name for name in ANALYSES if study.selection.has(name, scene.name)],
         acceptance=scene.acceptance,
         models={model.key: _model(study, surfaces, scene, model) for model in models_of(scene, study.hierarchy)},
-        differences=[Difference.model_validate(row) for row in parts["differences"]],
-        budget=[BudgetEntry.model_validate(entry) for entry in parts["budget"]],
-        headlines=[Headline.model_validate(each) for each in headlines],
-        waterfalls=[Waterfall.model_validate(each) for each in waterfalls],
+        differences=list(parts["differences"]),
+        budget=list(parts["budget"]),
+        headlines=list(headlines),
+        waterfalls=list(waterfalls),
         completions=[Completion.model_validate(surface) for surface in parts["completions"]],
         distributions=[]
         if scene.recorded
         else [Distribution.model_validate(each) for each in distributions(study, surfaces, scene)],
-        grid_maxima=[GridMaximum.model_validate(each) for each in grid_maxima(study, surfaces, scene)],
+        grid_maxima=list(grid_maxima(study, surfaces, scene)),
         values=_values(study, surfaces, scene) if scene.recorded else [],
-        limits=[Limit.model_validate(limit) for limit in parts["limits"]],
-        effective=[Effective.model_validate(values) for values in parts["effective"]],
-        forced=[ForcedRatio.model_validate(ratio) for ratio in forced_ratios(scene)],
+        limits=list(parts["limits"]),
+        effective=list(parts["effective"]),
+        forced=list(forced_ratios(scene)),
         demands=_demands(surfaces, scene, motions),
         demand_statistics=[DemandStatistics.model_validate(each) for each in statistics],
     )
@@ -242,8 +241,8 @@ def _family(
         key=family.key,
         values=list(family.values),
         scenes=[scene.name for scene in family.scenes],
-        curves=[FamilyCurve.model_validate(curve) for curve in family_curves(study, surfaces, family)],
-        steps=[FamilyStep.model_validate(step) for step in family_steps(family, waterfalls)],
-        demands=[FamilyDemand.model_validate(each) for each in demands],
+        curves=list(family_curves(study, surfaces, family)),
+        steps=list(family_steps(family, waterfalls)),
+        demands=list(demands),
         demands_over_phases=of_phases,
     )

@@ -6,7 +6,8 @@ import re
 from xml.etree import ElementTree
 
 from comparison.report.results import Results
-from comparison.report.scene_result import Limit, SceneResult
+from comparison.report.scene_result import SceneResult
+from comparison.surfaces.acceptance import Limit
 
 FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # what XML 1.0 cannot hold
 

@@ -23,7 +23,7 @@ from comparison.report.section import Feature, Report, Section
 from comparison.report.verification import CHECKS
 from comparison.study.study import Study
 from comparison.surfaces.alert_result import Alert
-from comparison.surfaces.result import Waterfall
+from comparison.surfaces.waterfall import Waterfall
 from comparison.surfaces.waterfall_chart import Scale, charts, log_scale, scales
 from comparison.wording import degrees, percent, scientific, signed, significant, symbols
 from reference.problem import Outcome

@@ -19,7 +19,7 @@ from comparison.report.scene_result import SceneResult
 from comparison.report.section import Report
 from comparison.runner.task import Task
 from comparison.study.models import Model
-from comparison.surfaces.result import Headline
+from comparison.surfaces.headline import Headline
 
 MAX_MAPS = 4  # scenes
 TEMPLATE = "report.typ"

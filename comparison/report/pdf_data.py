@@ -10,8 +10,10 @@ from comparison.analyses.assumptions.validity import ASSUMPTIONS
 from comparison.analyses.demands.pdf import HEADINGS, demand_rows, demands_note
 from comparison.report.results import Results
 from comparison.report.run_result import ModelDescription
-from comparison.report.scene_result import Limit, ModelOutcome, SceneResult
-from comparison.surfaces.result import Headline, Waterfall
+from comparison.report.scene_result import ModelOutcome, SceneResult
+from comparison.surfaces.acceptance import Limit
+from comparison.surfaces.headline import Headline
+from comparison.surfaces.waterfall import Waterfall
 from comparison.surfaces.waterfall_chart import Scale, bars_of, scale_of
 from comparison.wording import percent, shortened, significant
 

@@ -14,9 +14,11 @@ from pydantic import Field
 
 from comparison.json_file import json_text
 from comparison.report.run_result import ModelDescription, Run
-from comparison.report.scene_result import Limit, SceneResult
+from comparison.report.scene_result import SceneResult
 from comparison.result_types import Part, Text
-from comparison.surfaces.alert_result import Alert, Unanswered
+from comparison.surfaces.acceptance import Limit
+from comparison.surfaces.alert_result import Alert
+from comparison.surfaces.unanswered import Unanswered
 
 SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"
 VERSION: Literal[5] = 5  # grows when a key changes its meaning or goes

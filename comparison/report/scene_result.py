@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
-from comparison.analyses.motions.result import Effective, MotionDemands
-from comparison.analyses.worst_phases.result import DemandStatistics, Distribution, GridMaximum, RecordValue
-from comparison.result_types import Number, Part, Radius, Text
-from comparison.surfaces.result import BudgetEntry, Completion, Difference, Headline, Waterfall
+from comparison.analyses.effective_values.analysis import Effective
+from comparison.analyses.effective_values.forced_ratio import ForcedRatio
+from comparison.analyses.motions.result import MotionDemands
+from comparison.analyses.worst_phases.result import DemandStatistics, Distribution, RecordValue
+from comparison.result_types import Number, Part, Text
+from comparison.surfaces.acceptance import Limit
+from comparison.surfaces.budget import BudgetEntry
+from comparison.surfaces.differences import Difference
+from comparison.surfaces.grid_maxima import GridMaximum
+from comparison.surfaces.headline import Headline
+from comparison.surfaces.result import Completion
+from comparison.surfaces.waterfall import Waterfall
 from reference.problem.acceptance import Acceptance
 
 
@@ -28,47 +36,6 @@ class ModelOutcome(Part):
     """the same over the isolator's travel; null without a travel"""
     cost: float
     """compute time, s"""
-
-
-class Breach(Part):
-    """Where an acceptance limit is broken."""
-
-    body: int
-    """number of the body; 0 where the limit is of the scene"""
-    found: Number
-    """value that exceeds the limit; null without one"""
-    reason: Text
-    """why there is no value, or what was counted; empty otherwise"""
-
-
-class Limit(Part):
-    """An acceptance limit that the scene states, held against the results."""
-
-    key: str
-    """as written below acceptance"""
-    allowed: float
-    """largest value that holds it"""
-    breaches: list[Breach]
-    """where it is broken; empty if it holds"""
-    broken: list[Text]
-    """the same in words, one line each"""
-
-
-class ForcedRatio(Part):
-    """Amplitude of a body over that of the platform under one harmonic, by (4.4) alone."""
-
-    body: int
-    """from 2"""
-    harmonic: int
-    """1 or 2"""
-    axis: str
-    """x or y"""
-    period: float
-    """period of the harmonic, s"""
-    ratio: Radius
-    """with the decay of the loading"""
-    steady: Radius
-    """without it; "inf" at resonance"""
 
 
 class SceneResult(Part):

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from math import isnan
 
 from comparison.report.results import Results
-from comparison.surfaces.result import WaterfallBar
+from comparison.surfaces.waterfall import WaterfallBar
 from comparison.wording import degrees, percent, signed
 from reference.problem import Outcome
 

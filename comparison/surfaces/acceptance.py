@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from math import isnan
 
 import xarray as xr
+from pydantic import computed_field
 
+from comparison.result_types import Number, Text, result
 from comparison.study.models import pairs_of
 from comparison.study.study import Study
 from comparison.surfaces.budget import closure, steps
@@ -16,23 +17,30 @@ from comparison.surfaces.unanswered import Unanswered
 from reference.problem import Scene
 
 
-@dataclass(frozen=True)
+@result
 class Breach:
-    """Where a limit is broken."""
+    """Where an acceptance limit is broken."""
 
-    body: int  # 0 where the limit is of the scene
-    found: float  # value beyond the limit, NaN without one
-    reason: str = ""  # why there is no value, or what was counted
+    body: int
+    """number of the body; 0 where the limit is of the scene"""
+    found: Number
+    """value that exceeds the limit; null without one"""
+    reason: Text = ""
+    """why there is no value, or what was counted; empty otherwise"""
 
 
-@dataclass(frozen=True)
+@result
 class Limit:
-    """A limit of a scene, held against what was found."""
+    """An acceptance limit that the scene states, held against the results."""
 
-    scene: str
-    key: str  # as written below `acceptance`
+    scene: Text
+    """name of the scene"""
+    key: str
+    """as written below acceptance"""
     allowed: float
-    breaches: tuple[Breach, ...]  # none if it holds
+    """largest value that holds it"""
+    breaches: tuple[Breach, ...]
+    """where it is broken; empty if it holds"""
 
     @property
     def broken_texts(self) -> list[str]:
@@ -43,6 +51,7 @@ class Limit:
             for breach in self.breaches
         ]
 
+    @computed_field  # type: ignore[prop-decorator]
     @property
     def broken(self) -> list[str]:
         """One line for each breach."""

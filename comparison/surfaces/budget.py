@@ -8,7 +8,6 @@ All are relative to mu of the first model: their sum is then the relative total.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -16,6 +15,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from comparison.result_types import Number, Phases, Text, result
 from comparison.study.study import Study
 from comparison.surfaces.steps import Step, step
 from comparison.surfaces.surfaces import common_phases
@@ -26,36 +26,48 @@ Array = NDArray[np.float64]
 TOTAL = "total"
 
 
-@dataclass(frozen=True)
-class Entry:
+@result
+class BudgetEntry:
     """
-    One step in numbers. median, rms, percentile95, maximum: of the absolute size, NaN without a point. The signed mean
-    is the bar of the waterfall.
+    One step of the model hierarchy, or the total, in one body; relative to mu of the first model.
 
-    phases: (alpha1, alpha2) of the maximum, rad. real: share of the points where the step is known to a fifth of itself
-    or better, |D| > 5 u_D; unresolved: where u_D < |D| <= 5 u_D, not counted as real. error_estimate: median of u_D.
-    peak_moves: rad on the periodic square, how far the highest point of the surface moves at least; points whose error
-    estimates let them be the highest count alike, because symmetric surfaces have several. correlation: of the two
-    surfaces. points: how many phase pairs have a value on both models, of the `asked`.
+    Its signed mean is the bar in `waterfalls`.
     """
 
-    scene: str
+    scene: Text
+    """name of the scene"""
     body: int
+    """number of the body; 1 is the platform"""
     step: str
+    """key of the model that the step leads to, or total"""
     first: str
+    """key of the model before the step"""
     second: str
-    median: float
-    rms: float
-    percentile95: float
-    maximum: float
-    phases: tuple[float, float]
-    real: float
-    unresolved: float
-    error_estimate: float
-    peak_moves: float
-    correlation: float
+    """key of the model after the step"""
+    median: Number
+    """median of the absolute size"""
+    rms: Number
+    """root mean square of the size"""
+    percentile95: Number
+    """95 % of the absolute sizes are below this"""
+    maximum: Number
+    """largest absolute size"""
+    phases: Phases
+    """(alpha1, alpha2) of the largest, rad"""
+    real: Number
+    """fraction of the points where |D| > 5 u_D"""
+    unresolved: Number
+    """fraction of the points where u_D < |D| <= 5 u_D"""
+    error_estimate: Number
+    """median of u_D"""
+    peak_moves: Number
+    """how far the highest point of the surface moves at least on the periodic square, rad"""
+    correlation: Number
+    """Pearson's correlation of the two surfaces"""
     points: int
+    """phase pairs where both models have a value"""
     asked: int
+    """phase pairs that both models were asked for"""
 
 
 def steps(study: Study, surfaces: xr.Dataset, scene: str, body: int) -> list[Step]:
@@ -68,7 +80,7 @@ def steps(study: Study, surfaces: xr.Dataset, scene: str, body: int) -> list[Ste
     ]
 
 
-def budget(study: Study, surfaces: xr.Dataset) -> list[Entry]:
+def budget(study: Study, surfaces: xr.Dataset) -> list[BudgetEntry]:
     """Every entry of the table, in the order scene, body, step."""
     return [
         _entry(surfaces, scene.name, step)
@@ -102,7 +114,7 @@ def torus_distance(first: Sequence[float], second: Sequence[float]) -> float:
     return float(np.hypot(*np.minimum(apart, 2.0 * np.pi - apart)))
 
 
-def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> Entry:
+def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> BudgetEntry:
     known = step.known
     names: dict[str, Any] = {
         "scene": scene,
@@ -118,7 +130,7 @@ def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> Entry:
         sizes = ("median", "rms", "percentile95", "maximum")
         shares = ("real", "unresolved", "error_estimate", "peak_moves", "correlation")
         nothing: dict[str, Any] = dict.fromkeys((*sizes, *shares), float("nan"))
-        return Entry(**names, **nothing)
+        return BudgetEntry(**names, **nothing)
     data = common_phases(surfaces, scene, [step.first.key, step.second.key]).sel(body=step.body)
     both, errors = (
         [np.where(known, data[name].sel(model=model.key), np.nan) for model in (step.first, step.second)]
@@ -126,7 +138,7 @@ def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> Entry:
     )
     highest = [_phases_at(step, mu + error >= np.nanmax(mu - error)) for mu, error in zip(both, errors)]
     size = np.abs(step.size[known])
-    return Entry(
+    return BudgetEntry(
         **names,
         median=float(np.median(size)),
         rms=float(np.sqrt((size**2).mean())),

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from comparison.result_types import Number, Phases, Text, result
 from comparison.study.models import Pair
 from comparison.study.study import Study
 from comparison.surfaces.budget import known_to_all, steps
@@ -19,35 +18,42 @@ from reference.problem.distribution import fractile
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@result
 class Difference:
-    """
-    (mu of `second` - mu of `first`) / mu of `first` over the phases where both have a value.
+    """The difference of two models in one body: second minus first, relative to the first."""
 
-    mean, spread: of its signed value over the phases where every model of the scene has one, as in the waterfall, or
-    both models where the second is a user's engine; the spread is the standard deviation. median, percentile95,
-    maximum: of its absolute value. All are NaN without any such phase. phases: (alpha1, alpha2) of the maximum, rad.
-    beyond_error: share of these phases where it exceeds u_D = sqrt(u_A^2 + u_B^2), the two error estimates together,
-    NaN where a model states no error. ratio: largest |D| / u_D, NaN where any error is missing. asked: phases that both
-    models were asked for; not_ok: those of them where either outcome is not ok; unanswered: where either has no value.
-    """
-
-    scene: str
+    scene: Text
+    """name of the scene"""
     pair: str
+    """key of the pair: total, translational, like-for-like"""
     first: str
+    """key of the first model"""
     second: str
+    """key of the second model"""
     body: int
-    mean: float
-    spread: float
-    median: float
-    percentile95: float
-    maximum: float
-    phases: tuple[float, float]
-    beyond_error: float
-    ratio: float
+    """number of the body; 1 is the platform"""
+    mean: Number
+    """mean of the signed size over the phase pairs where every compared model has a value"""
+    spread: Number
+    """standard deviation of the signed size over the same phase pairs"""
+    median: Number
+    """median of the absolute size over the phase pairs where both have a value"""
+    percentile95: Number
+    """95 % of the absolute sizes are below this"""
+    maximum: Number
+    """largest absolute size"""
+    phases: Phases
+    """(alpha1, alpha2) of the largest, rad"""
+    beyond_error: Number
+    """fraction of the phase pairs where it exceeds u_D = sqrt(u_A^2 + u_B^2), the two error estimates together"""
+    ratio: Number
+    """largest absolute size in units of u_D"""
     asked: int
+    """phase pairs that both models were asked for"""
     not_ok: int
+    """phase pairs where either outcome is not ok"""
     unanswered: int
+    """phase pairs where either has no value"""
 
 
 def pair_step(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> Step:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import xarray as xr
 
+from comparison.result_types import Number, Phases, result
 from comparison.study.models import models_of
 from comparison.study.study import Study
 from comparison.surfaces.steps import known_mu
@@ -14,15 +13,20 @@ from comparison.surfaces.surfaces import asked_of
 from reference.problem import Scene
 
 
-@dataclass(frozen=True)
+@result
 class GridMaximum:
-    """The largest value of one model and body."""
+    """The largest value of one surface on the phases that were computed."""
 
-    model: str  # key
-    body: int  # from 1
-    mu: float  # NaN without a value
-    error: float  # estimated absolute error of it
-    phases: tuple[float, float]  # (alpha1, alpha2), rad; NaN under a record or without a value
+    model: str
+    """key of the model"""
+    body: int
+    """number of the body; 1 is the platform"""
+    mu: Number
+    """largest value; null without any"""
+    error: Number
+    """estimated absolute error of it"""
+    phases: Phases
+    """(alpha1, alpha2), rad; null under a record"""
 
 
 def grid_maxima(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[GridMaximum]:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import xarray as xr
 
+from comparison.result_types import Number, Phases, Text, result
 from comparison.study.models import Model, steps_of
 from comparison.study.study import Study
 from comparison.surfaces.budget import known_to_all, steps
@@ -22,39 +23,69 @@ MOST = 0.5  # fraction of the phase pairs
 SMALL = 0.2  # of the largest: geometry below it is no cause, the two codes agree below it
 
 
-@dataclass(frozen=True)
+@result
 class Cause:
-    """Keys of the models whose real steps have the sign of a difference, and of those whose steps offset them."""
+    """The models whose steps make a difference, from the bars of a waterfall."""
 
-    models: tuple[str, ...] = ()  # largest first; none where the difference is not real
-    offset: tuple[str, ...] = ()  # likewise
+    models: tuple[str, ...] = ()
+    """keys of the models whose real steps have the sign of the difference, largest first; empty where it is not real"""
+    offset: tuple[str, ...] = ()
+    """keys of the models whose real steps offset these, largest first"""
 
 
-@dataclass(frozen=True)
+@result
 class Headline:
-    """The total difference of one body, in numbers and as a sentence. Sizes are relative to mu of the first model."""
+    """The total difference of one body in numbers and in a plain sentence; relative to mu of the first model."""
 
-    scene: str
-    body: int  # from 1
-    name: str  # of the body: platform, body 2, ...
-    first: str  # key of the first model
-    second: str  # key of the last model
-    mean: float  # of the signed difference over the phase pairs: the total of the waterfall; NaN without any
-    mean_error: float  # error estimate of it
-    spread: float  # standard deviation of the signed difference over the same phase pairs
-    phases_per_axis: int  # of the grid of phase pairs that every compared model was asked for; 1 under a record
-    points: int  # phase pairs of it where every compared model has a value
-    independent: int  # of these, not related by a symmetry of the scene
-    real: float  # fraction of these where the difference is real (the five-fold rule)
-    maximum: float  # signed, the largest absolute difference of the first and any engine model, anywhere
-    maximum_error: float  # error estimate of it
-    maximum_phases: tuple[float, float]  # (alpha1, alpha2), rad; NaN under a record
-    maximum_model: str  # key of the engine model that has it
-    maximum_phases_per_axis: int  # of the grid of phase pairs that this model and the first were asked for
-    cause: Cause  # of the mean
-    maximum_cause: Cause  # of the maximum
-    like_for_like: float  # largest absolute difference of the two codes given the same equations; NaN if not compared
-    sentence: str  # all that in words
+    scene: Text
+    """name of the scene"""
+    body: int
+    """number of the body; 1 is the platform"""
+    name: str
+    """name of the body"""
+    first: str
+    """key of the first model"""
+    second: str
+    """key of the last model"""
+    mean: Number
+    """mean of the signed difference over the phase pairs where every compared model has a value: the total of the
+    waterfall"""
+    mean_error: Number
+    """error estimate of the mean"""
+    spread: Number
+    """standard deviation of the signed difference over the same phase pairs"""
+    phases_per_axis: int
+    """of the grid of phase pairs that every compared model was asked for; 1 under a record"""
+    points: int
+    """phase pairs of this grid where every compared model has a value"""
+    independent: int
+    """of these, not related by a symmetry of the scene"""
+    real: Number
+    """fraction of these where the difference exceeds five times its error estimate"""
+    maximum: Number
+    """signed; the largest absolute difference of the first and any engine model, at any phase pair where both have a
+    value"""
+    maximum_error: Number
+    """error estimate of the maximum"""
+    maximum_phases: Phases
+    """(alpha1, alpha2) of the maximum, rad; null under a record"""
+    maximum_model: str
+    """key of the engine model that has the maximum"""
+    maximum_phases_per_axis: int
+    """of the grid of phase pairs that this model and the first were asked for"""
+    cause: Cause
+    """of the mean, from the bars of the means"""
+    maximum_cause: Cause
+    """of the maximum, from the bars at its phase pair"""
+    like_for_like: Number
+    """largest absolute difference of the two codes given the same equations and friction law"""
+    sentence: Text
+    """all that in words"""
+
+    @property
+    def statement(self) -> str:
+        """The sentence below a heading that names the scene."""
+        return self.sentence.removeprefix(f"{self.scene}, ")
 
 
 def headline(study: Study, surfaces: xr.Dataset, scene: Scene, bars: Waterfall, rows: Sequence[Difference]) -> Headline:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
+from pydantic import computed_field
 
+from comparison.result_types import Text, result
 from comparison.study.batches import refusal_of
 from comparison.study.models import Model, models_of, steps_of
 from comparison.study.study import Study
@@ -16,34 +18,47 @@ from comparison.surfaces.surfaces import asked_of, outcome_counts
 from reference.problem import ADVICE, Outcome, Scene
 
 
-@dataclass(frozen=True)
+@result
 class OutcomeNote:
-    """An outcome that is not ok, how many phase pairs ended so, what it means and what helps."""
+    """One outcome of a model that is not ok."""
 
     outcome: str
+    """name of the outcome"""
     count: int
-    advice: str
+    """phase pairs that ended so"""
+    advice: Text
+    """what it means and what to try"""
 
 
-@dataclass(frozen=True)
+@result
 class Unanswered:
-    """A model without a value, or without one known to half of itself, at some phase pairs of a scene."""
+    """A model without a usable value at some or all phase pairs of a scene."""
 
-    scene: str
+    scene: Text
+    """name of the scene"""
     model: str
+    """key of the model"""
     title: str
-    points: int  # phase pairs without a value
-    unusable: int  # further phase pairs, with a value that is not known to half of itself
-    asked: int  # phase pairs that the model was asked for
-    used: bool  # whether comparisons use the values that it has
-    outcomes: tuple[OutcomeNote, ...]  # those that are not ok
+    """title of the model"""
+    points: int
+    """phase pairs without a value"""
+    unusable: int
+    """further phase pairs, with a value that is not known to half of itself"""
+    asked: int
+    """phase pairs that the model was asked for"""
+    used: bool
+    """whether comparisons use the values that it has"""
+    outcomes: tuple[OutcomeNote, ...]
+    """its outcomes that are not ok"""
 
+    @computed_field  # type: ignore[prop-decorator]
     @property
     def why(self) -> str:
         """The outcomes with their counts, what they mean, and what helps, in one line."""
         alone = len(self.outcomes) == 1 and self.outcomes[0].count == self.asked
         return "; ".join(f"{'' if alone else f'{o.count} × '}{o.outcome}: {o.advice}" for o in self.outcomes)
 
+    @computed_field  # type: ignore[prop-decorator]
     @property
     def sentence(self) -> str:
         """The whole in one line."""

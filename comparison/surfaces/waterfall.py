@@ -7,13 +7,14 @@ The mean of a sum is the sum of the means, so that the bars end at the total; me
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
+from pydantic import computed_field
 
+from comparison.result_types import Number, Phases, Text, result
 from comparison.study.study import Study
 from comparison.surfaces.budget import known_to_all, steps
 from comparison.surfaces.independent import independent_phases
@@ -24,42 +25,58 @@ Array = NDArray[np.float64]
 NAN = float("nan")
 
 
-@dataclass(frozen=True)
+@result
 class WaterfallBar:
-    """One step, or the total; relative to mu of the first model."""
+    """One step of the model hierarchy, or the total; relative to mu of the first model."""
 
-    model: str  # key of the model that the step leads to
-    size: float  # signed; NaN where a model has no value
-    error: float  # error estimate of the size
+    model: str
+    """key of the model that the step leads to"""
+    size: Number
+    """signed size; null where a model has no value"""
+    error: Number
+    """error estimate of the size"""
 
+    @computed_field  # type: ignore[prop-decorator]
     @property
     def real(self) -> bool:
         """Whether the size is known to a fifth of itself or better (the five-fold rule)."""
-        return abs(self.size) > RESOLVED * self.error
+        return bool(abs(self.size) > RESOLVED * self.error)
 
 
-@dataclass(frozen=True)
+@result
 class LargestDifference:
     """The largest absolute difference of an engine model and the first model, taken apart at its phase pair."""
 
-    bars: tuple[WaterfallBar, ...]  # up to the model that has the difference
-    total: WaterfallBar  # the difference itself
-    phases: tuple[float, float]  # (alpha1, alpha2), rad; NaN under a record or without a difference
-    phases_per_axis: int  # of the grid of phase pairs that both models were asked for; 1 under a record
+    bars: tuple[WaterfallBar, ...]
+    """one per step, up to the model that has the difference; they add up to the total"""
+    total: WaterfallBar
+    """the difference itself"""
+    phases: Phases
+    """(alpha1, alpha2), rad; null under a record"""
+    phases_per_axis: int
+    """of the grid of phase pairs that both models were asked for; 1 under a record, 0 without a difference"""
 
 
-@dataclass(frozen=True)
+@result
 class Waterfall:
-    """The bars of one body of one scene."""
+    """The total difference of one body as signed bars that add up."""
 
-    scene: str
-    body: int  # from 1
-    bars: tuple[WaterfallBar, ...]  # means, one per step, in the order of the models
-    total: WaterfallBar  # mean of the total difference: the sum of the bars
-    spread: float  # standard deviation of the total difference over the same phase pairs
-    points: int  # phase pairs where every compared model has a value
-    independent: int  # of these, not related by a symmetry of the scene
+    scene: Text
+    """name of the scene"""
+    body: int
+    """number of the body; 1 is the platform"""
+    bars: tuple[WaterfallBar, ...]
+    """one per step: means over the phase pairs where every compared model has a value"""
+    total: WaterfallBar
+    """mean of the total difference over the same phase pairs: the sum of the bars"""
+    spread: Number
+    """standard deviation of the total difference over the same phase pairs"""
+    points: int
+    """number of these phase pairs"""
+    independent: int
+    """of these, not related by a symmetry of the scene"""
     largest: LargestDifference
+    """the same at the phase pair of the largest difference"""
 
 
 def waterfall(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> Waterfall:

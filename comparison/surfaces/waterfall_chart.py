@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from comparison.report.results import Results
-from comparison.surfaces.result import Waterfall, WaterfallBar
+from comparison.surfaces.waterfall import Waterfall, WaterfallBar
 from comparison.wording import difference
 
 MARGIN = 0.03  # of the scale, beyond the longest bar

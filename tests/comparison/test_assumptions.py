@@ -22,7 +22,7 @@ from comparison.analyses.assumptions.variations import (
     MANY,
     PHASES,
     UNDER_LOAD,
-    Cell,
+    AssumptionCell,
     Variation,
     ranges,
     variation_arguments,
@@ -44,13 +44,13 @@ excitation = {amplitudes = [[1.0, 0.0], [0.0, 1.0]], periods = [0.9, 1.1], decay
 )
 
 
-def _cell(variation: Variation, first: float, second: float, uncertainty: float = 0.0) -> Cell:
+def _cell(variation: Variation, first: float, second: float, uncertainty: float = 0.0) -> AssumptionCell:
     """mu_1 changes by `one` and `other` at two phase pairs, mu_2 not at all."""
     estimate = ((uncertainty, 0.0),) * 2
-    return Cell("fig3-I", variation, ((first, 0.0), (second, 0.0)), estimate, ("ok", "ok"))
+    return AssumptionCell("fig3-I", variation, ((first, 0.0), (second, 0.0)), estimate, ("ok", "ok"))
 
 
-def _said(cells: Sequence[Cell], key: str, share: float = 0.01) -> tuple[float | None, float | None]:
+def _said(cells: Sequence[AssumptionCell], key: str, share: float = 0.01) -> tuple[float | None, float | None]:
     validity = next(line for line in ranges([STATED], cells) if (line.body, line.key, line.share) == (1, key, share))
     return validity.holds, validity.fails
 
@@ -169,7 +169,7 @@ def test_where_motions_raise_the_factors_stay_and_the_sentence_says_why_no_torsi
     assert ValidityRanges([STATED], [_cell(Variation(), 0.0, 0.0), cell]).lines(STATED)[-1].endswith(f"({reason})")
 
 
-def _turning(scene: Scene, variations: Sequence[Variation]) -> list[Cell]:
+def _turning(scene: Scene, variations: Sequence[Variation]) -> list[AssumptionCell]:
     study = Study((scene.with_values({"duration": 2.0}),), 1, 1e-3, MODEL_HIERARCHY)
     return list(collected(Assumptions(variations), study).cells)
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from comparison.study.batches import execute_batch
 from comparison.study.models import Model
 from comparison.study.study import Study
-from comparison.surfaces.budget import TOTAL, Entry, budget, closure, steps, torus_distance
+from comparison.surfaces.budget import TOTAL, BudgetEntry, budget, closure, steps, torus_distance
 from comparison.surfaces.differences import differences
 from comparison.surfaces.surfaces import labeled_surfaces
 from comparison.surfaces.waterfall import waterfall
@@ -28,7 +28,7 @@ def _solved(hierarchy: tuple[Model, ...], scene: str = "fig3-I", tolerance: floa
     return study, labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
 
 
-def _table(study: Study, surfaces: xr.Dataset, body: int = 1) -> dict[str, Entry]:
+def _table(study: Study, surfaces: xr.Dataset, body: int = 1) -> dict[str, BudgetEntry]:
     return {entry.step: entry for entry in budget(study, surfaces) if entry.body == body}
 
 

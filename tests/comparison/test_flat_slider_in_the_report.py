@@ -11,9 +11,8 @@ import pytest
 from conftest import Run
 from jsonschema import Draft202012Validator
 
-from comparison.analyses.effective_values.analysis import read_back
+from comparison.analyses.effective_values.analysis import Effective, read_back
 from comparison.analyses.errata.analysis import ERRATA
-from comparison.analyses.motions.result import Effective
 from comparison.registry import StudyResults
 from comparison.study.models import MODEL_HIERARCHY, models_of
 from multibody.film import drawing

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import pytest
 
-from comparison.analyses.families.result import Trend
 from comparison.analyses.tradeoff.feature import tradeoff_answers, tradeoff_panels
 from comparison.analyses.tradeoff.trade import Answered, Entry, Trade
 from comparison.analyses.trend_plots import trend_panels
+from comparison.analyses.trends import Trend
 from comparison.report.glossary import GLOSSARY, emphasized, explained
 from comparison.report.page import content_policy
 from comparison.report.plots import MAX_CURVES
@@ -55,7 +55,7 @@ def test_no_panel_has_more_curves_than_can_be_told_apart() -> None:
 
 def test_a_fitted_slope_is_in_the_legend_and_nan_is_no_number_of_a_plot() -> None:
     trend = Trend(
-        scene="fig3-I", body=1, what="exact minus small, supremum", parameter=[1.0, 0.5], medians=[0.1, float("nan")],
+        scene="fig3-I", body=1, what="exact minus small, supremum", parameter=(1.0, 0.5), medians=(0.1, float("nan")),
         exponent=2.01, uncertainty=0.03, points=8, pairs=4, expected=2.0, verdict="",
     )  # fmt: skip
     (panel,) = trend_panels([trend], "s")

@@ -17,7 +17,7 @@ from fake_models import errors_in, fake_hierarchy
 from jsonschema import Draft202012Validator
 
 from comparison.registry import StudyResults
-from comparison.surfaces.result import WaterfallBar
+from comparison.surfaces.waterfall import WaterfallBar
 from reference.problem import load_scene
 
 LIMITS = ("median", "maximum", "ratio", "closure", "failed")

@@ -14,7 +14,7 @@ from fake_models import fake_hierarchy
 from rich.console import Console
 
 from comparison.analyses.assumptions.figure import draw_assumptions
-from comparison.analyses.assumptions.variations import FEW, Cell
+from comparison.analyses.assumptions.variations import FEW, AssumptionCell
 from comparison.analyses.families.analysis import FamilyStep
 from comparison.analyses.families.figure import draw_family
 from comparison.registry import report_of
@@ -102,7 +102,7 @@ def _odd(scene: Scene) -> Scene:
 def test_dollars_in_a_title_are_letters_of_every_figure(tmp_path: Path) -> None:
     scene = _odd(load_scene("fig3-I"))
     nothing = (tuple([0.01] * 2),) * 3
-    cells = [Cell(scene.name, variation, nothing, nothing, ("ok",) * 3) for variation in FEW]
+    cells = [AssumptionCell(scene.name, variation, nothing, nothing, ("ok",) * 3) for variation in FEW]
     draw_assumptions(tmp_path / "assumptions.png", scene, cells)
     draw_family(
         tmp_path / "family.png",

@@ -78,5 +78,5 @@ def test_the_verdict_says_what_the_fit_allows(sizes: Array, expected: float | No
 
 def test_medians_are_of_the_absolute_size_of_what_is_known() -> None:
     sizes = trend("s", 1, "w", (1.0, 0.5), np.array([[-4.0, 1.0], [2.0, np.nan], [3.0, np.nan]]), np.ones((3, 2)), None)
-    assert sizes.medians == [3.0, 1.0]
+    assert sizes.medians == (3.0, 1.0)
     assert Slope(1.0, 0.1, 2, 1).points == 2

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from comparison.surfaces.result import WaterfallBar
+from comparison.surfaces.waterfall import WaterfallBar
 from comparison.surfaces.waterfall_chart import bars_of, log_scale, scale_of
 
 NAN = float("nan")

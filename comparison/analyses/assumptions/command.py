@@ -18,7 +18,7 @@ from rich.table import Table
 
 from comparison.analyses.assumptions.feature import figure_name
 from comparison.analyses.assumptions.validity import Assumptions, ValidityRanges
-from comparison.analyses.assumptions.variations import CLOSE_ENOUGH, DURATION, MANY, PHASES, Cell
+from comparison.analyses.assumptions.variations import CLOSE_ENOUGH, DURATION, MANY, PHASES, AssumptionCell
 from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, jobs, writing
 from comparison.cli.computing import computed
 from comparison.runner.executors import Pool
@@ -68,7 +68,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     return 0
 
 
-def _draw(folder: Path, scene: Scene, cells: Sequence[Cell]) -> None:
+def _draw(folder: Path, scene: Scene, cells: Sequence[AssumptionCell]) -> None:
     """Write the picture of a scene."""
     from comparison.analyses.assumptions.figure import draw_assumptions  # plotting: not needed to refuse
 
@@ -89,7 +89,7 @@ def _spatial(name: str) -> Scene:
     return scene
 
 
-def _print(console: Console, scene: Scene, cells: Sequence[Cell]) -> None:
+def _print(console: Console, scene: Scene, cells: Sequence[AssumptionCell]) -> None:
     console.print(f"{scene.title} ({scene.name}): largest change of mu_i against the translational model, per body")
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for heading in ("ring, m", "heights x", "supports", "offset, m", "yaw, rad", "change, %", "u_D, %", "outcomes"):

@@ -8,15 +8,40 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from comparison.analyses.assumptions.validity import Assumptions, ValidityRanges
-from comparison.analyses.assumptions.variations import Cell
-from comparison.analyses.claims.result import Assumptions as Result
+from comparison.analyses.assumptions.validity import Assumption, Assumptions, ValidityRanges
+from comparison.analyses.assumptions.variations import AssumptionCell, ValidityRange, ranges
 from comparison.report.drawings import drawing_task, drawn
 from comparison.report.section import Feature, Report, Section
+from comparison.result_types import Part, Phases
 from comparison.runner.task import Task
 from comparison.surfaces.figures.file_names import figure_file
 from comparison.surfaces.figures.pictures import Files, inlined, smaller
 from reference.problem import Scene
+
+
+class AssumptionsResult(Part):
+    """How far the paper's assumptions carry."""
+
+    assumptions: list[Assumption]
+    """what the paper assumes"""
+    phases: list[Phases]
+    """phase pairs (alpha1, alpha2), rad"""
+    duration: float
+    """duration of the motion, s"""
+    cells: list[AssumptionCell]
+    """one per scene and variation"""
+    ranges: list[ValidityRange]
+    """what the cells allow to say"""
+
+
+def _listed(found: ValidityRanges) -> AssumptionsResult:
+    return AssumptionsResult(
+        assumptions=list(found.assumptions),
+        phases=[(first, second) for first, second in found.phases],
+        duration=found.duration,
+        cells=list(found.cells),
+        ranges=ranges(found.scenes, found.cells),
+    )
 
 
 @dataclass(frozen=True)
@@ -24,7 +49,7 @@ class AssumptionFigure:
     """How far the assumptions carry in a scene."""
 
     scene: Scene
-    cells: Sequence[Cell]
+    cells: Sequence[AssumptionCell]
 
 
 def draw_assumption_figure(figure: AssumptionFigure) -> Files:
@@ -70,10 +95,10 @@ def _context(report: Report, figures: Path) -> Mapping[str, Any]:
 
 FEATURE = Feature(
     "assumptions",
-    Result,
+    AssumptionsResult,
     "how far the paper's assumptions carry; null without a spatial model",
     analysis=Assumptions(),
-    summary=lambda found: Result.model_validate(found.listed()),
+    summary=lambda found: _listed(found),
     section=Section(
         "assumptions",
         "How far the paper's assumptions carry",

@@ -12,7 +12,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from comparison.analyses.assumptions.variations import WITHIN, Cell
+from comparison.analyses.assumptions.variations import WITHIN, AssumptionCell
 from comparison.surfaces.figures.pairs import save
 from reference.problem import Scene, verbatim
 
@@ -20,7 +20,7 @@ COLORS = ("#fde725", "#35b779", "#440154")  # within 1 %, within 5 %, beyond: to
 NO_VALUE, NOT_TRIED = "0.6", "0.95"
 
 
-def draw_assumptions(path: Path, scene: Scene, cells: Sequence[Cell]) -> None:
+def draw_assumptions(path: Path, scene: Scene, cells: Sequence[AssumptionCell]) -> None:
     """Write one map per body to `path`, PNG, and as PDF: ring across, heights upwards, largest change in percent."""
     shown = [cell for cell in cells if cell.scene == scene.name and cell.variation.is_usual]
     bodies = len(scene.bodies)
@@ -32,7 +32,7 @@ def draw_assumptions(path: Path, scene: Scene, cells: Sequence[Cell]) -> None:
     save(figure, path)
 
 
-def _map(axes: Axes, scene: Scene, cells: Sequence[Cell], body: int) -> None:
+def _map(axes: Axes, scene: Scene, cells: Sequence[AssumptionCell], body: int) -> None:
     rings = sorted({cell.variation.ring for cell in cells})
     heights = sorted({cell.variation.height for cell in cells})
     axes.set_facecolor(NOT_TRIED)

@@ -5,8 +5,8 @@ The paper's assumptions (i)-(vi): what the engine's models do with each, and how
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import xarray as xr
@@ -16,13 +16,14 @@ from comparison.analyses.assumptions.variations import (
     FEW,
     PHASES,
     UNDER_LOAD,
-    Cell,
-    Range,
+    AssumptionCell,
+    ValidityRange,
     Variation,
     assumption_cells,
     ranges,
     variation_tasks,
 )
+from comparison.result_types import result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
@@ -30,14 +31,18 @@ from comparison.study.study import Study
 from reference.problem import Scene
 
 
-@dataclass(frozen=True)
+@result
 class Assumption:
-    """One of (i)-(vi): what the paper says, what the engine's models do with it, and what measures the rest."""
+    """One of the paper's assumptions (i) to (vi)."""
 
     number: str
+    """of the paper"""
     statement: str
+    """what the paper assumes"""
     engine: str
+    """what the engine's models do with it"""
     relaxed: Literal["yes", "partly", "no"]
+    """whether the engine's models drop it"""
 
 
 ASSUMPTIONS = (
@@ -96,7 +101,7 @@ class ValidityRanges:
     """How far the assumptions carry in some scenes: the cells computed and what they say, for the report."""
 
     scenes: Sequence[Scene]
-    cells: Sequence[Cell]
+    cells: Sequence[AssumptionCell]
     assumptions: Sequence[Assumption] = ASSUMPTIONS
     phases: Sequence[Sequence[float]] = tuple(map(tuple, PHASES.tolist()))  # rad
     duration: float = DURATION  # s
@@ -107,16 +112,6 @@ class ValidityRanges:
         within = [describe(validity) for validity in ranges([scene], self.cells)]
         loaded = [cell for cell in self.cells if cell.scene == scene.name and cell.variation in UNDER_LOAD]
         return within + [describe_torsion(scene, cell) for cell in uneven] + describe_shortening(scene, loaded)
-
-    def listed(self) -> dict[str, Any]:
-        """For summary.json: assumptions, phase pairs, duration, every cell and every range."""
-        return {
-            "assumptions": [asdict(assumption) for assumption in self.assumptions],
-            "phases": [list(pair) for pair in self.phases],
-            "duration": self.duration,
-            "cells": [asdict(cell) for cell in self.cells],
-            "ranges": [asdict(validity) for validity in ranges(self.scenes, self.cells)],
-        }
 
 
 @dataclass(frozen=True)
@@ -137,13 +132,13 @@ class Assumptions(Analysis[ValidityRanges]):
         return ValidityRanges([scene for scene in study.scenes if scene.name in names], cells) if cells else None
 
 
-def describe(validity: Range) -> str:
+def describe(validity: ValidityRange) -> str:
     """
     One line for people: where mu_i stays within a share of the translational result.
 
     Parameters
     ----------
-    validity : Range
+    validity : ValidityRange
 
     Returns
     -------
@@ -171,14 +166,14 @@ def describe(validity: Range) -> str:
     return f"{what} with heights up to {validity.holds:g} times the stated ones, {fails}"
 
 
-def describe_shortening(scene: Scene, loaded: Sequence[Cell]) -> list[str]:
+def describe_shortening(scene: Scene, loaded: Sequence[AssumptionCell]) -> list[str]:
     """
     One line for people on assumption (iv): what it changes that bars shorten as they sway.
 
     Parameters
     ----------
     scene : Scene
-    loaded : sequence of Cell
+    loaded : sequence of AssumptionCell
         Of UNDER_LOAD, in that order; or none.
 
     Returns
@@ -200,14 +195,14 @@ def describe_shortening(scene: Scene, loaded: Sequence[Cell]) -> list[str]:
     return [f"bars that shorten as they sway, and not only soften under the weight, change {changes}"]
 
 
-def describe_torsion(scene: Scene, cell: Cell) -> str:
+def describe_torsion(scene: Scene, cell: AssumptionCell) -> str:
     """
     One line for people: what an uneven variation changes, and how far its bodies turn about the vertical.
 
     Parameters
     ----------
     scene : Scene
-    cell : Cell
+    cell : AssumptionCell
 
     Returns
     -------

@@ -14,6 +14,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from comparison.result_types import Number, Text, result
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
@@ -31,22 +32,22 @@ WITHIN = (0.01, 0.05)  # of mu_i
 CLOSE_ENOUGH = 0.2 * WITHIN[0]  # relative error of mu_i that says whether it stays within: no smaller one is asked for
 
 
-@dataclass(frozen=True)
+@result
 class Variation:
-    """
-    The scene with another ring and other heights, as multiples of its own, other supports, uneven, or with loaded bars.
-
-    supports: how many on a ring, None: its own. offset: by which the centers of mass above the platform are moved along
-    x and along y, over the radius of the ring. yaw: by which the bodies above it and their links are turned, rad. bars:
-    what the weight above does to all bars that give way; other bars only soften.
-    """
+    """The scene with another ring of supports and other heights, uneven, or on loaded bars."""
 
     ring: float = 1.0
+    """radius of the ring, as a multiple of the stated one"""
     height: float = 1.0
+    """heights of the bodies, as multiples of the stated ones"""
     supports: int | None = None
+    """number of supports; null for the stated one"""
     offset: float = 0.0
+    """by which centers of mass above the platform are moved along x and along y, over the radius of the ring"""
     yaw: float = 0.0
+    """by which bodies above the platform and their links are turned about the vertical, rad"""
     bars: Literal["softening", "shortening"] | None = None
+    """what the weight above does to bars that give way: softening or shortening; null as stated"""
 
     @property
     def is_uneven(self) -> bool:
@@ -96,25 +97,26 @@ MANY = (
 UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # of scenes whose bars give way
 
 
-@dataclass(frozen=True)
-class Cell:
-    """
-    The spatial model of one variation against the translational model, which no variation changes.
+@result
+class AssumptionCell:
+    """The spatial model of one variation against the translational model."""
 
-    change: mu over mu of the translational model minus one, per phase pair and body, NaN without a value; uncertainty:
-    of it, the two error estimates together. status: of each phase pair. error_message: what went wrong, or "". cost: s
-    of compute of the spatial model. torsion: rad, largest rotation of every body about the vertical per phase pair, of
-    an uneven variation; else empty.
-    """
-
-    scene: str
+    scene: Text
+    """name of the scene"""
     variation: Variation
-    change: tuple[tuple[float, ...], ...]
-    uncertainty: tuple[tuple[float, ...], ...]
+    """what is varied"""
+    change: tuple[tuple[Number, ...], ...]
+    """relative change of mu by phase pair and body"""
+    uncertainty: tuple[tuple[Number, ...], ...]
+    """of the change, the two error estimates together"""
     status: tuple[str, ...]
-    error_message: str = ""
+    """outcome of each phase pair"""
+    error_message: Text = ""
+    """what went wrong, or empty"""
     cost: float = 0.0
-    torsion: tuple[tuple[float, ...], ...] = ()
+    """compute time of the spatial model, s"""
+    torsion: tuple[tuple[Number, ...], ...] = ()
+    """largest rotation about the vertical by phase pair and body, rad, of an uneven variation; else empty"""
 
     def largest(self, body: int) -> float:
         """Largest |change| of mu_i over the phase pairs; NaN if one has no value: nothing is claimed then."""
@@ -129,20 +131,25 @@ class Cell:
         return self.largest(body) + self.error_estimate(body) <= share
 
 
-@dataclass(frozen=True)
-class Range:
-    """
-    Where mu_i stays within `share` on one line of variations. key: "ring", m, "height", times the stated ones,
-    "offset", m, or "yaw", rad. holds: the last value up to which every value tried does, coming from where bodies turn
-    least (wide rings, low heights, even bodies), None if none; fails: the next one tried, None if all hold.
-    """
+Axis = Literal["ring", "height", "offset", "yaw"]
 
-    scene: str
+
+@result
+class ValidityRange:
+    """Where mu of one body stays within a fraction of the translational result, on one line of variations."""
+
+    scene: Text
+    """name of the scene"""
     body: int
+    """number of the body; 1 is the platform"""
     share: float
-    key: str
+    """largest relative change"""
+    key: Axis
+    """what varies: ring, m; height, as a multiple of the stated one; offset, m along x and y; or yaw, rad"""
     holds: float | None
+    """last value up to which every value tried stays within; null if none does"""
     fails: float | None
+    """first value tried that does not; null if all do"""
 
 
 Arguments = tuple[Scene, Model, Variation | None, float]
@@ -221,7 +228,7 @@ def variation_tasks(study: Study, stage: str, variations: Sequence[Variation] = 
     ]
 
 
-def assumption_cells(tasks: Sequence[Task], results: TaskResults) -> list[Cell]:
+def assumption_cells(tasks: Sequence[Task], results: TaskResults) -> list[AssumptionCell]:
     """
     Every variation against the translational model of its scene.
 
@@ -234,7 +241,7 @@ def assumption_cells(tasks: Sequence[Task], results: TaskResults) -> list[Cell]:
 
     Returns
     -------
-    list of Cell
+    list of AssumptionCell
     """
     answers = [(task.argument, results.value(task, _without_value)) for task in tasks]
     held_against = {scene.name: answer for (scene, _, variation, _), answer in answers if variation is None}
@@ -294,19 +301,19 @@ def _without_value(task: Arguments, failed: TaskResult) -> Solved:
     return Solved(nothing, nothing, (failed.outcome.value,) * len(PHASES), failed.error_message, 0.0)
 
 
-def _cell(scene: Scene, variation: Variation, spatial: Solved, plain: Solved) -> Cell:
+def _cell(scene: Scene, variation: Variation, spatial: Solved, plain: Solved) -> AssumptionCell:
     change = spatial.mu / plain.mu - 1.0
     uncertainty = np.hypot(spatial.error, plain.error) / plain.mu
     error_message = spatial.error_message or plain.error_message
     rows = _rows(change), _rows(uncertainty)
-    return Cell(scene.name, variation, *rows, spatial.status, error_message, spatial.cost, spatial.torsion)
+    return AssumptionCell(scene.name, variation, *rows, spatial.status, error_message, spatial.cost, spatial.torsion)
 
 
 def _rows(array: Array) -> Rows:
     return tuple(tuple(map(float, row)) for row in array)
 
 
-def ranges(scenes: Sequence[Scene], cells: Sequence[Cell]) -> list[Range]:
+def ranges(scenes: Sequence[Scene], cells: Sequence[AssumptionCell]) -> list[ValidityRange]:
     """
     Where every mu_i stays within each share of WITHIN.
 
@@ -315,11 +322,11 @@ def ranges(scenes: Sequence[Scene], cells: Sequence[Cell]) -> list[Range]:
     Parameters
     ----------
     scenes : sequence of Scene
-    cells : sequence of Cell
+    cells : sequence of AssumptionCell
 
     Returns
     -------
-    list of Range
+    list of ValidityRange
     """
     validity = []
     for scene in scenes:
@@ -339,13 +346,17 @@ def ranges(scenes: Sequence[Scene], cells: Sequence[Cell]) -> list[Range]:
                     ((cell.variation.offset * ring, cell) for cell in stated + moved), key=lambda pair: pair[0]
                 )
                 yaws = sorted(((cell.variation.yaw, cell) for cell in stated + angled), key=lambda pair: pair[0])
-                uneven = ([("offset", offsets)] if moved else []) + ([("yaw", yaws)] if angled else [])
-                for key, line in (("ring", rings), ("height", heights), *uneven):
-                    validity.append(Range(scene.name, body, share, key, *_bracket(line, body, share)))
+                lines: list[tuple[Axis, list[tuple[float, AssumptionCell]]]] = [("ring", rings), ("height", heights)]
+                lines += [("offset", offsets)] if moved else []
+                lines += [("yaw", yaws)] if angled else []
+                for key, line in lines:
+                    validity.append(ValidityRange(scene.name, body, share, key, *_bracket(line, body, share)))
     return validity
 
 
-def _bracket(line: Sequence[tuple[float, Cell]], body: int, share: float) -> tuple[float | None, float | None]:
+def _bracket(
+    line: Sequence[tuple[float, AssumptionCell]], body: int, share: float
+) -> tuple[float | None, float | None]:
     last = None
     for value, cell in line:
         if not cell.holds(body, share):

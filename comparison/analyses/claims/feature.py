@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from comparison.analyses.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE
-from comparison.analyses.claims.result import Claim, Claims, ClaimVerdict, Spike
+from comparison.analyses.claims.result import Claim, Claims, ClaimVerdict
 from comparison.analyses.claims.spike import PHASES
 from comparison.analyses.claims.table import SIGNS, ClaimTable
 from comparison.analyses.claims.table import Claims as ClaimAnalysis
@@ -21,7 +21,7 @@ def _listed(table: ClaimTable) -> Claims:
         grid=table.grid,
         readings=[reading.name for reading in table.readings],
         origins=[reading.origin for reading in table.readings],
-        spike=Spike.model_validate(table.spike),
+        spike=table.spike,
         reproduced=[table.held(column) for column in range(len(table.readings))],
         best=[reading.name for reading in table.best],
         never=[f"{claim.figure}: {claim.says}" for claim in table.never],

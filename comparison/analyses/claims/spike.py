@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 import reference
 from comparison.analyses.claims.cases import CASES
 from comparison.analyses.claims.literal import literal_peaks
 from comparison.analyses.claims.readings import LITERAL, SPEED, Reading
+from comparison.result_types import Number, result
 from comparison.runner.task import TaskResult
 
 STEPS = (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4, 1.25e-4)  # s
@@ -17,21 +16,20 @@ CASE = "fig3-I"
 PHASES = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5))  # rad
 
 
-@dataclass(frozen=True)
+@result
 class Spike:
-    """
-    mu_1 of the literal integration at PHASES over its step.
-
-    steps: s. counted, left_out: for each step mu_1 with and without the instants at which slip begins. starts: how many
-    these are. limit: mu_1 by the reference with (4.6) as its condition of rest alone, at rest and while sliding faster
-    than the cutoff of a resolved peak: what `left_out` tends to.
-    """
+    """mu_1 of the literal integration of (4.6) over its step."""
 
     steps: tuple[float, ...] = ()
-    counted: tuple[tuple[float, ...], ...] = ()
-    left_out: tuple[tuple[float, ...], ...] = ()
+    """steps, s; none where it could not be computed"""
+    counted: tuple[tuple[Number, ...], ...] = ()
+    """for each step mu_1 at each phase pair, with the instants at which slip begins"""
+    left_out: tuple[tuple[Number, ...], ...] = ()
+    """the same without these instants"""
     starts: tuple[tuple[int, ...], ...] = ()
-    limit: tuple[float, ...] = ()
+    """how many these are"""
+    limit: tuple[Number, ...] = ()
+    """mu_1 of the reference at each phase pair, with (4.6) as its condition of rest alone"""
 
 
 def spike_over_the_step(reading: Reading = LITERAL) -> Spike:

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 import multibody
 import reference
-from comparison.analyses.trends import Trend, trend
+from comparison.analyses.trends import NONE, Trend, trend
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
@@ -206,6 +206,6 @@ def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
     scene, number = task
     limit = LIMITS[number]
     return [
-        Trend(scene.name, body + 1, limit.what, limit.parameter, (), (), limit.expected, failed.reason)
+        trend(scene.name, body + 1, limit.what, limit.parameter, NONE, NONE, limit.expected, failed.reason)
         for body in range(len(scene.bodies))
     ]

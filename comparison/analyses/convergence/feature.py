@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from comparison.analyses.convergence.analysis import Convergence
-from comparison.analyses.families.result import Trend
-from comparison.analyses.trend_plots import summarized, trend_panels
+from comparison.analyses.trend_plots import trend_panels
+from comparison.analyses.trends import Trend
 from comparison.report.section import Feature, Section
 
 FEATURE = Feature(
@@ -12,7 +12,6 @@ FEATURE = Feature(
     list[Trend],
     "what the steps of friction law and contact tend to; null if not computed",
     analysis=Convergence(),
-    summary=lambda trends: [summarized(trend) for trend in trends],
     section=Section(
         "convergence",
         "What the steps tend to",

@@ -7,13 +7,14 @@ ways, and an elastic contact moves on another sphere. Here the motion itself is 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from comparison.result_types import Number, Radius, Text, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
@@ -31,32 +32,30 @@ LEVEL = 1e-5  # rise of a flat slider over its displacement that counts as none:
 FASTEST = 0.9  # friction is measured where the platform slides faster than this part of its largest speed
 
 
-@dataclass(frozen=True)
+@result
 class Effective:
-    """
-    Values read back from one motion, NaN where the motion does not tell.
+    """Values read back from one motion of a model, or as the scene states them; null where the motion does not tell."""
 
-    radius: m, of the sphere the platform moves on, (x^2 + y^2 + z^2) / 2z at its largest excursion; inf where a flat
-    slider does not rise. friction: tangential over normal part of the contact force while sliding, over |v| in a
-    lubricated scene (s/m), and where it depends on the velocity the coefficient at high speed that follows from it.
-    contact: N,
-    contact force at t = 0. mass: kg, total, the contact force at t = 0 over the apparent gravity. acceleration: m/s^2,
-    absolute, of the platform at t = 0: that of the ground where friction holds it, 0 where friction begins with
-    the speed. damping: N s/m, of the top link along x, fitted with its stiffness to the force on the top body; NaN
-    without dampers and where bodies turn. stiffness: N/m, of the top link along x where it is given by bars, fitted
-    likewise; half-way up, where bodies turn. error_message: why there are none, or "".
-    """
-
-    scene: str
+    scene: Text
+    """name of the scene"""
     model: str
-    radius: float = float("nan")
-    friction: float = float("nan")
-    contact: float = float("nan")
-    mass: float = float("nan")
-    acceleration: float = float("nan")
-    damping: float = float("nan")
-    stiffness: float = float("nan")
-    error_message: str = ""
+    """key of the model, or scene"""
+    radius: Radius = float("nan")
+    """radius of the sphere that the platform moves on, m; "inf" on a plane"""
+    friction: Number = float("nan")
+    """coefficient of friction, or s/m in a lubricated scene"""
+    contact: Number = float("nan")
+    """contact force at t = 0, N"""
+    mass: Number = float("nan")
+    """total mass, kg"""
+    acceleration: Number = float("nan")
+    """absolute acceleration of the platform at t = 0, m/s^2"""
+    damping: Number = float("nan")
+    """coefficient of the damper of the top link along x, N s/m; null without dampers, and where bodies turn"""
+    stiffness: Number = float("nan")
+    """stiffness of the top link along x, N/m; null where it is not given by bars"""
+    error_message: Text = ""
+    """why there are no values, or empty"""
 
 
 def stated(scene: Scene) -> Effective:

@@ -9,32 +9,32 @@ that is 1 / (1 - (T_3 / T)^2).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from comparison.result_types import Radius, result
 from reference.problem import Scene, exponents
 
 Array = NDArray[np.float64]
 AXES = "x", "y"
 
 
-@dataclass(frozen=True)
+@result
 class ForcedRatio:
-    """
-    Amplitude of one body over that of the platform, under one harmonic along one axis that it acts on.
-
-    body: from 2. harmonic: 1 or 2. axis: "x" or "y". period: s, of the harmonic. ratio: with the decay of
-    the loading. steady: without it, inf at resonance.
-    """
+    """Amplitude of a body over that of the platform under one harmonic, by (4.4) alone."""
 
     body: int
+    """from 2"""
     harmonic: int
+    """1 or 2"""
     axis: str
+    """x or y"""
     period: float
-    ratio: float
-    steady: float
+    """period of the harmonic, s"""
+    ratio: Radius
+    """with the decay of the loading"""
+    steady: Radius
+    """without it; "inf" at resonance"""
 
 
 def forced_ratios(scene: Scene) -> list[ForcedRatio]:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 import reference
 from comparison.analyses.errata.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
+from comparison.result_types import Number, Text, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
@@ -200,17 +201,18 @@ ERRATA: tuple[Erratum, ...] = (
 )
 
 
-@dataclass(frozen=True)
+@result
 class Effect:
-    """
-    Effect of erratum number `erratum` in a scene: `change` of mu (M, N) at PHASES, NaN where the printed form has no
-    answer; empty where the erratum does not touch the scene. error_message: what went wrong, or "".
-    """
+    """What the printed form of an erratum does to mu in one scene."""
 
-    scene: str
+    scene: Text
+    """name of the scene"""
     erratum: int
-    change: tuple[tuple[float, ...], ...] = ()
-    error_message: str = ""
+    """number of the erratum, from 0"""
+    change: tuple[tuple[Number, ...], ...] = ()
+    """relative change of mu by phase pair and body; null where the printed form has no answer; empty if untouched"""
+    error_message: Text = ""
+    """what went wrong, or empty"""
 
 
 class Errata(Analysis[list[Effect]]):

@@ -8,28 +8,44 @@ from typing import Any
 
 import numpy as np
 
-from comparison.analyses.claims.result import Effect, Erratum
-from comparison.analyses.errata.analysis import ERRATA, Errata
-from comparison.analyses.errata.analysis import Effect as MeasuredEffect
+from comparison.analyses.errata.analysis import ERRATA, Effect, Errata
 from comparison.report.section import Feature, Report, Section
+from comparison.result_types import Part
 from comparison.wording import percent
 
 
-def _listed(effects: Sequence[MeasuredEffect]) -> list[Erratum]:
+class MeasuredErratum(Part):
+    """One erratum of the print."""
+
+    where: str
+    """place in the paper"""
+    printed: str
+    """what is printed"""
+    corrected: str
+    """what it should be"""
+    why: str
+    """reason"""
+    none: str
+    """why it has no measurable effect, or empty"""
+    effects: list[Effect]
+    """one per scene with phases"""
+
+
+def _listed(effects: Sequence[Effect]) -> list[MeasuredErratum]:
     return [
-        Erratum(
+        MeasuredErratum(
             where=erratum.where,
             printed=erratum.printed,
             corrected=erratum.corrected,
             why=erratum.why,
             none=erratum.none,
-            effects=[Effect.model_validate(effect) for effect in effects if effect.erratum == number],
+            effects=[effect for effect in effects if effect.erratum == number],
         )
         for number, erratum in enumerate(ERRATA)
     ]
 
 
-def _effects(erratum: Erratum) -> list[str]:
+def _effects(erratum: MeasuredErratum) -> list[str]:
     """One sentence about the largest effect of an erratum in every scene that it touches."""
     touched = [effect for effect in erratum.effects if effect.change or effect.error_message]
     return [_effect(effect) for effect in touched] or [erratum.none or "no scene here"]
@@ -53,7 +69,7 @@ def _context(report: Report, figures: Path) -> Mapping[str, Any]:
 
 FEATURE = Feature(
     "errata",
-    list[Erratum],
+    list[MeasuredErratum],
     "in the order of the paper; null where they were not asked for",
     analysis=Errata(),
     summary=_listed,

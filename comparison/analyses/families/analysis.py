@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 
 import numpy as np
 import xarray as xr
 
 from comparison.analyses.demands.analysis import DemandStatistics
 from comparison.analyses.motions.analysis import StoredMotion
+from comparison.result_types import Number, result
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.budget import TOTAL
@@ -20,27 +21,38 @@ from comparison.surfaces.waterfall import NAN, Waterfall, WaterfallBar
 from reference.problem import Demands, Estimate, Family, Scene
 
 
-@dataclass(frozen=True)
+@result
 class FamilyCurve:
-    """mu of one model and body over the value that runs, one number for each scene; NaN without a value."""
+    """mu of one model and body over the value that runs; null where it has no value."""
 
-    model: str  # key
-    body: int  # from 1
-    mean: tuple[float, ...]  # over the phase pairs that have a value
-    lowest: tuple[float, ...]
-    highest: tuple[float, ...]
-    error: tuple[float, ...]  # mean of the estimated absolute errors
+    model: str
+    """key of the model"""
+    body: int
+    """number of the body; 1 is the platform"""
+    mean: tuple[Number, ...]
+    """mean over the phase pairs that have a value, or the value under the record, one for each scene"""
+    lowest: tuple[Number, ...]
+    """smallest over the phase pairs"""
+    highest: tuple[Number, ...]
+    """largest over the phase pairs"""
+    error: tuple[Number, ...]
+    """mean of the estimated absolute errors"""
 
 
-@dataclass(frozen=True)
+@result
 class FamilyStep:
-    """One bar of the waterfalls of a body over the value that runs, one number for each scene."""
+    """A bar of the waterfalls of one body over the value that runs; relative to mu of the first model."""
 
-    model: str  # key of the model that the step leads to, or "total"
-    body: int  # from 1
-    size: tuple[float, ...]  # signed, relative to mu of the first model; NaN where a scene does not have the step
-    error: tuple[float, ...]
+    model: str
+    """key of the model that the step leads to, or total"""
+    body: int
+    """number of the body; 1 is the platform"""
+    size: tuple[Number, ...]
+    """signed size, one for each scene"""
+    error: tuple[Number, ...]
+    """error estimate of it"""
     real: tuple[bool, ...]
+    """whether the size exceeds five times its error estimate"""
 
 
 def family_curves(study: Study, surfaces: xr.Dataset, family: Family) -> list[FamilyCurve]:
@@ -75,17 +87,24 @@ def family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfall]]) 
     return steps
 
 
-@dataclass(frozen=True)
+@result
 class FamilyDemand:
-    """One demand of the motions of a model over the value that runs, one number for each scene; NaN without."""
+    """One demand of the motions of a model over the value that runs, with its band."""
 
-    model: str  # key
-    quantity: str  # field of `Demands`
-    body: int  # from 1; 0 where the demand is of the isolator
-    median: tuple[float, ...]  # over the motions, in the unit of the field
-    lowest: tuple[float, ...]
-    highest: tuple[float, ...]
-    motions: tuple[int, ...]  # how many have the demand
+    model: str
+    """key of the model"""
+    quantity: str
+    """key in `demands` of a scene, with the unit stated there"""
+    body: int
+    """number of the body; 0 where the demand is of the isolator"""
+    median: tuple[Number, ...]
+    """median over the motions that have the demand, one for each scene; null without any"""
+    lowest: tuple[Number, ...]
+    """smallest of them"""
+    highest: tuple[Number, ...]
+    """largest of them"""
+    motions: tuple[int, ...]
+    """how many motions have the demand"""
 
 
 def family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[FamilyDemand]:

@@ -14,9 +14,8 @@ from matplotlib.figure import Figure
 from comparison.analyses.families.analysis import FamilyStep, family_steps
 from comparison.report.section import Report
 from comparison.study.models import Model
-from comparison.surfaces.budget import TOTAL
+from comparison.surfaces.budget import TOTAL, BudgetEntry
 from comparison.surfaces.figures.file_names import figure_file
-from comparison.surfaces.result import BudgetEntry
 from comparison.surfaces.waterfall import waterfall
 from comparison.wording import MAX_NAMES
 from reference.problem import Family, verbatim

@@ -14,6 +14,7 @@ from typing import Any
 
 import xarray as xr
 
+from comparison.result_types import Number, Phases, Text, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
@@ -37,30 +38,44 @@ class Peaks:
     statuses: list[str]
 
 
-@dataclass(frozen=True)
+@result
 class ComputedPeak:
-    """One measured peak by one model; NaN without an answer."""
+    """A measured peak by one model."""
 
-    model: str  # key
-    value: float
-    error: float
-    difference: float  # computed less measured
-    exceeds: bool | None  # whether its size exceeds both uncertainties together; None where it is not known
-    status: str  # how the motion ended, or why it lacks this value
+    model: str
+    """key of the model"""
+    value: Number
+    """in the unit of the quantity; null without an answer"""
+    error: Number
+    """estimated absolute error"""
+    difference: Number
+    """computed less measured value"""
+    exceeds: bool | None
+    """whether its size exceeds the uncertainty and the error together; null where it is not known"""
+    status: str
+    """how the motion ended, or why it lacks this value"""
 
 
-@dataclass(frozen=True)
+@result
 class MeasuredPeak:
-    """One measured peak beside the models."""
+    """A peak that an experiment measured, beside the models."""
 
-    scene: str
+    scene: Text
+    """name of the scene"""
     quantity: str
-    body: int  # 0 where the quantity is of the isolator
-    phases: tuple[float, float]  # rad; NaN under a record
+    """mu, or a key in `demands` with the unit stated there"""
+    body: int
+    """number of the body, 1 is the platform; 0 where the quantity is of the isolator"""
+    phases: Phases
+    """(alpha1, alpha2), rad; null under a record"""
     value: float
+    """measured value"""
     uncertainty: float
-    source: str
+    """its absolute uncertainty, as the scene states it"""
+    source: Text
+    """where it is from, as the scene states it"""
     computed: Sequence[ComputedPeak]
+    """one per model that has the quantity"""
 
 
 class MeasuredPeaks(Analysis[list[MeasuredPeak]]):

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from comparison.analyses.measured.analysis import MeasuredPeaks
-from comparison.analyses.measured.result import MeasuredPeak
+from comparison.analyses.measured.analysis import MeasuredPeak, MeasuredPeaks
 from comparison.report.section import Feature, Report, Section
 from reference.problem.peak_demands import QUANTITIES, unit_of
 

@@ -2,32 +2,7 @@
 
 from __future__ import annotations
 
-from comparison.result_types import Number, Part, Phases, Radius, Text
-
-
-class Effective(Part):
-    """Values read back from one motion of a model, or as the scene states them; null where the motion does not tell."""
-
-    scene: Text
-    """name of the scene"""
-    model: str
-    """key of the model, or scene"""
-    radius: Radius
-    """radius of the sphere that the platform moves on, m; "inf" on a plane"""
-    friction: Number
-    """coefficient of friction, or s/m in a lubricated scene"""
-    contact: Number
-    """contact force at t = 0, N"""
-    mass: Number
-    """total mass, kg"""
-    acceleration: Number
-    """absolute acceleration of the platform at t = 0, m/s^2"""
-    damping: Number
-    """coefficient of the damper of the top link along x, N s/m; null without dampers, and where bodies turn"""
-    stiffness: Number
-    """stiffness of the top link along x, N/m; null where it is not given by bars"""
-    error_message: Text
-    """why there are no values, or empty"""
+from comparison.result_types import Number, Part, Phases, Text
 
 
 class UncertainNumber(Part):

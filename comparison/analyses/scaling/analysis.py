@@ -17,7 +17,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import reference
-from comparison.analyses.trends import Trend, trend
+from comparison.analyses.trends import NONE, Trend, trend
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
@@ -108,7 +108,8 @@ def _both(scene: Scene, supremum: bool, s: float) -> tuple[Array, Array]:
 def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
     scene, supremum = task
     what = f"{STEP}, {_peak(scene, supremum)}"
-    return [Trend(scene.name, body + 1, what, SCALES, (), (), 2.0, failed.reason) for body in range(len(scene.bodies))]
+    bodies = range(1, len(scene.bodies) + 1)
+    return [trend(scene.name, body, what, SCALES, NONE, NONE, 2.0, failed.reason) for body in bodies]
 
 
 def _peak(scene: Scene, supremum: bool) -> str:

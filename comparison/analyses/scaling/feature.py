@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from comparison.analyses.families.result import Trend
 from comparison.analyses.scaling.analysis import Scaling
-from comparison.analyses.trend_plots import summarized, trend_panels
+from comparison.analyses.trend_plots import trend_panels
+from comparison.analyses.trends import Trend
 from comparison.report.section import Feature, Section
 
 FEATURE = Feature(
@@ -12,7 +12,6 @@ FEATURE = Feature(
     list[Trend],
     "the step from small to exact equations over a common scale of loading and friction; null if not computed",
     analysis=Scaling(),
-    summary=lambda trends: [summarized(trend) for trend in trends],
     section=Section(
         "scaling",
         "Scaling test",

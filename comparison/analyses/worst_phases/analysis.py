@@ -11,14 +11,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 import reference
+from comparison.result_types import Number, Phases, Text, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
@@ -41,58 +42,49 @@ SOLVED_BY = "reference:amplification"  # the models that `reference.worst_phases
 NOWHERE = (math.nan, math.nan)
 
 
-@dataclass(frozen=True)
-class Worst:
-    """
-    The largest value of one model over all phases.
+Quantity = Literal["amplification", "displacement"]
 
-    Attributes
-    ----------
-    scene : str
-    model : str
-        Key of the model.
-    quantity : str
-        "amplification" or "displacement".
-    body : int
-        From 1.
-    value, error : float
-        mu_i, or m, with its estimated absolute error. NaN without an answer.
-    phases : tuple of float, rad
-        (alpha_1, alpha_2).
-    kind : str
-        "smooth", "kink" or "jump" (`reference.PhaseMaximum`), or "nearby": the largest of the engine beside `start`.
-    side : tuple of float
-        From which direction a jump is approached. NaN otherwise.
-    runner_up : float
-        The highest other value at which a climb ended. NaN without one.
-    climbs, reached, evaluations : int
-        Climbs, those that ended at the maximum, and phase pairs that were computed.
-    at_start, start_error : float
-        Of the engine: its value at the worst phases of the equations, with its error. NaN otherwise.
-    reason : str
-        Why there is no value, or "".
-    """
+
+@result
+class Worst:
+    """The largest value of one model over all phases."""
 
     scene: str
+    """name of the scene"""
     model: str
-    quantity: str
+    """key of the model"""
+    quantity: Quantity
+    """mu of the body, or the displacement of the platform, m"""
     body: int
-    value: float = math.nan
-    error: float = math.nan
-    phases: tuple[float, float] = NOWHERE
-    kind: str = ""
-    side: tuple[float, float] = NOWHERE
-    runner_up: float = math.nan
+    """number of the body; 1 is the platform"""
+    value: Number = math.nan
+    """largest value; null without an answer"""
+    error: Number = math.nan
+    """estimated absolute error of it"""
+    phases: Phases = NOWHERE
+    """(alpha1, alpha2), rad"""
+    kind: Literal["smooth", "kink", "jump", "nearby", ""] = ""
+    """what the surface has there; "nearby": the largest of an engine beside the worst phases of the equations"""
+    side: Phases = NOWHERE
+    """direction in the plane of phases from a jump to the large values beside it; null otherwise"""
+    runner_up: Number = math.nan
+    """the highest other value at which a climb ended"""
     climbs: int = 0
+    """hills from which a climb started"""
     reached: int = 0
+    """climbs that ended at the maximum"""
     evaluations: int = 0
-    at_start: float = math.nan
-    start_error: float = math.nan
-    reason: str = ""
+    """phase pairs that were computed"""
+    at_start: Number = math.nan
+    """an engine's value at the worst phases of the equations"""
+    start_error: Number = math.nan
+    """estimated absolute error of it"""
+    reason: Text = ""
+    """why there is no value, or empty"""
 
 
 # scene, model, engine, quantity, body, tolerance of the engine, starts of the climbs (K, 2) or None
-Arguments = tuple[Scene, Model, Model | None, str, int, float, Array | None]
+Arguments = tuple[Scene, Model, Model | None, Quantity, int, float, Array | None]
 
 
 class WorstPhases(Analysis[list[Worst]]):
@@ -144,7 +136,7 @@ def nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, mode
     return next((searched[key] for key in order if key in searched), None)
 
 
-def _searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, str, int]]:
+def _searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, Quantity, int]]:
     """Model, engine beside it, quantity and body."""
     equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SOLVED_BY]
     exact = [model for model in equations if model.settings == {"equations": "exact", "regularization": None}]

@@ -7,8 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from comparison.analyses.worst_phases.analysis import WorstPhases
-from comparison.analyses.worst_phases.result import Worst
+from comparison.analyses.worst_phases.analysis import Worst, WorstPhases
 from comparison.report.plots import Panel, fractile_heads, plain
 from comparison.report.results import Results
 from comparison.report.section import Feature, Report, Section

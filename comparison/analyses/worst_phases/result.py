@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
-from comparison.result_types import Number, Part, Phases, Text
+from comparison.result_types import Number, Part, Phases
 
 
 class Mean(Part):
@@ -82,21 +80,6 @@ class DemandStatistics(Part):
     """the demand at 50 probabilities from 0.01 to 0.99"""
 
 
-class GridMaximum(Part):
-    """The largest value of one surface on the phases that were computed."""
-
-    model: str
-    """key of the model"""
-    body: int
-    """number of the body; 1 is the platform"""
-    mu: Number
-    """largest value; null without any"""
-    error: Number
-    """estimated absolute error of it"""
-    phases: Phases
-    """(alpha1, alpha2), rad; null under a record"""
-
-
 class RecordValue(Part):
     """mu of one model and body under a recorded motion."""
 
@@ -110,40 +93,3 @@ class RecordValue(Part):
     """estimated absolute error of it"""
     status: str
     """named outcome"""
-
-
-class Worst(Part):
-    """The largest value of one model over all phases."""
-
-    scene: str
-    """name of the scene"""
-    model: str
-    """key of the model"""
-    quantity: Literal["amplification", "displacement"]
-    """mu of the body, or the displacement of the platform, m"""
-    body: int
-    """number of the body; 1 is the platform"""
-    value: Number
-    """largest value; null without an answer"""
-    error: Number
-    """estimated absolute error of it"""
-    phases: Phases
-    """(alpha1, alpha2), rad"""
-    kind: Literal["smooth", "kink", "jump", "nearby", ""]
-    """what the surface has there; "nearby": the largest of an engine beside the worst phases of the equations"""
-    side: Phases
-    """direction in the plane of phases from a jump to the large values beside it; null otherwise"""
-    runner_up: Number
-    """the highest other value at which a climb ended"""
-    climbs: int
-    """hills from which a climb started"""
-    reached: int
-    """climbs that ended at the maximum"""
-    evaluations: int
-    """phase pairs that were computed"""
-    at_start: Number
-    """an engine's value at the worst phases of the equations"""
-    start_error: Number
-    """estimated absolute error of it"""
-    reason: Text
-    """why there is no value, or empty"""
