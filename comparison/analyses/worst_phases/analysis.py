@@ -143,8 +143,10 @@ def _searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, Qua
     engines = {pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"}
     bodies = range(1, len(scene.bodies) + 1)
     searched = [model for model in equations if model in exact or model.key in engines]
-    searches = [(model, engines.get(model.key), "amplification", body) for model in searched for body in bodies]
-    return searches + [(model, None, "displacement", 1) for model in exact]
+    return [
+        *((model, engines.get(model.key), "amplification", body) for model in searched for body in bodies),
+        *((model, None, "displacement", 1) for model in exact),
+    ]
 
 
 def _starts(
