@@ -1,4 +1,4 @@
-"""The page index.html: its shell, and its sections on the surfaces themselves."""
+"""The pages of a report: their shell, and the sections on the surfaces themselves."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ from reference.problem import Outcome
 SCRIPTS = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions.js", "page.js")
 
 
-def page(figures: Path, report: Report) -> str:
+def pages(figures: Path, report: Report) -> dict[str, str]:
     """
-    Content of index.html.
+    index.html, which answers the question, and verification.html, which verifies the tool.
 
     Parameters
     ----------
@@ -44,20 +44,31 @@ def page(figures: Path, report: Report) -> str:
 
     Returns
     -------
-    str
-        The page, which needs no other file and no network.
+    dict of str to str
+        Pages by file name. Each needs no other file and no network.
     """
+    answers = [section for section in report.sections if not section.verifies]
+    verifies = [section for section in report.sections if section.verifies]
+    return {
+        "index.html": _page("report.html.j2", answers, figures, report, packed_motions(report)),
+        "verification.html": _page("verification.html.j2", verifies, figures, report),
+    }
+
+
+def _page(template: str, sections: Sequence[Section], figures: Path, report: Report, motions: str = "") -> str:
     study, results = report.study, report.results
     templates = resources.files("comparison.report") / "templates"
     style = (templates / "report.css").read_text(encoding="utf-8")
     script = "\n".join((templates / name).read_text(encoding="utf-8") for name in SCRIPTS)
     axes = scales(results)
-    shown = [section for section in report.sections if section.present(results)]
+    shown = [section for section in sections if section.present(results)]
     absent = [
         (section.title, results.absent.get(section.name, section.absent))
-        for section in report.sections
+        for section in sections
         if section not in shown
     ]
+    if results.no_pdf and motions:
+        absent.append(("Report as PDF", results.no_pdf))
     common: dict[str, Any] = {
         "results": results,
         "study": study,
@@ -66,22 +77,22 @@ def page(figures: Path, report: Report) -> str:
     }
     load = _environment().get_template
     bodies = [load(section.template).render({**common, **section.context(report, figures)}) for section in shown]
-    return load("report.html.j2").render(
+    return load(template).render(
         common,
         policy=content_policy(script, style),
         style=style,
         script=script,
         sections=[(section, Markup(body)) for section, body in zip(shown, bodies)],
-        absent=absent + ([("Report as PDF", results.no_pdf)] if results.no_pdf else []),
+        absent=absent,
         alerts=_alert_groups(results),
         has_engine=any(model.side == "engine" for model in _applied(study)),
         question=_question(study),
         cards=[_card(scene, axes) for scene in results.scenes],
         scales=axes,
         effects={model.key: model.effect or model.title for model in study.hierarchy},
-        data=packed(page_data(report).encode()),
-        motions=packed_motions(report),
-    )  # fmt: skip
+        data=packed(page_data(report).encode() if motions else b"null"),
+        motions=motions,
+    )
 
 
 def _applied(study: Study) -> list[Any]:
@@ -291,6 +302,7 @@ VERIFICATION = Feature(
         "What checks each side alone",
         "sections/verification.html.j2",
         context=lambda report, figures: {"checks": CHECKS},
+        verifies=True,
     ),
 )
 PROVENANCE = Feature("provenance", section=Section("provenance", "Provenance", "sections/provenance.html.j2"))

@@ -48,7 +48,8 @@ class Section:
     of them are None the section is left out, and `absent` says which command makes it. context: what the template
     reads, from the report and the folder of its figures. tasks: drawings for the workers. draw: writes its pictures
     into the folder of the figures. title_recorded: title where no scene has phases, "" for the same. folded: whether
-    the reader opens it.
+    the reader opens it. verifies: whether it verifies the tool rather than answers the question, and so stands in
+    verification.html.
     """
 
     name: str
@@ -61,6 +62,7 @@ class Section:
     draw: Callable[[Path, Report], None] | None = None
     title_recorded: str = ""
     folded: bool = True
+    verifies: bool = False
 
     def present(self, results: Results) -> bool:
         """Whether the section was asked for and the results hold any of what it shows."""

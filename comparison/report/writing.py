@@ -1,6 +1,6 @@
 """
-Writes the report: index.html, which needs none of the others; report.pdf; surfaces.nc; summary.json with its schema
-and summary.md; junit.xml; figures/.
+Writes the report: index.html and verification.html, which need none of the others; report.pdf; surfaces.nc;
+summary.json with its schema and summary.md; junit.xml; figures/.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from pathlib import Path
 
 from comparison.analyses.demands.analysis import with_demands
 from comparison.report.junit import junit
-from comparison.report.page import page
+from comparison.report.page import pages
 from comparison.report.pdf import map_tasks, write_pdf
 from comparison.report.results import schema_json
 from comparison.report.section import Report
@@ -50,4 +50,5 @@ def write_report(folder: Path, report: Report) -> None:
             write_pdf(folder / "report.pdf", report)
         except RuntimeError as error:  # what typst raises: the rest of the report does not depend on it
             on_stderr(f"report.pdf: not written: {error}")
-    (folder / "index.html").write_text(page(figures, report), encoding="utf-8")
+    for name, text in pages(figures, report).items():
+        (folder / name).write_text(text, encoding="utf-8")

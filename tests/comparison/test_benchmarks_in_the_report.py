@@ -38,13 +38,13 @@ FOUND = Benchmarks(
 
 def test_benchmarks_beside_a_report_are_part_of_the_next_and_stay_there(command: Callable[..., Run], tmp_path: Path):
     report = command(*SMALL).report
-    assert "python -m comparison.benchmarks makes it" in (report / "index.html").read_text(encoding="utf-8")
+    assert "python -m comparison.benchmarks makes it" in (report / "verification.html").read_text(encoding="utf-8")
     publish(report, {FILE: STORED.as_json(FOUND), PAGE: b"a page"}, "comparison.benchmarks")
     for _ in range(2):
         run = command(*SMALL)
         assert run.code == 0, run.err
         assert (report / FILE).read_bytes() == STORED.as_json(FOUND)
-        page = (report / "index.html").read_text(encoding="utf-8")
+        page = (report / "verification.html").read_text(encoding="utf-8")
         assert "python -m comparison.benchmarks makes it" not in page
         for seen in (
             'id="benchmarks"',

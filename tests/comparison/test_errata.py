@@ -68,7 +68,7 @@ def test_effects_come_in_order_and_a_measure_that_fails_is_named(monkeypatch: py
 
 
 def test_the_report_and_the_summary_show_the_effects(finished: Path) -> None:
-    page = (finished / "index.html").read_text(encoding="utf-8")
+    page = (finished / "verification.html").read_text(encoding="utf-8")
     assert "fig3-I: no answer at some phases; μ<sub>1</sub> by up to 50 %, μ<sub>2</sub> by up to 25 %" in page
     assert "fig3-I: it broke" in page
     rows = json.loads((finished / "summary.json").read_text(encoding="utf-8"))["errata"]

@@ -34,14 +34,14 @@ def beside(report: Path) -> None:
 
 def test_the_matrix_beside_a_report_is_part_of_the_next_and_stays_there(command: Callable[..., Run]) -> None:
     report = command(*SMALL).report
-    assert "python -m comparison.extremes makes it" in (report / "index.html").read_text(encoding="utf-8")
+    assert "python -m comparison.extremes makes it" in (report / "verification.html").read_text(encoding="utf-8")
     beside(report)
     kept = (report / "extremes.json").read_bytes()
     for _ in range(2):
         run = command(*SMALL)
         assert run.code == 0, run.err
         assert (report / "extremes.json").read_bytes() == kept
-        page = (report / "index.html").read_text(encoding="utf-8")
+        page = (report / "verification.html").read_text(encoding="utf-8")
         assert "python -m comparison.extremes makes it" not in page
         assert 'id="extremes"' in page
         for seen in ("2e-07", "step limit", "made by a test", "hangs: &lt;forever&gt;"):

@@ -18,9 +18,13 @@ from comparison.study.study import Study
 from reference.problem import builtin_scenes, load_scene
 
 
+def both_pages(report: Path) -> str:
+    return "".join((report / name).read_text(encoding="utf-8") for name in ("index.html", "verification.html"))
+
+
 @pytest.fixture(scope="module")
 def page(finished: Path) -> str:
-    return (finished / "index.html").read_text(encoding="utf-8")
+    return both_pages(finished)
 
 
 def test_the_page_states_the_definition_of_a_peak_and_the_best_reading(page: str) -> None:
@@ -81,7 +85,7 @@ def test_claims_are_tested_only_where_every_scene_of_the_paper_is_studied() -> N
 def test_a_report_without_them_says_which_command_makes_them(command: Callable[..., Any]) -> None:
     run = command("fig3-I", "--grid", "2", "--jobs", "1")
     assert run.code == 0, run.err
-    page = (run.report / "index.html").read_text(encoding="utf-8")
+    page = both_pages(run.report)
     assert 'id="claims"' not in page
     assert "python -m comparison.claims alone" in page
     assert json.loads((run.report / "summary.json").read_text(encoding="utf-8"))["claims"] is None

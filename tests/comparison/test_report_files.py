@@ -22,6 +22,7 @@ from reference.problem import load_scene
 GRID = 4
 PARTS = {
     "index.html",
+    "verification.html",
     "report.pdf",
     "surfaces.nc",
     "summary.json",

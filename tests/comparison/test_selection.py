@@ -34,6 +34,10 @@ STAGES = {  # of the tasks of an analysis
 }
 
 
+def both_pages(report: Path) -> str:
+    return "".join((report / name).read_text(encoding="utf-8") for name in ("index.html", "verification.html"))
+
+
 def sections(page: str) -> set[str]:
     """Names of the sections of a page."""
     return set(re.findall(r'<(?:section|details class="section") id="(\w+)">', page)) - {"absent", "summary"}
@@ -74,11 +78,11 @@ def test_a_selection_changes_the_key_of_no_picture(finished: Path) -> None:
 def test_only_leaves_the_sections_asked_for_and_says_nothing_wrong_of_the_others(command: Callable[..., Run]) -> None:
     run = command("fig3-I", *GRID, "--only", "surfaces,budget")
     assert (run.code, run.err) == (0, "")
-    page = (run.report / "index.html").read_text(encoding="utf-8")
+    page = both_pages(run.report)
     selectable = {feature.key for feature in FEATURES if feature.section} & set(ANALYSES)
     assert sections(page) & selectable == {"surfaces", "budget"}
     assert sections(page) - selectable == {"outcomes", "models", "verification", "provenance"}
-    missing = page.split('id="absent">')[1].split("</ul>")[0]
+    missing = "".join(part.split("</ul>")[0] for part in page.split('id="absent">')[1:])
     assert missing.count(": not asked for</li>") == missing.count("<li>") == len(selectable) - 2
     assert "Relative differences" not in run.out
     assert "### Differences" not in (run.report / "summary.md").read_text(encoding="utf-8")
@@ -92,7 +96,7 @@ def test_only_leaves_the_sections_asked_for_and_says_nothing_wrong_of_the_others
 def test_skipped_surfaces_leave_no_picture_and_no_link_to_them(command: Callable[..., Run]) -> None:
     run = command("fig3-I", *GRID, "--skip", "surfaces,budget")
     assert run.code == 0
-    page = (run.report / "index.html").read_text(encoding="utf-8")
+    page = both_pages(run.report)
     assert {"surfaces", "budget"}.isdisjoint(sections(page))
     anchors = set(re.findall(r'href="#([\w-]+)"', page))
     assert all(f'id="{anchor}"' in page for anchor in anchors)
@@ -105,7 +109,7 @@ def test_a_scene_selects_its_own_analyses_and_the_command_line_comes_before_it(
 ) -> None:
     mine = scene_file(tmp_path, 'skip = ["differences", "surfaces"]')
     run = command(mine, "fig4-viscous", *GRID)
-    page = (run.report / "index.html").read_text(encoding="utf-8")
+    page = both_pages(run.report)
     table = page.split('id="differences">')[1].split("</table>")[0]
     assert "<td>fig4-viscous</td>" in table
     assert "<td>mine</td>" not in table

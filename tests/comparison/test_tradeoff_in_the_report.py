@@ -51,7 +51,7 @@ def test_the_diagrams_beside_a_report_are_part_of_the_next_and_stay_there(
     command: Callable[..., Run], measure: Callable[[Path, str], int]
 ) -> None:
     report = command(*SMALL).report
-    assert "python -m comparison.tradeoff SCENE makes it" in (report / "index.html").read_text(encoding="utf-8")
+    assert "python -m comparison.tradeoff SCENE makes it" in (report / "verification.html").read_text(encoding="utf-8")
     assert measure(report, "fig3-I") == 0
     names = [FILE, "fig3-I-tradeoff.nc", "fig3-I-tradeoff.png", "fig3-I-tradeoff.pdf"]
     kept = {name: (report / name).read_bytes() for name in names}
@@ -59,7 +59,7 @@ def test_the_diagrams_beside_a_report_are_part_of_the_next_and_stay_there(
         run = command(*SMALL)
         assert run.code == 0, run.err
         assert {name: (report / name).read_bytes() for name in names} == kept
-    page = (report / "index.html").read_text(encoding="utf-8")
+    page = (report / "verification.html").read_text(encoding="utf-8")
     for seen in ('id="tradeoff"', "it agrees &lt;with itself&gt;", "3.0e-08, 4.0e-08", "made by a test"):
         assert seen in page, seen
     assert "1.0e-03, 1.0e-03" not in page, "what is beaten is in the picture alone"
@@ -77,7 +77,7 @@ def test_diagrams_of_another_scene_are_added_and_said_to_be_none_of_the_study(
         assert measure(tmp_path / "report", name) == 0
     run = command(*SMALL)
     assert run.code == 0, run.err
-    page = (run.report / "index.html").read_text(encoding="utf-8")
+    page = (run.report / "verification.html").read_text(encoding="utf-8")
     assert page.count("not a scene of this study") == 1
     assert "(fig3-II)</span>: not a scene of this study" in page
 
@@ -107,7 +107,7 @@ def test_growth_beside_a_report_is_part_of_it_where_a_value_is_missing_too(
     publish(report, {GROWTH: STORED.as_json(growth)}, tradeoff.COMMAND)
     run = command(*SMALL)
     assert run.code == 0, run.err
-    page = (report / "index.html").read_text(encoding="utf-8")
+    page = (report / "verification.html").read_text(encoding="utf-8")
     for seen in ('id="tradeoff"', "engine: slope 2.00", "no answer", "made by a test"):
         assert seen in page, seen
     summary = json.loads((report / "summary.json").read_text(encoding="utf-8"))

@@ -21,6 +21,6 @@ def test_both_sides_are_checked_alone() -> None:
 
 
 def test_the_report_lists_them(finished: Path) -> None:
-    page = (finished / "index.html").read_text(encoding="utf-8")
+    page = (finished / "verification.html").read_text(encoding="utf-8")
     for check in CHECKS:
         assert check.test in page

@@ -32,5 +32,6 @@ FEATURE = Feature(
             "stated": stated,
             "with_error": with_error,
         },
+        verifies=True,
     ),
 )

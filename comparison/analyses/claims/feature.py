@@ -135,5 +135,6 @@ FEATURE = Feature(
         ("claims",),
         "python -m comparison.run with every scene of the paper makes it, and python -m comparison.claims alone",
         _context,
+        verifies=True,
     ),
 )

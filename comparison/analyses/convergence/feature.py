@@ -19,5 +19,6 @@ FEATURE = Feature(
         ("convergence",),
         "python -m comparison.run makes it, of scenes with phases",
         lambda report, figures: {"trend_panels": trend_panels},
+        verifies=True,
     ),
 )

@@ -17,5 +17,11 @@ def _context(report: Report, figures: Path) -> Mapping[str, Any]:
 FEATURE = Feature(
     "effective",
     analysis=EffectiveValues(),
-    section=Section("effective", "Effective values", "effective_values/section.html.j2", context=_context),
+    section=Section(
+        "effective",
+        "Effective values",
+        "effective_values/section.html.j2",
+        context=_context,
+        verifies=True,
+    ),
 )

@@ -73,5 +73,11 @@ FEATURE = Feature(
     "in the order of the paper; null where they were not asked for",
     analysis=Errata(),
     summary=_listed,
-    section=Section("errata", "Errata of the print", "errata/section.html.j2", context=_context),
+    section=Section(
+        "errata",
+        "Errata of the print",
+        "errata/section.html.j2",
+        context=_context,
+        verifies=True,
+    ),
 )

@@ -32,5 +32,6 @@ FEATURE = Feature(
             "describe": describe,
         },
         draw=_draw,
+        verifies=True,
     ),
 )

@@ -162,5 +162,6 @@ FEATURE = Feature(
         "python -m comparison.tradeoff SCENE makes it, beside the report; the next run of the study shows it",
         _context,
         draw=_draw,
+        verifies=True,
     ),
 )
