@@ -119,15 +119,21 @@ def of_sizes(pair: str, body: int) -> dict[str, float]:
     }  # fmt: skip
 
 
+def in_percent(value: float, plus: str = "") -> str:
+    """Two digits, or whole percents from 10 % on."""
+    size = 100.0 * abs(value)
+    return ("−" if value < 0.0 else plus) + (f"{size:.0f} %" if size >= 10.0 else f"{size:.2g} %")
+
+
 ROWS = [(pair, body) for body in (1, 2) for pair in ("total", "translational", "like for like")]
 
 
 def test_no_two_statistics_of_the_study_are_written_alike() -> None:
     for pair, body in ROWS:
-        written = {f"{abs(value):.1e}" for value in of_sizes(pair, body).values()}
+        written = {in_percent(abs(value)) for value in of_sizes(pair, body).values()}
         assert len(written) == 5, f"{pair}, body {body}"
         signed = pair_sizes(pair, body)
-        assert f"{signed.mean():.1e}" != f"{np.median(signed):.1e}", f"{pair}, body {body}"
+        assert in_percent(signed.mean()) != in_percent(np.median(signed)), f"{pair}, body {body}"
     means = [of_sizes(pair, body)["mean"] for pair, body in ROWS]
     assert min(means) < 0.0 < max(means), "of both signs"
 
@@ -139,9 +145,9 @@ def test_every_statistic_of_a_pair_stands_in_its_own_column(
     numbers, place = of_sizes(pair, body), lambda row: (row["body"], row["difference"]) == (str(body), pair)
     [row] = filter(place, tables.headed("mean, 95 %, maximum", "standard deviation"))
     for name in ("mean", "standard deviation", "95 %", "maximum"):
-        assert row[name] == f"{numbers[name]:.1e}"
+        assert row[name] == in_percent(numbers[name], "+" if name == "mean" else "")
     [row] = filter(place, tables.headed("median size", "beyond uD"))
-    assert row["median size"] == f"{numbers['median size']:.1e}"
+    assert row["median size"] == in_percent(numbers["median size"])
     [stored] = [
         each
         for each in summary["scenes"][0]["differences"]
@@ -182,7 +188,9 @@ def test_ring_and_bar_of_the_chart_are_at_95_percent_and_the_maximum(report: Pat
     charts = re.findall(r'<svg class="dots body-(\d)".*?</svg>', page)
     drawn = re.findall(r'<svg class="dots body-\d".*?</svg>', page)
     assert len(charts) == len(drawn) == 6
-    low, high = map(float, re.search(r"logarithmic axis from ([\d.e+-]+) to ([\d.e+-]+)", page).groups())  # type: ignore[union-attr]
+    ends = re.search(r"logarithmic axis from ([\d.e+-]+) % to ([\d.e+-]+) %", page)
+    assert ends is not None
+    low, high = (float(end) / 100.0 for end in ends.groups())
 
     def at(size: float) -> float:
         return 1.0 + 98.0 * np.log(size / low) / np.log(high / low)
@@ -242,8 +250,8 @@ def test_every_place_has_the_one_mean_of_the_total(
     rows = [text for title, text in bars_of_page(report, body) if title == "= total"]
     sign = "−" if mean < 0.0 else "+"
     assert [re.search(r'<td class="size">(.*?)</td>', row)[1] for row in rows] == [sign + digits]  # type: ignore[index]
-    [row] = [row for row in tables.headed("RMS", "real at") if (row["body"], row["step to"]) == (str(body), "total")]
-    assert row["mean"] == f"{mean:.1e}"
+    [row] = [row for row in tables.headed("step to", "real at") if (row["body"], row["step to"]) == (str(body), "total")]
+    assert row["mean"] == in_percent(mean, "+")
     statement = headline["sentence"].removeprefix("fig3-I, ")
     assert statement in (report / "summary.md").read_text(encoding="utf-8").replace("\\", "")
     assert statement in str(ElementTree.parse(report / "junit.xml").getroot().findtext("testsuite/system-out"))
@@ -252,14 +260,15 @@ def test_every_place_has_the_one_mean_of_the_total(
 
 def test_means_of_the_steps_in_the_table_are_the_bars(tables: Tables, summary: dict[str, Any]) -> None:
     titles = {model["title"].replace("_", ""): model["key"] for model in summary["models"]}
-    rows = [row for row in tables.headed("RMS", "real at") if row["step to"] != "total"]
+    rows = [row for row in tables.headed("step to", "real at") if row["step to"] != "total"]
     assert len(rows) == 10
     for row in rows:
         key, body = titles[row["step to"]], int(row["body"])
         count = COARSE if key in ("translational", "spatial") else GRID  # of the sizes: of both models of the step
-        assert row["mean"] == f"{step(key, body).mean():.1e}"
-        assert row["median"] == f"{np.median(np.abs(step(key, body, count))):.1e}"
-        assert row["maximum"] == f"{np.abs(step(key, body, count)).max():.1e}"
+        sizes = np.abs(step(key, body, count))
+        assert row["mean"] == in_percent(step(key, body).mean(), "+")
+        assert row["95 %"] == in_percent(np.percentile(sizes, 95.0, method="hazen"))
+        assert row["maximum"] == in_percent(sizes.max())
 
 
 def test_the_terminal_has_the_statistics_and_the_times_of_the_page(
