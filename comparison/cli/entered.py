@@ -51,7 +51,7 @@ def add_models(parser: CommandParser) -> None:
         action="append",
         default=[],
         metavar=FORM,
-        help="enter an engine of your own: a function of (scene, phases) as multibody.amplification, held against the "
+        help="add an engine of your own, a function like multibody.amplification; it is compared with the "
         f"model KEY of the equations: {', '.join(LAWS)} (default {LIKE}); repeatable; see docs/other-engines.md",
     )
     parser.add_argument(

@@ -29,7 +29,7 @@ from reference.problem import Amplification, Outcome, Scene
 Array = NDArray[np.float64]
 
 CALLED_THROUGH = "comparison.study.entered:amplification"
-LIKE = "regularised"  # key of the reference's model that an engine is held against unless it names another
+LIKE = "regularised"  # key of the reference's model that an engine is compared with unless it names another
 MOST = 8  # phases per axis, as the dearest model of the hierarchy: what a call costs is unknown
 TIME_LIMIT = 60.0  # s of processor time of one call, which is asked for one phase pair
 ALWAYS_GIVEN = ("tolerance", "regularization", "equations")  # to a function that names it
@@ -166,7 +166,7 @@ def entered_model(name: str, engine: Mapping[str, Any], like: str = LIKE, limit:
     return Model(
         key=name,
         title=name,
-        adds=f"Entered by the user, held against the {model.title}.",
+        adds=f"User-supplied engine, compared with the {model.title}.",
         side="entered",
         amplification=CALLED_THROUGH,
         trajectory="",

@@ -88,7 +88,7 @@ class Model:
     `refusal`: the function that tells from the scene alone
     why all phase pairs would be refused, or "" ("package:function", the contract of `multibody.refusal`). `side`:
     "entered" for an engine of the user (entered.py), which has no place in the steps from model to model and no
-    trajectory. `like`: key of the reference's model that such an engine is held against. `timeout`: most processor
+    trajectory. `like`: key of the reference's model that such an engine is compared with. `timeout`: most processor
     time of one call, s.
     """
 

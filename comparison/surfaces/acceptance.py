@@ -1,4 +1,4 @@
-"""The limits that a scene states before the run, held against what was found."""
+"""The limits that a scene states before the run, compared with what was found."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Breach:
 
 @result
 class Limit:
-    """An acceptance limit that the scene states, held against the results."""
+    """An acceptance limit that the scene states, compared with the results."""
 
     scene: Text
     """name of the scene"""
@@ -62,7 +62,7 @@ def checked_limits(
     study: Study, surfaces: xr.Dataset, rows: Sequence[Difference], lacking: Sequence[Unanswered]
 ) -> list[Limit]:
     """
-    Every limit that the scenes of a study state, held against what was found.
+    Every limit that the scenes of a study state, compared with what was found.
 
     Parameters
     ----------

@@ -94,13 +94,13 @@ class Step:
 
 
 def known_mu(data: xr.Dataset, model: Model) -> Array:
-    """mu of one model in the data of one scene and body; NaN where it is not known to half of itself."""
+    """mu of one model in the data of one scene and body; NaN where its error is above half of it."""
     mu, error = (np.asarray(data[name].sel(model=model.key), float) for name in ("mu", "error"))
     return known(mu, error)
 
 
 def known(mu: Array, error: Array) -> Array:
-    """mu where it is known to half of itself, or of unknown error, NaN elsewhere."""
+    """mu where its error is at most half of it or unknown, NaN elsewhere."""
     return np.where(error > WORTHLESS * mu, np.nan, mu)
 
 
@@ -108,7 +108,7 @@ def step(surfaces: xr.Dataset, scene: str, key: str, first: Model, second: Model
     """
     The difference of two models in one body, as a share of mu of the model `per`, which must be above 0.
 
-    A value that is not known to half of itself counts as missing.
+    A value whose error is above half of it counts as missing.
     """
     row, of_model = surfaces.get_index("scene").get_loc(scene), surfaces.get_index("model").get_loc
     stride = int(max(surfaces["stride"].values[row, of_model(model.key)] for model in (first, second, per)))

@@ -43,7 +43,7 @@ class Unanswered:
     points: int
     """phase pairs without a value"""
     unusable: int
-    """further phase pairs, with a value that is not known to half of itself"""
+    """further phase pairs, with a value whose error is above half of it"""
     asked: int
     """phase pairs that the model was asked for"""
     used: bool
@@ -72,8 +72,8 @@ class Unanswered:
 
     @property
     def where(self) -> str:
-        """At how many phase pairs there is no value, or none known to half of itself."""
-        parts = ("no value", self.points), ("no value known to half of itself", self.unusable)
+        """At how many phase pairs there is no value, or only one whose error is above half of it."""
+        parts = ("no value", self.points), ("only values with errors above half of them", self.unusable)
         return ", ".join(f"{what}{self._at(count)}" for what, count in parts if count)
 
     def _at(self, count: int) -> str:
@@ -86,7 +86,7 @@ def with_silent_models(study: Study, surfaces: xr.Dataset) -> Study:
     """
     The study whose comparisons leave out, scene by scene, every model that nowhere has a value of all bodies.
 
-    A value that is not known to half of itself is none. Where fewer than two models are left, all stay.
+    A value whose error is above half of it counts as missing. Where fewer than two models are left, all stay.
     """
     silent = {}
     for scene in study.scenes:

@@ -52,7 +52,7 @@ MIN_NEWTON_TOLERANCE = 1e-12  # rounding of the residuals
 MAX_ROUNDING_SHARE = 0.25  # of the tolerance, that rounding of the forces may take at a peak of MIN_PEAK
 MIN_PEAK = 0.2  # of g
 LOOSEST_FOR_ROUNDING = 1e-3  # tolerance: a looser one permits no more rounding, which at a stop may grow a hundredfold
-WEAK_LOADING = 1e-4  # of g: below, the loading itself is the peak that rounding is held against
+WEAK_LOADING = 1e-4  # of g: below, the loading itself is the peak that rounding is compared with
 MAX_WEAK_PENETRATION = 4e-4  # of rho, under such a loading: the contact force hardly changes
 WEAKEST_PEAK = 1e-300  # of g: keeps the softer contact finite
 REAL_WARPING_COMPLIANCE = 4e-4  # of rho under the weight, of real bearings: answers with open supports refer to it
@@ -92,7 +92,7 @@ class Level:
     decays : tuple of (float, float)
         For everything that dies faster than the largest step resolves: the instant until which it lasts, and its step.
     strength : float
-        Of a weak loading, in units of g; one for any other. The residual is held against it.
+        Of a weak loading, in units of g; one for any other. The residual is compared with it.
     load : float
         The loading, in units of g; zero for bodies that turn on a sphere. What accelerates the bodies may be a small
         difference of it and of other forces, which Newton's iteration solves to its tolerance.

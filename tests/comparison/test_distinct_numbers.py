@@ -250,7 +250,9 @@ def test_every_place_has_the_one_mean_of_the_total(
     rows = [text for title, text in bars_of_page(report, body) if title == "= total"]
     sign = "−" if mean < 0.0 else "+"
     assert [re.search(r'<td class="size">(.*?)</td>', row)[1] for row in rows] == [sign + digits]  # type: ignore[index]
-    [row] = [row for row in tables.headed("step to", "real at") if (row["body"], row["step to"]) == (str(body), "total")]
+    [row] = [
+        row for row in tables.headed("step to", "real at") if (row["body"], row["step to"]) == (str(body), "total")
+    ]
     assert row["mean"] == in_percent(mean, "+")
     statement = headline["sentence"].removeprefix("fig3-I, ")
     assert statement in (report / "summary.md").read_text(encoding="utf-8").replace("\\", "")

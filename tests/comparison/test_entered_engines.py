@@ -345,7 +345,7 @@ def test_a_value_with_an_error_as_large_as_itself_is_missing(command: Callable[.
     engine = ("--model", "vague=entered_engines:vague")
     run = command("fig3-I", "--grid", "2", *engine, "--check", hierarchy=fake_hierarchy(gap=5e-5))
     assert (run.code, "4 points without an answer (vague 4 of 4)" in run.err) == (1, True)
-    assert "vague: no value known to half of itself at any of 4 phase pairs" in run.out
+    assert "vague: only values with errors above half of them at any of 4 phase pairs" in run.out
 
 
 @pytest.mark.parametrize("limit", ["median", "maximum", "ratio"])

@@ -200,8 +200,8 @@ def test_a_spatial_model_on_few_phases_is_drawn_as_points(visit: Visit) -> None:
     assert visit.page.locator("[data-part=readout]").inner_text().count("±") == 2, "points have their errors"
     visit.page.locator("[data-part=pair]").select_option("translational")
     assert visit.page.evaluate("shown.map(panel => panel.sheet)") == [True, True, True]
-    visit.page.get_by_role("button", name="on those of the second").click()
-    visit.page.get_by_role("button", name="first on its own phases").click()
+    visit.page.get_by_role("button", name="phases of both").click()
+    visit.page.get_by_role("button", name="all phases of the first").click()
 
 
 def test_a_click_anywhere_shows_the_nearest_stored_motion_and_how_far_away_it_is(visit: Visit) -> None:

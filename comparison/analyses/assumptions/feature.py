@@ -79,6 +79,24 @@ def _draw(figures: Path, report: Report) -> None:
             (figures / name).write_bytes(content)
 
 
+def _table(listed: Sequence[ValidityRange]) -> list[dict[str, Any]]:
+    """A row for each body and share, with the range of each quantity that was varied."""
+    rows: dict[tuple[int, float], dict[str, Any]] = {}
+    for each in listed:
+        row = rows.setdefault((each.body, each.share), {"body": each.body, "share": each.share, "cells": {}})
+        row["cells"][each.key] = _range(each)
+    return list(rows.values())
+
+
+def _range(each: ValidityRange) -> str:
+    """The values for which a body stays within the share, in a few words."""
+    wide = each.key == "ring"  # the smaller ring changes more; of all else the larger value
+    if each.holds is None:
+        return "none tried"
+    limit = f"{'≥' if wide else '≤'} {each.holds:.3g}"
+    return f"{limit} (all tried)" if each.fails is None else f"{limit}, not {each.fails:.3g}"
+
+
 def _context(report: Report, figures: Path) -> Mapping[str, Any]:
     found: ValidityRanges = report.found["assumptions"]
     pictures = [
@@ -86,7 +104,8 @@ def _context(report: Report, figures: Path) -> Mapping[str, Any]:
             "title": scene.title,
             "name": scene.name,
             "picture": inlined(smaller((figures / figure_name(scene)).read_bytes())),
-            "lines": found.lines(scene),
+            "ranges": _table(ranges([scene], found.cells)),
+            "lines": found.uneven_lines(scene),
         }
         for scene in found.scenes
     ]

@@ -107,11 +107,14 @@ class ValidityRanges:
     duration: float = DURATION  # s
 
     def lines(self, scene: Scene) -> list[str]:
-        """One line per body, share and direction, and one per uneven variation."""
+        """One line per body, share and direction, and those of uneven variations and loaded bars."""
+        return [describe(validity) for validity in ranges([scene], self.cells)] + self.uneven_lines(scene)
+
+    def uneven_lines(self, scene: Scene) -> list[str]:
+        """One line per uneven variation, and one on bars under load."""
         uneven = [cell for cell in self.cells if cell.scene == scene.name and cell.variation.is_uneven]
-        within = [describe(validity) for validity in ranges([scene], self.cells)]
         loaded = [cell for cell in self.cells if cell.scene == scene.name and cell.variation in UNDER_LOAD]
-        return within + [describe_torsion(scene, cell) for cell in uneven] + describe_shortening(scene, loaded)
+        return [describe_torsion(scene, cell) for cell in uneven] + describe_shortening(scene, loaded)
 
 
 @dataclass(frozen=True)
@@ -155,7 +158,7 @@ def describe(validity: ValidityRange) -> str:
         if validity.key == "offset":
             stated, moved, unit = "offsets", "centers of mass moved along x and along y", "m"
         if validity.holds is None:
-            return f"{what} at none of the {stated} tried, the stated ones among them"
+            return f"{what} at none of the {stated} tried, not even the stated ones"
         if validity.holds == 0.0:
             return f"{what} with the stated {stated}, no longer with {moved} by {validity.fails:g} {unit}"
         fails = "the largest tried" if validity.fails is None else f"no longer by {validity.fails:g} {unit}"

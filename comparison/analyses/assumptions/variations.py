@@ -1,7 +1,7 @@
 """
 How far the paper's assumptions carry: the spatial model with other supports, heights, centers of mass and angles.
 
-The translational model, which no such variation changes, is what they are held against.
+The translational model, which no such variation changes, is what they are compared with.
 """
 
 from __future__ import annotations

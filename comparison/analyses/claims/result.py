@@ -33,7 +33,7 @@ class Claim(Part):
 
 
 class Claims(Part):
-    """The paper's statements about its figures, held against readings of the scenes."""
+    """The paper's statements about its figures, compared with readings of the scenes."""
 
     grid: int
     """phases per axis"""

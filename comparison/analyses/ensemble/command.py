@@ -186,9 +186,9 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
     if result.engine:
         where = ", ".join(f"{point.scene} ({point.status})" for point in result.engine)
         line = (
-            f"The engine was asked at {where}: its largest difference from the equations of the ensemble, and like for "
-            "like from the equations with its own friction law, beside the two errors together. That of "
-            "its residual includes the creep of regularized friction."
+            f"The engine ran {where}. The table has its largest difference from the equations of the ensemble, its "
+            "largest difference from the equations with the engine's friction law, and the errors of both codes. The "
+            "error of its residual displacement includes the creep of regularized friction."
         )
         console.print(line, soft_wrap=True)
 

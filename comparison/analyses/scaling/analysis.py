@@ -3,7 +3,7 @@ The scaling test: what is left of the step from small to exact equations when lo
 
 Loading and dry friction scaled by s (the rate at which it changes with the speed by 1/s) scale the motion by s, and the
 geometry that the small equations drop is of the
-order of its square: the step must fall like s^2. A step that does not is no geometry. Viscous friction mu = f_c |v|
+order of its square: the step must fall like s^2, or geometry is not its cause. Viscous friction mu = f_c |v|
 scales by itself. The printed small equations are not quite invariant either: their friction terms with xi'' x_1 / rho
 shrink like s^2 too, which the second trend shows.
 """

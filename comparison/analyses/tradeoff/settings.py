@@ -1,7 +1,7 @@
 """
 What is measured: questions, each with a reference solution, and the settings of methods that answer them.
 
-A reference solution is a run at a tolerance at least 100 times tighter than any setting that is held against it.
+A reference solution is a run at a tolerance at least 100 times tighter than any setting that is compared with it.
 """
 
 from __future__ import annotations
