@@ -1,4 +1,4 @@
-"""How far the paper's assumptions carry: `python -m comparison.assumptions`."""
+"""How far the paper's assumptions hold: `python -m comparison.assumptions`."""
 
 from comparison.cli.start import start
 

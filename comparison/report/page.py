@@ -285,7 +285,7 @@ DIFFERENCES = Feature(
 )
 BUDGET = Feature(
     "budget",
-    section=Section("budget", "What makes the difference", "sections/budget.html.j2", context=_budget),
+    section=Section("budget", "Causes of the difference", "sections/budget.html.j2", context=_budget),
 )
 OUTCOMES = Feature(
     "outcomes",
@@ -293,13 +293,13 @@ OUTCOMES = Feature(
 )
 MODELS = Feature(
     "models",
-    section=Section("models", "What was compared", "sections/models.html.j2", context=_models),
+    section=Section("models", "Models compared", "sections/models.html.j2", context=_models),
 )
 VERIFICATION = Feature(
     "verification",
     section=Section(
         "verification",
-        "What checks each side alone",
+        "Tests of each code alone",
         "sections/verification.html.j2",
         context=lambda report, figures: {"checks": CHECKS},
         verifies=True,

@@ -98,7 +98,7 @@ def _budget(results: Results) -> list[str]:
             rows.append([scene.name, str(waterfall.body), *cells, total, points])
     names = ["scene", "body", *(model.title for model in models), "total", "phase pairs"]
     return [
-        "### What makes the difference",
+        "### Causes of the difference",
         "Mean of every step with its sign, by the model it leads to, over the phase pairs that every model has. "
         "The steps add up to the total. In parentheses: not known to a fifth of itself.",
         _table(names, rows, left=2),

@@ -1,5 +1,5 @@
 """
-What checks each side alone, before the two are compared. The report prints it; the tests named here do it.
+Tests of each code alone, before the two are compared. The report prints it; the tests named here do it.
 
 Agreement of two codes proves little if either could be wrong by itself in the same way.
 """

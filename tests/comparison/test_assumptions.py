@@ -1,4 +1,4 @@
-"""How far the assumptions carry: variations vary what they say, nothing is claimed without a value, ranges stop at the
+"""How far the assumptions hold: variations vary what they say, nothing is claimed without a value, ranges stop at the
 first variation that fails, and the real models show that turning fades with the heights over the ring."""
 
 from __future__ import annotations

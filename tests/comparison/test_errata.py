@@ -1,4 +1,4 @@
-"""Errata of the print: every one has its row, and the effect of the printed form is what was measured."""
+"""Errata of the paper: every one has its row, and the effect of the printed form is what was measured."""
 
 from __future__ import annotations
 

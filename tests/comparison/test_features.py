@@ -84,11 +84,13 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any
     shutil.rmtree(copy / "comparison" / "analyses" / "claims")
     registry = copy / "comparison" / "registry.py"
     text = registry.read_text(encoding="utf-8")
-    for old, new in (
-        ("from comparison.analyses.claims import feature as claims\n", ""),
-        ("    claims.FEATURE,\n", "    ratio.FEATURE,\n"),
-        ("from comparison.analyses.s", "from comparison.analyses.ratio import feature as ratio\nfrom comparison.analyses.s"),
-    ):  # fmt: skip
+    measured = "from comparison.analyses.measured import feature as measured\n"
+    edits = {
+        "from comparison.analyses.claims import feature as claims\n": "",
+        "    claims.FEATURE,\n": "    ratio.FEATURE,\n",
+        measured: measured + "from comparison.analyses.ratio import feature as ratio\n",
+    }
+    for old, new in edits.items():
         assert text.count(old) == 1
         text = text.replace(old, new)
     registry.write_text(text, encoding="utf-8")

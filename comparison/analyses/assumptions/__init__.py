@@ -1,1 +1,1 @@
-"""How far the paper's assumptions carry."""
+"""How far the paper's assumptions hold."""

@@ -1,5 +1,5 @@
 """
-How far the paper's assumptions carry: `python -m comparison.assumptions [SCENE ...]`.
+How far the paper's assumptions hold: `python -m comparison.assumptions [SCENE ...]`.
 
 Varies the ring of supports, the heights of the bodies, their centers of mass and their angles. Prints how far mu_i then
 is from the translational result, where it stays within 1 % and 5 %, and how far uneven bodies turn. Every variation is

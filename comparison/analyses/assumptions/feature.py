@@ -20,7 +20,7 @@ from reference.problem import Scene
 
 
 class AssumptionsResult(Part):
-    """How far the paper's assumptions carry."""
+    """How far the paper's assumptions hold."""
 
     assumptions: list[Assumption]
     """what the paper assumes"""
@@ -46,7 +46,7 @@ def _listed(found: ValidityRanges) -> AssumptionsResult:
 
 @dataclass(frozen=True)
 class AssumptionFigure:
-    """How far the assumptions carry in a scene."""
+    """How far the assumptions hold in a scene."""
 
     scene: Scene
     cells: Sequence[AssumptionCell]
@@ -115,12 +115,12 @@ def _context(report: Report, figures: Path) -> Mapping[str, Any]:
 FEATURE = Feature(
     "assumptions",
     AssumptionsResult,
-    "how far the paper's assumptions carry; null without a spatial model",
+    "how far the paper's assumptions hold; null without a spatial model",
     analysis=Assumptions(),
     summary=lambda found: _listed(found),
     section=Section(
         "assumptions",
-        "How far the paper's assumptions carry",
+        "How far the paper's assumptions hold",
         "assumptions/section.html.j2",
         ("assumptions",),
         "no scene with phases says where its supports are and how high and large its bodies, as the spatial model asks",

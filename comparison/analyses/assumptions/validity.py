@@ -98,7 +98,7 @@ ASSUMPTIONS = (
 
 @dataclass(frozen=True)
 class ValidityRanges:
-    """How far the assumptions carry in some scenes: the cells computed and what they say, for the report."""
+    """How far the assumptions hold in some scenes: the cells computed and what they say, for the report."""
 
     scenes: Sequence[Scene]
     cells: Sequence[AssumptionCell]
@@ -119,7 +119,7 @@ class ValidityRanges:
 
 @dataclass(frozen=True)
 class Assumptions(Analysis[ValidityRanges]):
-    """How far the assumptions carry in the scenes of a study: a few variations, or as many as a command asks for."""
+    """How far the assumptions hold in the scenes of a study: a few variations, or as many as a command asks for."""
 
     key, stage = "assumptions", "assumptions"
     variations: Sequence[Variation] = FEW

@@ -1,5 +1,5 @@
 """
-How far the paper's assumptions carry: the spatial model with other supports, heights, centers of mass and angles.
+How far the paper's assumptions hold: the spatial model with other supports, heights, centers of mass and angles.
 
 The translational model, which no such variation changes, is what they are compared with.
 """

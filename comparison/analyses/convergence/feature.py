@@ -1,4 +1,4 @@
-"""What the steps tend to: in the report."""
+"""Convergence of friction law and contact: in the report."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FEATURE = Feature(
     analysis=Convergence(),
     section=Section(
         "convergence",
-        "What the steps tend to",
+        "Convergence of friction law and contact",
         "convergence/section.html.j2",
         ("convergence",),
         "python -m comparison.run makes it, of scenes with phases",

@@ -75,7 +75,7 @@ FEATURE = Feature(
     summary=_listed,
     section=Section(
         "errata",
-        "Errata of the print",
+        "Errata of the paper",
         "errata/section.html.j2",
         context=_context,
         verifies=True,

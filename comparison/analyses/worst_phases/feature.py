@@ -74,7 +74,7 @@ FEATURE = Feature(
     analysis=WorstPhases(),
     section=Section(
         "worst_phases",
-        "Over all phases",
+        "Largest values over all phases",
         "worst_phases/section.html.j2",
         ("worst_phases",),
         "python -m comparison.run makes it, of scenes with phases",
