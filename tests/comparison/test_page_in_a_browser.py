@@ -87,7 +87,7 @@ def _unfolded(page: Page) -> None:
     """Every folded part is opened, every plot drawn."""
     page.evaluate("document.querySelectorAll('details').forEach(part => { part.open = true; })")
     _until(page, "[...document.querySelectorAll('[data-plot]')].every(box => box.querySelector('svg'))")
-    _until(page, "document.querySelector('[data-part=plots] svg')")
+    _until(page, "!document.querySelector('[data-part=plots]') || document.querySelector('[data-part=plots] svg')")
 
 
 def _colored(canvas: Locator) -> bool:
