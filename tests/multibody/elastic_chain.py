@@ -11,6 +11,7 @@ damping. The start is the static equilibrium, in which fast motions of the beari
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -20,10 +21,10 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.integrate import Radau
 from scipy.linalg import null_space
+from sliding_plate import GRAVITY, Ground
 
 Array = NDArray[np.float64]
 
-GRAVITY = 9.81
 ALONG = 1e-5  # s, of the difference quotient along the motion for the rates of the Jacobians
 PER_STEP = 12  # instants in a step at which accelerations are read
 
@@ -128,12 +129,18 @@ def _forces(q, rates, ground, masses, tensors, centers, free, stiffness, damping
     supports = np.zeros(len(ring))
     gap_rates = np.zeros((len(ring), size))
     for k in range(len(ring)):
-        arm = axes[0] @ np.array([ring[k, 0] - centers[0, 0], ring[k, 1] - centers[0, 1], -centers[0, 2]])
-        away = np.array([ring[k, 0], ring[k, 1], rho]) - places[0] - arm
-        distance = math.sqrt(away @ away)
-        normal = away / distance
-        penetration = distance - rho + pressed
-        touching = arm + normal * (sphere + rho + 0.5 * penetration)
+        if math.isinf(rho):  # a plane on the tops of the spheres
+            normal = axes[0][:, 2].copy()
+            arm = np.array([ring[k, 0], ring[k, 1], -sphere]) - places[0]
+            penetration = sphere + pressed + normal @ arm + centers[0, 2]
+            touching = arm + normal * (sphere + pressed - 0.5 * penetration)
+        else:
+            arm = axes[0] @ np.array([ring[k, 0] - centers[0, 0], ring[k, 1] - centers[0, 1], -centers[0, 2]])
+            away = np.array([ring[k, 0], ring[k, 1], rho]) - places[0] - arm
+            distance = math.sqrt(away @ away)
+            normal = away / distance
+            penetration = distance - rho + pressed
+            touching = arm + normal * (sphere + rho + 0.5 * penetration)
         over = moved[0] - _skew(touching) @ spun[0]
         gap_rates[k] = normal @ over
         if penetration <= 0.0:
@@ -245,17 +252,6 @@ class ElasticBuilding:
         """What `_forces` returns."""
         return _forces(np.ascontiguousarray(q), np.ascontiguousarray(rates), ground, *self._model)
 
-    def ground(self, time: float, phase: tuple[float, float]) -> Array:
-        """Acceleration of the plate, (3,), (5.2)-(5.4)."""
-        loading = self.scene["excitation"]
-        total = np.zeros(3)
-        for harmonic in range(2):
-            rate = 2.0 * np.pi / loading["periods"][harmonic]
-            value = math.exp(-loading["decay"][harmonic] * time) * math.cos(rate * time + phase[harmonic])
-            for axis, row in enumerate(loading["amplitudes"]):
-                total[axis] += row[harmonic] * value
-        return total
-
     def equilibrium(self) -> Array:
         """Coordinates (n,) at which nothing moves under the weight."""
         everything = np.eye(len(self.free))[:, self.free]
@@ -288,7 +284,7 @@ class ElasticBuilding:
                 (missing(unknown + step * one) - missing(unknown - step * one)) / (2.0 * step)
                 for one in np.eye(len(unknown))
             ]
-            unknown = unknown - np.linalg.solve(np.array(slopes).T, missing(unknown))
+            unknown = unknown - np.linalg.lstsq(np.array(slopes).T, missing(unknown), rcond=1e-12)[0]
         if not np.abs(missing(unknown)).max() < 1e-7 * GRAVITY * self.masses.sum():
             raise RuntimeError("no equilibrium")
         return begin + moved @ unknown[:count]
@@ -296,10 +292,11 @@ class ElasticBuilding:
     def motion(self, phase: tuple[float, float], tolerance: float = 1e-8) -> Motion:
         """The motion from its start to the end of the scene."""
         size, bodies = len(self.free), len(self.masses)
-        start = self.start(self.ground(0.0, phase))
+        ground = Ground(self.scene, phase)
+        start = self.start(ground(0.0))
 
         def solved(time: float, state: Array) -> tuple[Array, Any]:
-            found = self.forces(state[:size], state[size:], self.ground(time, phase))
+            found = self.forces(state[:size], state[size:], ground(time))
             return np.linalg.solve(found[1], found[0]), found
 
         def rate(time: float, state: Array) -> Array:
@@ -312,35 +309,28 @@ class ElasticBuilding:
                 _kinematics(state[:size] + sign * ALONG * rates, self.free, self._model[2])[2] for sign in (1.0, -1.0)
             )
             moved = found[4] @ changed + (later - before) @ rates / (2.0 * ALONG)
-            return np.linalg.norm(moved + self.ground(time, phase), axis=1), found[3]
+            return np.linalg.norm(moved + ground(time), axis=1), found[3]
 
         first = np.concatenate([start, np.zeros(size)])
-        solver = Radau(
-            rate,
-            0.0,
-            first,
-            self.scene["duration"],
-            rtol=tolerance,
-            atol=1e-3 * tolerance,
-            first_step=1e-6,
-            max_step=0.02,
-        )
         peak, supports = read(0.0, first)
         instant, times, all_supports, turns = np.zeros(bodies), [0.0], [supports], [start[3:6]]
-        while solver.status == "running":
-            message = solver.step()
-            if solver.status == "failed":
-                raise RuntimeError(message)
-            dense = solver.dense_output()
-            for time in np.linspace(solver.t_old, solver.t, PER_STEP + 1)[1:]:
-                state = dense(time)
-                sizes, supports = read(time, state)
-                instant = np.where(sizes > peak, time, instant)
-                peak = np.maximum(peak, sizes)
-                times.append(time)
-                all_supports.append(supports)
-                turns.append(state[3:6])
-        grid = np.linspace(0.0, self.scene["duration"], 200001)
-        grid = np.concatenate([grid, times])
-        largest = max(float(np.linalg.norm(self.ground(time, phase))) for time in grid)
+        state, longest = first, 1e-6
+        for begin, end in itertools.pairwise(ground.knots):
+            options = {"rtol": tolerance, "atol": 1e-3 * tolerance, "max_step": 0.02}
+            solver = Radau(rate, begin, state, end, first_step=min(longest, end - begin), **options)
+            while solver.status == "running":
+                message = solver.step()
+                if solver.status == "failed":
+                    raise RuntimeError(message)
+                dense, longest = solver.dense_output(), solver.step_size
+                for time in np.linspace(solver.t_old, solver.t, PER_STEP + 1)[1:]:
+                    now = dense(time)
+                    sizes, supports = read(time, now)
+                    instant = np.where(sizes > peak, time, instant)
+                    peak = np.maximum(peak, sizes)
+                    times.append(time)
+                    all_supports.append(supports)
+                    turns.append(now[3:6])
+            state = solver.y
+        largest = ground.largest()
         return Motion(peak, instant, peak / largest, start, np.array(times), np.array(all_supports), np.array(turns))
