@@ -32,6 +32,8 @@ NOISE_OF_TURNING = 0.2  # likewise, of a platform that turns (measured: up to 0.
 MAX_FORCE_WITHOUT_ITERATION = 40.0
 SAFETY_OF_SHARING = 2.0  # on what two loads of warping show
 SAFETY_OF_BEARINGS = 2.0  # on what springs of real bearings change at a coarser level
+# time from the start in which stiff links swing, in square roots of the penetration (measured: peaks at 1.7)
+STARTING_TIME = 4.0
 MIN_RATE, MAX_RATE = 2.0, 4.0  # factor by which a level reduces the error: at stops, in smooth motion
 MAX_CREDIBLE_RATE = 5.0  # a larger factor is accidental
 # relative change of a peak over the largest load that warping takes while all supports are closed (measured: up to
@@ -66,7 +68,16 @@ def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> 
     unsolved = levels[-1].newton * levels[-1].load
     level_error: Array = np.maximum(change, levels[-1].error_floor * last)
     level_error = level_error + unsolved if levels[-1].flat else np.maximum(level_error, unsolved)
-    return level_error + peaks[-1].sampling + MIN_RELATIVE_ERROR * last
+    return level_error + peaks[-1].sampling + _of_start(peaks[-1], levels[-1], model) + MIN_RELATIVE_ERROR * last
+
+
+def _of_start(peaks: Peaks, level: Level, model: EngineModel) -> Array:
+    """Error (N,) of peaks that links which swing at the start make: all of what they add to the first sample."""
+    if model.depressions is None or peaks.first is None:
+        return np.zeros_like(peaks.value)
+    starting = peaks.instant < STARTING_TIME * math.sqrt(level.penetration)
+    added: Array = np.where(starting, np.abs(peaks.value - peaks.first), 0.0)
+    return added
 
 
 def from_rounding(peaks: Peaks, level: Level, other: Peaks, softer: Level, safety: float = SAFETY_TWO_LEVELS) -> Array:

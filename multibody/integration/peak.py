@@ -36,13 +36,15 @@ class Peaks:
 
     threshold: slip speed v_reg at which the friction law has its corner; inf if it has none. knots: (K,), rising, where
     the loading has a kink, each a sample within `near`.
-    value: (N,). sampling: (N,), estimated error of the reading between samples. instant: (N,), where.
+    value: (N,). sampling: (N,), estimated error of the reading between samples. instant: (N,), where. first: (N,), of
+    the first sample.
     """
 
     def __init__(self, bodies: int, threshold: float, knots: Array = NO_KNOTS, near: float = 0.0) -> None:
         self.value = np.zeros(bodies)
         self.sampling = np.zeros(bodies)
         self.instant = np.zeros(bodies)
+        self.first: Array | None = None
         self._threshold, self._knots, self._near = threshold, knots, near
         self._read = -np.inf  # start of the last interval whose corner was read
         self._time = np.empty(0)
@@ -51,6 +53,8 @@ class Peaks:
 
     def add(self, time: Array, size: Array, slip: Array) -> None:
         """Sizes (T, N) at times (T,), slip speeds (T, K); their first row repeats the last one of the chunk before."""
+        if self.first is None:
+            self.first = size[0]
         carried = len(self._time)
         least = CANDIDATE_FRACTION * self.value
         candidate = any_larger(size, 1 if carried else 0, least) or any_larger(self._size, 0, least)

@@ -25,6 +25,15 @@ SLOWEST_IMPACT = 1e-5  # units of velocity
 PER_STEP = 8  # instants in a step at which accelerations are read
 
 
+def random_record(random: np.random.Generator, horizontal: float, vertical: float, duration: float) -> dict[str, Any]:
+    """Three directions of noise as arrays, with even or uneven samples that need not end at zero, m/s^2."""
+    spacing = random.uniform(0.03, 0.12)
+    count = max(int(duration / spacing * random.uniform(0.6, 1.3)), 4)
+    time = spacing * np.arange(count) + random.choice([0.0, 0.2 * spacing]) * random.uniform(-1.0, 1.0, count)
+    samples = random.normal(0.0, 0.6, (count, 3)) * [horizontal, horizontal, vertical]
+    return {"record": {"time": time, "acceleration": samples}, "scale": float(random.uniform(0.5, 1.5))}
+
+
 class Ground:
     """Acceleration of the plate, of a scene given as the table that a scene file is."""
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 import pytest
 from elastic_chain import GRAVITY, ElasticBuilding
+from sliding_plate import random_record
 
 import multibody
 from reference.problem import Outcome, Scene
@@ -90,3 +92,43 @@ def test_a_random_building_on_bearings_stays_within_its_error(seed: int) -> None
     share = share_of_errors(*table(seed))
     print(f"\nbuilding {seed}: {share:.2f} of the errors")
     assert share <= 1.0
+
+
+def on_a_plane(seed: int) -> tuple[dict[str, Any], tuple[float, float], float]:
+    """That building on a flat slider, on the axis of its links and shaken vertically, too."""
+    scene, phase, v_reg = table(seed)
+    scene["isolator"]["radius"] = math.inf
+    for body in scene["bodies"]:
+        del body["offset"]
+    scene["excitation"]["amplitudes"].append(np.random.default_rng([9, seed]).uniform(-4.0, 4.0, 2).tolist())
+    return scene, phase, v_reg
+
+
+def recorded(seed: int) -> tuple[dict[str, Any], tuple[float, float], float]:
+    """That building under a record of three directions whose samples are far apart."""
+    scene, phase, v_reg = table(seed)
+    excitation = random_record(np.random.default_rng([9, seed]), 1.0, 1.5, 2.0)
+    return scene | {"excitation": excitation, "duration": 1.0}, phase, v_reg
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(4))
+def test_a_building_on_a_plane_stays_within_its_error(seed: int) -> None:
+    assert share_of_errors(*on_a_plane(seed)) <= 1.0
+
+
+AT_A_SAMPLE = pytest.mark.xfail(strict=True, reason="a peak at a sample, 1.4 stated errors off")
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", [0, 1, pytest.param(2, marks=AT_A_SAMPLE), 3, 4])
+def test_a_building_under_a_record_stays_within_its_error(seed: int) -> None:
+    assert share_of_errors(*recorded(seed)) <= 1.0
+
+
+def test_a_peak_that_stiff_links_make_at_the_start_is_in_the_error() -> None:
+    """They swing for two square roots of the penetration: levels 0 and 1 agree, 1.4 errors from elastic_chain.py."""
+    scene, phase, v_reg = recorded(0)
+    engine = multibody.amplification(Scene.model_validate(scene), [phase], "spatial", v_reg)
+    assert engine.status[0] == Outcome.OK
+    assert (np.abs(engine.mu[0] - [0.99133843, 0.80543322]) <= engine.error[0]).all()

