@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from elastic_chain import GRAVITY, ElasticBuilding
-from sliding_plate import random_record
+from elastic_chain import ElasticBuilding
+from sliding_plate import GRAVITY, random_record
 
 import multibody
 from reference.problem import Outcome, Scene

@@ -96,7 +96,7 @@ def share_of_errors(case: Case, model: str) -> float:
     away = engine.displacement[0] - close.displacement
     uncertain = 1e-3 * close.displacement + abs(rough.displacement - close.displacement)
     print(f"\n{scene['title']}: {len(close.landings)} landings, {share:.2f} of the errors, {away / uncertain:.2f}")
-    return max(share, abs(away) / uncertain)
+    return max(share, float(abs(away) / uncertain))
 
 
 @pytest.mark.parametrize(("seed", "flat", "recorded"), [(1, False, False), (16, True, False), (1, True, True)])
