@@ -20,7 +20,6 @@ if __name__ == "__main__":
 
 import sys
 from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
 from contextlib import suppress
 from dataclasses import replace
 from importlib import import_module
@@ -39,7 +38,6 @@ from comparison.registry import chosen_analyses, first_tasks, levels
 from comparison.runner.cache import Cache, store_beside
 from comparison.runner.deadline import Deadline, TimeUpError
 from comparison.runner.executors import Pool
-from comparison.runner.keys import batch_key, task_key
 from comparison.runner.output import clear_dead
 from comparison.runner.processes import process_pool
 from comparison.runner.progress import progress, wide_console
@@ -50,6 +48,7 @@ from comparison.runner.workers import workers
 from comparison.study.costs import WRITING, seconds_of_analysis, seconds_of_model
 from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work, with_softened_bars
 from comparison.study.study import Study
+from comparison.surfaces.tasks import surface_tasks
 from reference.problem.command import stoppable
 
 import_module("multibody.models.engine")  # workers load it again: where that fails, the command ends here in one line
@@ -118,9 +117,9 @@ def _ended(study: Study, options: Options, console: Console, words: Sequence[str
 
     with (
         ending_early(hint, words, options.scheduler),
-        workers(options.jobs, options.scheduler, models, executor) as (width, make),
+        workers(options.jobs, options.scheduler, models, executor) as (width, pool),
     ):
-        return _run(study, options, width, console, words, make, store, began, hint)
+        return _run(study, options, width, console, words, pool, store, began, hint)
 
 
 def _run(
@@ -129,7 +128,7 @@ def _run(
     jobs: int,
     console: Console,
     words: Sequence[str],
-    make: Callable[[int], Executor],
+    pool: Pool,
     store: Cache,
     began: Clock,
     hint: Callable[[Sequence[str]], str],
@@ -137,20 +136,20 @@ def _run(
     clear_dead(options.out)
     analyses = chosen_analyses(study)
     first = first_tasks(study, analyses)
-    keys = [batch_key(batch) for batch in study.batches()]
+    surfaces = surface_tasks(study)
+    keys = [task.key for task in surfaces]
     store.trim(keys)
     if options.fresh:  # gone before anything is computed: what an interrupted run left is new
-        store.forget(keys)
-        store.remove(map(task_key, first))
+        store.remove([*keys, *(task.key for task in first)])
     results = TaskResults(store, options.fresh)
-    print_stored(console, store, keys, first, options.fresh)
+    print_stored(console, results, surfaces, first)
     stages = {analysis.stage: seconds_of_analysis(study, analysis.key, analysis.stage) for analysis in analyses}
     total = WRITING + sum(stages.values()) + sum(seconds_of_model(study, model) for model in study.hierarchy)
     reports = Reports(options, jobs, words, began)
     complete: Complete | None = None
     stopped: KeyboardInterrupt | None = None
     with progress(console, total, jobs) as display, Deadline(began.wall, options.budget) as deadline:
-        runner = Runner(results, console, jobs, make, display, stages)
+        runner = Runner(results, console, jobs, pool, display, stages)
         try:
             for level in levels(study):
                 complete = computed_level(level, runner)

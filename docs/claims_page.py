@@ -32,6 +32,7 @@ from comparison.runner.processes import process_pool
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
+from comparison.runner.warm_up import compiling_task
 from comparison.study.study import Study
 from reference.problem import builtin_scenes, load_scene
 
@@ -62,7 +63,7 @@ def main() -> None:
     results = TaskResults(Cache(store_beside(options.out)))
 
     def compute(tasks: Sequence[Task]) -> TaskResults:
-        Runner(results, Console(), options.jobs, process_pool).run_tasks(tasks, compile_first=True)
+        Runner(results, Console(), options.jobs, process_pool).run(tasks, compiling_task)
         return results
 
     def tabled(grid: int, readings: Sequence[Reading]) -> ClaimTable:

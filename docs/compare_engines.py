@@ -13,6 +13,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Iterator
+from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -149,7 +150,7 @@ def _measured(engine: Engine) -> Iterator[dict[str, Any]]:
         for name in SCENES:
             workers = Workers(1)  # a fresh process: no setting finds another's work done
             try:
-                task = workers.submit_within(LIMIT, _asked, engine.function, name, settings)
+                task = workers.start(partial(_asked, engine.function, name, settings), LIMIT)
                 mu, solutions, seconds = task.result()
             except Exception as error:
                 print(f"{engine.name}, {name}, {settings}: {type(error).__name__}: {error}", file=sys.stderr)

@@ -20,36 +20,18 @@ from rich.console import Console
 from comparison.cli.arguments import EndedEarlyError, jobs
 from comparison.runner.cache import Cache, StoreError, refuse_foreign_store, store_beside
 from comparison.runner.executors import ExecutorLostError, Pool
-from comparison.runner.keys import task_key
 from comparison.runner.output import destination
 from comparison.runner.provenance import provenance
 from comparison.runner.resume import command_line, resume_hint, without_scheduler
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
+from comparison.runner.warm_up import compiling_task
 from comparison.runner.workers import workers
 
 
 def run_facts(command: str, options: argparse.Namespace, words: Sequence[str], begin: float) -> dict[str, Any]:
-    """
-    What is known of a run that ends now: command line, beginning, duration, workers, provenance.
-
-    Parameters
-    ----------
-    command : str
-        Its name, as in "comparison.NAME".
-    options : argparse.Namespace
-        Parsed by a `CommandParser` with `add_computing`.
-    words : sequence of str
-        The command line.
-    begin : float, s
-        `time.monotonic()` when it began.
-
-    Returns
-    -------
-    dict of str to object
-        For a JSON file.
-    """
+    """What is known of a run that ends now: command line, beginning, duration, workers, provenance; for a JSON file."""
     seconds = time.monotonic() - begin
     return {
         "command": command_line(words, command),
@@ -70,42 +52,17 @@ def computed(
     executor: Pool,
 ) -> TaskResults:
     """
-    The results of all tasks of a command.
+    The results of all tasks of the command "comparison.NAME": stored ones, and the others computed.
 
-    Parameters
-    ----------
-    command : str
-        Its name, as in "comparison.NAME".
-    options : argparse.Namespace
-        Parsed by a `CommandParser` with `add_out` and `add_computing`.
-    words : sequence of str
-        The command line.
-    tasks : sequence of Task
-        What is computed, unless it is stored.
-    models : set of str
-        Functions that the workers of a cluster must have in the same versions, as "package:name".
-    console : Console
-        Where progress is shown.
-    executor : Executor or callable
-        What makes the processes of this machine, or an executor in their place.
-
-    Returns
-    -------
-    TaskResults
-
-    Raises
-    ------
-    SceneError
-        One line, for a wrong option and where there is no place for results.
-    EndedEarlyError
-        For Ctrl-C and other signals, a full disk and a lost cluster: says how to go on.
+    models: functions that the workers of a cluster must have in the same versions, as "package:name".
+    Raises SceneError for a wrong option and where there is no place for results, and EndedEarlyError.
     """
     width = jobs(options)
     out = destination(options.out)
     refuse_foreign_store(out)
     cache = Cache(store_beside(out))
     if options.fresh:
-        cache.remove(map(task_key, tasks))
+        cache.remove(task.key for task in tasks)
     results = TaskResults(cache)
     stored = len(tasks) - len(results.missing(tasks))
     if stored:
@@ -113,30 +70,19 @@ def computed(
         console.print(line, soft_wrap=True)  # a path is copied whole
     with (
         ending_early(lambda rest: resume_hint(cache, rest, command), words, options.scheduler),
-        workers(width, options.scheduler, models, executor) as (count, make),
+        workers(width, options.scheduler, models, executor) as (count, pool),
     ):
-        Runner(results, console, count, make).run_tasks(tasks, compile_first=True)
+        Runner(results, console, count, pool).run(tasks, compiling_task)
     return results
 
 
 @contextmanager
 def ending_early(hint: Callable[[Sequence[str]], str], words: Sequence[str], scheduler: str | None) -> Iterator[None]:
     """
-    Whatever ends the block early is one line that says how to go on, and an exit code.
+    Whatever ends the block early is an EndedEarlyError: one line that says what is kept and how to go on.
 
-    Parameters
-    ----------
-    hint : callable
-        What is kept and how to go on, for the words of a command line.
-    words : sequence of str
-        The command line.
-    scheduler : str or None
-        Address of the cluster.
-
-    Raises
-    ------
-    EndedEarlyError
-        3: a result could not be stored; 4: the cluster was lost; 128 + number of the signal.
+    hint: says that, for the words of a command line. Exit codes: 3, a result could not be stored; 4, the cluster was
+    lost; 128 + number of the signal.
     """
     try:
         yield

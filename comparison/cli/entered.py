@@ -11,6 +11,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -153,7 +154,7 @@ def _looked_at(spec: str, path: str) -> dict[str, Any]:
     """What is known of a function. Raises SceneError where it cannot be called."""
     workers = Workers(1)
     try:
-        fault, about = workers.submit_within(IMPORTING, look_at, path).result()
+        fault, about = workers.start(partial(look_at, path), IMPORTING).result()
     except TimeLimitError as error:
         fault = f"importing it does not end: {error}"
     except WorkerDiedError as error:

@@ -21,11 +21,14 @@ from comparison.report.section import Feature, Report
 from comparison.runner.output import atomic_replace, on_stderr
 from comparison.runner.provenance import provenance
 from comparison.runner.resume import command_line
-from comparison.runner.runner import Computed, Runner
+from comparison.runner.runner import Runner
+from comparison.runner.task import Task
+from comparison.runner.task_results import TaskResults
 from comparison.study.levels import Level
 from comparison.study.study import Study
 from comparison.surfaces.alerts import Fault
 from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.tasks import batch_results, surface_tasks, warm_up
 from comparison.surfaces.unanswered import with_silent_models
 
 WITH_THE_LAST = "it comes with the last level of a run"
@@ -38,19 +41,21 @@ class Complete:
 
     level: Level
     study: Study
-    computed: Computed
+    tasks: Sequence[Task]  # of the surfaces
     surfaces: xr.Dataset
 
 
 def computed_level(level: Level, runner: Runner) -> Complete:
     """Compute what a level still lacks: its surfaces with the analyses beside them, then what the surfaces choose."""
     analyses = chosen_analyses(level.study)
-    computed = runner.run_study(level.study, first_tasks(level.study, analyses))
-    surfaces = labeled_surfaces(level.study, computed.batches, computed.answers)
+    tasks = surface_tasks(level.study)
+    runner.run([*tasks, *first_tasks(level.study, analyses)], lambda: warm_up(tasks))
+    batches = [task.argument for task in tasks]
+    surfaces = labeled_surfaces(level.study, batches, batch_results(tasks, runner.results))
     study = with_silent_models(level.study, surfaces)
     later = [analysis for analysis in analyses if analysis.needs_surfaces]
-    runner.run_tasks([task for each in later for task in each.tasks(study.selecting(each.key), surfaces)])
-    return Complete(level, study, computed, surfaces)
+    runner.run([task for each in later for task in each.tasks(study.selecting(each.key), surfaces)])
+    return Complete(level, study, tasks, surfaces)
 
 
 class Reports:
@@ -102,7 +107,7 @@ class Reports:
         results = report.results
         if final:
             drawings = drawing_tasks(report)
-            runner.run_tasks(drawings)
+            runner.run(drawings)
             files = {task.key: runner.results[task].value for task in drawings}
             report = replace(report, drawings={key: value for key, value in files.items() if value})
         with writing(self._options.out), atomic_replace(self.place) as staged:
@@ -130,16 +135,18 @@ class Reports:
 
     def _report(self, complete: Complete, runner: Runner, no_pdf: str) -> Report:
         study, surfaces, took = complete.study, complete.surfaces, Clock.now().since(self._began)
+        of_surfaces = {task.stage for task in complete.tasks}
         run: dict[str, Any] = {
             "command": command_line(self._words),
             "began": (datetime.now(UTC) - timedelta(seconds=took.wall)).isoformat(timespec="seconds"),
             "wall_seconds": round(took.wall, 1),
             "processor_seconds": round(took.processor, 1),
-            "tiles": len(complete.computed.batches),
-            "tiles_stored_before": complete.computed.stored,
+            "tiles": len(complete.tasks),
+            "tiles_stored_before": sum(task.key in runner.results.stored for task in complete.tasks),
             "parts": {
                 stage: {"tasks": part.tasks, "stored_before": part.stored, "seconds": round(part.seconds, 2)}
                 for stage, part in runner.results.parts.items()
+                if stage not in of_surfaces
             },
             "jobs": self._jobs,
             "level": complete.level.number,
@@ -153,17 +160,16 @@ class Reports:
         kept = [feature for feature in EARLIER if feature.selection not in study.absent]
         found |= {feature.key: _loaded(feature, self._options.out) for feature in kept}
         families = [family for family in self._options.families if len(family.scenes) > 1]
-        faults = _faults(study, complete.computed)
+        faults = _faults(complete.tasks, runner.results)
         return report_of(study, surfaces, found, faults, run, no_pdf=no_pdf, families=families)
 
 
-def _faults(study: Study, computed: Computed) -> list[Fault]:
+def _faults(tasks: Sequence[Task], results: TaskResults) -> list[Fault]:
     """What solvers reported, once for each scene, model and message."""
-    titles = {model.key: model.title for model in study.hierarchy}
     faults = {
-        Fault(batch.scene.name, f"{titles[batch.model]}: {answer.error_message}")
-        for batch, answer in zip(computed.batches, computed.answers)
-        if answer.error_message
+        Fault(task.argument.scene.name, f"{task.stage}: {result.error_message}")
+        for task, result in zip(tasks, batch_results(tasks, results))
+        if result.error_message
     }
     return sorted(faults, key=lambda fault: fault.line)
 

@@ -12,8 +12,7 @@ from rich.table import Table
 from comparison.cli.options import Options
 from comparison.registry import chosen_analyses, first_tasks, levels
 from comparison.runner.analysis import Analysis
-from comparison.runner.cache import Cache, Key, store_beside
-from comparison.runner.keys import batch_key
+from comparison.runner.cache import Cache, store_beside
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import refusal_of
@@ -21,6 +20,7 @@ from comparison.study.costs import COMPILING, STARTING, WRITING, seconds_of_anal
 from comparison.study.models import models_of, why_not_spatial
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
+from comparison.surfaces.tasks import surface_tasks
 
 NAMES = 4  # of a list on the terminal
 
@@ -50,8 +50,8 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
         console.print(f"Not in the report: {reasons}.", soft_wrap=True)
     if len(study.phased) < len(study.scenes):
         console.print("A recorded motion has no phases: one point per model.")
-    batches = [batch_key(batch) for batch in study.batches()]
-    print_stored(console, Cache(store_beside(options.out)), batches, first_tasks(study, analyses), options.fresh)
+    results = TaskResults(Cache(store_beside(options.out)), options.fresh)
+    print_stored(console, results, surface_tasks(study), first_tasks(study, analyses))
     seconds = sum(seconds_of_model(study, model) for model in study.hierarchy)
     seconds += sum(seconds_of_analysis(study, each.key, each.stage) for each in analyses)
     wall = STARTING + seconds / options.jobs + WRITING
@@ -80,15 +80,12 @@ def _listed(names: Sequence[str]) -> str:
     return shown if len(names) <= NAMES else f"{shown} and {len(names) - NAMES} more"
 
 
-def print_stored(console: Console, store: Cache, batches: Sequence[Key], tasks: Sequence[Task], fresh: bool) -> None:
+def print_stored(console: Console, results: TaskResults, batches: Sequence[Task], others: Sequence[Task]) -> None:
     """Say how much an earlier run has left."""
-    if fresh:
-        return
-    stored, results = sum(map(store.holds, batches)), TaskResults(store)
-    others = sum(map(results.holds, tasks))
-    if stored or others:
-        analyses = f", {others} of {len(tasks)} analyses" if tasks else ""
-        line = f"{stored} of {len(batches)} batches{analyses} are in {store.folder}: only the others are computed."
+    stored, analyses = sum(map(results.holds, batches)), sum(map(results.holds, others))
+    if results.cache is not None and stored + analyses:
+        rest = f", {analyses} of {len(others)} analyses" if others else ""
+        line = f"{stored} of {len(batches)} batches{rest} are in {results.cache.folder}: only the others are computed."
         console.print(line, soft_wrap=True)  # a path is copied whole
 
 

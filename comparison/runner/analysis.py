@@ -30,16 +30,7 @@ class Analysis(Protocol[Result]):
 
     @abstractmethod
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """
-        What has to be computed.
-
-        Parameters
-        ----------
-        study : Study
-            Scenes, models and phases.
-        surfaces : xr.Dataset, optional
-            The surfaces of the study. An analysis that does not need them ignores them.
-        """
+        """What has to be computed. An analysis that does not need the surfaces ignores them."""
 
     @abstractmethod
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Result | None:

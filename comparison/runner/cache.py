@@ -70,9 +70,7 @@ class Cache:
         self.kept: Counter[str] = Counter()
 
     def get(self, key: Key, declared: Any) -> Any | None:
-        """
-        The stored result to the last bit, of type `declared`; None if there is none that is whole and fits.
-        """
+        """The stored result to the last bit, of type `declared`; None if there is none that is whole and fits."""
         try:
             value = _unpacked(read_file(self.folder / key.name, LIMIT), key, declared)
         except Exception:  # whatever is wrong with a file, the result is computed again
@@ -87,11 +85,7 @@ class Cache:
         return (self.folder / key.name).exists()
 
     def put(self, key: Key, value: Any) -> None:
-        """
-        Store a result. Raises StoreError, and leaves what is stored as it was.
-
-        One that names a fault is not stored: the next run tries it again.
-        """
+        """Store a result, unless it names a fault. Raises StoreError, and leaves what is stored as it was."""
         if faulty(value):
             return
         place = self.folder / key.name
@@ -111,11 +105,6 @@ class Cache:
                     if f"{group}/{entry.name}" in wanted and _is_result(entry):
                         os.unlink(entry.path)
 
-    def forget(self, keys: Iterable[Key]) -> None:
-        """Drop the groups of these results."""
-        for group in {key.group for key in keys}:
-            _drop(self.folder / group)
-
     def trim(self, keys: Iterable[Key], limit: int = LIMIT) -> None:
         """Drop groups other than those of `keys`, least recently used first, while all take more than `limit`."""
         needed = {key.group for key in keys}
@@ -133,15 +122,6 @@ def store_beside(out: Path) -> Path:
     """
     Where the results of a report are kept.
 
-    Parameters
-    ----------
-    out : Path
-        Folder of the report.
-
-    Returns
-    -------
-    Path
-
     Examples
     --------
     >>> store_beside(Path("report")).name
@@ -151,19 +131,7 @@ def store_beside(out: Path) -> Path:
 
 
 def refuse_foreign_store(out: Path) -> None:
-    """
-    Refuse to keep results where something else is.
-
-    Parameters
-    ----------
-    out : Path
-        Folder of the report.
-
-    Raises
-    ------
-    SceneError
-        One line, if something that is not a folder of results is where that of `out` belongs.
-    """
+    """Raise SceneError, one line, if something that is no folder of results is where that of the report belongs."""
 
     def refusal(rule: str) -> SceneError:
         return SceneError("command line", "--out", str(out), f"{folder.name!r} beside it {rule}")

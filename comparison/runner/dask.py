@@ -15,14 +15,14 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, Executor, Future
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
 import numba
 
 from comparison.runner.environment import environment_fingerprint
 from comparison.runner.executors import ExecutorLostError, WorkerDiedError
-from comparison.runner.processes import Workers
+from comparison.runner.processes import Call, Workers
 from reference.problem import SceneError
 
 if TYPE_CHECKING:
@@ -90,20 +90,17 @@ class ClusterExecutor(Executor):
             raise ExecutorLostError(f"no worker on the cluster for {PATIENCE:.0f} s")
         return max(self._count, 1)
 
-    def submit(self, solve: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Compute a task on a worker of the cluster."""
-        return self._submit(_one_at_a_time, solve, args, kwargs)
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Make a call on a worker of the cluster."""
+        return self.start(partial(function, *args, **kwargs))
 
-    def submit_within(self, seconds: float, solve: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """As `submit`, in a process of its own beside the worker, which lives on when the limit ends the call."""
-        return self._submit(_in_a_child, seconds, solve, args, kwargs)
-
-    def _submit(self, call: Callable[..., Any], *arguments: Any) -> Future[Any]:
+    def start(self, call: Call, seconds: float | None = None, group: str = "") -> Future[Any]:
+        """As `submit`; with a limit in a process beside the worker, which lives on when the limit ends the call."""
         if self._client.status != "running":
             raise ExecutorLostError(GONE)
         answer: Future[Any] = Future()
         answer.set_running_or_notify_cancel()
-        remote = self._inner.submit(call, *arguments)
+        remote = self._inner.submit(_one_at_a_time, call, seconds)
         remote.add_done_callback(lambda arrived: _arrived(arrived, answer))
         return answer
 
@@ -116,18 +113,14 @@ class ClusterExecutor(Executor):
             self._inner.shutdown(wait=False)
 
 
-def _one_at_a_time(solve: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
+def _one_at_a_time(call: Call, seconds: float | None) -> Any:
     """Run in a worker process: the engine and the compiled reference are used by one thread each."""
     with _ONE:
-        numba.set_num_threads(1)
-        return solve(*args, **kwargs)
-
-
-def _in_a_child(seconds: float, solve: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
-    """Run beside a worker process, in one that can be ended without it."""
-    with _ONE:
+        if seconds is None:
+            numba.set_num_threads(1)
+            return call()
         multiprocessing.current_process().daemon = False  # a worker under a nanny may not start processes otherwise
-        return _child().submit_within(seconds, solve, *args, **kwargs).result()
+        return _child().start(call, seconds).result()
 
 
 @cache

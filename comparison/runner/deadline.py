@@ -19,12 +19,7 @@ class Deadline:
     """
     Raises TimeUpError in the block when the time is up, whatever the main thread does then.
 
-    Parameters
-    ----------
-    begin : float
-        `time.monotonic()` when the run began.
-    seconds : float or None
-        How long it may take; None for as long as it takes.
+    begin: `time.monotonic()` when the run began; seconds: how long it may take, None for as long as it takes.
     """
 
     def __init__(self, begin: float, seconds: float | None) -> None:

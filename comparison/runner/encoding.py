@@ -28,11 +28,8 @@ def encoded(value: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
     """
     `value` as JSON; what is binary is appended to `arrays` and referred to by its number.
 
-    Raises
-    ------
-    TypeError
-        For anything but None, booleans, numbers, text, bytes, enumerations, numeric arrays, and lists, tuples,
-        mappings with text as keys and dataclasses of these.
+    Raises TypeError for anything but None, booleans, numbers, text, bytes, enumerations, numeric arrays, and lists,
+    tuples, mappings with text as keys and dataclasses of these.
     """
     if isinstance(value, Enum):
         return encoded(value.value, arrays)
@@ -56,14 +53,7 @@ def encoded(value: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
 
 
 def decoded(data: Any, declared: Any, arrays: Sequence[np.ndarray[Any, Any]]) -> Any:
-    """
-    The value of type `declared` that `data` and `arrays` stand for.
-
-    Raises
-    ------
-    ValueError, TypeError
-        If they stand for something else.
-    """
+    """The value of type `declared` that `data` and `arrays` stand for; ValueError or TypeError if they do not."""
     origin, parts = get_origin(declared), get_args(declared)
     if origin in (Union, UnionType):
         return _first_that_fits(data, parts, arrays)
@@ -138,14 +128,7 @@ def array_bytes(array: np.ndarray[Any, Any]) -> bytes:
 
 
 def array_of(kind: Any, shape: Any, content: bytes) -> tuple[np.ndarray[Any, Any], int]:
-    """
-    The array that begins `content`, and how many bytes it takes.
-
-    Raises
-    ------
-    ValueError
-        If type or shape are none of an array of numbers, or there are fewer bytes.
-    """
+    """The array that begins `content`, and how many bytes it takes. Raises ValueError unless it is one of numbers."""
     if not (isinstance(kind, str) and NUMBERS.fullmatch(kind)):
         raise ValueError("not a type of numbers")
     if not (isinstance(shape, list) and len(shape) <= 8 and all(type(size) is int and size >= 0 for size in shape)):

@@ -7,6 +7,7 @@ import hashlib
 import os
 import platform
 import sys
+from collections.abc import Iterable
 from functools import cache
 from importlib.metadata import PackageNotFoundError, packages_distributions, version
 from importlib.util import find_spec
@@ -23,42 +24,29 @@ ANSWERING = ("reference", "multibody", "comparison.study", "comparison.analyses"
 def environment_fingerprint(model: str) -> dict[str, str]:
     """Versions of the packages that compute, and hashes of the source behind the function `model` ("package:name")."""
     module = model.split(":")[0]
-    package = module.split(".")[0]
-    sources = dict.fromkeys((*SHARED, module if module == ENTERED else package))
-    return {
-        "python": platform.python_version(),
-        "machine": platform.machine(),
-        "exudyn module": os.environ.get("EXUDYN_MODULE", ""),
-        **{name: _version(name) for name in PACKAGES},
-        **{f"source of {name}": source_digest(name) for name in sources},
-    }
+    return _environment(PACKAGES, (*SHARED, module if module == ENTERED else module.split(".")[0]))
 
 
 def task_environment_fingerprint(module: str) -> dict[str, str]:
     """The same for what the module computes beside the surfaces: it asks both sides and may draw."""
-    sources = (*ANSWERING, module.rpartition(".")[0] or module)
+    return _environment((*PACKAGES, *DRAWING), (*ANSWERING, module.rpartition(".")[0] or module))
+
+
+def _environment(packages: Iterable[str], sources: Iterable[str]) -> dict[str, str]:
     return {
         "python": platform.python_version(),
         "machine": platform.machine(),
         "exudyn module": os.environ.get("EXUDYN_MODULE", ""),
-        **{name: _version(name) for name in (*PACKAGES, *DRAWING)},
+        **{name: _version(name) for name in packages},
         **{f"source of {name}": source_digest(name) for name in sources},
     }
 
 
 def engine_fingerprint(module: str) -> dict[str, str]:
     """
-    What the numbers of an engine that a user enters depend on.
+    What the numbers of an engine that a user supplies depend on, from the full name of its module.
 
-    Parameters
-    ----------
-    module : str
-        Full name of the module that has its function.
-
-    Returns
-    -------
-    dict of str to str
-        Hashes of the source of the module's package and of what the module imports, and versions of what is installed.
+    Hashes of the source of the module's package and of what the module imports, and versions of what is installed.
     """
     package = module.split(".")[0]
     spec = find_spec(package)

@@ -45,19 +45,8 @@ Call = Callable[[], Any]
 _processes = threading.Lock()  # starting a process collects others that have ended: one thread at a time does either
 
 
-def process_pool(jobs: int) -> Executor:
-    """
-    `jobs` fresh processes, each with one thread: the tasks are the parallelism.
-
-    Parameters
-    ----------
-    jobs : int
-        Number of processes; each is started with its first task.
-
-    Returns
-    -------
-    Executor
-    """
+def process_pool(jobs: int) -> Workers:
+    """Up to `jobs` fresh processes, each with one thread: the tasks are the parallelism."""
     one_thread_each()
     return Workers(jobs)
 
@@ -75,17 +64,17 @@ class Workers(Executor):
         self.width = jobs
         self._threads = ThreadPoolExecutor(jobs)  # each of them waits for one process
         self._lock = threading.Lock()
-        self._idle: dict[str, list[_Process]] = defaultdict(list)  # by the lane of the tasks that they have run
+        self._idle: dict[str, list[_Process]] = defaultdict(list)  # by the group of the tasks that they have run
         self._all: set[_Process] = set()
         self._abandoned = False
 
-    def submit(self, solve: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Compute a task in a worker process, without a limit of time."""
-        return self._threads.submit(self._run, partial(solve, *args, **kwargs), None)
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Make a call in a worker process, without a limit of time."""
+        return self.start(partial(function, *args, **kwargs))
 
-    def submit_within(self, seconds: float, solve: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """As `submit`; a call that takes more than `seconds` of processor time, in whole s, ends as TimeLimitError."""
-        return self._threads.submit(self._run, partial(solve, *args, **kwargs), seconds)
+    def start(self, call: Call, seconds: float | None = None, group: str = "") -> Future[Any]:
+        """Make a call in a process that runs no other group's; after `seconds` of processor time: TimeLimitError."""
+        return self._threads.submit(self._run, call, seconds, group)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Finish what has begun if `wait`, and end the processes; else they end with this one."""
@@ -103,9 +92,8 @@ class Workers(Executor):
                 process.kill()
         self._threads.shutdown(wait=False, cancel_futures=True)
 
-    def _run(self, call: Call, seconds: float | None) -> Any:
-        lane = _lane(call)
-        process = self._free_process(lane)
+    def _run(self, call: Call, seconds: float | None, group: str) -> Any:
+        process = self._free_process(group)
         try:
             value, error = process.run(call, seconds)
         except (WorkerDiedError, TimeLimitError):
@@ -114,27 +102,22 @@ class Workers(Executor):
                 self._all.discard(process)
             raise
         except BaseException:  # what cannot be sent to or from the process, which has not noticed
-            self._idle[lane].append(process)
+            self._idle[group].append(process)
             raise
-        self._idle[lane].append(process)
+        self._idle[group].append(process)
         if error is not None:
             raise error
         return value
 
-    def _free_process(self, lane: str) -> _Process:
+    def _free_process(self, group: str) -> _Process:
         with self._lock:
-            if self._idle[lane]:
-                return self._idle[lane].pop()
+            if self._idle[group]:
+                return self._idle[group].pop()
             if self._abandoned:
                 raise WorkerDiedError("the workers have been ended")
             process = _Process()
             self._all.add(process)
             return process
-
-
-def _lane(call: Call) -> str:
-    """The `lane` of the task that is run, as `study.batches.Batch` has it: tasks of two lanes share no process."""
-    return next((str(part.lane) for part in getattr(call, "args", ()) if hasattr(part, "lane")), "")
 
 
 class _Process:

@@ -31,12 +31,7 @@ class Display:
     The time left is what is left of the work, times what the work so far took. The first piece of work does not count:
     it starts the workers, and on a new installation compiles the reference.
 
-    Parameters
-    ----------
-    total : float
-        All work, rough s of processor time.
-    jobs : int
-        Workers.
+    total: all work, rough s of processor time; jobs: workers.
     """
 
     def __init__(self, total: float, jobs: int) -> None:
@@ -99,21 +94,7 @@ class Lines(Display):
 
 @contextmanager
 def progress(console: Console, total: float, jobs: int) -> Iterator[Display]:
-    """
-    A display for as long as the block lasts.
-
-    Parameters
-    ----------
-    console : Console
-    total : float
-        All work, rough s of processor time.
-    jobs : int
-        Workers.
-
-    Yields
-    ------
-    Display
-    """
+    """A display for as long as the block lasts; total: all work, rough s of processor time; jobs: workers."""
     if not console.is_terminal:
         yield Lines(console, total, jobs)
         return

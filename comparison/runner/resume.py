@@ -7,7 +7,7 @@ import sys
 from collections.abc import Collection, Sequence
 
 from comparison.runner.cache import Cache
-from comparison.runner.keys import ANALYSIS, BATCH
+from comparison.runner.task import BATCH, RESULT
 
 
 def invocation(command: str) -> list[str]:
@@ -17,20 +17,7 @@ def invocation(command: str) -> list[str]:
 
 
 def command_line(words: Sequence[str], command: str = "run") -> str:
-    """
-    A command as it is typed.
-
-    Parameters
-    ----------
-    words : sequence of str
-        After the name of the command.
-    command : str
-        Its name.
-
-    Returns
-    -------
-    str
-    """
+    """A command as it is typed: its name, and the words after it."""
     return shlex.join([*invocation(command), *words])
 
 
@@ -40,17 +27,7 @@ def changed(
     """
     The words of a command line with other options. What stands behind "--" is no option and stays.
 
-    Parameters
-    ----------
-    words : sequence of str
-    added : sequence of str
-        Options to add, with their values.
-    flags, options : collection of str
-        Names to leave out: of options without a value, and of options with one.
-
-    Returns
-    -------
-    list of str
+    flags, options: names to leave out, of options without a value and with one.
 
     Examples
     --------
@@ -72,24 +49,10 @@ def resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batche
     """
     How much is kept where, and the command for the rest: the same one, without what would throw it away.
 
-    Parameters
-    ----------
-    cache : Cache
-        Where the results are.
-    words : sequence of str
-        The command line.
-    command : str
-        Name of the command.
-    batches : int, optional
-        Number of batches of a study; without it there are tasks only.
-
-    Returns
-    -------
-    str
-        Part of one line.
+    batches: number of batches of a study; without it there are other tasks only.
     """
     rest = changed(words, flags=["--fresh"])
-    tasks = cache.kept[ANALYSIS]
+    tasks = cache.kept[RESULT]
     if batches is None:
         kept = f"{tasks} results are"
     else:
@@ -100,14 +63,6 @@ def resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batche
 def without_scheduler(words: Sequence[str]) -> list[str]:
     """
     The words of a command line without the cluster: the same numbers from the processes of this machine.
-
-    Parameters
-    ----------
-    words : sequence of str
-
-    Returns
-    -------
-    list of str
 
     Examples
     --------

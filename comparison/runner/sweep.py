@@ -1,271 +1,144 @@
-"""
-Run independent tasks on worker processes and lose none: one that raises or kills its worker is answered for.
-
-Results come back in the order of the tasks, whatever the scheduling was.
-"""
+"""Run independent tasks on an executor and lose none: one that raises or ends its worker is answered for."""
 
 from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
-from dataclasses import dataclass, field
-from typing import Generic, TypeVar
+from dataclasses import dataclass
+from functools import partial
 
-from comparison.runner.executors import (
-    ExecutorLostError,
-    Pool,
-    TimeLimitError,
-    WorkerDiedError,
-    abandon,
-    factory,
-    start,
-    width,
-)
-from comparison.runner.processes import process_pool
+from comparison.runner.executors import ExecutorLostError, TimeLimitError, WorkerDiedError
+from comparison.runner.task import Task, TaskResult, execute, unfinished
 from reference.problem import Outcome
 
-Task = TypeVar("Task")
-Result = TypeVar("Result")
-
 LOOK = 1.0  # s: how often an executor is asked for its width while no result arrives
-
-
-def at_once(task: object) -> bool:
-    """Every task may begin at once."""
-    return True
-
-
-def whole(task: object) -> Sequence[object]:
-    """No task is split."""
-    return ()
-
-
-def never(task: object) -> bool:
-    """No task is given up."""
-    return False
+LOST = BrokenExecutor, ExecutorLostError, CancelledError
 
 
 @dataclass(eq=False)  # found in the queue by what it is, not by comparing scenes and arrays
-class _Work(Generic[Task, Result]):
-    """A task or a part of one. `place`: its index among the tasks, or among the parts of `parent`."""
+class _Work:
+    """A task, or a half of the task of `parent`."""
 
     task: Task
-    place: int
-    parent: _Work[Task, Result] | None = None
+    parent: _Work | None = None
     deaths: int = 0
-    alone: bool = False  # suspected of having ended a pool: nothing else may run beside it
-    parts: dict[int, Result] = field(default_factory=dict)
-    count: int = 0  # of its parts
+    halves: Sequence[_Work] = ()
+    result: TaskResult | None = None
 
 
-def sweep(
-    tasks: Sequence[Task],
-    solve: Callable[[Task], Result],
-    on_failure: Callable[[Task, Outcome, str], Result],
-    done: Callable[[Task, Result], None],
-    jobs: int,
-    executor: Pool = process_pool,
-    ready: Callable[[Task], bool] = at_once,
-    split: Callable[[Task], Sequence[Task]] = whole,  # type: ignore[assignment]
-    join: Callable[[Task, Sequence[Result]], Result] | None = None,
-    given_up: Callable[[Task], bool] = never,
-) -> list[Result]:
+class Sweep:
     """
-    Run every task on an executor and lose none.
+    Tasks that are run on an executor. Each is told to `done` with its result as that arrives, in any order.
 
-    A task that raises is answered by `on_failure(task, Outcome.SOLVER_FAILED, message)`. One that has a `timeout`, s of
-    processor time, and takes longer, by `on_failure(task, Outcome.TIME_LIMIT, message)`. One whose worker dies is tried
-    once more, then `split` into parts, until a part that cannot be split has killed two workers: that one alone is
-    answered by `on_failure(part, Outcome.WORKER_DIED, message)`, and `join` puts the task together again.
+    A task that raises has the outcome SOLVER_FAILED, and one that takes longer than its `timeout` TIME_LIMIT. One whose
+    worker dies is tried once more, then cut in halves, until a part that cannot be cut has killed two workers: that one
+    alone has the outcome WORKER_DIED, and the task is joined again.
 
-    Parameters
-    ----------
-    tasks : sequence
-        What is computed.
-    solve : callable
-        Function of a task, importable by its name.
-    on_failure : callable
-        The result of a task that `solve` gave none, from task, `Outcome` and message.
-    done : callable
-        Called here with a task and its result as results arrive, in any order.
-    jobs : int
-        Number of workers, for an executor that does not state its `width`.
-    executor : Executor or callable
-        What runs the tasks, or what makes it for a number of workers.
-    ready : callable
-        Whether a task may start. Others pass it meanwhile; it is asked again whenever a result has arrived, and the
-        task starts in any case when nothing else is left to wait for.
-    split : callable
-        The parts of a task; empty if it cannot be split.
-    join : callable
-        The result of a task from those of its parts.
-    given_up : callable
-        Whether a task is not started any more. `done` is not called with it; its result is
-        `on_failure(task, Outcome.TIME_LIMIT, message)`.
-
-    Returns
-    -------
-    list
-        Results in the order of the tasks.
-
-    Raises
-    ------
-    ExecutorLostError
-        If the executor cannot go on; results that `done` has seen are the caller's to keep.
+    jobs: number of workers, for an executor that does not state its `width`. ready: whether a task may start; others
+    pass it meanwhile, and it starts in any case when nothing else is left to wait for. given_up: the result of a task
+    that is not started any more.
     """
-    return _Sweep(tasks, solve, on_failure, done, ready, split, join, given_up).run(factory(executor), jobs)
 
-
-class _Sweep(Generic[Task, Result]):
     def __init__(
         self,
         tasks: Sequence[Task],
-        solve: Callable[[Task], Result],
-        on_failure: Callable[[Task, Outcome, str], Result],
-        done: Callable[[Task, Result], None],
-        ready: Callable[[Task], bool],
-        split: Callable[[Task], Sequence[Task]],
-        join: Callable[[Task, Sequence[Result]], Result] | None,
-        given_up: Callable[[Task], bool],
+        executor: Executor,
+        jobs: int,
+        done: Callable[[Task, TaskResult], None],
+        ready: Callable[[Task], bool] = lambda task: True,
+        given_up: Callable[[Task], TaskResult | None] = lambda task: None,
     ) -> None:
-        self._given_up = given_up
-        self._solve, self._on_failure, self._done = solve, on_failure, done
-        self._ready, self._split, self._join = ready, split, join
-        self._queue: deque[_Work[Task, Result]] = deque(_Work(task, place) for place, task in enumerate(tasks))
-        self._at_work: dict[Future[Result], _Work[Task, Result]] = {}
-        self._results: dict[int, Result] = {}
+        self._executor, self._jobs = executor, jobs
+        self._done, self._ready, self._given_up = done, ready, given_up
+        self._queue = deque(map(_Work, tasks))
+        self._at_work: dict[Future[TaskResult], _Work] = {}
 
-    def run(self, make: Callable[[int], Executor], jobs: int) -> list[Result]:
-        while self._queue:  # once, unless a pool breaks
-            pool = make(min(jobs, len(self._queue)))
-            try:
-                self._drain(pool, jobs)
-            except BaseException:
-                abandon(pool)
-                raise
-            self._at_work.clear()
-            pool.shutdown(cancel_futures=True)
-        return [self._results[place] for place in range(len(self._results))]
+    def run(self) -> None:
+        """Run every task. Raises ExecutorLostError if the executor cannot go on; what `done` has seen is kept."""
+        try:
+            while self._queue or self._at_work:
+                self._fill()
+                finished = wait(self._at_work, LOOK, return_when=FIRST_COMPLETED).done
+                arrived = [(self._at_work.pop(future), future) for future in finished]
+                try:
+                    self._fill(arriving=True)  # workers go on while results are stored
+                finally:
+                    for work, future in sorted(arrived, key=lambda pair: isinstance(_error(pair[1]), LOST)):
+                        self._take(work, future)
+        except BaseException:
+            for future in self._at_work:
+                future.cancel()
+            if hasattr(self._executor, "abandon"):
+                self._executor.abandon()
+            raise
 
-    def _drain(self, pool: Executor, jobs: int) -> None:
-        """Work until nothing is left, or until the pool breaks, with its tasks queued again."""
-        while self._queue or self._at_work:
-            if not self._fill(pool, jobs):
-                return
-            arrived = [
-                (self._at_work.pop(future), future)
-                for future in wait(self._at_work, LOOK, return_when=FIRST_COMPLETED).done
-            ]
-            broken = [work for work, future in arrived if isinstance(_error(future), BrokenExecutor)]
-            try:
-                unbroken = not broken and self._fill(
-                    pool, jobs, arriving=True
-                )  # workers go on while results are stored
-            finally:
-                for work, future in arrived:
-                    self._take(work, future)
-            for _, future in arrived:
-                if isinstance(error := _error(future), ExecutorLostError):
-                    raise error
-            if broken:
-                self._broken(broken)
-            if not unbroken:
-                return
+    def _fill(self, arriving: bool = False) -> None:
+        """As many tasks at work as there are workers; arriving: results that may make tasks ready are not told yet."""
+        while len(self._at_work) < getattr(self._executor, "width", self._jobs) and (work := self._next(arriving)):
+            given_up = self._given_up(work.task)
+            if given_up is not None:
+                self._keep(work, given_up)
+            else:
+                self._at_work[self._start(work.task)] = work
 
-    def _take(self, work: _Work[Task, Result], future: Future[Result]) -> None:
+    def _next(self, arriving: bool) -> _Work | None:
+        """What starts now, taken from the queue: the first that is ready, or the first of all if nothing is at work."""
+        candidates = list(self._queue)[:1] if arriving else self._queue
+        work = next((work for work in candidates if self._ready(work.task)), None)
+        if work is None and self._queue and not (self._at_work or arriving):
+            work = self._queue[0]
+        if work is not None:
+            self._queue.remove(work)
+        return work
+
+    def _start(self, task: Task) -> Future[TaskResult]:
+        start: Callable[..., Future[TaskResult]] | None = getattr(self._executor, "start", None)
+        try:
+            if start is None:  # such as threads: they keep no limit of time
+                return self._executor.submit(execute, task)
+            return start(partial(execute, task), task.timeout, task.group)
+        except BrokenExecutor as error:
+            raise ExecutorLostError(f"the executor is broken: {error}") from None
+
+    def _take(self, work: _Work, future: Future[TaskResult]) -> None:
         error = _error(future)
         if error is None:
             self._keep(work, future.result())
         elif isinstance(error, WorkerDiedError):
-            self._died(work, error.times, error.exit_code)
+            self._died(work, error)
         elif isinstance(error, TimeLimitError):
-            self._keep(work, self._on_failure(work.task, Outcome.TIME_LIMIT, str(error)))
-        elif not isinstance(error, BrokenExecutor | ExecutorLostError):
-            message = f"{type(error).__name__}: {error}"
-            self._keep(work, self._on_failure(work.task, Outcome.SOLVER_FAILED, message))
-
-    def _fill(self, pool: Executor, jobs: int, arriving: bool = False) -> bool:
-        """
-        As many tasks at work as the executor has workers; False if it is found broken.
-
-        arriving: results have arrived that may make tasks ready, so that none is passed over yet.
-        """
-        while len(self._at_work) < width(pool, jobs) and (work := self._next(arriving)) is not None:
-            if self._given_up(work.task):
-                self._give_up(work)
-                continue
-            try:
-                future = start(pool, self._solve, work.task, getattr(work.task, "timeout", None))
-            except BrokenExecutor:
-                if self._at_work:
-                    self._queue.appendleft(work)
-                self._broken([] if self._at_work else [work])
-                return False
-            self._at_work[future] = work
-        return True
-
-    def _next(self, arriving: bool) -> _Work[Task, Result] | None:
-        """What to submit now, taken from the queue; a suspect runs alone."""
-        at_work = list(self._at_work.values())
-        if any(work.alone for work in at_work):
-            return None
-        for work in self._queue:
-            if not (work.alone and at_work) and self._ready(work.task):
-                break
-            if arriving:
-                return None
+            self._keep(work, unfinished(Outcome.TIME_LIMIT, str(error)))
+        elif isinstance(error, ExecutorLostError):
+            raise error
+        elif isinstance(error, LOST):
+            raise ExecutorLostError(f"the executor is broken: {error}")
         else:
-            if at_work or not self._queue:
-                return None
-            work = self._queue[0]
-        self._queue.remove(work)
-        return work
+            self._keep(work, unfinished(Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}"))
 
-    def _broken(self, suspects: Sequence[_Work[Task, Result]]) -> None:
-        """The suspects or any task at work did it. If there was only one it did; of several each is tried alone."""
-        suspects = sorted([*suspects, *self._at_work.values()], key=lambda work: work.place)
-        self._at_work.clear()
-        if len(suspects) == 1:
-            self._died(suspects[0])
-        else:
-            for work in reversed(suspects):
-                work.alone = True
-                self._queue.appendleft(work)
-
-    def _died(self, work: _Work[Task, Result], times: int = 1, exit_code: int | None = None) -> None:
-        work.deaths += times
-        parts = self._split(work.task)
-        if work.deaths < 2 and (work.parent is None or not parts):
+    def _died(self, work: _Work, error: WorkerDiedError) -> None:
+        work.deaths += error.times
+        halves = work.task.halves()
+        if work.deaths < 2 and (work.parent is None or not halves):
             self._queue.appendleft(work)
-        elif parts:
-            work.count = len(parts)
-            children = [_Work(part, place, work, alone=work.alone) for place, part in enumerate(parts)]
-            self._queue.extendleft(reversed(children))
+        elif halves:
+            work.halves = [_Work(half, work) for half in halves]
+            self._queue.extendleft(reversed(work.halves))
         else:
-            ending = "" if exit_code is None else f" (exit code {exit_code})"
-            message = f"the worker process died {work.deaths} times{ending}"
-            self._keep(work, self._on_failure(work.task, Outcome.WORKER_DIED, message))
+            ending = "" if error.exit_code is None else f" (exit code {error.exit_code})"
+            self._keep(work, unfinished(Outcome.WORKER_DIED, f"the worker process died {work.deaths} times{ending}"))
 
-    def _give_up(self, work: _Work[Task, Result]) -> None:
-        """Neither the task nor that of which it is a part is computed."""
-        while work.parent is not None:
-            work = work.parent
-        self._results[work.place] = self._on_failure(work.task, Outcome.TIME_LIMIT, "given up")
-
-    def _keep(self, work: _Work[Task, Result], result: Result) -> None:
-        parent = work.parent
+    def _keep(self, work: _Work, result: TaskResult) -> None:
+        work.result, parent = result, work.parent
         if parent is None:
-            self._results[work.place] = result
             self._done(work.task, result)
             return
-        parent.parts[work.place] = result
-        if len(parent.parts) == parent.count:  # never, where one of them was given up
-            assert self._join is not None, "what can be split can be joined"
-            self._keep(parent, self._join(parent.task, [parent.parts[place] for place in range(parent.count)]))
+        results = [half.result for half in parent.halves if half.result is not None]
+        if len(results) == len(parent.halves):
+            self._keep(parent, parent.task.join(results))
 
 
-def _error(future: Future[Result]) -> BaseException | None:
+def _error(future: Future[TaskResult]) -> BaseException | None:
     """What the task raised, None if nothing."""
     try:
         return future.exception()

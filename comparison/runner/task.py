@@ -1,22 +1,51 @@
-"""What a study computes beside its surfaces: functions of a task that a worker process can run by itself."""
+"""The unit of work: a function of a module with its argument, run in a worker process and found again by its key."""
 
 from __future__ import annotations
 
 import hashlib
 import json
 import time
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
 from enum import Enum
 from functools import cached_property
-from typing import Any
+from typing import Any, Protocol, Self, runtime_checkable
 
 import numpy as np
 import xarray as xr
 
-from comparison.runner.environment import environment_fingerprint
+from comparison.runner.cache import Key
+from comparison.runner.environment import environment_fingerprint, task_environment_fingerprint
 from comparison.study.models import Model
 from reference.problem import Outcome, Scene
+
+BATCH, RESULT = "batch", "result"  # kinds of stored results: of phase pairs, and all others
+GIVEN_UP_AFTER = 2  # batches of one group that hang or end their process: the engine is not asked again
+GIVEN_UP = f"{GIVEN_UP_AFTER} calls hung or ended their process: not asked for the other phase pairs"
+
+
+@runtime_checkable
+class Divisible(Protocol):
+    """An argument of several points, which is cut in two where a worker dies of it."""
+
+    @property
+    def points(self) -> int:
+        """How many it has."""
+
+    def halves(self) -> Sequence[Self]:
+        """Arguments of the first and the other points; none of a single point."""
+
+    def join(self, values: Sequence[Any]) -> Any:
+        """The value of the whole from those of its halves."""
+
+    def without_result(self, outcome: Outcome, error_message: str) -> Any:
+        """The value where none was computed."""
+
+    def accepts(self, value: Any) -> bool:
+        """Whether a stored value is one of these points."""
+
+    def identity(self) -> Any:
+        """All that its value depends on."""
 
 
 @dataclass(frozen=True)
@@ -34,20 +63,55 @@ class Task:
     about: Any = None  # what its directory in the cache belongs to
     needs_compiled_reference: bool = True  # on a new installation it waits until one worker has compiled the reference
     timeout: float | None = None  # most processor time, s, rounded up; what takes longer is ended: Outcome.TIME_LIMIT
-    lane: str = ""  # as `study.batches.Batch`
+    group: str = ""  # workers are shared within a group only: an engine of the user may spoil the process it runs in
+    model: str = ""  # "package:name" of the only model that it asks: no other source changes its value
 
     @cached_property
-    def key(self) -> str:
-        """Hash of the function and all that its argument holds."""
-        text = json.dumps([named(self.function), fingerprint(self.argument)])
-        return hashlib.sha256(text.encode()).hexdigest()
+    def key(self) -> Key:
+        """What it is found by: the function, all that its argument holds, versions and the source that computes it."""
+        function = named(self.function)
+        about = {
+            "function": function,
+            "about": fingerprint(self.about),
+            "environment": environment_fingerprint(self.model)
+            if self.model
+            else task_environment_fingerprint(self.function.__module__),
+        }
+        item = json.dumps([function, fingerprint(self.argument)])
+        digest = hashlib.sha256(item.encode()).hexdigest()
+        return Key(json.dumps(about, indent=1, sort_keys=True), digest, BATCH if self.batch else RESULT)
+
+    @property
+    def batch(self) -> Divisible | None:
+        """Its argument, if that is divisible."""
+        return self.argument if isinstance(self.argument, Divisible) else None
+
+    @property
+    def points(self) -> int:
+        """What it counts for on the terminal."""
+        return self.batch.points if self.batch else 1
+
+    def halves(self) -> list[Task]:
+        """The two tasks into which it can be cut; none if it cannot."""
+        return [replace(self, argument=half) for half in self.batch.halves()] if self.batch else []
+
+    def join(self, results: Sequence[TaskResult]) -> TaskResult:
+        """Its result from those of its halves."""
+        assert self.batch is not None, "only a batch has halves"
+        values = [
+            result.value if result.value is not None else half.without_result(result.outcome, result.error_message)
+            for half, result in zip(self.batch.halves(), results)
+        ]
+        lost = next((result for result in results if result.outcome != Outcome.OK), TaskResult(None, 0.0))
+        cost = sum(result.cost for result in results)
+        return TaskResult(self.batch.join(values), cost, lost.outcome, lost.error_message)
 
 
 @dataclass(frozen=True)
 class TaskResult:
     """What a task returned, or why it returned nothing."""
 
-    value: Any  # None unless `outcome` is OK
+    value: Any  # of a batch also where a part of its points is lost; otherwise None unless `outcome` is OK
     cost: float  # s of processor time
     outcome: Outcome = Outcome.OK
     error_message: str = ""
@@ -59,38 +123,14 @@ class TaskResult:
 
 
 def execute(task: Task) -> TaskResult:
-    """
-    Call the function of a task. Runs inside a worker process.
-
-    Parameters
-    ----------
-    task : Task
-
-    Returns
-    -------
-    TaskResult
-        With processor time. What the function raises is not caught here: the sweep answers for it.
-    """
+    """Call the function of a task, inside a worker process. What it raises is not caught: the sweep answers for it."""
     clock = time.process_time()
     value = task.function(task.argument)
     return TaskResult(value, time.process_time() - clock)
 
 
-def unfinished(task: Task, outcome: Outcome, error_message: str) -> TaskResult:
-    """
-    The result of a task that raised, took too long or whose worker died.
-
-    Parameters
-    ----------
-    task : Task
-    outcome : Outcome
-    error_message : str
-        One line.
-
-    Returns
-    -------
-    TaskResult
-    """
+def unfinished(outcome: Outcome, error_message: str) -> TaskResult:
+    """The result of a task that raised, took too long or whose worker died; the message is one line."""
     return TaskResult(None, 0.0, outcome, error_message)
 
 
@@ -103,21 +143,8 @@ def fingerprint(value: Any) -> Any:
     """
     All that a value holds, as plain JSON: what distinguishes one task from another.
 
-    Parameters
-    ----------
-    value : object
-        Numbers, texts, scenes, arrays (by hash), models (also by their source), functions (by name), and lists,
-        mappings and dataclasses of these.
-
-    Returns
-    -------
-    object
-        What `json.dumps` takes.
-
-    Raises
-    ------
-    TypeError
-        For anything else.
+    Numbers, texts, scenes, arrays (by hash), models (also by their source), functions (by name), what states its
+    `identity`, and lists, mappings and dataclasses of these. Raises TypeError for anything else.
 
     Examples
     --------
@@ -129,14 +156,12 @@ def fingerprint(value: Any) -> Any:
     if isinstance(value, Scene):
         return ["scene", value.digest(), value.name, value.title]
     if isinstance(value, np.ndarray):
-        return [
-            "array",
-            str(value.dtype),
-            value.shape,
-            hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest(),
-        ]
+        content = hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()
+        return ["array", str(value.dtype), value.shape, content]
     if isinstance(value, xr.Dataset):
         return ["data", [[str(name), fingerprint(value[name].values)] for name in sorted(map(str, value.variables))]]
+    if isinstance(value, Divisible):
+        return fingerprint(value.identity())
     if isinstance(value, tuple | list):
         return [fingerprint(part) for part in value]
     if isinstance(value, Mapping):

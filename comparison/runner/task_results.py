@@ -7,9 +7,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, get_type_hints
 
-from comparison.runner.cache import Cache
-from comparison.runner.keys import task_key
-from comparison.runner.task import Task, TaskResult, unfinished
+from comparison.runner.cache import Cache, Key
+from comparison.runner.task import GIVEN_UP, Task, TaskResult, unfinished
 from reference.problem import Outcome
 
 
@@ -32,49 +31,25 @@ class Overrun:
 
 class TaskResults:
     """
-    Results by task.
+    Results by task, kept for later runs in `cache`, from which nothing is read if all is to be computed `fresh`.
 
-    Parameters
-    ----------
-    cache : Cache, optional
-        Where results are kept for later runs; without it they live as long as this object.
-    fresh : bool
-        Whether to read nothing from the cache.
-
-    Attributes
-    ----------
-    parts : dict of str to Part
-        What each stage cost.
+    parts: what each stage cost. stored: the tasks whose results were read from the cache.
     """
 
     def __init__(self, cache: Cache | None = None, fresh: bool = False) -> None:
         self.cache, self._fresh = cache, fresh
-        self._results: dict[str, TaskResult] = {}
+        self._results: dict[Key, TaskResult] = {}
         self.parts: dict[str, Part] = defaultdict(Part)
+        self.stored: set[Key] = set()
 
     def __getitem__(self, task: Task) -> TaskResult:
         return self._results[task.key]
 
-    def __contains__(self, task: Task) -> bool:
-        return task.key in self._results
-
     def value(self, task: Task, on_failure: Callable[[Any, TaskResult], Any]) -> Any:
-        """
-        What a task returned, or what stands in its place.
-
-        Parameters
-        ----------
-        task : Task
-            One that was executed or read.
-        on_failure : callable
-            Makes the value of a task that returned nothing, from its argument and the result that says why.
-
-        Returns
-        -------
-        object
-        """
+        """What a task returned; of one without a value what `on_failure` makes of its argument and its result."""
         result = self[task]
-        return result.value if result.outcome == Outcome.OK else on_failure(task.argument, result)
+        failed = result.value is None and result.outcome != Outcome.OK
+        return on_failure(task.argument, result) if failed else result.value
 
     def missing(self, tasks: Iterable[Task]) -> list[Task]:
         """The tasks that must be computed; the results of the others are read."""
@@ -82,7 +57,7 @@ class TaskResults:
 
     def holds(self, task: Task) -> bool:
         """Whether the cache has a file for the task, whatever its state."""
-        return self.cache is not None and not self._fresh and self.cache.holds(task_key(task))
+        return self.cache is not None and not self._fresh and self.cache.holds(task.key)
 
     def put(self, task: Task, result: TaskResult) -> None:
         """
@@ -94,10 +69,11 @@ class TaskResults:
         self._remember(task, result)
         if self.cache is None:
             return
-        if result.outcome == Outcome.TIME_LIMIT and task.timeout is not None:
-            self.cache.put(task_key(task), Overrun(task.timeout, result.error_message))
+        overrun = result.outcome == Outcome.TIME_LIMIT and result.value is None and result.error_message != GIVEN_UP
+        if overrun and task.timeout is not None:
+            self.cache.put(task.key, Overrun(task.timeout, result.error_message))
         elif not result.error_message:
-            self.cache.put(task_key(task), (result.value, result.cost))
+            self.cache.put(task.key, (result.value, result.cost))
 
     def _remember(self, task: Task, result: TaskResult) -> None:
         self._results[task.key] = result
@@ -108,14 +84,15 @@ class TaskResults:
         if self.cache is None or self._fresh:
             return False
         declared: Any = get_type_hints(task.function)["return"]
-        stored = self.cache.get(task_key(task), tuple[declared, float] | Overrun)
+        stored = self.cache.get(task.key, tuple[declared, float] | Overrun)
         if isinstance(stored, Overrun):
             if task.timeout is None or task.timeout > stored.timeout:
                 return False
-            self._remember(task, unfinished(task, Outcome.TIME_LIMIT, stored.ending))
-        elif stored is not None:
+            self._remember(task, unfinished(Outcome.TIME_LIMIT, stored.ending))
+        elif stored is not None and (task.batch is None or task.batch.accepts(stored[0])):
             self._remember(task, TaskResult(*stored))
         else:
             return False
         self.parts[task.stage].stored += 1
+        self.stored.add(task.key)
         return True

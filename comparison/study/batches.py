@@ -1,9 +1,9 @@
-"""The unit of work: some phases of one scene under one model. Runs inside a worker process."""
+"""Some phase pairs of one scene under one model: what a worker process is asked for the surfaces."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from typing import Any
 
@@ -28,8 +28,62 @@ class Batch:
     first: int
     phases: Array
     level: int = 0  # of the nested grids, the first that has these phases
-    timeout: float | None = None  # most processor time of the call, s; what takes longer is ended: Outcome.TIME_LIMIT
-    lane: str = ""  # workers are shared within a lane only: an engine of the user may spoil the process it runs in
+    timeout: float | None = None  # most processor time of the call, s
+    group: str = ""  # of the workers that it may use; of an engine of the user, whose error may be unknown
+
+    @property
+    def points(self) -> int:
+        """Number of phase pairs."""
+        return len(self.phases)
+
+    @property
+    def question(self) -> dict[str, object]:
+        """What all batches of a surface have in common: not the name or title of the scene."""
+        return {"scene": self.scene.digest(), "model": self.amplification, "settings": self.settings}
+
+    def identity(self) -> dict[str, object]:
+        """All that its numbers depend on besides the code."""
+        return {**self.question, "phases": self.phases}
+
+    def halves(self) -> list[Batch]:
+        """The batches of the first and the other phase pairs; none of a single one."""
+        middle = self.points // 2
+        if not middle:
+            return []
+        late = replace(self, first=self.first + middle, phases=self.phases[middle:])
+        return [replace(self, phases=self.phases[:middle]), late]
+
+    def join(self, results: Sequence[BatchResult]) -> BatchResult:
+        """The result from those of the halves: costs added up, each error message once."""
+        mu, error, instant, displacement = (
+            np.concatenate([getattr(result, name) for result in results])
+            for name in ("mu", "error", "instant", "displacement")
+        )
+        status = [outcome for result in results for outcome in result.status]
+        error_message = "; ".join(dict.fromkeys(result.error_message for result in results if result.error_message))
+        return BatchResult(
+            mu, error, status, instant, sum(result.cost for result in results), error_message, displacement
+        )
+
+    def without_result(self, outcome: Outcome, error_message: str) -> BatchResult:
+        """NaN for every point, and why."""
+        nothing, instant = np.full((self.points, len(self.scene.bodies)), np.nan), np.full(self.points, np.nan)
+        return BatchResult(nothing, nothing.copy(), [outcome.value] * self.points, instant, 0.0, error_message)
+
+    def accepts(self, result: BatchResult) -> bool:
+        """Whether a result fits the phase pairs and bodies, with numbers wherever it is ok."""
+        return self.fits(result) and not self.ok_without_numbers(result.mu, result.error, result.status)
+
+    def fits(self, result: BatchResult) -> bool:
+        """Whether a result has the shape of the phase pairs and bodies."""
+        points, plane = (self.points,), (self.points, len(self.scene.bodies))
+        shapes = result.mu.shape, result.error.shape, result.instant.shape, result.displacement.shape
+        return shapes == (plane, plane, points, points) and len(result.status) == self.points
+
+    def ok_without_numbers(self, mu: Array, error: Array, status: Sequence[str]) -> list[int]:
+        """The phase pairs that are ok without a number for every body: no number that is none is a result."""
+        finite = (np.isfinite(mu) & (np.isfinite(error) | bool(self.group))).all(axis=1)
+        return [index for index in np.flatnonzero(~finite).tolist() if status[index] == Outcome.OK]
 
 
 @dataclass(frozen=True)
@@ -50,40 +104,13 @@ class BatchResult:
 
 
 def imported(path: str) -> Any:
-    """
-    An object by its name.
-
-    Parameters
-    ----------
-    path : str
-        "package.module:name".
-
-    Returns
-    -------
-    object
-    """
+    """The object "package.module:name"."""
     module, name = path.split(":")
     return getattr(import_module(module), name)
 
 
 def refusal_of(scene: Scene, model: Model, tolerance: float, full: bool = False) -> str:
-    """
-    Why a model would refuse every phase pair of a scene, told without computing one.
-
-    Parameters
-    ----------
-    scene : Scene
-    model : Model
-    tolerance : float
-        Relative error asked of every mu.
-    full : bool
-        Whether nothing is reduced.
-
-    Returns
-    -------
-    str
-        Empty if it would not.
-    """
+    """Why a model would refuse every phase pair of a scene, told without computing one; empty if it would not."""
     if model.refusal is None or not model.applies(scene):
         return ""
     asked = {"full": True} if full else {}
@@ -91,59 +118,19 @@ def refusal_of(scene: Scene, model: Model, tolerance: float, full: bool = False)
 
 
 def execute_batch(batch: Batch) -> BatchResult:
-    """
-    Ask the batch's model. Runs inside a worker process.
-
-    Parameters
-    ----------
-    batch : Batch
-
-    Returns
-    -------
-    BatchResult
-        What raises or answers in a wrong shape becomes points without an answer, and is named.
-    """
-    points, bodies = len(batch.phases), len(batch.scene.bodies)
+    """Ask the batch's model, inside a worker process. What raises or has a wrong shape becomes points without result"""
     try:
-        result = imported(batch.amplification)(batch.scene, batch.phases, **batch.settings)
-        parts = (result.mu, result.error, result.instant, result.displacement)
+        found = imported(batch.amplification)(batch.scene, batch.phases, **batch.settings)
+        parts = (found.mu, found.error, found.instant, found.displacement)
         mu, error, instant, displacement = (np.array(part, dtype=float) for part in parts)
-        status = [str(outcome) for outcome in result.status]
-        shapes = mu.shape, error.shape, (len(status),), instant.shape, displacement.shape
-        if shapes != ((points, bodies), (points, bodies), (points,), (points,), (points,)):
+        status = [str(outcome) for outcome in found.status]
+        result = BatchResult(mu, error, status, instant, float(found.cost), "", displacement)
+        if not batch.fits(result):
+            points, bodies = batch.points, len(batch.scene.bodies)
             raise ValueError(f"{batch.amplification} answered {mu.shape} for {points} phases and {bodies} bodies")
     except Exception as exception:
-        return unanswered(batch, Outcome.SOLVER_FAILED, exception_line(exception))
-    named = ""
-    for index in ok_without_numbers(batch, mu, error, status):
+        return batch.without_result(Outcome.SOLVER_FAILED, exception_line(exception))
+    wrong = batch.ok_without_numbers(mu, error, status)
+    for index in wrong:
         status[index] = Outcome.SOLVER_FAILED.value
-        named = f"{batch.amplification} called a non-finite answer ok"
-    return BatchResult(mu, error, status, instant, float(result.cost), named, displacement)
-
-
-def ok_without_numbers(batch: Batch, mu: Array, error: Array, status: Sequence[str]) -> list[int]:
-    """The phase pairs of a batch that are ok without a number for every body: no number that is none is an answer."""
-    error_may_be_unknown = bool(batch.lane)
-    finite = (np.isfinite(mu) & (np.isfinite(error) | error_may_be_unknown)).all(axis=1)
-    return [index for index in np.flatnonzero(~finite).tolist() if status[index] == Outcome.OK]
-
-
-def unanswered(batch: Batch, outcome: Outcome, error_message: str) -> BatchResult:
-    """
-    NaN for every point of a batch.
-
-    Parameters
-    ----------
-    batch : Batch
-    outcome : Outcome
-        Why, for every point.
-    error_message : str
-        One line.
-
-    Returns
-    -------
-    BatchResult
-    """
-    points, bodies = len(batch.phases), len(batch.scene.bodies)
-    nothing = np.full((points, bodies), np.nan)
-    return BatchResult(nothing, nothing.copy(), [outcome.value] * points, np.full(points, np.nan), 0.0, error_message)
+    return replace(result, error_message=f"{batch.amplification} called a non-finite answer ok") if wrong else result

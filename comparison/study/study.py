@@ -19,19 +19,7 @@ from reference.problem.symmetry import sources
 
 
 def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
-    """
-    Refuse a name of a scene or family that is there twice.
-
-    Parameters
-    ----------
-    names : iterable of tuple
-        Source and name.
-
-    Raises
-    ------
-    SceneError
-        One line.
-    """
+    """Raise SceneError, one line, if a name of a scene or family is there twice; names: source and name."""
     seen: dict[str, str] = {}
     for source, name in names:
         if name in seen:
@@ -40,8 +28,8 @@ def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
         seen[name] = source
 
 
-def _lane(model: Model) -> str:
-    """The workers of a model: engines of the user share none with anything else."""
+def _group(model: Model) -> str:
+    """The worker group of a model: engines of the user share none with anything else."""
     return model.key if model.side == "entered" else ""
 
 
@@ -170,7 +158,7 @@ class Study:
                 part = phases[places[start : start + model.batch]]
                 about = first + start, part, level
                 batches.append(
-                    Batch(scene, model.key, model.amplification, settings, *about, model.timeout, _lane(model))
+                    Batch(scene, model.key, model.amplification, settings, *about, model.timeout, _group(model))
                 )
             first += len(places)
         return batches

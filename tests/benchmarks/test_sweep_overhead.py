@@ -31,19 +31,20 @@ from comparison.runner.processes import process_pool
 from comparison.runner.runner import Runner
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
+from comparison.surfaces.tasks import batch_results, surface_tasks
 from reference.problem import Amplification, Scene, load_scene
 
-TILE = 0.5  # s a batch takes; the study's take about one
-TILES = 16
+DURATION = 0.5  # s a batch takes; the study's take about one
+BATCHES = 16
 WORKERS = 2
 
 
 def timed(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
-    """Takes TILE and says when it began and ended, s of the machine's clock, and in which process."""
+    """Takes DURATION and says when it began and ended, s of the machine's clock, and in which process."""
     begin = time.monotonic()
-    time.sleep(TILE)
+    time.sleep(DURATION)
     where = np.array([[float(os.getpid()), 0.0]])
-    return Amplification(np.array([[begin, time.monotonic()]]), where, np.full(1, "ok"), np.full(1, np.nan), TILE)
+    return Amplification(np.array([[begin, time.monotonic()]]), where, np.full(1, "ok"), np.full(1, np.nan), DURATION)
 
 
 @dataclass(frozen=True)
@@ -56,23 +57,25 @@ class Measured:
     @property
     def overhead(self) -> float:
         """Share of the sweep. The two overlap: this is more than what is lost."""
-        return (self.waiting + self.handing_out / WORKERS) / TILE
+        return (self.waiting + self.handing_out / WORKERS) / DURATION
 
 
 def measured(folder: Path, executor: Pool) -> Measured:
-    """A stored sweep of TILES batches."""
+    """A stored sweep of BATCHES batches."""
     model = replace(fake_hierarchy(batch=1)[0], amplification="test_sweep_overhead:timed")
     study = Study((load_scene("fig3-I"),), 4, 1e-3, [model])
     begin = time.process_time()
-    found = Runner(TaskResults(Cache(folder)), Console(quiet=True), WORKERS, executor).run_study(study)
+    results, tasks = TaskResults(Cache(folder)), surface_tasks(study)
+    Runner(results, Console(quiet=True), WORKERS, executor).run(tasks)
     spent = time.process_time() - begin
-    assert len(list(folder.glob("*/*.tile"))) == len(found.answers) == TILES
+    answers = batch_results(tasks, results)
+    assert len(list(folder.glob("*/*.batch"))) == len(answers) == BATCHES
     waits = []
-    for process in {answer.error[0, 0] for answer in found.answers}:
-        spans = sorted(tuple(answer.mu[0]) for answer in found.answers if answer.error[0, 0] == process)
+    for process in {answer.error[0, 0] for answer in answers}:
+        spans = sorted(tuple(answer.mu[0]) for answer in answers if answer.error[0, 0] == process)
         waits += [after[0] - before[1] for before, after in pairwise(spans)]
-    assert len(waits) == TILES - WORKERS
-    return Measured(float(np.median(waits)), spent / TILES)
+    assert len(waits) == BATCHES - WORKERS
+    return Measured(float(np.median(waits)), spent / BATCHES)
 
 
 @pytest.fixture(scope="module")
@@ -96,4 +99,4 @@ def test_two_workers_of_a_dask_cluster_are_within_10_percent_of_the_process_pool
             dask = measured(tmp_path / "tiles", there)
     finally:
         workers.end()
-    assert TILE + dask.waiting <= 1.1 * (TILE + pool.waiting), (dask, pool)
+    assert DURATION + dask.waiting <= 1.1 * (DURATION + pool.waiting), (dask, pool)

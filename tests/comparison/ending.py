@@ -9,7 +9,7 @@ import threading
 from typing import Any
 
 from comparison.runner.cache import Cache
-from comparison.runner.keys import BATCH
+from comparison.runner.task import BATCH
 
 
 def end_after(results: int, seconds: float, analyses: bool = False) -> None:

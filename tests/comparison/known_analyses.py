@@ -79,7 +79,7 @@ def collected(
 ) -> Any:
     """What an analysis says of a study, its tasks executed on two workers and stored nowhere."""
     results = TaskResults()
-    Runner(results, Console(quiet=True), 2, executor).run_tasks(analysis.tasks(study, surfaces))
+    Runner(results, Console(quiet=True), 2, executor).run(analysis.tasks(study, surfaces))
     return analysis.collect(study, surfaces, results)
 
 

@@ -10,13 +10,14 @@ import pytest
 import multibody
 import reference
 from comparison.runner.cache import Cache
-from comparison.runner.keys import batch_key, cached_batch
-from comparison.runner.splitting import merge, split_batch
+from comparison.runner.task import TaskResult
+from comparison.runner.task_results import TaskResults
 from comparison.study.batches import execute_batch
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from comparison.surfaces.alerts import alerts
 from comparison.surfaces.surfaces import labeled_surfaces, largest_cap_share
+from comparison.surfaces.tasks import surface_tasks
 from reference.problem import Outcome, Scene, load_scene
 
 PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (4.0, 5.5)])
@@ -71,17 +72,15 @@ def test_the_share_is_stored_joined_labeled_and_said(tmp_path: Path) -> None:
     study = Study((scene,), 2, 1e-3, MODEL_HIERARCHY[:1])
     batches = study.batches()
     answers = [execute_batch(batch) for batch in batches]
-    store = Cache(tmp_path)
-    for batch, answer in zip(batches, answers):
-        store.put(batch_key(batch), answer)
-        kept = cached_batch(store, batch)
-        assert kept is not None
-        np.testing.assert_array_equal(kept.displacement, answer.displacement)
-        parts = split_batch(batch)
-        if parts:
-            np.testing.assert_allclose(
-                merge(batch, [*map(execute_batch, parts)]).displacement, answer.displacement, rtol=1e-9
-            )
+    for task, answer in zip(surface_tasks(study), answers):
+        TaskResults(Cache(tmp_path)).put(task, TaskResult(answer, 0.0))
+        kept = TaskResults(Cache(tmp_path))
+        assert kept.missing([task]) == []
+        np.testing.assert_array_equal(kept[task].value.displacement, answer.displacement)
+        halves = task.argument.halves()
+        if halves:
+            joined = task.argument.join([*map(execute_batch, halves)])
+            np.testing.assert_allclose(joined.displacement, answer.displacement, rtol=1e-9)
     surfaces = labeled_surfaces(study, batches, answers)
     largest = max(answer.displacement.max() for answer in answers) / scene.radius
     assert largest_cap_share(surfaces, scene.name, MODEL_HIERARCHY[0].key) == largest > 0.5

@@ -23,7 +23,7 @@ from comparison.analyses.claims.evidence import Evidence, Question
 from comparison.analyses.claims.readings import EVERY_READING, READINGS, Reading, without_effect
 from comparison.analyses.claims.smoothness import Bend
 from comparison.analyses.claims.table import Claims, questions, tabulated
-from comparison.runner import runner
+from comparison.cli import computing
 from comparison.runner.task import Task
 from comparison.study.study import Study
 from reference.problem import builtin_scenes, load_scene
@@ -211,7 +211,7 @@ def test_the_command_prints_the_table(
         return PAPER[question.case]
 
     monkeypatch.setattr(table_module, "gathered", gathered)
-    monkeypatch.setattr(runner, "compiling_task", lambda stage: Task(len, (), stage, 0.0, None, False))
+    monkeypatch.setattr(computing, "compiling_task", lambda: Task(len, (), "compiling", 0.0, None, False))
     assert main(["--jobs", "2", "--grid", "16", "--words", "--out", str(tmp_path / "report")], ThreadPoolExecutor) == 0
     printed = capsys.readouterr().out
     assert "1 m/s², f_c 0.1 s/m, resolved: 16 of 16" in printed
@@ -234,7 +234,7 @@ def test_the_command_settles_counts_and_searches_a_bounded_number_of_readings(
         return PAPER[question.case]
 
     monkeypatch.setattr(table_module, "gathered", gathered)
-    monkeypatch.setattr(runner, "compiling_task", lambda stage: Task(len, (), stage, 0.0, None, False))
+    monkeypatch.setattr(computing, "compiling_task", lambda: Task(len, (), "compiling", 0.0, None, False))
     words = ["--jobs", "2", "--grid", "16", "--out", str(tmp_path / "report")]
     assert main([*words, "--search", "4", "--settle"], ThreadPoolExecutor) == 0
     printed = capsys.readouterr().out
@@ -261,7 +261,7 @@ def test_the_command_goes_on_where_it_stopped(
         return PAPER[question.case]
 
     monkeypatch.setattr(table_module, "gathered", gathered)
-    monkeypatch.setattr(runner, "compiling_task", lambda stage: Task(len, (), stage, 0.0, None, False))
+    monkeypatch.setattr(computing, "compiling_task", lambda: Task(len, (), "compiling", 0.0, None, False))
     words = ["--jobs", "1", "--grid", "16", "--out", str(tmp_path / "report")]
     tables = []
     for computed in (total, total - 5, 0):

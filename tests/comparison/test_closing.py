@@ -22,9 +22,9 @@ from comparison.cli import reports
 from comparison.cli.start import Clock
 from comparison.cli.terminal import new_table
 from comparison.run import main
-from comparison.runner.keys import ANALYSIS
 from comparison.runner.processes import process_pool
 from comparison.runner.resume import changed, resume_hint, without_scheduler
+from comparison.runner.task import RESULT
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"
 
@@ -94,7 +94,7 @@ def test_a_changed_command_keeps_what_stands_behind_two_dashes() -> None:
     assert changed(words, ["--plan"], flags=["--fresh"], options=["--grid"]) == [
         "--out", "r", "--plan", "--", "--grid", "--fresh", "-a.toml",
     ]  # fmt: skip
-    assert resume_hint(SimpleNamespace(kept={ANALYSIS: 0}, folder="d"), words).endswith(  # type: ignore[arg-type]
+    assert resume_hint(SimpleNamespace(kept={RESULT: 0}, folder="d"), words).endswith(  # type: ignore[arg-type]
         "comparison.run --grid=4 --grid 8 --out r -- --grid --fresh -a.toml"
     )
     assert without_scheduler(["--scheduler", "tcp://a:1", "--", "--scheduler", "b"]) == ["--", "--scheduler", "b"]

@@ -16,34 +16,36 @@ from test_time_limit import doubled, hangs_in_compiled_code
 
 from comparison.runner.cache import Cache, Key
 from comparison.runner.dask import cluster
-from comparison.runner.keys import BATCH, batch_key
+from comparison.runner.executors import Pool
+from comparison.runner.progress import Display
 from comparison.runner.runner import Runner
-from comparison.runner.splitting import merge, split_batch
-from comparison.runner.sweep import sweep
-from comparison.runner.task import Task
+from comparison.runner.task import BATCH, Task
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import Batch, BatchResult, execute_batch, unanswered
+from comparison.study.batches import BatchResult
 from comparison.study.study import Study
+from comparison.surfaces.tasks import batch_results, surface_tasks
 from reference.problem import Outcome, load_scene
 
 
-def _answers(
-    model: str, batch: int, executor: object, done: Callable[[int], object] = lambda count: None
+def _results(
+    model: str, batch: int, executor: Pool, done: Callable[[int], object] = lambda count: None
 ) -> list[BatchResult]:
     """The engine's surface; `done` is told how many batches are."""
     study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(model, batch=batch))
-    batches = [piece for piece in study.batches() if piece.model == "translational"]
-    count = iter(range(1, len(batches) + 1))
+    tasks = [task for task in surface_tasks(study) if task.argument.model == "translational"]
+    results, count = TaskResults(), iter(range(1, len(tasks) + 1))
 
-    def arrived(piece: Batch, answer: BatchResult) -> None:
-        done(next(count))
+    class Told(Display):
+        def show(self) -> None:
+            done(next(count))
 
-    return sweep(batches, execute_batch, unanswered, arrived, 2, executor, split=split_batch, join=merge)  # type: ignore[arg-type]
+    Runner(results, Console(quiet=True), 2, executor, Told(1.0, 2)).run(tasks)
+    return batch_results(tasks, results)
 
 
-def _same(answers: list[BatchResult], expected: list[BatchResult]) -> None:
-    assert len(answers) == len(expected) > 0
-    for a, b in zip(answers, expected):
+def _same(results: list[BatchResult], expected: list[BatchResult]) -> None:
+    assert len(results) == len(expected) > 0
+    for a, b in zip(results, expected):
         for name in ("mu", "error", "instant", "status"):
             np.testing.assert_array_equal(getattr(a, name), getattr(b, name))  # to the last bit
 
@@ -58,11 +60,11 @@ def workers(tmp_path: Path) -> Iterator[LocalCluster]:
 def test_the_numbers_are_those_of_this_machine_even_when_a_worker_is_killed_in_the_middle(
     workers: LocalCluster,
 ) -> None:
-    here = _answers("uneven", 1, ThreadPoolExecutor)
+    here = _results("uneven", 1, ThreadPoolExecutor)
     with cluster(workers.address, {"fake_models:uneven"}) as there:
         assert there.width == 2
-        _same(here, _answers("uneven", 1, there))
-        _same(here, _answers("uneven", 1, there, lambda count: workers.kill_a_worker() if count == 4 else None))
+        _same(here, _results("uneven", 1, there))
+        _same(here, _results("uneven", 1, there, lambda count: workers.kill_a_worker() if count == 4 else None))
         assert [answer.status for answer in here] == [["ok"]] * 16, "nothing is lost"
 
 
@@ -101,7 +103,7 @@ def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on_in_process(
     assert 5 <= before < len(stored)
     assert not set(names[:before]) & set(names[before:]), "only what was missing was computed"
     batches = {key.name for key in stored if key.kind == BATCH}
-    assert batches == {batch_key(batch).name for batch in study.batches()}
+    assert batches == {task.key.name for task in surface_tasks(study)}
 
 
 @pytest.mark.long
@@ -116,7 +118,7 @@ def test_a_hang_ends_at_its_limit_and_costs_no_worker_of_the_cluster(tmp_path: P
     results = TaskResults()
     try:
         with cluster(started.address, {"fake_models:uneven"}) as there:
-            Runner(results, Console(quiet=True), 1, there).run_tasks(tasks)
+            Runner(results, Console(quiet=True), 1, there).run(tasks)
     finally:
         started.end()
     assert results[tasks[0]].outcome == Outcome.TIME_LIMIT
@@ -151,7 +153,7 @@ def test_a_point_that_kills_every_worker_is_the_only_one_lost(tmp_path: Path) ->
     workers = LocalCluster(tmp_path, nanny=True)
     try:
         with cluster(workers.address, {"fake_models:killing"}) as there:
-            answers = _answers("killing", 8, there)
+            answers = _results("killing", 8, there)
     finally:
         workers.end()
     assert [outcome for answer in answers for outcome in answer.status] == ["ok"] * 15 + ["worker died"]

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.stats import binom
 
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import execute_batch, unanswered
+from comparison.study.batches import execute_batch
 from comparison.study.models import EXACT, TRANSLATIONAL, Model, never
 from comparison.study.study import Study
 from comparison.surfaces import completion
@@ -262,7 +262,7 @@ def kept_statements(grid: int, difference: Callable[..., Array], surfaces: int) 
     study = Study((load_scene("fig3-I"),), grid, 1e3, (first, model))  # every surface is kept, however far it is off
     (scene,), every = study.scenes, study.places(model)
     batches = study.batches()
-    empty = [unanswered(batch, Outcome.STEP_LIMIT, "") for batch in batches]
+    empty = [batch.without_result(Outcome.STEP_LIMIT, "") for batch in batches]
     surfaces_of_nothing = labeled_surfaces(study, batches, empty)
     random, alpha = np.random.default_rng(0), square(grid)
     base = 2.0 + np.cos(alpha[0])

@@ -31,7 +31,6 @@ from comparison.analyses.tradeoff.figure import draw_tradeoff
 from comparison.analyses.tradeoff.settings import QUESTIONS, entered_settings
 from comparison.cli.entered import as_words, entered_models, look_at
 from comparison.runner.environment import engine_fingerprint, source_digest
-from comparison.runner.keys import batch_key
 from comparison.runner.processes import process_pool
 from comparison.study.batches import execute_batch
 from comparison.study.entered import amplification, entered_model
@@ -42,6 +41,7 @@ from comparison.surfaces.budget import budget
 from comparison.surfaces.differences import differences, pair_step
 from comparison.surfaces.headline import headline
 from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.tasks import surface_tasks
 from comparison.surfaces.unanswered import unanswered, with_silent_models
 from comparison.surfaces.waterfall import waterfall
 from reference.problem import Outcome, SceneError, load_scene
@@ -298,8 +298,8 @@ def test_an_entered_engine_changes_no_other_number(function: str) -> None:
             for each, data in ((alone, without), (study, surfaces))
         ]
         assert repr(numbers[0]) == repr(numbers[1])
-    keys = [batch_key(batch) for batch in study.batches() if batch.model != "mine"]
-    assert keys == [batch_key(batch) for batch in alone.batches()]
+    keys = [task.key for task in surface_tasks(study) if task.argument.model != "mine"]
+    assert keys == [task.key for task in surface_tasks(alone)]
     assert {gap.model for gap in unanswered(study, surfaces)} == ({"mine"} if function == "raises" else set())
     assert ("mine" in {pair.key for pair in study.pairs(SCENE)}) == (function == "plain")
 
@@ -491,7 +491,7 @@ def test_the_curve_of_an_entered_engine_runs_over_the_tolerance_that_it_takes() 
     assert curve("") == [("regularised", 1e-3, True)]
     assert curve("", like="resolved") == [("exact", 1e-3, False)]
     tasks = TradeOff(True, (entered("plain"),)).tasks(Study((SCENE,), 1, 1e-3))
-    mine = [task for task in tasks if task.lane]
+    mine = [task for task in tasks if task.group]
     assert mine
     assert all(task.timeout == 60.0 * len(task.argument.phases) for task in mine)
 

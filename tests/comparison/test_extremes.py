@@ -51,7 +51,7 @@ def fake(model: str, finer: str = "") -> Column:
 def computed(extremes: Extremes, results: TaskResults | None = None) -> Matrix:
     """The matrix, by one worker process."""
     results = results or TaskResults()
-    Runner(results, Console(quiet=True), 1, process_pool).run_tasks(extremes.tasks())
+    Runner(results, Console(quiet=True), 1, process_pool).run(extremes.tasks())
     return extremes.collect(None, None, results)
 
 

@@ -89,7 +89,7 @@ def test_a_stopped_run_keeps_what_is_finished_and_says_how_to_go_on(tmp_path: Pa
     )
     assert stopped, err
     assert int(stopped[1]) == 256 * sum(model.side == "reference" for model in MODEL_HIERARCHY) < int(stopped[2])
-    assert len(list(tmp_path.glob("report.tiles/*/*.tile"))) == 256, "one model under several names is stored once"
+    assert len(list(tmp_path.glob("report.tiles/*/*.batch"))) == 256, "one model under several names is stored once"
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["report", "report.tiles", "stored.txt"]
     assert sorted(entry.name for entry in old.iterdir()) == ["manifest.json", "summary.json"]
     _wait_for_the_end_of(workers)

@@ -27,6 +27,7 @@ from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import BatchResult
 from comparison.study.study import Study
+from comparison.surfaces.tasks import surface_tasks
 from reference.problem import load_scene
 
 HERE = Path(__file__).parent
@@ -89,21 +90,16 @@ def whole_run(folder: Path, console: Console) -> tuple[list[BatchResult], list[o
     """Batches with 24 tasks beside them and 24 after them; what was found, and how much of either was there before."""
     results = TaskResults(Cache(folder))
     runner = Runner(results, console, 2, ThreadPoolExecutor)
-    computed = runner.run_study(study(), _tasks(0, 24))
-    runner.run_tasks(_tasks(24, 24))
+    batches = surface_tasks(study())
+    runner.run([*batches, *_tasks(0, 24)])
+    runner.run(_tasks(24, 24))
     motions = [results[task].value for task in _tasks(0, 48)]
     return (
-        list(computed.answers),
+        [results[task].value for task in batches],
         [(m.place, m.stick, *(x.tobytes() for x in (m.time, m.position, m.acceleration))) for m in motions],
-        computed.stored,
+        sum(task.key in results.stored for task in batches),
         results.parts["motions"].stored,
     )
-
-
-def _computed(study: Study, store: Cache) -> tuple[list[BatchResult], int]:
-    """The answers, and how many batches were there before."""
-    computed = Runner(TaskResults(store), Console(quiet=True), 2, ThreadPoolExecutor).run_study(study)
-    return list(computed.answers), computed.stored
 
 
 def _bytes(answers: list[BatchResult]) -> list[object]:
@@ -199,7 +195,7 @@ def test_a_full_disk_is_one_line_exit_3_and_the_run_goes_on_later(
     assert "a result could not be stored: No space left on device; 3 of " in run.err
     assert "go on with: python -m comparison.run fig3-I --grid 4 " in run.err
     store = store_beside(run.report)
-    assert len(list(store.glob("*/*.tile"))) == 3
+    assert len(list(store.glob("*/*.batch"))) == 3
     assert not list(store.glob("*/.phase*"))
     assert not run.report.exists()
     again = command(*words)

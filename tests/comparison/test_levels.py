@@ -23,11 +23,11 @@ from comparison.cli import reports
 from comparison.registry import levels
 from comparison.runner.cache import Cache
 from comparison.runner.deadline import Deadline, TimeUpError
-from comparison.runner.keys import batch_key
 from comparison.runner.progress import Display
 from comparison.study.levels import levels_of
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
+from comparison.surfaces.tasks import surface_tasks
 from reference.problem import load_scene
 from reference.problem.command import StoppedError
 
@@ -47,7 +47,7 @@ def test_every_level_begins_with_what_the_level_before_has(grid: int, hierarchy:
     study = Study(SCENES, grid, 1e-3, hierarchy)
     found = levels_of(study, {"motions": 3})
     assert found[-1].study is study
-    asked = [{batch_key(batch) for batch in level.study.batches()} for level in found]
+    asked = [{task.key for task in surface_tasks(level.study)} for level in found]
     assert all(coarse <= fine for coarse, fine in itertools.pairwise(asked))
     for level in found:
         axis = {model.key: len(level.study.axis(model)) for model in level.study.hierarchy}

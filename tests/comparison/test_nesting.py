@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from fake_models import fake_hierarchy
 
-from comparison.runner.keys import batch_key
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.nesting import levels, nested_grids
 from comparison.study.study import Study
+from comparison.surfaces.tasks import surface_tasks
 from reference.problem import load_scene, phase_axis, phase_grid
 
 SCENES = tuple(load_scene(name) for name in ("fig3-I", "fig3-II", "synthetic-pair"))
@@ -41,7 +41,7 @@ def test_phases_of_nested_grids_are_the_same_to_the_last_bit() -> None:
 def test_a_finer_study_asks_for_all_batches_of_a_coarser_one(hierarchy: tuple[Model, ...], coarse: int) -> None:
     everywhere = [replace(model, most=None) for model in hierarchy]
     first, finer = (
-        {batch_key(batch).name for batch in Study(SCENES, grid, 1e-3, everywhere).batches()} for grid in (coarse, 24)
+        {task.key.name for task in surface_tasks(Study(SCENES, grid, 1e-3, everywhere))} for grid in (coarse, 24)
     )
     assert first < finer
 

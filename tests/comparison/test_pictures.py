@@ -63,7 +63,7 @@ def test_pictures_are_stored_and_belong_to_their_numbers(tmp_path: Path) -> None
     def drawn_anew(study: Study, surfaces: xr.Dataset) -> int:
         results = TaskResults(Cache(tmp_path))
         tasks = Pictures().tasks(study, surfaces)
-        Runner(results, Console(quiet=True), 1, ThreadPoolExecutor).run_tasks(tasks)
+        Runner(results, Console(quiet=True), 1, ThreadPoolExecutor).run(tasks)
         return len(tasks) - results.parts["pictures"].stored
 
     whole = drawn_anew(*_solved())

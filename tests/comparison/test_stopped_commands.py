@@ -108,7 +108,7 @@ def test_ctrl_c_ends_the_extremes_at_once_with_the_command_that_goes_on(tmp_path
         text=True,
         start_new_session=True,  # Ctrl-C reaches the whole group, as on a terminal
     )
-    while not list(tmp_path.glob("report.tiles/*/*.answer")) and process.poll() is None:
+    while not list(tmp_path.glob("report.tiles/*/*.result")) and process.poll() is None:
         time.sleep(0.05)
     os.killpg(process.pid, signal.SIGINT)
     _, err = process.communicate(timeout=300)  # does not wait for the cells under way, which never end
@@ -119,5 +119,5 @@ def test_ctrl_c_ends_the_extremes_at_once_with_the_command_that_goes_on(tmp_path
         err,
     )
     assert stopped, err
-    assert int(stopped[1]) == len(list(tmp_path.glob("report.tiles/*/*.answer")))
+    assert int(stopped[1]) == len(list(tmp_path.glob("report.tiles/*/*.result")))
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["report.tiles"]

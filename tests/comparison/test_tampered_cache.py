@@ -28,13 +28,15 @@ from comparison.analyses.motions.analysis import Place, StoredMotion, moved
 from comparison.analyses.scaling.analysis import scene_trends
 from comparison.runner.cache import LENGTH, MAGIC, Cache, Key
 from comparison.runner.encoding import array_of
-from comparison.runner.keys import batch_key, cached_batch
+from comparison.runner.task import Task
+from comparison.runner.task_results import TaskResults
 from comparison.study.batches import BatchResult, execute_batch
 from comparison.study.study import Study
 from comparison.surfaces.figures.pictures import drawn
+from comparison.surfaces.tasks import surface_tasks
 from reference.problem import load_scene
 
-KEY = Key('{"a": 1}', "0" * 64, "answer")
+KEY = Key('{"a": 1}', "0" * 64, "result")
 ROOT = Path(__file__).parents[2]
 
 
@@ -180,34 +182,34 @@ def test_lengths_that_lie_are_not_believed(tmp_path: Path) -> None:
 def test_no_file_of_another_result_is_taken(tmp_path: Path) -> None:
     cache = Cache(tmp_path)
     cache.put(KEY, VALUE)
-    other = Key(KEY.about, "1" * 64, "answer")
+    other = Key(KEY.about, "1" * 64, "result")
     (tmp_path / KEY.name).rename(tmp_path / other.name)
     assert cache.get(other, Outer) is None
 
 
-def test_a_tile_of_another_shape_is_computed_again(tmp_path: Path) -> None:
-    batch = Study((load_scene("fig3-I"),), 2, 1e-3, fake_hierarchy()).batches()[0]
-    cache = Cache(tmp_path)
-    answer = execute_batch(batch)
-    whole = {part.name: getattr(answer, part.name) for part in fields(answer)}
+def is_read_back(folder: Path, task: Task, value: BatchResult) -> bool:
+    """Whether a value that stands in the cache is taken for the task's."""
+    Cache(folder).put(task.key, (value, 0.0))
+    return TaskResults(Cache(folder)).missing([task]) == []
+
+
+def test_a_batch_of_another_shape_is_computed_again(tmp_path: Path) -> None:
+    task = surface_tasks(Study((load_scene("fig3-I"),), 2, 1e-3, fake_hierarchy()))[0]
+    whole = execute_batch(task.argument)
     for name in ("mu", "error", "status", "instant", "displacement"):
-        cache.put(batch_key(batch), BatchResult(**{**whole, name: whole[name][:1]}))
-        assert cached_batch(cache, batch) is None, name
-    cache.put(batch_key(batch), answer)
-    assert cached_batch(cache, batch) is not None
+        assert not is_read_back(tmp_path, task, replace(whole, **{name: getattr(whole, name)[:1]})), name
+    assert is_read_back(tmp_path, task, whole)
 
 
 @pytest.mark.parametrize("name", ["mu", "error"])
-def test_a_tile_that_is_ok_without_numbers_is_computed_again(tmp_path: Path, name: str) -> None:
-    batch = Study((load_scene("fig3-I"),), 2, 1e-3, fake_hierarchy()).batches()[0]
-    cache, answer = Cache(tmp_path), execute_batch(batch)
-    damaged = getattr(answer, name).copy()
+def test_a_batch_that_is_ok_without_numbers_is_computed_again(tmp_path: Path, name: str) -> None:
+    task = surface_tasks(Study((load_scene("fig3-I"),), 2, 1e-3, fake_hierarchy()))[0]
+    whole = execute_batch(task.argument)
+    damaged = getattr(whole, name).copy()
     damaged[0, 0] = np.nan
-    cache.put(batch_key(batch), replace(answer, **{name: damaged}))
-    assert cached_batch(cache, batch) is None
-    status = ["step limit", *answer.status[1:]]
-    cache.put(batch_key(batch), replace(answer, **{name: damaged}, status=status))
-    assert cached_batch(cache, batch) is not None, "a point without an answer has no numbers"
+    assert not is_read_back(tmp_path, task, replace(whole, **{name: damaged}))
+    status = ["step limit", *whole.status[1:]]
+    assert is_read_back(tmp_path, task, replace(whole, **{name: damaged}, status=status)), "no result, no numbers"
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes with names")

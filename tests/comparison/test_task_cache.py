@@ -60,7 +60,7 @@ def _task(task: tuple[Any, ...] = (load_scene("fig3-I"), 1, 0.5, np.arange(3.0))
 
 def _run(task: Task, folder: Path, make: Callable[[int], Executor] = ThreadPoolExecutor) -> TaskResults:
     results = TaskResults(Cache(folder))
-    Runner(results, QUIET, 1, make).run_tasks([task])
+    Runner(results, QUIET, 1, make).run([task])
     return results
 
 
@@ -93,7 +93,7 @@ def test_it_belongs_to_function_task_versions_and_source(tmp_path: Path, monkeyp
     for name in ("_version", "source_digest"):
         with monkeypatch.context() as patch:
             patch.setattr(f"comparison.runner.environment.{name}", lambda package: "changed")
-            assert TaskResults(Cache(tmp_path)).missing([task]), name
+            assert TaskResults(Cache(tmp_path)).missing([_task()]), name
     assert not TaskResults(Cache(tmp_path)).missing([task])
 
 
@@ -119,7 +119,7 @@ def test_what_names_a_fault_serves_the_run_and_is_tried_again_by_the_next(tmp_pa
 def test_what_is_damaged_or_would_run_foreign_code_is_computed_again(tmp_path: Path, damage: str) -> None:
     task = _task()
     _run(task, tmp_path)
-    (file,) = tmp_path.glob("*/*.answer")
+    (file,) = tmp_path.glob("*/*.result")
     text = file.read_bytes()
     if damage == "a foreign class":
         content = pickle.dumps(Path("reports"), protocol=4)
@@ -141,7 +141,7 @@ def test_a_task_that_raises_or_whose_worker_dies_is_a_result_with_its_reason_and
         Task(doubled, str(tmp_path / "3"), "errata", 0.1),
     ]
     results = TaskResults(Cache(tmp_path))
-    Runner(results, QUIET, 2, process_pool).run_tasks(tasks)
+    Runner(results, QUIET, 2, process_pool).run(tasks)
     assert [results.value(task, on_failure) for task in tasks] == [
         ("1", Outcome.SOLVER_FAILED, "RuntimeError: singular"),
         ("2", Outcome.WORKER_DIED, "the worker process died 2 times (exit code -9)"),

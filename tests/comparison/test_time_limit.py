@@ -29,7 +29,7 @@ def patient(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def _run(tasks: list[Task], folder: Path, make: object = process_pool, jobs: int = 2) -> list[TaskResult]:
     results = TaskResults(Cache(folder / "cache"))
-    Runner(results, Console(quiet=True), jobs, make).run_tasks(tasks)  # type: ignore[arg-type]
+    Runner(results, Console(quiet=True), jobs, make).run(tasks)  # type: ignore[arg-type]
     return [results[task] for task in tasks]
 
 

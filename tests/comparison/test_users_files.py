@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -19,8 +18,7 @@ from test_extremes_in_the_report import FOUND
 from comparison.analyses.extremes import command as extremes
 from comparison.analyses.tradeoff import command as tradeoff
 from comparison.cli import reports
-from comparison.runner.cache import Cache
-from comparison.runner.keys import batch_key
+from comparison.runner.cache import Cache, Key
 from comparison.runner.output import (
     MANIFEST,
     Own,
@@ -32,9 +30,6 @@ from comparison.runner.output import (
     refuse_foreign_files,
     write_manifest,
 )
-from comparison.study.batches import execute_batch
-from comparison.study.study import Study
-from reference.problem import load_scene
 from reference.problem.files import TEMPORARY, write_new
 
 SMALL = ["fig3-I", "--grid", "2"]
@@ -224,22 +219,18 @@ def test_a_pipe_among_the_files_of_a_report_is_the_users(tmp_path: Path, name: s
 
 
 def test_a_folder_of_24_letters_in_the_store_is_never_trimmed(tmp_path: Path) -> None:
-    batches = Study((load_scene("fig3-I"),), 2, 1e-3, fake_hierarchy()).batches()
+    needed, old = Key('"needed"', "0" * 64, "batch"), Key('"old"', "0" * 64, "batch")
     cache = Cache(tmp_path / "e.tiles")
-    old = replace(batches[0], settings={"tolerance": 0.02})
-    cache.put(batch_key(old), execute_batch(old))
+    cache.put(old, 1.5)
     photos = tmp_path / "e.tiles" / "my-photos-of-summer-2024"
     photos.mkdir()
-    mine = [photos / "a.jpg", photos / "b.tile", tmp_path / "e.tiles" / batch_key(old).group / "c.tile"]
+    mine = [photos / "a.jpg", photos / "b.batch", tmp_path / "e.tiles" / old.group / "c.batch"]
     for file in mine:
         file.write_bytes(b"mine")
     (tmp_path / "e.tiles" / "link").symlink_to(photos)
-    cache.trim([batch_key(batches[0])], limit=0)
+    cache.trim([needed], limit=0)
     assert all(file.read_bytes() == b"mine" for file in mine)
-    assert not (tmp_path / "e.tiles" / batch_key(old).name).exists(), "what is the study's own is"
-    cache.put(batch_key(old), execute_batch(old))
-    cache.forget([batch_key(old)])
-    assert mine[2].read_bytes() == b"mine"
+    assert not (tmp_path / "e.tiles" / old.name).exists(), "what is the study's own is"
 
 
 def test_a_foreign_folder_in_the_store_is_refused_at_the_start(command: Callable[..., Run], tmp_path: Path) -> None:

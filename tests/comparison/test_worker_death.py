@@ -1,11 +1,10 @@
-"""A worker that dies costs its task one retry, then the points that kill it and no other, on any executor."""
+"""A worker that dies costs its task one retry, then the points that kill it and no other."""
 
 from __future__ import annotations
 
 import gc
 import signal
-from collections.abc import Callable
-from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 from threading import Barrier
@@ -14,29 +13,31 @@ import numpy as np
 import pytest
 from fake_models import fake_hierarchy
 from light_tasks import counted
+from rich.console import Console
 
-from comparison.runner.executors import ExecutorLostError
+from comparison.runner.cache import Cache
+from comparison.runner.executors import ExecutorLostError, Pool
 from comparison.runner.processes import process_pool
-from comparison.runner.splitting import merge, split_batch
-from comparison.runner.sweep import sweep
-from comparison.study.batches import Batch, BatchResult, execute_batch, unanswered
+from comparison.runner.runner import Runner
+from comparison.runner.sweep import Sweep
+from comparison.runner.task import Task, TaskResult
+from comparison.runner.task_results import TaskResults
+from comparison.study.batches import execute_batch
 from comparison.study.study import Study
-from reference.problem import Outcome, load_scene
+from comparison.surfaces.tasks import batch_results, surface_tasks
+from reference.problem import load_scene
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="SIGKILL")
 
 
-def common_pool(jobs: int) -> Executor:
-    """As a user may bring it: a death ends every task in flight."""
-    return ProcessPoolExecutor(jobs, get_context("spawn"))
+def _tasks(folder: Path, *names: str) -> list[Task]:
+    return [Task(counted, str(folder / name), "test", needs_compiled_reference=False) for name in names]
 
 
-def _lost(task: Path, outcome: Outcome, error_message: str) -> str:
-    return f"{outcome}: {error_message}"
-
-
-def _done(task: object, result: object) -> None:
-    pass
+def _run(tasks: list[Task], executor: Pool, jobs: int = 2) -> list[TaskResult]:
+    results = TaskResults()
+    Runner(results, Console(quiet=True), jobs, executor).run(tasks)
+    return [results[task] for task in tasks]
 
 
 def _calls(folder: Path) -> dict[str, int]:
@@ -45,10 +46,10 @@ def _calls(folder: Path) -> dict[str, int]:
 
 
 def test_a_death_costs_its_own_task_one_retry_and_no_other(tmp_path: Path) -> None:
-    tasks = [tmp_path / name for name in ("one", "kills", "two", "kills always", "three", "four")]
-    results = sweep(tasks, counted, _lost, _done, 2, process_pool)
-    died = "worker died: the worker process died 2 times (exit code -9)"
-    assert results == ["one", "kills", "two", died, "three", "four"]
+    names = "one", "kills", "two", "kills always", "three", "four"
+    results = _run(_tasks(tmp_path, *names), process_pool)
+    assert [result.value for result in results] == ["one", "kills", "two", None, "three", "four"]
+    assert results[3].reason == "worker died: the worker process died 2 times (exit code -9)"
     assert _calls(tmp_path) == {"one": 1, "kills": 2, "two": 1, "kills always": 2, "three": 1, "four": 1}
 
 
@@ -63,72 +64,53 @@ def test_a_worker_collects_garbage_as_seldom_as_its_parent() -> None:
 
 
 @pytest.mark.long
-def test_in_a_common_pool_of_processes_the_culprit_is_found_too(tmp_path: Path) -> None:
-    tasks = [tmp_path / name for name in ("one", "kills always", "two")]
-    results = sweep(tasks, counted, _lost, _done, 2, common_pool)
-    assert [results[0], results[2]] == ["one", "two"]
-    assert str(results[1]).startswith("worker died: ")
-    assert _calls(tmp_path)["kills always"] <= 3, "once among others, then alone"
-
-
-@pytest.mark.long
 @pytest.mark.parametrize("batch", [2, 16])
-def test_splitting_finds_the_one_point_that_kills(batch: int) -> None:
+def test_splitting_finds_the_one_point_that_kills(tmp_path: Path, batch: int) -> None:
     hierarchy = [model for model in fake_hierarchy("killing", batch=batch) if model.key == "translational"]
-    batches = Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy).batches()
-    seen: list[Batch] = []
-
-    def done(piece: Batch, answer: BatchResult) -> None:
-        seen.append(piece)
-
-    answers = sweep(batches, execute_batch, unanswered, done, 2, process_pool, split=split_batch, join=merge)
-    assert [outcome for answer in answers for outcome in answer.status] == ["ok"] * 15 + ["worker died"]
-    mu = np.concatenate([answer.mu for answer in answers])
+    tasks, results = surface_tasks(Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy)), TaskResults(Cache(tmp_path))
+    Runner(results, Console(quiet=True), 2, process_pool).run(tasks)
+    found = batch_results(tasks, results)
+    assert [outcome for result in found for outcome in result.status] == ["ok"] * 15 + ["worker died"]
     whole = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(gap=0.0)).batches()
     expected = np.concatenate([execute_batch(batch).mu for batch in whole])
-    np.testing.assert_array_equal(mu[:15], expected[:15])
-    assert len(seen) == len(batches), "told of whole batches, once each"
-    assert [answer.error_message for answer in answers][-1] == "the worker process died 2 times (exit code -9)"
+    np.testing.assert_array_equal(np.concatenate([result.mu for result in found])[:15], expected[:15])
+    assert found[-1].error_message == "the worker process died 2 times (exit code -9)"
+    assert TaskResults(Cache(tmp_path)).missing(tasks) == tasks[-1:], "only the batch that lost a point is tried again"
 
 
-def test_halves_of_a_tile_are_its_points_in_order() -> None:
+def test_halves_of_a_batch_are_its_points_in_order() -> None:
     batch = Study((load_scene("fig3-I"),), 3, 1e-3, fake_hierarchy(batch=7)).batches()[1]
-    early, late = split_batch(batch)
+    early, late = batch.halves()
     np.testing.assert_array_equal(np.concatenate([early.phases, late.phases]), batch.phases)
     assert (early.first, late.first) == (batch.first, batch.first + len(early.phases))
-    assert split_batch(split_batch(batch)[0]) == []
-    whole, parts = execute_batch(batch), [execute_batch(part) for part in (early, late)]
-    together = merge(batch, parts)
+    assert early.halves() == []
+    whole, halves = execute_batch(batch), [execute_batch(half) for half in (early, late)]
+    together = batch.join(halves)
     np.testing.assert_array_equal(together.mu, whole.mu)
     assert (together.status, together.error_message) == (whole.status, "")
     assert together.cost == pytest.approx(whole.cost, rel=1e-12)  # a sum in another order
 
 
-def test_any_executor_will_do_and_one_that_is_lent_stays_open() -> None:
-    with ThreadPoolExecutor(2) as lent:
-        assert sweep(["a", "b"], str.upper, lambda *rest: "lost", _done, 2, lent) == ["A", "B"]
-        assert lent.submit(str.upper, "c").result() == "C"
-
-
-def test_a_lent_executor_says_how_many_tasks_it_takes() -> None:
+def test_an_executor_that_is_lent_says_how_many_tasks_it_takes_and_stays_open(tmp_path: Path) -> None:
     class Three(ThreadPoolExecutor):
         width = 3
 
-    together = Barrier(3)
+    together, places = Barrier(3), []
     with Three(3) as lent:
-        places = sweep([60.0] * 3, together.wait, lambda *rest: -1, _done, 1, lent)
-    assert sorted(places) == [0, 1, 2], "each waited for the other two"
+        tasks = [Task(together.wait, 60.0, "test")] * 3
+        Sweep(tasks, lent, 1, lambda task, result: places.append(result.value)).run()
+        assert sorted(places) == [0, 1, 2], "each waited for the other two"
+        assert [result.value for result in _run(_tasks(tmp_path, "one"), lent)] == ["one"]
+        assert lent.submit(str.upper, "c").result() == "C"
 
 
 @pytest.mark.parametrize("broken_before", [True, False])
-def test_a_lent_executor_that_breaks_ends_the_sweep_in_one_line(tmp_path: Path, broken_before: bool) -> None:
-    arrived: list[str] = []
-    tasks = [tmp_path / name for name in ("one", "kills always", "two")]
-    done: Callable[[Path, str], None] = lambda task, result: arrived.append(result)  # noqa: E731
-    with common_pool(1) as lent:
+def test_a_lent_executor_that_breaks_ends_the_run_in_one_line(tmp_path: Path, broken_before: bool) -> None:
+    tasks, results = _tasks(tmp_path, "one", "kills always", "two"), TaskResults()
+    with ProcessPoolExecutor(1, get_context("spawn")) as lent:
         if broken_before:
-            assert lent.submit(counted, tmp_path / "kills always").exception() is not None
+            assert lent.submit(counted, str(tmp_path / "kills always")).exception() is not None
         with pytest.raises(ExecutorLostError, match=r"^the executor is broken: ") as error_message:
-            sweep(tasks, counted, _lost, done, 1, lent)
+            Runner(results, Console(quiet=True), 1, lent).run(tasks)
     assert "\n" not in str(error_message.value)
-    assert arrived == ([] if broken_before else ["one"]), "what had arrived was told"
+    assert results.missing(tasks) == tasks[0 if broken_before else 1 :], "what had arrived was kept"

@@ -122,7 +122,7 @@ def test_a_search_that_failed_leaves_a_row_with_the_reason() -> None:
     study, results = study_of(SHORT), TaskResults()
     tasks = WorstPhases().tasks(study)
     for task in tasks:
-        results.put(task, unfinished(task, Outcome.TIME_LIMIT, "took too long"))
+        results.put(task, unfinished(Outcome.TIME_LIMIT, "took too long"))
     rows = WorstPhases().collect(study, None, results)
     assert rows is not None
     assert len(rows) == len(tasks) + 2  # the engine's rows

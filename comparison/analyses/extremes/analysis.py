@@ -68,7 +68,7 @@ class Extremes(Analysis[Matrix]):
             column.seconds if row.quick else SECONDS_OF_LONG_ROWS,
             needs_compiled_reference=EQUATIONS in functions,
             timeout=self.limit,
-            lane=column.key if column.like else "",
+            group=column.key if column.like else "",
         )
 
 

@@ -84,7 +84,7 @@ def judged_matrix(
         "cpu_seconds": round(sum(totals), 1),
         "stored_before": results.parts[extremes.stage].stored,
         "limit": extremes.limit,
-        "reduced": len([task for task in tasks if not task.lane]) < len(cells(list(rows()))),
+        "reduced": len([task for task in tasks if not task.group]) < len(cells(list(rows()))),
     }
     return replace(matrix, run=run)
 

@@ -81,7 +81,7 @@ class TradeOff(Analysis[list[MeasuredTrade]]):
                     each * min(size, count - first),
                     scene,
                     timeout=limit and limit * size,
-                    lane=engine,
+                    group=engine,
                 )
                 for first in range(0, count, size)
             ]
