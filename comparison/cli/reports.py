@@ -18,7 +18,7 @@ from comparison.registry import EARLIER, chosen_analyses, first_tasks, report_of
 from comparison.report.pdf import why_no_pdf
 from comparison.report.results import Results
 from comparison.report.section import Feature, Report
-from comparison.runner.output import atomic_replace, on_stderr
+from comparison.runner.output import on_stderr, replace_report
 from comparison.runner.provenance import provenance
 from comparison.runner.resume import command_line
 from comparison.runner.runner import Runner
@@ -110,7 +110,7 @@ class Reports:
             runner.run(drawings)
             files = {task.key: runner.results[task].value for task in drawings}
             report = replace(report, drawings={key: value for key, value in files.items() if value})
-        with writing(self._options.out), atomic_replace(self.place) as staged:
+        with writing(self._options.out), replace_report(self.place) as staged:
             write_report(staged.folder, report)
         self.place = self._options.out if staged.place == self._options.out.resolve() else staged.place
         self.results, self.level, self._last = results, complete.level, time.monotonic()

@@ -3,7 +3,7 @@ The folders that commands write for the user: reports, tables, figures.
 
 Every such folder holds a manifest of the files that this study wrote there, with a hash of each. A file is the study's
 own if it is as the manifest says, and everything else is the user's. Only the study's own files are replaced or
-removed, which is looked at when it happens, not before; otherwise the new ones go beside under a new name.
+removed; where something else is in the way the new ones go beside under a new name.
 """
 
 from __future__ import annotations
@@ -12,20 +12,19 @@ import errno
 import hashlib
 import json
 import os
-import shutil
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from comparison.runner.cache import store_beside
 from reference.problem import SceneError
 from reference.problem.files import (
     NEW,
-    OLD,
     TEMPORARY,
     clear_staging,
     dead_staging,
@@ -42,7 +41,6 @@ if TYPE_CHECKING:
 
 MANIFEST, SCHEMA = "manifest.json", "phase-resonance/manifest"
 REPORT = "comparison.run"  # the command whose files make up a report; those of others in the folder stay
-MOUNTS = Path("/proc/self/mountinfo")
 LARGEST = 2**30  # bytes of a file that may be the study's own
 FULL_NAME = 240  # bytes of a name: the names made from it are longer
 
@@ -64,21 +62,7 @@ def destination(path: Path, option: str = "--out") -> Path:
     """
     The folder that a path of the command line means, with no symbolic link or ".." left in it.
 
-    Parameters
-    ----------
-    path : Path
-        As it was typed.
-    option : str
-        Option that it belongs to, for the message.
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    SceneError
-        One line, if no folder can be made there, or what is there cannot be replaced.
+    Raises SceneError, one line, if no folder can be made there, or what is there cannot be replaced.
     """
 
     def refusal(rule: str) -> SceneError:
@@ -120,7 +104,7 @@ def refuse_foreign_report(out: Path) -> None:
     if place.exists():
         if Path.cwd().resolve().is_relative_to(place):
             raise refusal("is the directory you work in: give one inside it")
-        if _is_mount_point(place):
+        if os.path.ismount(place):
             raise refusal("is a mount point, which cannot be replaced: give a directory inside it")
         try:
             foreign_files = foreign(place)
@@ -134,23 +118,7 @@ def refuse_foreign_report(out: Path) -> None:
 
 
 def refuse_foreign_files(out: Path, names: Sequence[str], option: str = "--out") -> None:
-    """
-    Refuse a folder where files of the user would be replaced.
-
-    Parameters
-    ----------
-    out : Path
-        A `destination`.
-    names : sequence of str
-        Files that are to be written.
-    option : str
-        Option that `out` belongs to, for the message.
-
-    Raises
-    ------
-    SceneError
-        One line.
-    """
+    """Raise SceneError, one line, if files of these names in `out`, a `destination`, would replace ones of the user."""
     manifest = read_manifest(out)
     for name in names if manifest else (MANIFEST, *names):
         if os.path.lexists(out / name) and not _is_own(out / name, manifest.get(name)):
@@ -178,18 +146,13 @@ class Report:
 
 
 @contextmanager
-def atomic_replace(out: Path, say: Callable[[str], None] = on_stderr) -> Iterator[Report]:
+def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterator[Report]:
     """
-    A new directory to write a report into, which takes the place of `out` if the block ends without exception.
+    A new folder to write a report into; if the block ends without exception its files go to `out`, each whole.
 
-    What is at `out` by then is looked at after it was taken away, where nobody finds it any more. If it holds anything
-    but the study's own files it comes back, and the report goes beside it, which `say` is told. Files of other commands
-    of the study are kept.
-
-    Yields
-    ------
-    Report
-        Its `folder` is to be written into; `place` says after the block where the report is.
+    What the report there has no more is removed, and files of other commands are kept. If anything but the study's own
+    files is there by then all of it stays as it is and the report goes beside, which `say` is told. `place` of the
+    report says after the block where it is.
     """
     place = out.resolve()
     made = make_parents(place.parent)
@@ -197,8 +160,8 @@ def atomic_replace(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
         with staging(place) as staging_folder:
             report = Report(staging_folder / NEW, place)
             yield report
-            with locked(place.parent):
-                report.place = _put(staging_folder, place, say)
+            with locked(place.parent), ThreadPoolExecutor(1) as mover:  # what interrupts this thread interrupts no move
+                report.place = mover.submit(_put, report.folder, place, say).result()
     except BaseException:
         with suppress(OSError):
             for parent in made:
@@ -206,20 +169,9 @@ def atomic_replace(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
         raise
 
 
-def clear_dead(out: Path, say: Callable[[str], None] = on_stderr) -> None:
-    """
-    Remove what killed runs left beside `out`.
-
-    One that was killed between taking the old report away and putting the new one in its place gets its old one back.
-    """
-    place = out.resolve()
-    for staging_folder in dead_staging(place):
-        old = staging_folder / OLD
-        with suppress(OSError):
-            if old.exists() and not os.path.lexists(place):
-                os.rename(old, place)
-            elif old.exists():
-                _remove_own(old, place, say)
+def clear_dead(out: Path) -> None:
+    """Remove the unfinished reports that killed runs left beside `out`."""
+    for staging_folder in dead_staging(out.resolve()):
         clear_staging(staging_folder)
 
 
@@ -227,50 +179,33 @@ def publish(
     folder: Path, files: Mapping[str, bytes], command: str, say: Callable[[str], None] = on_stderr
 ) -> list[Path]:
     """
-    Write files of a command into a folder, which is made if there is none.
+    Write files of a command, the full name of its module, into a folder; the files written, in the order given.
 
     A file of the same name is replaced if the study wrote it. Otherwise the new one gets another name, and `say` is
-    told.
-
-    Parameters
-    ----------
-    folder : Path
-    files : mapping of str to bytes
-        Contents by name.
-    command : str
-        Full name of the module of the command, for the manifest.
-    say : callable
-        Takes a line for people.
-
-    Returns
-    -------
-    list of Path
-        The files written, in the order given.
-
-    Raises
-    ------
-    OSError
-        If a file cannot be written.
+    told. Raises OSError.
     """
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     with locked(folder.resolve().parent):
         for name, content in files.items():
-            file, digest = folder / name, _hash(content)
-            manifest = read_manifest(folder)
-            ours = manifest.get(name) if _is_own(file, manifest.get(name)) else None
-            if ours or not os.path.lexists(file):
-                # with the old hash, too, while it is being replaced: whatever ends that, the file remains ours
-                _note(folder, manifest | {name: Own(command, (*(ours.hashes if ours else ()), digest))}, say)
+            file, digest, manifest = folder / name, _hash(content), read_manifest(folder)
+            ours = _is_own(file, manifest.get(name))
+            if ours or not os.path.lexists(file):  # noted before: whatever ends the writing, the file remains ours
+                _note(folder, manifest | {name: _either(manifest.get(name), Own(command, (digest,)))}, say)
             if ours:
                 write_atomically(file, content)
             else:
                 file = write_new(file, content)
             if file.name != name:
                 say(f"{str(folder / name)!r} is not a file of this study and stays: see {file.name!r} beside it")
-            _note(folder, manifest | {file.name: Own(command, (digest,))}, say)
+                _note(folder, manifest | {file.name: Own(command, (digest,))}, say)
             written.append(file)
     return written
+
+
+def _either(old: Own | None, new: Own) -> Own:
+    """A file that is as it was, or as it will be."""
+    return Own(new.command, (*(old.hashes[-1:] if old else ()), *new.hashes))
 
 
 def _note(folder: Path, manifest: Mapping[str, Own], say: Callable[[str], None]) -> None:
@@ -282,17 +217,7 @@ def _note(folder: Path, manifest: Mapping[str, Own], say: Callable[[str], None])
 
 
 def netcdf(values: xr.Dataset) -> bytes:
-    """
-    The content of a netCDF file, made in memory: HDF5 ends the process where it cannot write all of a file.
-
-    Parameters
-    ----------
-    values : xr.Dataset
-
-    Returns
-    -------
-    bytes
-    """
+    """The content of a netCDF file, made in memory: HDF5 ends the process where it cannot write all of a file."""
     return bytes(values.to_netcdf(engine="h5netcdf"))
 
 
@@ -323,9 +248,10 @@ def read_manifest(folder: Path) -> dict[str, Own]:
     """The files that the study wrote into a folder, by their paths below it; empty without a manifest of ours."""
     try:
         data = json.loads(read_file(folder / MANIFEST, LARGEST))
-        if data["schema"] != SCHEMA or data["checksum"] != _checksum(data["files"]):
+        if data["schema"] != SCHEMA:
             return {}
-        return {name: Own(entry["command"], tuple(entry["sha256"])) for name, entry in data["files"].items()}
+        files = {name: Own(entry["command"], tuple(entry["sha256"])) for name, entry in data["files"].items()}
+        return {name: own for name, own in files.items() if ".." not in Path(name).parts and name[:1] != "/"}
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return {}
 
@@ -336,102 +262,55 @@ def write_manifest(folder: Path, manifest: Mapping[str, Own]) -> None:
     """
     if os.path.lexists(folder / MANIFEST) and not read_manifest(folder):
         raise FileExistsError(errno.EEXIST, "not a manifest of this study", str(folder / MANIFEST))
+    write_atomically(folder / MANIFEST, _as_json(manifest))
+
+
+def _as_json(manifest: Mapping[str, Own]) -> bytes:
     files = {
         name: {"command": manifest[name].command, "sha256": list(manifest[name].hashes)} for name in sorted(manifest)
     }
-    text = json.dumps({"schema": SCHEMA, "files": files, "checksum": _checksum(files)}, indent=1)
-    write_atomically(folder / MANIFEST, text.encode())
+    return json.dumps({"schema": SCHEMA, "files": files}, indent=1).encode()
 
 
-def _put(staging_folder: Path, place: Path, say: Callable[[str], None]) -> Path:
-    """Give the new report its place, or one beside it; the place."""
-    new, old = staging_folder / NEW, staging_folder / OLD
-    kept: dict[str, Own] = {}
-    why = "" if place.is_dir() or not os.path.lexists(place) else "it is no directory"
-    try:
-        if place.is_dir():
-            os.rename(place, old)
-    except OSError as error:  # a mount point, or a directory that may not be moved
-        why = error.strerror or str(error)
-    try:
-        if os.path.lexists(old):
-            if foreign_files := [place.name] if old.is_symlink() else foreign(old):
-                why = f"{foreign_files[0]!r} there is not a file of this study"
-                _put_back(old, place)
-            else:
-                manifest = read_manifest(old)
-                kept = {
-                    name: manifest[name]
-                    for name, _ in _files(old)
-                    if name in manifest and manifest[name].command != REPORT
-                }
-        for name in kept:
-            shutil.copy2(old / name, new / name)
-        _prune(new)
-        mine = {name: Own(REPORT, (_hash(file.read_bytes()),)) for name, file in _files(new) if name not in kept}
-        write_manifest(new, kept | mine)
-        there = next(name for name in names_after(place) if not (why and name == place) and _renamed_to_free(new, name))
-    except BaseException:
-        if os.path.lexists(old):
-            _put_back(old, place)
-        raise
-    if os.path.lexists(old):
-        _remove_own(old, place, say)
-    if there != place:
-        say(f"{str(place)!r} stays as it is ({why or 'it appeared meanwhile'}): the report is in {str(there)!r}")
+def _put(new: Path, place: Path, say: Callable[[str], None]) -> Path:
+    """Move the files of a new report to their place, or beside it; the place."""
+    mine = {
+        path.relative_to(new).as_posix(): Own(REPORT, (_hash(path.read_bytes()),))
+        for path, is_folder in _inside(new)
+        if not is_folder
+    }
+    why = _in_the_way(place)
+    there = next(name for name in names_after(place) if not os.path.lexists(name)) if why else place
+    there.mkdir(exist_ok=True)
+    old = read_manifest(there)
+    (new / MANIFEST).write_bytes(_as_json(old | {name: _either(old.get(name), own) for name, own in mine.items()}))
+    for name in (MANIFEST, *mine):
+        (there / name).parent.mkdir(parents=True, exist_ok=True)
+        os.replace(new / name, there / name)
+    kept = {name: own for name, own in old.items() if own.command != REPORT and name not in mine}
+    for name in old.keys() - kept.keys() - mine.keys():
+        if _is_own(there / name, old[name]):
+            (there / name).unlink()
+        with suppress(OSError):
+            (there / name).parent.rmdir()
+    (new / MANIFEST).write_bytes(_as_json(kept | mine))
+    os.replace(new / MANIFEST, there / MANIFEST)
+    if why:
+        say(f"{str(place)!r} stays as it is ({why}): the report is in {str(there)!r}")
     return there
 
 
-def _prune(new: Path) -> None:
-    """Remove the empty folders of a new report: no file in the manifest would prove that they are the study's own."""
-    for folder in reversed([path for path, is_folder in _inside(new) if is_folder]):
-        with suppress(OSError):
-            folder.rmdir()
-
-
-def _put_back(old: Path, place: Path) -> Path:
-    """Give what was taken away its name again, or the next one that is free; its place."""
-    return next(name for name in names_after(place) if _renamed_to_free(old, name))
-
-
-def _renamed_to_free(new: Path, there: Path) -> bool:
-    """Give a directory a name that nothing has; False if something has it."""
-    if os.path.lexists(there):
-        return False
+def _in_the_way(place: Path) -> str:
+    """What keeps a report from its place, in words; empty if nothing does."""
+    if not os.path.lexists(place):
+        return ""
+    if place.is_symlink() or not place.is_dir():
+        return "it is no directory"
     try:
-        os.rename(new, there)
-    except OSError:
-        if os.path.lexists(there):  # since a moment ago
-            return False
-        raise
-    return True
-
-
-def _remove_own(old: Path, place: Path, say: Callable[[str], None]) -> None:
-    """Remove a report that was replaced: file by file what is ours; if anything else is in it, it stays beside."""
-    manifest = read_manifest(old)
-    folders = []
-    for path, is_folder in _inside(old):
-        if is_folder:
-            folders.append(path)
-        elif _is_own(path, manifest.get(path.relative_to(old).as_posix())):
-            path.unlink()
-    for folder in reversed(folders):
-        with suppress(OSError):
-            folder.rmdir()
-    if [entry.name for entry in old.iterdir()] == [MANIFEST] and manifest:
-        (old / MANIFEST).unlink()
-    with suppress(OSError):
-        old.rmdir()
-    if old.exists():
-        say(f"what was added to {str(place)!r} meanwhile is in {str(_put_back(old, place))!r}")
-
-
-def _files(folder: Path) -> Iterator[tuple[str, Path]]:
-    """The files below a folder, each with its path from there."""
-    for path, is_folder in _inside(folder):
-        if not is_folder:
-            yield path.relative_to(folder).as_posix(), path
+        found = foreign(place)
+    except OSError as error:
+        return error.strerror or str(error)
+    return f"{found[0]!r} there is not a file of this study" if found else ""
 
 
 def _inside(folder: Path) -> Iterator[tuple[Path, bool]]:
@@ -454,21 +333,6 @@ def _is_own(file: Path, entry: Own | None) -> bool:
 
 def _hash(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
-
-
-def _checksum(files: Any) -> str:
-    return _hash(json.dumps(files, sort_keys=True).encode())
-
-
-def _is_mount_point(place: Path) -> bool:
-    """Also one that shows a folder of the same file system."""
-    if os.path.ismount(place):
-        return True
-    with suppress(OSError):
-        escaped = str(place).replace("\\", "\\134").replace(" ", "\\040").replace("\t", "\\011").replace("\n", "\\012")
-        lines = MOUNTS.read_text(encoding="utf-8", errors="replace").splitlines()
-        return any(line.split()[4] == escaped for line in lines)
-    return False
 
 
 def make_parents(folder: Path) -> list[Path]:

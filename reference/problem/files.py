@@ -29,7 +29,7 @@ except ImportError:
 TEMPORARY = ".phase-resonance-"  # how the names of temporary files and staging directories begin; no proof of anything
 MARK = "staging.json"  # file in a staging directory that says what it is and for which place
 CHUNK = 2**20  # bytes read at once
-NEW, OLD = "new", "old"  # in a staging directory: what is being written; what it replaces, for a moment
+NEW = "new"  # in a staging directory: what is being written
 
 
 def read_file(file: str | Path, largest: int) -> bytes:
@@ -158,11 +158,7 @@ def locked(folder: Path, wait: bool = True) -> Iterator[bool]:
 
 @contextmanager
 def staging(place: Path) -> Iterator[Path]:
-    """
-    A locked directory beside `place` for the block, with an empty directory NEW in it.
-
-    It is gone after the block, except OLD with what was put there.
-    """
+    """A locked directory beside `place` for the block, with an empty directory NEW in it."""
     folder = Path(tempfile.mkdtemp(dir=place.parent, prefix=TEMPORARY))
     with locked(folder, wait=False):
         try:
@@ -184,12 +180,11 @@ def dead_staging(place: Path) -> Iterator[Path]:
 
 
 def clear_staging(folder: Path) -> None:
-    """Remove a staging directory of our own; OLD with what is in it stays, until somebody has moved or removed it."""
+    """Remove a staging directory of our own, but nothing that somebody else has put there."""
     shutil.rmtree(folder / NEW, ignore_errors=True)
-    if not (folder / OLD).exists():
-        _discard(folder / MARK)
-        with suppress(OSError):
-            folder.rmdir()
+    _discard(folder / MARK)
+    with suppress(OSError):
+        folder.rmdir()
 
 
 def _mark(folder: Path, place: Path) -> bytes:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
 import sys
@@ -14,7 +13,7 @@ from conftest import Run
 from fake_models import fake_hierarchy
 
 from comparison.report import page
-from comparison.runner.output import atomic_replace, clear_dead, publish
+from comparison.runner.output import clear_dead, replace_report
 
 SMALL = ["fig3-I", "--grid", "2"]
 
@@ -52,7 +51,7 @@ def test_a_report_that_cannot_be_finished_leaves_the_old_one(
 
 def test_nothing_is_made_when_the_first_report_cannot_be_finished(tmp_path: Path) -> None:
     def half() -> None:
-        with atomic_replace(tmp_path / "a" / "b" / "report") as report:
+        with replace_report(tmp_path / "a" / "b" / "report") as report:
             (report.folder / "index.html").write_text("half", encoding="utf-8")
             raise RuntimeError("the second half")
 
@@ -61,52 +60,27 @@ def test_nothing_is_made_when_the_first_report_cannot_be_finished(tmp_path: Path
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_swap_puts_the_old_report_back_when_the_new_one_cannot_move(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    place = tmp_path / "report"
-    publish(place, {"index.html": b"old"}, "comparison.run")
-    rename = os.rename
-
-    def second_fails(source: Path, target: Path) -> None:
-        if Path(source).name == "new":
-            raise OSError("no")
-        rename(source, target)
-
-    monkeypatch.setattr(os, "rename", second_fails)
-    with pytest.raises(OSError, match="no"), atomic_replace(place) as report:
-        (report.folder / "index.html").write_text("new", encoding="utf-8")
-    assert (place / "index.html").read_text(encoding="utf-8") == "old"
-    assert list(tmp_path.iterdir()) == [place]
-
-
 def test_the_fake_models_would_notice_a_computation(command: Callable[..., Run]) -> None:
     run = command(*SMALL, hierarchy=fake_hierarchy("forbidden"))
     assert "nothing should have been computed" in run.err
 
 
 KILLED = """
-import os, signal, sys
+import sys
 from pathlib import Path
 sys.path.insert(0, {root!r})
 from comparison.runner import output as store
-def killed(*rest):
-    os.kill(os.getpid(), signal.SIGKILL)
-if {late}:
-    move = os.rename
-    os.rename = lambda source, target: killed() if Path(source).name == "new" else move(source, target)
-with store.atomic_replace(Path("report")) as report:
+with store.replace_report(Path("report")) as report:
     (report.folder / "index.html").write_text("half")
     print("writing", flush=True)
-    if not {late}:
-        sys.stdin.read()
+    sys.stdin.read()
 """
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kill -9")
 def test_what_a_killed_run_left_is_cleared_but_not_what_a_living_one_writes(tmp_path: Path) -> None:
     (tmp_path / ".report-someone-else").mkdir()
-    script = KILLED.format(root=str(Path(__file__).parents[2]), late=False)
+    script = KILLED.format(root=str(Path(__file__).parents[2]))
     process = subprocess.Popen(
         [sys.executable, "-c", script], cwd=tmp_path, stdin=subprocess.PIPE, stdout=subprocess.PIPE
     )
@@ -119,15 +93,3 @@ def test_what_a_killed_run_left_is_cleared_but_not_what_a_living_one_writes(tmp_
     assert len(list(tmp_path.iterdir())) == 2
     clear_dead(tmp_path / "report")
     assert [entry.name for entry in tmp_path.iterdir()] == [".report-someone-else"]
-
-
-@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kill -9")
-def test_a_report_taken_away_by_a_run_that_was_then_killed_is_put_back(tmp_path: Path) -> None:
-    publish(tmp_path / "report", {"index.html": b"old"}, "comparison.run")
-    script = KILLED.format(root=str(Path(__file__).parents[2]), late=True)
-    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, stdout=subprocess.PIPE, check=False)
-    assert done.returncode == -signal.SIGKILL
-    assert not (tmp_path / "report").exists()
-    clear_dead(tmp_path / "report")
-    assert [entry.name for entry in tmp_path.iterdir()] == ["report"]
-    assert (tmp_path / "report" / "index.html").read_text(encoding="utf-8") == "old"
