@@ -29,7 +29,7 @@ from comparison.study.study import Study
 from comparison.surfaces.alerts import Fault
 from comparison.surfaces.surfaces import labeled_surfaces
 from comparison.surfaces.tasks import batch_results, surface_tasks, warm_up
-from comparison.surfaces.unanswered import with_silent_models
+from comparison.surfaces.unanswered import compared_study
 
 WITH_THE_LAST = "it comes with the last level of a run"
 PATIENCE = 3.0  # s: a level that is done sooner after the report before has none of its own, unless it is the last
@@ -52,7 +52,7 @@ def computed_level(level: Level, runner: Runner) -> Complete:
     runner.run([*tasks, *first_tasks(level.study, analyses)], lambda: warm_up(tasks))
     batches = [task.argument for task in tasks]
     surfaces = labeled_surfaces(level.study, batches, batch_results(tasks, runner.results))
-    study = with_silent_models(level.study, surfaces)
+    study = compared_study(level.study, surfaces)
     later = [analysis for analysis in analyses if analysis.needs_surfaces]
     runner.run([task for each in later for task in each.tasks(study.selecting(each.key), surfaces)])
     return Complete(level, study, tasks, surfaces)

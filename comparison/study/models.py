@@ -158,19 +158,19 @@ def steps_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
     return [model for model in models_of(scene, hierarchy) if model.side != "entered"]
 
 
-def pairs_of(scene: Scene, hierarchy: Sequence[Model], silent: Collection[str] = ()) -> list[Pair]:
+def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str] = ()) -> list[Pair]:
     """
     A like-for-like difference of every entered engine, then the total one, that within the paper's assumptions, and the
     like-for-like one: what the scene allows.
 
     Parameters
     ----------
-    silent
-        Keys of models without a value. The total then leads from the first to the last model that has values. The
+    left_out
+        Keys of models without results. The total then leads from the first to the last model that has values. The
         other two compare fixed models: without one of these they are left out.
     """
     asked = steps_of(scene, hierarchy)
-    models = [model for model in asked if model.key not in silent]
+    models = [model for model in asked if model.key not in left_out]
     first, last = models[0], models[-1]
     printed = "the paper's printed equations" if first is asked[0] else f"the {first.title}"
     equations = [model for model in asked if model.side == "reference"]
@@ -188,7 +188,7 @@ def pairs_of(scene: Scene, hierarchy: Sequence[Model], silent: Collection[str] =
             pairs.append(Pair("like-for-like", "like for like", sentence, reference, engine))
     of_users = []
     for entered in models_of(scene, hierarchy):
-        if entered.side == "entered" and entered.key not in silent:
+        if entered.side == "entered" and entered.key not in left_out:
             like = next((model for model in equations if model.key == entered.like), reference)
             if like in models:
                 sentence = f"the {like.title} against an engine that the user entered: what it solves is not known here"

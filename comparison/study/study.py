@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -42,8 +42,7 @@ class Study:
     are multiples of one another, so that of any two models the coarser grid is part of the finer. Phases whose motion
     is the mirror image of another's are not computed again, and models leave out what the scene does not require,
     unless the study is `full`. A scene with a recorded motion has no phases: every model computes the one point (0, 0).
-    silent: by name of the scene, the models that have no value there:
-    comparisons pass over them (analysis/unanswered.py). selection: the analyses that are made of each scene.
+    selection: the analyses that are made of each scene.
     """
 
     scenes: tuple[Scene, ...]
@@ -51,7 +50,6 @@ class Study:
     tolerance: float
     hierarchy: Sequence[Model] = MODEL_HIERARCHY
     full: bool = False
-    silent: Mapping[str, tuple[str, ...]] | None = None
     selection: Selection = EVERYTHING
 
     @cached_property
@@ -84,16 +82,20 @@ class Study:
 
     def compared(self, scene: Scene) -> list[Model]:
         """
-        The models of a scene that have values there, in order; all of them while nothing is computed.
+        The models that are compared on a scene, in order.
 
-        Without the engines that a user has entered, which are compared in a pair of their own.
+        Without the engines that a user has supplied, which are compared in a pair of their own.
         """
-        silent = (self.silent or {}).get(scene.name, ())
-        return [model for model in steps_of(scene, self.hierarchy) if model.key not in silent]
+        left_out = self.left_out(scene)
+        return [model for model in steps_of(scene, self.hierarchy) if model.key not in left_out]
+
+    def left_out(self, scene: Scene) -> Collection[str]:
+        """The models without results on a scene, by their keys: none while nothing is computed."""
+        return ()
 
     def pairs(self, scene: Scene) -> list[Pair]:
         """The pairs of models that are compared on a scene."""
-        return pairs_of(scene, self.hierarchy, (self.silent or {}).get(scene.name, ()))
+        return pairs_of(scene, self.hierarchy, self.left_out(scene))
 
     def stride(self, model: Model, scene: Scene | None = None) -> int:
         """The model's stride; in a scene without phases the whole grid."""

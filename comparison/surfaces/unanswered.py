@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 import xarray as xr
@@ -82,35 +83,47 @@ class Unanswered:
         return f" at {f'any of {self.asked}' if count == self.asked else f'{count} of {self.asked}'} phase pairs"
 
 
-def with_silent_models(study: Study, surfaces: xr.Dataset) -> Study:
+@dataclass(frozen=True)
+class ComparedStudy(Study):
+    """A study that is computed: without_results, by name of the scene, are the models that comparisons leave out."""
+
+    without_results: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def left_out(self, scene: Scene) -> Collection[str]:
+        """The models without results on a scene, by their keys."""
+        return self.without_results.get(scene.name, ())
+
+
+def compared_study(study: Study, surfaces: xr.Dataset) -> ComparedStudy:
     """
     The study whose comparisons leave out, scene by scene, every model that nowhere has a value of all bodies.
 
     A value whose error is above half of it counts as missing. Where fewer than two models are left, all stay.
     """
-    silent = {}
+    without_results = {}
     for scene in study.scenes:
         steps = steps_of(scene, study.hierarchy)
-        mute = {model.key for model in models_of(scene, study.hierarchy) if not _usable(surfaces, scene, model).any()}
-        entered = mute - {model.key for model in steps}
-        if len(mute - entered) >= len(steps) - 1:
-            mute = entered
-        if mute:
-            silent[scene.name] = tuple(model.key for model in study.hierarchy if model.key in mute)
-    return replace(study, silent=silent or None)
+        empty = {model.key for model in models_of(scene, study.hierarchy) if not _usable(surfaces, scene, model).any()}
+        of_users = empty - {model.key for model in steps}
+        if len(empty - of_users) >= len(steps) - 1:
+            empty = of_users
+        if empty:
+            without_results[scene.name] = tuple(model.key for model in study.hierarchy if model.key in empty)
+    asked = {part.name: getattr(study, part.name) for part in fields(Study)}
+    return ComparedStudy(**asked, without_results=without_results)
 
 
 def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
     """Every model of every scene that lacks a usable value somewhere, in the order of scenes and models."""
     gaps = []
     for scene in study.scenes:
-        silent = (study.silent or {}).get(scene.name, ())
+        left_out = study.left_out(scene)
         for model in models_of(scene, study.hierarchy):
             answered, usable = _answered(surfaces, scene, model), _usable(surfaces, scene, model)
             lacking, unusable = int((~answered).sum()), int((answered & ~usable).sum())
             if lacking or unusable:
                 asked = study.points(model, scene)
-                used = model.key not in silent and lacking < asked
+                used = model.key not in left_out and lacking < asked
                 notes = _notes(study, surfaces, scene, model)
                 gaps.append(Unanswered(scene.name, model.key, model.title, lacking, unusable, asked, used, notes))
     return gaps

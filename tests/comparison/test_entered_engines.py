@@ -42,7 +42,7 @@ from comparison.surfaces.differences import differences, pair_step
 from comparison.surfaces.headline import headline
 from comparison.surfaces.surfaces import labeled_surfaces
 from comparison.surfaces.tasks import surface_tasks
-from comparison.surfaces.unanswered import unanswered, with_silent_models
+from comparison.surfaces.unanswered import compared_study, unanswered
 from comparison.surfaces.waterfall import waterfall
 from reference.problem import Outcome, SceneError, load_scene
 
@@ -63,7 +63,7 @@ def studied(*models: Model) -> tuple[Study, xr.Dataset]:
     study = Study((SCENE,), 4, 1e-3, [*fake_hierarchy(gap=0.01), *models])
     batches = study.batches()
     surfaces = labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
-    return with_silent_models(study, surfaces), surfaces
+    return compared_study(study, surfaces), surfaces
 
 
 @pytest.fixture

@@ -16,13 +16,13 @@ from comparison.study.study import Study
 from comparison.surfaces.differences import differences
 from comparison.surfaces.headline import Cause, Headline, headline
 from comparison.surfaces.surfaces import labeled_surfaces
-from comparison.surfaces.unanswered import with_silent_models
+from comparison.surfaces.unanswered import compared_study
 from comparison.surfaces.waterfall import waterfall
 from reference.problem import Scene, load_scene
 
 
 def told(study: Study, surfaces: xr.Dataset, body: int = 1) -> Headline:
-    study = with_silent_models(study, surfaces)
+    study = compared_study(study, surfaces)
     scene, rows = study.scenes[0], differences(study, surfaces)
     return headline(study, surfaces, scene, waterfall(study, surfaces, scene, body), rows)
 

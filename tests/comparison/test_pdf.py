@@ -21,7 +21,7 @@ from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.surfaces.alerts import Fault
 from comparison.surfaces.surfaces import labeled_surfaces
-from comparison.surfaces.unanswered import with_silent_models
+from comparison.surfaces.unanswered import compared_study
 from reference.problem import Scene, load_scene
 
 SCENES = ("fig3-I", "fig3-II", "fig4-dry", "fig4-viscous")
@@ -30,7 +30,7 @@ SCENES = ("fig3-I", "fig3-II", "fig4-dry", "fig4-viscous")
 def studied(scenes: list[Scene], hierarchy: tuple[Model, ...], grid: int = 4) -> Report:
     study = Study(tuple(scenes), grid, 1e-3, hierarchy)
     surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
-    study = with_silent_models(study, surfaces)
+    study = compared_study(study, surfaces)
     return report_of(study, surfaces, {}, [Fault("fig3-I", "engine: it broke")], RUN)
 
 

@@ -17,7 +17,7 @@ from comparison.study.batches import execute_batch
 from comparison.study.study import Study
 from comparison.surfaces.budget import TOTAL, closure, steps
 from comparison.surfaces.surfaces import labeled_surfaces
-from comparison.surfaces.unanswered import unanswered, with_silent_models
+from comparison.surfaces.unanswered import compared_study, unanswered
 from comparison.surfaces.waterfall import waterfall
 from reference.problem import load_scene
 
@@ -41,7 +41,7 @@ def _solved(*silent: str) -> Study:
 def test_the_total_leads_to_the_most_complete_model_with_values_and_the_steps_add_up(silent: str) -> None:
     study = _solved(silent)
     surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
-    study = with_silent_models(study, surfaces)
+    study = compared_study(study, surfaces)
     scene = study.scenes[0]
     left = [model.key for model in study.hierarchy if model.key != silent]
     for body in (1, 2):
@@ -60,9 +60,9 @@ def test_like_for_like_is_never_said_of_other_models() -> None:
     for silent in ("regularised", "translational"):
         study = _solved(silent)
         surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
-        assert "like-for-like" not in {
-            pair.key for pair in with_silent_models(study, surfaces).pairs(study.scenes[0])
-        }, silent
+        assert "like-for-like" not in {pair.key for pair in compared_study(study, surfaces).pairs(study.scenes[0])}, (
+            silent
+        )
 
 
 def test_the_first_screen_the_summary_and_the_terminal_say_which_model_why_and_what_helps(
@@ -166,7 +166,7 @@ def test_a_model_that_answers_somewhere_is_kept_and_named() -> None:
     )
     study = Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy)
     surfaces = labeled_surfaces(study, study.batches(), [execute_batch(batch) for batch in study.batches()])
-    study = with_silent_models(study, surfaces)
+    study = compared_study(study, surfaces)
     (lacking,) = unanswered(study, surfaces)
     assert (lacking.points, lacking.asked, lacking.used) == (1, 16, True)
     assert np.isfinite(waterfall(study, surfaces, study.scenes[0], 1).total.size)

@@ -49,8 +49,7 @@ def pictures(study: Study, surfaces: xr.Dataset) -> list[Picture]:
     """Every picture of the selected sections: a scene without phases has no surfaces."""
     listed = []
     for scene in study.phased:
-        silent = {scene.name: (study.silent or {}).get(scene.name, ())}
-        alone = replace(study, scenes=(scene,), silent=silent, selection=EVERYTHING)
+        alone = replace(study, scenes=(scene,), selection=EVERYTHING)
         shown = surfaces[SHOWN].sel(scene=[scene.name])
         with_surfaces, with_budget = (study.selection.has(section, scene.name) for section in ("surfaces", "budget"))
         if with_surfaces:
