@@ -19,12 +19,6 @@ def doubled(place: str) -> int:
     return 2
 
 
-def hangs(place: str) -> int:
-    _mark(place)
-    while True:
-        pass
-
-
 def hangs_in_compiled_code(place: str) -> int:
     """No line of Python is reached any more, so that no handler of a signal runs."""
     _mark(place)

@@ -12,8 +12,6 @@ import xarray as xr
 from conftest import Run
 from fake_models import DEADLY, fake_hierarchy
 
-from comparison.runner.processes import process_pool
-
 GRID = ["fig3-I", "--grid", "4", "--jobs", "2"]
 
 
@@ -48,7 +46,7 @@ def test_a_failing_point_is_nan_with_its_status_and_the_others_stay(
     assert np.isfinite(mu).sum() == 2 * 15
 
 
-def test_a_tile_that_raises_loses_its_own_points_only(command: Callable[..., Run]) -> None:
+def test_a_batch_that_raises_loses_its_own_points_only(command: Callable[..., Run]) -> None:
     run = command(*GRID, hierarchy=fake_hierarchy("raising", batch=4))
     status, _ = _status(run)
     assert (status[3] == "solver failed").all()
@@ -58,17 +56,6 @@ def test_a_tile_that_raises_loses_its_own_points_only(command: Callable[..., Run
     assert summary["faults"] == [
         f"fig3-I, {model} engine: RuntimeError: the matrix is singular" for model in ("spatial", "translational")
     ]
-
-
-@pytest.mark.long
-def test_a_worker_that_dies_loses_its_own_tile_only(command: Callable[..., Run]) -> None:
-    hierarchy = [model for model in fake_hierarchy("killing", batch=4) if model.key in ("small", "translational")]
-    run = command(*GRID, hierarchy=hierarchy, executor=process_pool)
-    assert run.code == 0
-    status, mu = _status(run)
-    _only_the_last_point(status, "worker died")
-    assert np.isnan(mu[:, 3, 3]).all()
-    assert "the worker process died 2 times" in run.err
 
 
 def test_lost_points_are_counted_in_the_closing_table(command: Callable[..., Run]) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import pickle
 from collections.abc import Callable
 from concurrent.futures import Executor, ThreadPoolExecutor
@@ -115,16 +114,12 @@ def test_what_names_a_fault_serves_the_run_and_is_tried_again_by_the_next(tmp_pa
     assert calls == [1, 1]
 
 
-@pytest.mark.parametrize("damage", ["torn", "one bit", "a foreign class"])
-def test_what_is_damaged_or_would_run_foreign_code_is_computed_again(tmp_path: Path, damage: str) -> None:
+def test_what_is_damaged_in_one_bit_is_computed_again(tmp_path: Path) -> None:
     task = _task()
     _run(task, tmp_path)
     (file,) = tmp_path.glob("*/*.result")
     text = file.read_bytes()
-    if damage == "a foreign class":
-        content = pickle.dumps(Path("reports"), protocol=4)
-        text = hashlib.sha256(f"{file.parent.name}/{file.name}".encode() + content).digest() + content
-    file.write_bytes({"torn": text[:-9], "one bit": text[:-1] + bytes([text[-1] ^ 1])}.get(damage, text))
+    file.write_bytes(text[:-1] + bytes([text[-1] ^ 1]))
     assert _run(task, tmp_path).parts["motions"].stored == 0
     assert _run(task, tmp_path, forbidden).parts["motions"].stored == 1, "and mended"
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import time
-from concurrent.futures import Executor
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from light_tasks import doubled, hangs, hangs_in_compiled_code, is_kept_waiting, raises, waits_for_ever
+from light_tasks import doubled, hangs_in_compiled_code, is_kept_waiting, raises, waits_for_ever
 from rich.console import Console
 
 from comparison.runner.cache import Cache
+from comparison.runner.executors import TimeLimitError
 from comparison.runner.processes import process_pool
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task, TaskResult
@@ -43,10 +44,9 @@ def forbidden(jobs: int) -> Executor:
 
 
 @pytest.mark.usefixtures("patient")
-@pytest.mark.parametrize("hanging", [pytest.param(hangs, marks=pytest.mark.long), hangs_in_compiled_code])
-def test_a_hang_ends_at_the_limit_of_processor_time_and_costs_no_other_task(tmp_path: Path, hanging: object) -> None:
+def test_a_hang_ends_at_the_limit_of_processor_time_and_costs_no_other_task(tmp_path: Path) -> None:
     others = [Task(doubled, str(tmp_path / f"other{number}"), "test", 0.1, timeout=60.0) for number in range(6)]
-    task = Task(hanging, str(tmp_path / "hanging"), "test", 1.0, timeout=1.0)  # type: ignore[arg-type]
+    task = Task(hangs_in_compiled_code, str(tmp_path / "hanging"), "test", 1.0, timeout=1.0)
     first, *rest = _run([task, *others], tmp_path)
     assert (first.outcome, first.error_message) == (Outcome.TIME_LIMIT, "no answer within 1 s of processor time")
     assert first.reason == "time limit: no answer within 1 s of processor time"
@@ -54,18 +54,25 @@ def test_a_hang_ends_at_the_limit_of_processor_time_and_costs_no_other_task(tmp_
     assert _calls(tmp_path) == {"hanging": 1} | {f"other{number}": 1 for number in range(6)}, "nothing is tried again"
 
 
-@pytest.mark.long
-@pytest.mark.usefixtures("patient")
+class Limited(ThreadPoolExecutor):
+    """Every call takes as long as it may."""
+
+    def start(self, call: object, seconds: float | None, group: str) -> Future[TaskResult]:
+        ended: Future[TaskResult] = Future()
+        ended.set_exception(TimeLimitError(f"no answer within {seconds:g} s"))
+        return ended
+
+
 def test_a_repeated_run_does_not_wait_for_the_hang_again_unless_it_allows_more(tmp_path: Path) -> None:
     def task(timeout: float | None) -> Task:
-        return Task(hangs, str(tmp_path / "hanging"), "test", 1.0, timeout=timeout)
+        return Task(doubled, str(tmp_path / "hanging"), "test", 1.0, timeout=timeout)
 
-    (first,) = _run([task(1.0)], tmp_path)
+    (first,) = _run([task(1.0)], tmp_path, Limited)
     (again,) = _run([task(1.0)], tmp_path, forbidden)
     (shorter,) = _run([task(0.5)], tmp_path, forbidden)
     assert first == again == shorter
-    (longer,) = _run([task(2.0)], tmp_path)
-    assert longer.error_message == "no answer within 2 s of processor time"
+    (longer,) = _run([task(2.0)], tmp_path, Limited)
+    assert longer.error_message == "no answer within 2 s"
     assert TaskResults(Cache(tmp_path / "cache")).missing([task(None)]), "without a limit it may take any time"
 
 
