@@ -11,6 +11,7 @@ import xarray as xr
 
 from comparison.report.results import Results
 from comparison.runner.analysis import Analysis
+from comparison.runner.cache import Key
 from comparison.runner.task import Task
 from comparison.study.study import Study
 from comparison.surfaces.completion import Completion
@@ -32,7 +33,7 @@ class Report:
     results: Results
     found: Mapping[str, Any]
     sections: Sequence[Section]
-    drawings: Mapping[str, Any] = field(default_factory=dict)
+    drawings: Mapping[Key, Any] = field(default_factory=dict)
 
 
 def _nothing(report: Report, figures: Path) -> Mapping[str, Any]:

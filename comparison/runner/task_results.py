@@ -45,6 +45,9 @@ class TaskResults:
     def __getitem__(self, task: Task) -> TaskResult:
         return self._results[task.key]
 
+    def __contains__(self, task: Task) -> bool:
+        return task.key in self._results
+
     def value(self, task: Task, on_failure: Callable[[Any, TaskResult], Any]) -> Any:
         """What a task returned; of one without a value what `on_failure` makes of its argument and its result."""
         result = self[task]

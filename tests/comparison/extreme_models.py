@@ -40,11 +40,6 @@ def is_kept_waiting(scene: Scene, phases: NDArray[np.float64], tolerance: float)
     return honest(scene, phases, tolerance)
 
 
-def waits_for_ever(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
-    while True:
-        time.sleep(1.0)
-
-
 def crashes(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
     os._exit(3)
 
