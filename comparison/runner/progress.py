@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
 EVERY = 15.0  # s between plain lines
+TRUSTED = 0.1  # share of the work, that the rough costs count beside the work done
 PLAIN_WIDTH = 120  # columns of a table that goes to a file or a pipe
 
 
@@ -28,8 +29,8 @@ class Display:
     """
     How far a command is.
 
-    The time left is what is left of the work, times what the work so far took. The first piece of work does not count:
-    it starts the workers, and on a new installation compiles the reference.
+    The time left is what is left of the work, times what the work so far took, with a tenth of all work as if it had
+    taken its rough cost. The first piece of work does not count: it starts the workers.
 
     total: all work, rough s of processor time; jobs: workers.
     """
@@ -55,9 +56,9 @@ class Display:
     def left(self) -> float:
         """Time left, s."""
         work, now = max(self.total - self.done, 0.0), time.monotonic()
-        before, earlier = self._first or (self.begin, 0.0)
-        known = self.done - earlier
-        return work * (now - before) / known if known > 0.0 else work / self._jobs
+        before, earlier = self._first or (now, self.done)
+        rough = max(TRUSTED * self.total, 1.0)
+        return work * (now - before + rough / self._jobs) / (self.done - earlier + rough)
 
     def show(self) -> None:
         """Show it."""

@@ -43,9 +43,10 @@ class Runner:
         Raises StoreError or ExecutorLostError if the cache cannot be written, or the executor cannot go on.
         """
         weights = self._weights(tasks)
-        missing = self.results.missing(tasks)
+        new = [task for task in tasks if task not in self.results]
+        missing = self.results.missing(new)
         if self.display is not None:
-            self.display.skip(sum(weights.values()) - sum(weights[id(task)] for task in missing))
+            self.display.skip(sum(weights[id(task)] for task in new) - sum(weights[id(task)] for task in missing))
         if not missing:
             return
         missing.sort(key=lambda task: (task.batch is None, 0.0 if task.batch else -task.seconds))

@@ -119,7 +119,7 @@ def _whole(command: Callable[..., Run], place: Path) -> xr.Dataset:
     return xr.load_dataset(place / "surfaces.nc")
 
 
-LEVEL_1 = 130  # results stored within the second level: the first has 74 batches and some pictures, both 616
+LEVEL_1 = 130  # results stored within the second level: the first has 74 batches
 
 
 @pytest.mark.usefixtures("every_level")
@@ -201,13 +201,22 @@ def test_the_alarm_ends_what_the_main_thread_does() -> None:
 
 
 def test_the_time_left_is_what_is_left_times_what_the_work_so_far_took(monkeypatch: pytest.MonkeyPatch) -> None:
-    now = iter([0.0, 20.0, 30.0, 30.0])
+    now = iter([0.0, 20.0, 40.0])
     monkeypatch.setattr("comparison.runner.progress.time.monotonic", lambda: next(now))
     display = Display(100.0, 2)
     display.advance("compiling", "1 of 1 tasks", 0.0)  # at 20 s: does not count
-    display.advance("engine", "1 of 9 tasks", 10.0)
-    display.skip(30.0)
-    assert display.left == pytest.approx(60.0)  # 60 of work at 10 in 10 s
+    display.advance("engine", "1 of 9 tasks", 30.0)
+    display.skip(20.0)
+    assert display.left == pytest.approx(50.0 * (20.0 + 4.0) / (30.0 + 8.0))  # 30 in 20 s, and a tenth in half its cost
+
+
+def test_one_slow_piece_at_the_start_says_little_of_the_time_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = iter([0.0, 20.0, 40.0])
+    monkeypatch.setattr("comparison.runner.progress.time.monotonic", lambda: next(now))
+    display = Display(400.0, 2)
+    display.advance("engine", "1 of 9 tasks", 0.0)
+    display.advance("engine", "2 of 9 tasks", 1.0)
+    assert 200.0 <= display.left <= 500.0  # 399 of work; 20 s for 1 would be two hours
 
 
 KILLED = """
