@@ -17,9 +17,6 @@ MOST: tuple[Mapping[str, float], ...] = (
 )
 
 
-ENDS = ("pictures",)  # analyses that the first and the last report have, and none between
-
-
 @dataclass(frozen=True)
 class Level:
     """One level: its study, and its number of how many."""
@@ -58,7 +55,7 @@ def levels_of(study: Study, first: Mapping[str, int]) -> list[Level]:
     made = [key for key in first if study.selecting(key).scenes]
     studies: list[Study] = []
     for number, most in enumerate(MOST, start=1):
-        later = [key for key in made if first[key] > number or (key in ENDS and number > 1)]
+        later = [key for key in made if first[key] > number]
         coarse = _coarser(study, most)
         studies.append(replace(coarse, selection=coarse.selection.without(later)))
     studies.append(study)

@@ -65,7 +65,7 @@ def pictures(study: Study, surfaces: xr.Dataset) -> list[Picture]:
 class Pictures(Analysis[dict[str, bytes]]):
     """Every file of every picture by its name."""
 
-    key, stage, needs_surfaces, level = "pictures", "pictures", True, 1
+    key, stage, needs_surfaces = "pictures", "pictures", True
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One task for each picture."""
