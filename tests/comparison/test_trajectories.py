@@ -12,7 +12,7 @@ from known_analyses import collected
 from numpy.typing import NDArray
 
 from comparison.analyses.motions import analysis
-from comparison.analyses.motions.analysis import Motions, chosen_places, moved, shown_models
+from comparison.analyses.motions.analysis import Motions, chosen_places, motion_arguments, moved, shown_models
 from comparison.analyses.motions.decimation import SHARE, thinned
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
@@ -59,6 +59,17 @@ def test_the_largest_difference_of_every_body_is_among_the_places() -> None:
     assert list(places.values())[:2] == ["largest difference of body 1", "largest difference of body 2"]
     assert places[5, 2] == "largest difference in translation, body 1"
     assert len(places) == 9, "two of each difference, and five evenly spread"
+
+
+def test_where_a_difference_is_largest_the_engine_model_that_has_it_moves() -> None:
+    study, surfaces = _studied(12)
+    for model, row, column in (("spatial", 3, 9), ("translational", 6, 0)):
+        place = {"alpha1": surfaces["alpha1"][row], "alpha2": surfaces["alpha2"][column]}
+        surfaces["mu"].loc[{"model": model, **place}] *= 2.0
+    moving = {(model.key, place.row, place.column) for _, model, _, place, _ in motion_arguments(study, surfaces)}
+    assert {("spatial", 3, 9), ("translational", 6, 0), ("translational", 0, 0), ("spatial", 0, 0)} <= moving
+    assert not {("translational", 3, 9), ("spatial", 6, 0)} & moving
+    assert {("small", 3, 9), ("small", 6, 0)} <= moving, "the equations move everywhere"
 
 
 def test_no_two_spread_places_are_mirror_images() -> None:

@@ -80,9 +80,8 @@ class Variation:
 
 
 FEW = (
-    *(Variation(ring=ring) for ring in (0.5, 1.0, 2.0, 8.0)),
+    *(Variation(ring=ring) for ring in (0.5, 1.0, 2.0)),
     *(Variation(height=height) for height in (0.0, 0.25, 0.5)),
-    Variation(supports=3),
     Variation(offset=0.1),  # a twentieth of the width: what codes take for accidental
     Variation(yaw=0.2),
 )

@@ -115,33 +115,41 @@ def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Plac
 
     No place is listed twice.
     """
+    return list(_engines_at(study, surfaces, scene))
+
+
+def _engines_at(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Place, set[str]]:
+    """The places with the keys of the engine's models that move there: all, or that of the difference."""
+    engines = {model.key for model in shown_models(study, scene) if model.side == "engine"}
     if scene.recorded:
-        return [Place(scene.name, 0, 0, "")]
-    places: dict[tuple[int, int], str] = {}
+        return {Place(scene.name, 0, 0, ""): engines}
+    places: dict[tuple[int, int], tuple[str, set[str]]] = {}
     largest = {"total": "largest difference of body {}", "translational": "largest difference in translation, body {}"}
     for pair in study.pairs(scene):
         for body in range(1, len(scene.bodies) + 1):
             if pair.key in largest and (place := pair_step(surfaces, scene.name, pair, body).place):
-                places.setdefault(place, largest[pair.key].format(body))
+                places.setdefault(place, (largest[pair.key].format(body), set()))[1].add(pair.second.key)
     for k in range(SPREAD):
         row, column = (round(study.grid * (factor * k % SPREAD) / SPREAD) % study.grid for factor in (1, 2))
-        places.setdefault((row, column), "")
-    return [Place(scene.name, row, column, why) for (row, column), why in places.items()]
+        places.setdefault((row, column), ("", set()))[1].update(engines)
+    return {Place(scene.name, *place, why): moving for place, (why, moving) in places.items()}
 
 
 def motion_arguments(study: Study, surfaces: xr.Dataset) -> list[Arguments]:
     """
     Every place of every scene with every model, in the order scene, place, model.
 
-    A model too expensive for every phase of the study moves at its own phases only.
+    A model too expensive for every phase of the study moves at its own phases only, and where a difference is largest
+    the engine moves by the model that has it.
     """
     axes = np.asarray(surfaces["alpha1"]), np.asarray(surfaces["alpha2"])
     return [
         (scene, model, model.tolerance(study.tolerance), place, (axes[0][place.row], axes[1][place.column]))
         for scene in study.scenes
-        for place in chosen_places(study, surfaces, scene)
+        for place, engines in _engines_at(study, surfaces, scene).items()
         for model in shown_models(study, scene)
-        if place.row % study.stride(model, scene) == place.column % study.stride(model, scene) == 0
+        if (model.side != "engine" or model.key in engines)
+        and place.row % study.stride(model, scene) == place.column % study.stride(model, scene) == 0
     ]
 
 
