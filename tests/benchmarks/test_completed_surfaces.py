@@ -26,11 +26,12 @@ from reference.problem.symmetry import sources
 GRID, COMPUTED, FURTHER = 64, 8, 200
 ASKED = 5e-4  # of the engine, and of the completed surface
 MAX_RUNS = 256  # of the engine
-SCENES = ("fig3-I", "fig3-II", "fig4-dry", "fig4-viscous")
+# most processor time, s: together 20 s of two processors
+MOST_SECONDS = {"fig3-I": 11.0, "fig3-II": 13.0, "fig4-dry": 8.0, "fig4-viscous": 8.0}
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", list(MOST_SECONDS))
 def test_completed_surfaces_keep_their_certificate_at_further_phases(name: str) -> None:
     scene, model = load_scene(name), replace(TRANSLATIONAL, most=COMPUTED)
     study = Study((scene,), GRID, ASKED, (EXACT, REGULARIZED, model))
@@ -45,6 +46,7 @@ def test_completed_surfaces_keep_their_certificate_at_further_phases(name: str) 
     held_out = held_out_places(study, scene, model)
     runs = len(study.solved(scene, model)) + len(held_out)
     assert runs <= MAX_RUNS
+    print(f"\n{name}: {seconds:.1f} s of processor time")
 
     different = np.unique(sources(scene, GRID))
     seen = sources(scene, GRID)[study.places(model)]
@@ -58,7 +60,7 @@ def test_completed_surfaces_keep_their_certificate_at_further_phases(name: str) 
         beyond = float((missed > surface.error).mean())
         beyond_both = float((missed > surface.error + truth.error[:, surface.body - 1] / mu).mean())
         print(
-            f"\n{name} mu_{surface.body}: {runs} runs, {seconds:.1f} s of processor time, E {surface.error:.2e}, "
+            f"\n{name} mu_{surface.body}: {runs} runs, E {surface.error:.2e}, "
             f"engine's own error {surface.model_error:.2e}; {FURTHER} further phase pairs: largest {missed.max():.2e}, "
             f"{100.0 * beyond:.1f} % beyond E, {100.0 * beyond_both:.1f} % beyond E and the engine's error"
         )
@@ -66,3 +68,4 @@ def test_completed_surfaces_keep_their_certificate_at_further_phases(name: str) 
         assert surface.error <= ASKED
         assert surface.share <= 0.0501
         assert beyond <= surface.share + 3.0 * np.sqrt(surface.share / FURTHER)
+    assert seconds <= MOST_SECONDS[name]

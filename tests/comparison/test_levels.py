@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import itertools
 import json
+import math
 import subprocess
 import sys
 import threading
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +19,7 @@ import pytest
 import xarray as xr
 from conftest import Run
 from fake_models import fake_hierarchy
+from rich.console import Console
 
 from comparison import run as command_module
 from comparison.cli import reports
@@ -24,6 +27,9 @@ from comparison.registry import levels
 from comparison.runner.cache import Cache
 from comparison.runner.deadline import Deadline, TimeUpError
 from comparison.runner.progress import Display
+from comparison.runner.runner import Runner
+from comparison.runner.task import Task
+from comparison.runner.task_results import TaskResults
 from comparison.study.levels import levels_of
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
@@ -217,6 +223,14 @@ def test_one_slow_piece_at_the_start_says_little_of_the_time_left(monkeypatch: p
     display.advance("engine", "1 of 9 tasks", 0.0)
     display.advance("engine", "2 of 9 tasks", 1.0)
     assert 200.0 <= display.left <= 500.0  # 399 of work; 20 s for 1 would be two hours
+
+
+def test_what_an_earlier_level_has_computed_is_no_work_of_the_next_and_not_skipped_twice() -> None:
+    display, tasks = Display(100.0, 1), [Task(math.sqrt, number, "roots") for number in (1.0, 4.0)]
+    runner = Runner(TaskResults(), Console(quiet=True), 1, ThreadPoolExecutor, display, {"roots": 10.0})
+    for _ in range(2):
+        runner.run_tasks(tasks)
+    assert (display.total, display.done) == (100.0, 10.0)
 
 
 KILLED = """
