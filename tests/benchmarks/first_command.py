@@ -15,6 +15,7 @@ import tempfile
 import threading
 import time
 from collections import Counter
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -49,16 +50,19 @@ def recorded(folder: Path, *options: str, compiled: bool = False) -> Recording:
         for line in process.stdout or ():
             event(line.rstrip())
 
-    def written() -> int:
-        return summary.stat().st_mtime_ns if summary.exists() else 0
+    def written() -> str:
+        with suppress(FileNotFoundError):  # before the first report, and while one takes the place of another
+            return summary.read_text("utf-8")
+        return last
 
-    printer, last, goes_on = threading.Thread(target=print_lines), written(), True
+    last, goes_on = "", True
+    last, printer = written(), threading.Thread(target=print_lines)
     printer.start()
     while goes_on:
         goes_on = process.poll() is None
-        if written() != last:
-            last = written()
-            run.pages.append((event(f"PAGE {len(run.pages) + 1}"), json.loads(summary.read_text("utf-8"))))
+        if (now := written()) != last:
+            last = now
+            run.pages.append((event(f"PAGE {len(run.pages) + 1}"), json.loads(now)))
         time.sleep(EVERY)
     printer.join()
     run.code, run.seconds = process.wait(), event(f"END, load {os.getloadavg()[0]:.1f}")
