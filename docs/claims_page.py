@@ -3,7 +3,8 @@ Write docs/claims.md and its pictures: what the paper's figures are and are not 
 
     python docs/claims_page.py [--search N] [--jobs N] [--out DIR]
 
-computes what `python -m comparison.claims --settle --search N` computes, and takes what is in DIR.tiles from there.
+computes the tables of `python -m comparison.claims`, counts on finer grids and a search of N other readings. Results in
+DIR.tiles are not computed again.
 """
 
 from __future__ import annotations
@@ -13,16 +14,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from claims_pictures import draw_reading, draw_spike
+from claims_search import RANGES, SEARCH_GRID, Selection, best_readings, searched_readings
+from claims_settled import GRIDS, Settled, Settling
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from PIL import Image
 from rich.console import Console
 
 from comparison.analyses.claims.cases import CASES
 from comparison.analyses.claims.evidence import without_value
-from comparison.analyses.claims.figure import draw_reading, draw_spike
 from comparison.analyses.claims.readings import LIGHT_BODY, LITERAL, OWN_PERIOD, READINGS, Reading
-from comparison.analyses.claims.search import RANGES, SEARCH_GRID, Selection, best_readings, searched_readings
-from comparison.analyses.claims.settled import GRIDS, Settled, Settling
 from comparison.analyses.claims.spike import PHASES, no_spike, spike_over_the_step
 from comparison.analyses.claims.table import GRID, SIGNS, Claims, ClaimTable
 from comparison.analyses.effective_values.forced_ratio import forced_ratios

@@ -1,26 +1,18 @@
-"""Readings change what they say; the literal (4.6), forced ratios, grids, proofs and the search do what they say."""
+"""Readings change what they say; the literal (4.6), forced ratios, grids and proofs do what they say."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image
 
 from comparison.analyses.claims.cases import CASES
-from comparison.analyses.claims.checks import Finding, Verdict
-from comparison.analyses.claims.claims import CLAIMS
-from comparison.analyses.claims.evidence import Evidence, Question, gathered
-from comparison.analyses.claims.figure import PANELS, draw_reading, draw_spike
+from comparison.analyses.claims.evidence import Question, gathered
 from comparison.analyses.claims.literal import literal_peaks
 from comparison.analyses.claims.peaks_and_valleys import Counts, profiled
 from comparison.analyses.claims.readings import LIGHT_BODY, LITERAL, OWN_PERIOD, READINGS, Reading
-from comparison.analyses.claims.search import BEST, RANGES, Selection, best_readings, searched_readings
-from comparison.analyses.claims.settled import Settled, describe
-from comparison.analyses.claims.spike import Spike, spike_over_the_step
-from comparison.analyses.claims.table import ClaimTable
+from comparison.analyses.claims.spike import spike_over_the_step
 from comparison.analyses.effective_values.forced_ratio import forced_ratios
 from reference import amplification, load_scene, modes
 from reference.problem import ground_peak, phase_grid
@@ -103,49 +95,12 @@ def test_forced_ratios_are_those_of_one_oscillator_and_of_a_chain() -> None:
     assert forced_ratios(scene.with_values({"bodies": [scene.bodies[0].model_dump(exclude_none=True)]})) == []
 
 
-def test_counts_settle_on_the_coarsest_grid_from_which_on_they_stay() -> None:
-    views = "periodic", "drawn", "profile"
-    counts = [dict.fromkeys(views, Counts(*each)) for each in ((4, 3), (2, 1), (4, 3), (4, 3))]
-    settled = Settled(Reading(), "fig3-I", 1, (8, 16, 24, 32), counts)
-    assert settled.grid("drawn") == 24
-    assert Settled(Reading(), "fig3-I", 1, (8, 16), counts[:2]).grid("drawn") is None
-    assert describe(settled).startswith("periodic 4 and 3 (from 24 on)")
-    assert "without an answer" in describe(Settled(Reading(), "fig3-I", 1, (8, 16), [{}, counts[0]]))
-
-
 def test_ridges_are_counted_on_the_profile_and_only_along_their_own_diagonal() -> None:
     first, second = np.meshgrid(*[2.0 * np.pi * np.arange(16) / 16] * 2, indexing="ij")
     rough = 0.3 * np.cos(3.0 * first + 3.0 * second)
     assert profiled(rough - np.cos(2.0 * (first - second))) == Counts(4, 3)
     assert profiled(rough - np.cos(first - second)) == Counts(2, 1)
     assert profiled(np.cos(first + second)) == Counts(0, 0)
-
-
-def test_a_longer_search_contains_a_shorter_one_and_stays_within_its_ranges() -> None:
-    readings = searched_readings(40)
-    assert readings[:7] == searched_readings(7)
-    assert len(set(readings)) == 40
-    for reading in readings:
-        mass = dict(reading.values)["bodies.1.mass"]
-        assert RANGES[3].low <= mass <= RANGES[3].high
-    assert {reading.peak for reading in readings} == {"resolved", "supremum", "literal (4.6)"}
-
-
-def test_a_search_reports_how_many_it_tried_and_what_its_best_do_elsewhere() -> None:
-    readings = searched_readings(5)
-    yes, no = Verdict(Finding.REPRODUCED, ""), Verdict(Finding.NOT, "")
-    claims = [claim for claim in CLAIMS if not claim.weaker]
-    table = ClaimTable(claims, readings, 8, [[yes if row < column else no for column in range(5)] for row in range(16)])
-    best = best_readings(table)
-    assert best == [readings[4], readings[3], readings[2]]
-    again = ClaimTable(claims, best, 16, [[no] * BEST for _ in range(16)])
-    lines = Selection(table, again).lines
-    assert lines[0] == "5 readings were searched on 8 x 8 phases; at most 14 of the 16 claims can hold."
-    assert lines[1].startswith(
-        "Claims reproduced: median 2, best 4. Number of readings for each number of claims: 0: 1, 1: 1"
-    )
-    assert lines[2].endswith("4 on the grid that chose it, 0 on 16 x 16 phases.")
-    assert "no evidence" in lines[-1]
 
 
 def test_a_peak_in_a_corner_has_its_twin_in_the_center() -> None:
@@ -178,14 +133,3 @@ def test_grids_of_phases_are_those_of_the_surfaces() -> None:
     evidence = gathered(Question("fig3-I", LITERAL, 4))
     expected = literal_peaks(CASES["fig3-I"](LITERAL), phase_grid(4)).mu.reshape(4, 4, 2)
     assert np.array_equal(evidence.mu, expected)
-
-
-def test_pictures_show_a_reading_and_its_gaps_and_the_spike(tmp_path: Path) -> None:
-    mu = np.random.default_rng(1).uniform(size=(4, 4, 2))
-    evidence = {case: Evidence(mu, 0.0, ("ok",)) for case, *_ in PANELS} | {"fig4-dry": Evidence()}
-    draw_reading(tmp_path / "reading.png", "a reading", evidence)
-    row, count = (1.0, 2.0, 3.0), (1, 2, 4)
-    draw_spike(tmp_path / "spike.png", {1.0: Spike((2e-3, 1e-3), (row, row), (row, row), (count, count), row)})
-    for name in ("reading", "spike"):
-        with Image.open(tmp_path / f"{name}.png") as picture:
-            assert np.ptp(np.asarray(picture.convert("L"))) > 200

@@ -1,21 +1,14 @@
-"""
-The claims of section 5 against readings of the paper: `python -m comparison.claims [--grid N] [--jobs N] [--all]`.
-
-`--settle` repeats the counts of peaks and valleys on finer grids; `--search [N]` tries N readings of a bounded space of
-structure and parameters. Every case is stored as it is finished: the same command goes on where it stopped.
-"""
+"""The claims of section 5 against readings of the paper: `python -m comparison.claims [--grid N] [--all]`."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from rich.console import Console
 from rich.table import Table
 
 from comparison.analyses.claims.checks import Finding
 from comparison.analyses.claims.readings import EVERY_READING, READINGS
-from comparison.analyses.claims.search import SEARCH_GRID, Selection, best_readings, searched_readings
-from comparison.analyses.claims.settled import GRIDS, Settled, Settling, describe
 from comparison.analyses.claims.table import GRID, SIGNS, Claims, ClaimTable
 from comparison.analyses.effective_values.forced_ratio import forced_ratios
 from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, whole_number
@@ -23,17 +16,15 @@ from comparison.cli.computing import computed
 from comparison.runner.executors import Pool
 from comparison.runner.processes import process_pool
 from comparison.runner.progress import wide_console
-from comparison.runner.task import Task
-from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 from reference.problem import builtin_scenes, load_scene
 
 TOLERANCE = 1e-3  # of a study; the surfaces of the claims have one of their own
 SURFACES = "reference:amplification"  # what the workers ask
-SEARCHED = 64  # readings, unless the command line says how many
+SETTLED = (
+    "docs/claims.md records the counts on finer grids and a search of 96 readings; docs/claims_page.py repeats them."
+)
 MARKS = {Finding.REPRODUCED: "+", Finding.AS_DRAWN: "d", Finding.NOT: "-", Finding.CANNOT: "x", Finding.OPEN: "?"}
-
-Compute = Callable[[Sequence[Task]], TaskResults]
 
 
 @command
@@ -43,57 +34,34 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {GRID})")
     parser.add_argument("--all", action="store_true", help="every reading: more amplitudes, durations and f_c")
     parser.add_argument(
-        "--settle", action="store_true", help=f"the counts of peaks on grids of {', '.join(map(str, GRIDS))} phases"
+        "--settle", action="store_true", help="say where the counts of peaks on finer grids are recorded"
     )
     parser.add_argument(
-        "--search", metavar="N", nargs="?", const=str(SEARCHED), help=f"try N other readings, too (default {SEARCHED})"
+        "--search", metavar="N", nargs="?", const="96", help="say where the search of other readings is recorded"
     )
     parser.add_out(STORED_RESULTS)
     parser.add_computing()
     parser.add_argument("--words", action="store_true", help="print what every check found, too")
     options = parser.parse_args(argv)
     grid = GRID if options.grid is None else whole_number("--grid", options.grid, 8, 512)
-    searched = 0 if options.search is None else whole_number("--search", options.search, 1, 100_000)
+    if options.search is not None:
+        whole_number("--search", options.search, 1, 100_000)
     readings = EVERY_READING if options.all else READINGS
     study = Study(tuple(map(load_scene, builtin_scenes())), grid, TOLERANCE)
     console = wide_console()
-
-    def compute(tasks: Sequence[Task]) -> TaskResults:
-        return computed("claims", options, argv, tasks, {SURFACES}, console, executor)
-
-    print_claims(console, tabled(Claims(grid, readings), study, compute), options.words)
+    claims = Claims(grid, readings)
+    results = computed("claims", options, argv, claims.tasks(study), {SURFACES}, console, executor)
+    table = claims.collect(study, None, results)
+    assert table is not None, "the study has every scene of the paper"
+    print_claims(console, table, options.words)
     print_ratios(console, study)
-    if options.settle:
-        settling = Settling(readings=readings)
-        print_settled(console, settling.collect(study, None, compute(settling.tasks(study))) or [])
-    if searched:
-        table = tabled(Claims(SEARCH_GRID, searched_readings(searched)), study, compute)
-        console.print(
-            *Selection(table, tabled(Claims(grid, best_readings(table)), study, compute)).lines,
-            sep="\n",
-            highlight=False,
-        )
+    if options.settle or options.search is not None:
+        console.print(SETTLED, soft_wrap=True)
     return 0
 
 
-def tabled(claims: Claims, study: Study, compute: Compute) -> ClaimTable:
-    """The table of an analysis whose tasks are computed here."""
-    table = claims.collect(study, None, compute(claims.tasks(study)))
-    assert table is not None, "the study has every scene of the paper"
-    return table
-
-
 def print_claims(console: Console, table: ClaimTable, words: bool = False) -> None:
-    """
-    Print the table: a line for every claim; the reading that reproduces most; the claims that none reproduces.
-
-    Parameters
-    ----------
-    console : Console
-    table : ClaimTable
-    words : bool
-        Print what every check found, too.
-    """
+    """Print the verdicts and, with `words`, what every check found; the best readings; claims that none reproduces."""
     for number, reading in enumerate(table.readings, start=1):
         console.print(f"{number:2d}: {reading.name}: {table.held(number - 1)} of {table.stated}")
         console.print(f"    {reading.origin}")
@@ -116,14 +84,7 @@ def print_claims(console: Console, table: ClaimTable, words: bool = False) -> No
 
 
 def print_ratios(console: Console, study: Study) -> None:
-    """
-    Print how intensively the bodies above the platform are forced, by (4.4) alone.
-
-    Parameters
-    ----------
-    console : Console
-    study : Study
-    """
+    """Print how intensively the bodies above the platform are forced, by (4.4) alone."""
     console.print("Amplitude of a body over that of the platform under each harmonic, by (4.4) alone:")
     grid = Table("scene", "axis", "period, s", "body", "ratio", "without decay", box=None, pad_edge=False)
     for scene in study.scenes:
@@ -131,17 +92,3 @@ def print_ratios(console: Console, study: Study) -> None:
             numbers = f"{each.period:.3g}", str(each.body), f"{each.ratio:.2f}", f"{each.steady:.2f}"
             grid.add_row(scene.name, each.axis, *numbers)
     console.print(grid)
-
-
-def print_settled(console: Console, settled: Sequence[Settled]) -> None:
-    """
-    Print from which grid on the counts stay what they are.
-
-    Parameters
-    ----------
-    console : Console
-    settled : sequence of Settled
-    """
-    console.print(f"Counts on {settled[-1].grids[-1]} phases per axis, and from which grid on they are the same:")
-    for each in settled:
-        console.print(f"   {each.reading.name}, {each.case} mu_{each.body}: {describe(each)}")

@@ -82,18 +82,7 @@ class Question:
 
 
 def gathered(question: Question) -> Evidence:
-    """
-    Surface, bends and motions of one case under one reading. Runs inside a worker process.
-
-    Parameters
-    ----------
-    question : Question
-        Case, reading and grid.
-
-    Returns
-    -------
-    Evidence
-    """
+    """Surface, bends and motions of one case under one reading. Runs inside a worker process."""
     scene, literal = question.scene, question.literal
     law = settings(scene, question.reading)
 

@@ -40,18 +40,8 @@ def literal_peaks(scene: Scene, phases: Array, step: float = STEP, spike: bool =
     """
     Motions from rest of a chain with dry friction on two frequencies, under (4.3)-(4.6) as printed.
 
-    Parameters
-    ----------
-    scene : Scene
-        Dry friction, horizontal two-frequency loading, no dampers.
-    phases : ndarray, (M, 2), rad
-    step : float, s
-    spike : bool
-        Whether the instant at which slip begins counts in (5.1).
-
-    Returns
-    -------
-    LiteralPeaks
+    phases: (M, 2), rad. step: s. spike: whether the instant at which slip begins counts in (5.1). The loading is
+    horizontal and the links have no dampers.
     """
     masses, count = scene.masses, len(scene.bodies)
     below, above = np.zeros((count, 2)), np.zeros((count, 2))

@@ -34,21 +34,7 @@ VIEWS = {"periodic": periodic, "drawn": drawn, "profile": profiled}
 
 
 def views(evidence: Evidence, body: int, share: float = SHARE) -> dict[str, Counts]:
-    """
-    Peaks and valleys of one surface in every way of counting.
-
-    Parameters
-    ----------
-    evidence : Evidence
-    body : int
-        From 1.
-    share : float
-        Least prominence, as a share of the range.
-
-    Returns
-    -------
-    dict of str to Counts
-    """
+    """Peaks and valleys of the surface of a body, from 1 on, by way of counting. share: least prominence over range."""
     mu = evidence.mu[..., body - 1]
     return {name: count(mu, evidence.error, share) for name, count in VIEWS.items()}
 

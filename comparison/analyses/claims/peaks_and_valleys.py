@@ -49,21 +49,8 @@ def periodic(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
     """
     Peaks and valleys on the square that closes at 2 pi.
 
-    Parameters
-    ----------
-    mu : ndarray, (n, n)
-        Finite values at phases 2 pi k / n.
-    error : float
-        Absolute error of the values.
-    share : float
-        Least prominence, as a share of the range.
+    mu: (n, n), finite, at phases 2 pi k / n. error: absolute, of the values. share: least prominence over the range.
 
-    Returns
-    -------
-    Counts
-
-    Examples
-    --------
     >>> phases = 2.0 * np.pi * np.arange(16) / 16
     >>> periodic(np.cos(phases)[:, None] + np.cos(phases))
     Counts(peaks=1, valleys=1)
@@ -73,22 +60,9 @@ def periodic(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
 
 def drawn(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
     """
-    Peaks and valleys on the closed square [0, 2 pi]^2 as it is drawn, bounded by its edges.
+    Peaks and valleys on the closed square [0, 2 pi]^2 as it is drawn, bounded by its edges. Arguments as of `periodic`.
 
     Only valleys between two peaks count: what lies beyond the outermost peak separates it from nothing.
-
-    Parameters
-    ----------
-    mu : ndarray, (n, n)
-        Finite values at phases 2 pi k / n.
-    error : float
-        Absolute error of the values.
-    share : float
-        Least prominence, as a share of the range.
-
-    Returns
-    -------
-    Counts
     """
     return _bounded(np.pad(mu, ((0, 1), (0, 1)), mode="wrap"), error, share)
 
@@ -97,50 +71,19 @@ def profiled(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
     """
     Peaks and valleys of the profile over alpha1 - alpha2 as the drawn square shows it, from -2 pi to 2 pi.
 
-    Ridges along the other diagonal, or none, leave a profile of less than `share` of the surface's range: no peaks.
+    The profile is the mean along the diagonals alpha1 - alpha2 = const. Ridges along the other diagonal, or none, leave
+    a profile of less than `share` of the surface's range: no peaks. Arguments as of `periodic`.
 
-    Parameters
-    ----------
-    mu : ndarray, (n, n)
-        Finite values at phases 2 pi k / n.
-    error : float
-        Absolute error of the values.
-    share : float
-        Least prominence, as a share of the profile's range.
-
-    Returns
-    -------
-    Counts
-
-    Examples
-    --------
     >>> phases = 2.0 * np.pi * np.arange(16) / 16
     >>> profiled(-np.cos(phases[:, None] - phases))
     Counts(peaks=2, valleys=1)
     """
-    along = profile(mu)
+    n = len(mu)
+    rows = np.arange(n)
+    along = np.array([mu[(rows + k) % n, rows].mean() for k in range(n)])
     if np.ptp(along) < share * np.ptp(mu):
         return Counts(0, 0)
     return _bounded(np.concatenate([along, along, along[:1]])[:, None], error, share)
-
-
-def profile(mu: Array) -> Array:
-    """
-    Mean of a surface along the diagonals alpha1 - alpha2 = const.
-
-    Parameters
-    ----------
-    mu : ndarray, (n, n)
-
-    Returns
-    -------
-    ndarray, (n,)
-        At alpha1 - alpha2 = 2 pi k / n.
-    """
-    n = len(mu)
-    rows = np.arange(n)
-    along: Array = np.array([mu[(rows + k) % n, rows].mean() for k in range(n)])
-    return along
 
 
 def _bounded(mu: Array, error: float, share: float) -> Counts:
@@ -151,22 +94,9 @@ def _bounded(mu: Array, error: float, share: float) -> Counts:
 
 def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = True) -> Relief:
     """
-    The peaks of a surface. One whose range is within its errors is flat: it has no peak at all.
+    The peaks of a surface (n, m). One whose range is within its errors is flat: it has no peak at all.
 
-    Parameters
-    ----------
-    mu : ndarray, (n, m)
-        Finite values.
-    error : float
-        Absolute error of the values.
-    share : float
-        Least prominence, as a share of the range.
-    closed : bool
-        Whether the surface is periodic in both directions.
-
-    Returns
-    -------
-    Relief
+    closed: whether the surface is periodic in both directions. Other arguments as of `periodic`.
     """
     span = float(np.ptp(mu))
     if not span > 2.0 * error:

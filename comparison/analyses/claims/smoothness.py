@@ -50,17 +50,8 @@ def bends(mu: Array, solve: Callable[[Array], Array]) -> list[Bend]:
     """
     The sharpest bend of every body's surface.
 
-    Parameters
-    ----------
-    mu : ndarray, (n, n, N)
-        Finite values at phases 2 pi k / n.
-    solve : callable
-        mu (M, N) at phases (M, 2), rad, known much better than the bends that are left at the end, 1e-4 of mu.
-
-    Returns
-    -------
-    list of Bend
-        One for each body.
+    mu: (n, n, N), finite, at phases 2 pi k / n. solve: mu (M, N) at phases (M, 2), rad, known much better than the
+    bends that are left at the end, 1e-4 of mu.
     """
     n, _, bodies = mu.shape
     step = 2.0 * np.pi / n

@@ -33,17 +33,7 @@ class Spike:
 
 
 def spike_over_the_step(reading: Reading = LITERAL) -> Spike:
-    """
-    The spike under a reading. Runs inside a worker process.
-
-    Parameters
-    ----------
-    reading : Reading
-
-    Returns
-    -------
-    Spike
-    """
+    """The spike under a reading. Runs inside a worker process."""
     scene, phases = CASES[CASE](reading), np.array(PHASES)
     runs = [[literal_peaks(scene, phases, step, spike) for step in STEPS] for spike in (True, False)]
     limit = reference.amplification(scene, phases, "small", cutoff=SPEED, tolerance=1e-4, rest_condition="printed")

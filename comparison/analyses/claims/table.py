@@ -69,11 +69,6 @@ class ClaimTable:
             groups.setdefault(verdict, []).append(number)
         return [(numbers, verdict) for verdict, numbers in groups.items()]
 
-    def where(self, row: int) -> str:
-        """Under which readings a claim holds, in words."""
-        names = [reading.name for reading, verdict in zip(self.readings, self.verdicts[row]) if verdict.finding.holds]
-        return "every reading" if len(names) == len(self.readings) else "; ".join(names) or "no reading"
-
 
 SPIKE = Task(spike_over_the_step, LITERAL, "claims")
 
@@ -91,7 +86,8 @@ class Claims(Analysis[ClaimTable]):
         """One task for each case under each reading; none unless the study has every scene of the paper."""
         if not paper_complete(study):
             return []
-        return [*(self._task(question) for question in questions(self.readings, self.claims, self.grid)), SPIKE]
+        asked = questions(self.readings, self.claims, self.grid)
+        return [*(Task(gathered, question, self.stage) for question in asked), SPIKE]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> ClaimTable | None:
         """The table; None unless the study has every scene of the paper."""
@@ -106,67 +102,23 @@ class Claims(Analysis[ClaimTable]):
 
     def task(self, case: str, reading: Reading) -> Task:
         """What computes a case under a reading."""
-        return self._task(_question(case, reading, self.grid))
-
-    def _task(self, question: Question) -> Task:
-        return Task(gathered, question, self.stage)
+        return Task(gathered, _question(case, reading, self.grid), self.stage)
 
 
 def paper_complete(study: Study) -> bool:
-    """
-    Whether a study has every scene of the paper, whose claims speak about all of them.
-
-    Parameters
-    ----------
-    study : Study
-
-    Returns
-    -------
-    bool
-    """
+    """Whether a study has every scene of the paper: the claims speak about all of them."""
     return {scene.name for scene in study.scenes} >= set(builtin_scenes())
 
 
 def tabulated(
     claims: Sequence[Claim], readings: Sequence[Reading], grid: int, columns: Sequence[Mapping[str, Evidence]]
 ) -> ClaimTable:
-    """
-    The table from the evidence of every reading.
-
-    Parameters
-    ----------
-    claims : sequence of Claim
-        Rows.
-    readings : sequence of Reading
-        Columns.
-    grid : int
-        Phases per axis.
-    columns : sequence of mapping
-        For each reading the evidence by case.
-
-    Returns
-    -------
-    ClaimTable
-    """
+    """The table from the evidence by case, one mapping for each reading; grid: phases per axis."""
     return ClaimTable(claims, readings, grid, [[claim.verdict(column) for column in columns] for claim in claims])
 
 
 def questions(readings: Sequence[Reading], claims: Sequence[Claim], grid: int) -> list[Question]:
-    """
-    What has to be computed, each only once.
-
-    Parameters
-    ----------
-    readings : sequence of Reading
-    claims : sequence of Claim
-    grid : int
-        Phases per axis.
-
-    Returns
-    -------
-    list of Question
-        The longest first.
-    """
+    """What has to be computed, each only once, the longest first; grid: phases per axis."""
     every = [_question(case, reading, grid) for case in _cases(claims) for reading in readings]
     return sorted(dict.fromkeys(every), key=lambda question: -question.reading.amplitude)
 

@@ -39,19 +39,8 @@ class ForcedRatio:
 
 def forced_ratios(scene: Scene) -> list[ForcedRatio]:
     """
-    The ratios of a scene: none of a platform alone or under a recorded motion.
+    The ratios of a scene by axis, harmonic and body: none of a platform alone or under a recorded motion.
 
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    list of ForcedRatio
-        By axis, harmonic and body.
-
-    Examples
-    --------
     >>> from reference import load_scene
     >>> [(each.axis, each.harmonic, round(each.ratio, 2)) for each in forced_ratios(load_scene("fig3-I"))]
     [('x', 1, 0.56), ('y', 2, 4.56)]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import xarray as xr
 
 from comparison.analyses.claims.evidence import Evidence, Question
-from comparison.analyses.claims.peak_checks import VIEWS, views
+from comparison.analyses.claims.peak_checks import views
 from comparison.analyses.claims.peaks_and_valleys import Counts
 from comparison.analyses.claims.readings import READINGS, Reading
 from comparison.analyses.claims.table import Claims, paper_complete
@@ -95,25 +95,3 @@ class Settling(Analysis[list[Settled]]):
 
 def _nothing(question: Question, *failed: object) -> Evidence:
     return Evidence()
-
-
-def describe(settled: Settled) -> str:
-    """
-    The counts on the finest grid and from which grid on they stay, in words.
-
-    Parameters
-    ----------
-    settled : Settled
-
-    Returns
-    -------
-    str
-    """
-    if not settled.known:
-        return "flat or without an answer"
-    words = []
-    for view in VIEWS:
-        counts, grid = settled.counts[-1][view], settled.grid(view)
-        since = f"from {grid} on" if grid is not None else "not settled"
-        words.append(f"{view} {counts.peaks} and {counts.valleys} ({since})")
-    return "; ".join(words)
