@@ -26,6 +26,7 @@ ROWS = [  # of boxes, from above; a box stands for the modules whose names begin
     ["multibody", "reference"],
     ["multibody.integration", "reference.solver", "reference.analytical"],
     ["multibody.models", "reference.natural_modes"],
+    ["reference.measures"],
     ["reference.problem"],
 ]
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from comparison.study.analyses import ANALYSES
 from reference.problem import Scene
-from reference.problem.analyses import ANALYSES
 from reference.problem.ranges import MAX_CYCLES, SCENE
 
 PAGE = Path(__file__).with_name("scene.md")

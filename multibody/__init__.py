@@ -47,14 +47,14 @@ if TYPE_CHECKING:
     from multibody.integration.work_limit import refusal
     from multibody.motion import single_run, trajectory
     from multibody.surface import amplification
-    from reference.problem import demands, floor_spectra
+    from reference.measures import demands, floor_spectra
 
 ENGINE = {
     "MAX_WORK": "multibody.integration.refine",
     "Level": "multibody.integration.level",
     "amplification": "multibody.surface",
-    "demands": "reference.problem",
-    "floor_spectra": "reference.problem",
+    "demands": "reference.measures",
+    "floor_spectra": "reference.measures",
     "levels": "multibody.integration.level",
     "peak_demands": "multibody.demand_surface",
     "refusal": "multibody.integration.work_limit",

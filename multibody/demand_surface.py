@@ -6,8 +6,9 @@ from numpy.typing import ArrayLike
 
 from multibody.integration.refine import MAX_WORK
 from multibody.motion import trajectory
-from reference.problem import PeakDemands, Scene, Trajectory
-from reference.problem.peak_demands import demands_of_motions
+from reference.measures import PeakDemands
+from reference.measures.peak_demands import demands_of_motions
+from reference.problem import Scene, Trajectory
 from reference.problem.scene import takes_scene
 
 

@@ -54,24 +54,26 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from reference.problem import (
-    Amplification,
+from reference.measures import (
     Demands,
     Estimate,
     Estimates,
     FloorSpectra,
-    Outcome,
     PeakDemands,
+    demands,
+    floor_spectra,
+    phase_distribution,
+)
+from reference.problem import (
+    Amplification,
+    Outcome,
     Scene,
     SceneError,
     State,
     Trajectory,
     builtin_scenes,
-    demands,
     example_scenes,
-    floor_spectra,
     load_scene,
-    phase_distribution,
     phase_grid,
 )
 from reference.problem.version import __version__ as __version__

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from numpy.typing import ArrayLike
 
+from reference.measures import PeakDemands
+from reference.measures.peak_demands import demands_of_motions
 from reference.motion import trajectory
-from reference.problem import PeakDemands, Scene, Trajectory
-from reference.problem.peak_demands import demands_of_motions
+from reference.problem import Scene, Trajectory
 from reference.problem.scene import takes_scene
 from reference.surface import checked_demand
 

@@ -1,7 +1,7 @@
 """
 The worst initial phases: the largest value over all phase pairs, not over a grid of them.
 
-A grid finds the hills of the surface, and from each of the highest ones a climb goes on (`reference.problem.climb`).
+A grid finds the hills of the surface, and from each of the highest ones a climb goes on (`reference.measures.climb`).
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reference.measures.climb import Climb, Surface, climb_on, follow_jump, kind_of, merged
+from reference.measures.hills import GRID, hills
 from reference.problem import Scene, checked_phases
-from reference.problem.climb import Climb, Surface, climb_on, follow_jump, kind_of, merged
-from reference.problem.hills import GRID, hills
 from reference.problem.ranges import checked_choice
 from reference.problem.scene import takes_scene
 from reference.problem.symmetry import distinct, half_turns

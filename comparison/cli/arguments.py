@@ -17,8 +17,8 @@ from typing import Concatenate, ParamSpec
 
 from comparison.runner.executors import cores
 from comparison.runner.resume import invocation
+from reference.command import OneLineParser, UsageError
 from reference.problem import SceneError
-from reference.problem.command import OneLineParser, UsageError
 
 Rest = ParamSpec("Rest")
 

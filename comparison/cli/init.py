@@ -15,8 +15,8 @@ from pathlib import Path
 from comparison.cli.arguments import command, writing
 from comparison.cli.requirement import requirement
 from comparison.runner.output import destination, make_parents, refuse_unwritable
+from reference.command import OneLineParser
 from reference.problem import SceneError
-from reference.problem.command import OneLineParser
 from reference.problem.files import NEW, staging
 
 PLACE = "DIRECTORY"

@@ -13,12 +13,12 @@ from comparison.cli.entered import add_models, entered_models
 from comparison.registry import EARLIER
 from comparison.runner.cache import refuse_foreign_store
 from comparison.runner.output import destination, refuse_foreign_report
+from comparison.study.analyses import ANALYSES, ON_REQUEST, known_analyses
 from comparison.study.models import Model
 from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.study import refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
 from reference.problem.acceptance import Acceptance
-from reference.problem.analyses import ANALYSES, ON_REQUEST, known_analyses
 
 DEFAULT_TOLERANCE, TIGHTEST = 1e-3, 1e-8
 DEFAULT_GRID = 48  # phases per axis of the equations; the engine's models have a `most` of their own

@@ -26,6 +26,7 @@ from comparison.report.results import Results
 from comparison.report.run_result import ModelDescription, Run
 from comparison.report.scene_result import ModelOutcome, SceneResult
 from comparison.report.section import Feature, Report
+from comparison.study.analyses import ANALYSES
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import checked_limits
@@ -41,9 +42,8 @@ from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share
 from comparison.surfaces.unanswered import advice, unanswered
 from comparison.surfaces.waterfall import Waterfall as BodyWaterfall
 from comparison.surfaces.waterfall import waterfall
+from reference.measures import FloorSpectra as SpectraOfMotion
 from reference.problem import Family, Outcome, Scene
-from reference.problem import FloorSpectra as SpectraOfMotion
-from reference.problem.analyses import ANALYSES
 
 
 def build_report(

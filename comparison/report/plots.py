@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from comparison.json_file import finite_or_none
-from reference.problem.distribution import FRACTILES
+from reference.measures.distribution import FRACTILES
 
 Panel = dict[str, Any]  # title, and plot: see plot.js
 

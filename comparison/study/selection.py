@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from comparison.study.analyses import ANALYSES, ON_REQUEST, refuse_unknown_analyses, selected
 from reference.problem import Scene, builtin_scenes
-from reference.problem.analyses import ANALYSES, ON_REQUEST, selected
 
 OF_THE_PAPER = ("claims", "errata")  # analyses that concern the paper's own scenes
 
@@ -41,6 +41,7 @@ class Selection:
         """
         by_scene, unnamed, on_request = {}, set(OF_THE_PAPER), set(ON_REQUEST)
         for scene in scenes:
+            refuse_unknown_analyses(scene)
             asked = (only, skip) if (only, skip) != (None, None) else (scene.analyses.only, scene.analyses.skip)
             besides = (scene.analyses.also if also is None else also) or ()
             names = selected(*asked, besides)

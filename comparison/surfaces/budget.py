@@ -19,7 +19,7 @@ from comparison.result_types import Number, Phases, Text, result
 from comparison.study.study import Study
 from comparison.surfaces.steps import Step, step
 from comparison.surfaces.surfaces import common_phases
-from reference.problem.distribution import fractile
+from reference.measures.distribution import fractile
 
 Array = NDArray[np.float64]
 

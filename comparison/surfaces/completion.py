@@ -27,8 +27,8 @@ from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.surfaces.steps import RESOLVED, known, known_mu
 from comparison.surfaces.surfaces import common_phases
+from reference.measures.distribution import fractile
 from reference.problem import Scene, phase_axis, phase_grid
-from reference.problem.distribution import fractile
 from reference.problem.symmetry import sources
 
 Array = NDArray[np.float64]

@@ -12,8 +12,8 @@ from comparison.study.study import Study
 from comparison.surfaces.budget import known_to_all, steps
 from comparison.surfaces.steps import Step, step
 from comparison.surfaces.surfaces import common_phases
+from reference.measures.distribution import fractile
 from reference.problem import Outcome
-from reference.problem.distribution import fractile
 
 Array = NDArray[np.float64]
 

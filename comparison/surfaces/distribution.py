@@ -11,8 +11,9 @@ from comparison.study.models import models_of
 from comparison.study.study import Study
 from comparison.surfaces.steps import known_mu
 from comparison.surfaces.surfaces import asked_of
-from reference.problem import Estimate, Scene, phase_distribution
-from reference.problem.distribution import FRACTILES, fractile
+from reference.measures import Estimate, phase_distribution
+from reference.measures.distribution import FRACTILES, fractile
+from reference.problem import Scene
 
 CURVE = np.linspace(0.01, 0.99, 50)  # probabilities of the drawn curve
 

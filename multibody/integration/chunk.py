@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.problem.build_cache import cached_on_disk
+from reference.build_cache import cached_on_disk
 
 Array = NDArray[np.float64]
 
@@ -93,7 +93,7 @@ def distances(coordinates: Array, axes: NDArray[np.int_]) -> Array:
 
 @cached_on_disk(__file__, nogil=True)
 def largest_distance(time: Array, coordinates: Array, velocities: Array, axes: NDArray[np.int_]) -> float:
-    """The largest of such lengths, also between the instants (T,): `reference.problem.demands.largest_displacement`."""
+    """Largest of such lengths, also between the instants (T,): `largest_displacement` of `reference.measures`."""
     largest = before_square = before = 0.0
     for row in range(len(time)):
         x, y = coordinates[row, axes[0]], coordinates[row, axes[1]]

@@ -9,7 +9,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from multibody.integration.constant_step import Motion
 from multibody.models.system import EngineModel
-from reference.problem.demands import squares_and_summits
+from reference.measures.demands import squares_and_summits
 
 BISECTIONS = 50
 

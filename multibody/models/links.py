@@ -26,7 +26,7 @@ from scipy.linalg import eigh
 from multibody.models.engine import exudyn, items
 from multibody.models.units import Units
 from reference.problem import Scene
-from reference.problem.bar_links import BarLink, bar_links
+from reference.problem.bar_links import BarLink
 
 Array = NDArray[np.float64]
 
@@ -76,7 +76,7 @@ def add_links(
 ) -> list[Link]:
     """Links between neighbors. stiffness, damping: in shear, (N - 1, 2, 2). Supports so far from the axis, squared."""
     links = []
-    for number, (bars, shear, damper) in enumerate(zip(bar_links(scene), stiffness, damping)):
+    for number, (bars, shear, damper) in enumerate(zip(scene.bar_links, stiffness, damping)):
         above = masses[number + 1 :]
         carried = np.array([above.sum(), *(above @ centers[number + 1 :, :2])])
         neighbors, places = bodies[number : number + 2], centers[number : number + 2]

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from math import factorial, sqrt
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
-from reference.problem.build_cache import cached_on_disk
-from reference.problem.compiled_parts import compiled_part
+from reference.build_cache import cached_on_disk
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -86,7 +86,7 @@ def _bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array, mos
             most[n] += size * size
 
 
-@compiled_part()
+@njit(nogil=True)
 def _coefficient(terms: Array, turn: Array, order: int, body: int, axis: int, n: int) -> float:
     """Coefficient of x^order on interval n."""
     total = 0.0
@@ -120,7 +120,7 @@ def _largest(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Arra
             errors[m, body] = sqrt(max(best, possible)) - sqrt(best)
 
 
-@compiled_part(nogil=True)
+@njit(nogil=True)
 def _searched(series: Array) -> tuple[float, float]:
     """Largest |v|^2 on an interval with these coefficients (axes, P), and what Newton's method leaves."""
     best, place = -1.0, 0.0
@@ -142,7 +142,7 @@ def _searched(series: Array) -> tuple[float, float]:
     return best, left
 
 
-@compiled_part(nogil=True)
+@njit(nogil=True)
 def _squares(series: Array, x: float) -> tuple[float, float, float]:
     """|v|^2 at x and its first two derivatives."""
     total = first = second = 0.0

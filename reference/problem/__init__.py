@@ -1,5 +1,5 @@
 """
-The question that both sides answer: scene, loading, measured quantity. The only package that they share.
+The question that both sides answer: scene, loading, measured quantity (5.1).
 
 Functions
 ---------
@@ -8,21 +8,19 @@ builtin_scenes, example_scenes                                  names of the sce
 ground_acceleration, ground_velocity, ground_displacement       motion of the ground (5.2)-(5.4)
 exponents, loading_period                                       of the loading
 ground_peak                                                     denominator of (5.1)
-demands                                                         what a motion demands of isolator and structure
-floor_spectra                                                   response spectra of the floors of a motion
-phase_distribution                                              mean and fractiles of mu over uniform phases
+demands, floor_spectra, phase_distribution                      those of `reference.measures`
 checked_phase, checked_phases, flat_phases, phase_axis,
 phase_grid                                                      phase pairs
 half_turn, own_axes, planar, planar_chain, linear, no_friction,
 untilted, mirror_symmetric, unused_harmonics, in_plane          what a scene does not require
-verbatim                                                        a text of a scene for matplotlib
+verbatim                                                        a text of a scene for matplotlib (`reference.drawing`)
 
 Classes
 -------
 Scene, Family                       the system with its loading; the scenes of one file
 State, Amplification, Trajectory    arguments and results of both sides
-Demands, PhaseDistribution           numbers of one motion; of mu over all phases
-PeakDemands, FloorSpectra           demands of many phase pairs; response spectra
+Demands, PeakDemands, FloorSpectra,
+PhaseDistribution                   those of `reference.measures`
 DryFriction                         coefficient of friction over the slip speed
 Estimate, Estimates, Accuracy       a number with its error; what errors are made from
 Outcome, Reduction, SceneError      why a point has no answer; why work is left out; what is wrong with a scene
@@ -33,10 +31,14 @@ GRAVITY    9.81 m/s^2, the paper's value (section 5)
 ADVICE     what to try, for every `Outcome`
 """
 
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from reference.drawing import verbatim
 from reference.problem.constants import GRAVITY
 from reference.problem.definition import ground_peak
-from reference.problem.demands import Demands, Estimate, demands
-from reference.problem.distribution import PhaseDistribution, phase_distribution
 from reference.problem.excitation import (
     exponents,
     ground_acceleration,
@@ -45,10 +47,8 @@ from reference.problem.excitation import (
     loading_period,
 )
 from reference.problem.families import Family, load_family
-from reference.problem.figure_text import verbatim
 from reference.problem.friction import DryFriction
 from reference.problem.outcome import ADVICE, Outcome
-from reference.problem.peak_demands import Estimates, PeakDemands
 from reference.problem.phases import checked_phase, checked_phases, flat_phases, phase_axis, phase_grid
 from reference.problem.reductions import (
     Reduction,
@@ -67,7 +67,31 @@ from reference.problem.result import Accuracy, Amplification, State, Trajectory
 from reference.problem.scene import Scene
 from reference.problem.scene_error import SceneError
 from reference.problem.scene_file import builtin_scenes, example_scenes, load_scene, parse_scene
-from reference.problem.spectra import FloorSpectra, floor_spectra
+
+if TYPE_CHECKING:
+    from reference.measures import (
+        Demands,
+        Estimate,
+        Estimates,
+        FloorSpectra,
+        PeakDemands,
+        PhaseDistribution,
+        demands,
+        floor_spectra,
+        phase_distribution,
+    )
+
+MEASURES = {  # read off motions: here, too, for scripts that import them from here
+    "Demands",
+    "Estimate",
+    "Estimates",
+    "FloorSpectra",
+    "PeakDemands",
+    "PhaseDistribution",
+    "demands",
+    "floor_spectra",
+    "phase_distribution",
+}
 
 __all__ = [
     "ADVICE",
@@ -119,3 +143,13 @@ __all__ = [
     "unused_harmonics",
     "verbatim",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name in MEASURES:
+        return getattr(import_module("reference.measures"), name)
+    raise AttributeError(f"module 'reference.problem' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -9,13 +9,15 @@ the weight N sink, which no bar does to first order: N l / 4 is added to the ben
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from reference.problem.scene import Scene
+from reference.problem.tables import Body
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -36,26 +38,19 @@ class BarLink:
     load: float
 
 
-def bar_links(scene: Scene) -> list[BarLink | None]:
+def bar_links(bodies: Sequence[Body], loads: Sequence[float], radius: float | None) -> list[BarLink | None]:
     """
-    The links of a scene, from below; None for one that is rigid in tension and bending.
+    The links between bodies, from below; None for one that is rigid in tension and bending.
 
-    Parameters
-    ----------
-    scene : Scene
-        With supports, or a `spread` of the bars.
-
-    Returns
-    -------
-    list of BarLink or None
+    loads: N, weight that each link carries. radius: m, of the supports, in place of a `spread` of the bars.
     """
     links: list[BarLink | None] = []
-    for body, load in zip(scene.bodies[1:], scene.loads_above):
+    for body, load in zip(bodies[1:], loads):
         bars = body.bars
         if bars is None or bars.axial_stiffness is None:
             links.append(None)
             continue
-        spread = bars.spread if bars.spread is not None else scene.support_radius or 0.0
+        spread = bars.spread if bars.spread is not None else radius or 0.0
         factors, sway = bars.factors(load), bars.stiffness * bars.factors(load).sway
         pendulum = -bars.length / (3.0 * factors.sway_slope) if bars.load_effect == "shortening" else 0.0
         tension = bars.count * bars.axial_stiffness / bars.length
@@ -73,27 +68,18 @@ def bar_links(scene: Scene) -> list[BarLink | None]:
     return links
 
 
-def stands_upright(scene: Scene) -> bool:
+def stands_upright(
+    links: Sequence[BarLink | None], heights: Sequence[float], loads: Sequence[float], shear: Array
+) -> bool:
     """
     Whether the links hold the bodies upright against their weight, on a platform that does not move.
 
-    Parameters
-    ----------
-    scene : Scene
-        With the heights of all bodies.
+    heights: m, of the centers of mass of all bodies. loads: N, weight that each link carries. shear: (N - 1, 2), N/m.
 
-    Returns
-    -------
-    bool
-
-    Notes
-    -----
     Between two bodies that are D apart, displaced by u and rotated by theta along one axis, the points half-way up are
     apart by d = u_2 - u_1 - (theta_1 + theta_2) D / 2. The weight N above sinks by
     D (theta_1^2 + theta_2^2) / 4 + d (theta_1 + theta_2) / 2. Rigid links have one rotation on both sides.
     """
-    links, heights = bar_links(scene), [body.height or 0.0 for body in scene.bodies]
-    loads = scene.loads_above
     rotation = np.cumsum([0] + [link is not None for link in links])  # number of the rotation of each body, 0: none
     count = len(links)
     size = count + int(rotation[-1])
@@ -106,7 +92,7 @@ def stands_upright(scene: Scene) -> bool:
             apart, lower, upper = heights[i + 1] - heights[i], rotated[i], rotated[i + 1]
             mean, bent = 0.5 * (lower + upper), upper - lower
             sheared = moved[i + 1] - moved[i] - apart * mean
-            stiffness += scene.stiffness[i, axis] * np.outer(sheared, sheared)
+            stiffness += shear[i, axis] * np.outer(sheared, sheared)
             stiffness += (0.0 if link is None else _upright_bending(link)) * np.outer(bent, bent)
             sunk = 0.5 * apart * (np.outer(lower, lower) + np.outer(upper, upper))
             stiffness -= loads[i] * (sunk + np.outer(sheared, mean) + np.outer(mean, sheared))

@@ -10,10 +10,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from reference.problem.build_cache import cached_on_disk
-from reference.problem.compiled_parts import compiled_part
+from reference.build_cache import cached_on_disk
 from reference.problem.excitation import exponents, ground_acceleration, loading_period
 from reference.problem.phases import checked_phases
 from reference.problem.scene import Scene, takes_scene
@@ -69,7 +69,7 @@ def _record_peak(scene: Scene) -> float:
         return float(np.sqrt((ground_acceleration(scene, (0.0, 0.0), instants) ** 2).sum(axis=1)).max())
 
 
-@compiled_part(nogil=True)
+@njit(nogil=True)
 def _square_and_slopes(t: float, phase: Array, amplitudes: Array, s: Array) -> tuple[float, float, float]:
     """|u|^2 and its first two derivatives at time t."""
     value = slope = curvature = 0.0
@@ -88,7 +88,7 @@ def _square_and_slopes(t: float, phase: Array, amplitudes: Array, s: Array) -> t
     return value, slope, curvature
 
 
-@compiled_part(nogil=True)
+@njit(nogil=True)
 def _refined(left: float, right: float, phase: Array, amplitudes: Array, s: Array) -> float:
     """Maximum of |u|^2 on [left, right], which holds one sample higher than both ends: Newton, bisection as a guard."""
     t = 0.5 * (left + right)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -197,3 +199,13 @@ def phase_grid(points: int) -> Array:
     """
     axis = phase_axis(points)
     return np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
+
+
+def phase_coordinates(phases: Array) -> tuple[tuple[str, ...], dict[str, Any]]:
+    """Dimensions and the coordinates alpha1 and alpha2 of phase pairs (..., 2), rad, in a data set of xarray."""
+    shape, angle = phases.shape[:-1], {"units": "rad"}
+    grid = grid_axes(phases) if len(shape) == 2 else None
+    if grid is not None:
+        return ("alpha1", "alpha2"), {"alpha1": ("alpha1", grid[0], angle), "alpha2": ("alpha2", grid[1], angle)}
+    dims = ("phase",) if len(shape) == 1 else tuple(f"phase_{n}" for n in range(1, len(shape) + 1))
+    return dims, {"alpha1": (dims, phases[..., 0], angle), "alpha2": (dims, phases[..., 1], angle)}

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.problem.ranges import takes
+from reference.drawing import draw_motion, draw_surface
+from reference.problem.phases import grid_axes, phase_coordinates
+from reference.problem.ranges import brief, checked_choice, takes
 from reference.problem.scene import Scene
 
 if TYPE_CHECKING:
@@ -17,6 +19,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
+DRAWN = {
+    "position": "displacement against the plate, m",
+    "velocity": "velocity against the plate, m/s",
+    "absolute_acceleration": "absolute acceleration, m/s$^2$",
+}
 
 
 @dataclass(frozen=True)
@@ -100,9 +107,21 @@ class Amplification:
         >>> data["mu"].dims, data["alpha1"].attrs["units"]
         (('alpha1', 'alpha2', 'body'), 'rad')
         """
-        from reference.problem.labeled import labeled_amplification  # xarray: loaded on first use
+        import xarray as xr  # loaded on first use
 
-        return labeled_amplification(self)
+        dims, alpha = phase_coordinates(self.phases)
+        factor, seconds = {"units": "1"}, {"units": "s"}
+        return xr.Dataset(
+            {
+                "mu": ((*dims, "body"), self.mu, {**factor, "long_name": "dynamic amplification factor (5.1)"}),
+                "error": ((*dims, "body"), self.error, {**factor, "long_name": "estimated absolute error of mu"}),
+                "status": (dims, self.status),
+                "instant": (dims, self.instant, {**seconds, "long_name": "when the status arose"}),
+                "cap_share": (dims, self.cap_share, {**factor, "long_name": "largest displacement over rho"}),
+            },
+            coords={**alpha, "body": np.arange(1, self.mu.shape[-1] + 1)},
+            attrs={"cost": self.cost, "cost_units": "s"},
+        )
 
     def plot(self, body: int = 1, axes: Axes | None = None) -> Axes:
         """
@@ -130,9 +149,15 @@ class Amplification:
         >>> scene = reference.load_scene("fig4-dry")
         >>> axes = reference.amplification(scene, reference.phase_grid(2), tolerance=1e-3).plot(body=2)
         """
-        from reference.problem.drawing import draw_amplification  # matplotlib: loaded on first use
-
-        return draw_amplification(self, body, axes)
+        bodies = self.mu.shape[-1]
+        if not (isinstance(body, int) and 1 <= body <= bodies):
+            raise ValueError(f"body = {brief(body)}: must be a whole number from 1 to {bodies}")
+        grid = grid_axes(self.phases)
+        if grid is None:
+            rule = "must be a grid of at least 2 x 2 phases, as phase_grid(8) is"
+            raise ValueError(f"phases: shape {self.phases.shape}: {rule}, to be drawn as a surface")
+        height = self.mu[..., body - 1].reshape(len(grid[0]), len(grid[1]))
+        return draw_surface(grid, height, rf"$\mu_{{{body}}}$", axes)
 
 
 @dataclass(frozen=True)
@@ -232,9 +257,31 @@ class Trajectory:
         >>> data["position"].dims, data["position"].attrs["units"]
         (('time', 'body', 'axis'), 'm')
         """
-        from reference.problem.labeled import labeled_trajectory  # xarray: loaded on first use
+        import xarray as xr  # loaded on first use
 
-        return labeled_trajectory(self)
+        vector = ("time", "body", "axis")
+        variables: dict[str, tuple[Any, Array, str]] = {
+            "position": (vector, self.position, "m"),
+            "velocity": (vector, self.velocity, "m/s"),
+            "absolute_acceleration": (vector, self.absolute_acceleration, "m/s^2"),
+            "contact_force": ("time", self.contact_force, "N"),
+            "isolator_force": (("time", "horizontal"), self.isolator_force, "N"),
+            "support_force": (("time", "support"), self.support_force, "N"),
+            "peak": ("body", self.peak, "m/s^2"),
+            "ground": (("time", "axis"), self.ground, "m/s^2"),
+            "friction_power": ("time", self.friction_power, "W"),
+        }
+        return xr.Dataset(
+            {name: (dims, values, {"units": unit}) for name, (dims, values, unit) in variables.items()},
+            coords={
+                "time": ("time", self.time, {"units": "s"}),
+                "body": np.arange(1, self.position.shape[1] + 1),
+                "axis": ["x", "y", "z"],
+                "horizontal": ["x", "y"],
+                "support": np.arange(1, self.support_force.shape[1] + 1),
+            },
+            attrs={"scene": self.scene.name, "status": str(self.status)},
+        )
 
     def plot(self, quantity: str = "position", axes: Axes | None = None) -> Axes:
         """
@@ -261,9 +308,8 @@ class Trajectory:
         >>> import reference
         >>> axes = reference.trajectory(reference.load_scene("fig4-dry"), (2.0, 0.7)).plot()
         """
-        from reference.problem.drawing import draw_trajectory  # matplotlib: loaded on first use
-
-        return draw_trajectory(self, quantity, axes)
+        label = DRAWN[checked_choice("quantity", quantity, list(DRAWN))]
+        return draw_motion(self.time, getattr(self, quantity), self.stick, label, self.scene.title, axes)
 
 
 @dataclass(frozen=True)

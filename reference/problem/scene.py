@@ -15,7 +15,7 @@ from pydantic import Discriminator, Field, Tag, ValidationError, model_validator
 
 from reference.problem.acceptance import Acceptance, Limits
 from reference.problem.analyses import Analyses
-from reference.problem.bar_links import stands_upright
+from reference.problem.bar_links import BarLink, bar_links, stands_upright
 from reference.problem.beam_column import buckling_load
 from reference.problem.changed_values import put_value
 from reference.problem.constants import GRAVITY
@@ -222,7 +222,10 @@ class Scene(Table):
     def _check_upright(self) -> None:
         """Bars that give way must hold the bodies upright."""
         giving = [n for n, body in enumerate(self.bodies) if body.bars is not None and body.bars.axial_stiffness]
-        if giving and all(body.height is not None for body in self.bodies) and not stands_upright(self):
+        heights = [body.height for body in self.bodies if body.height is not None]
+        if not giving or len(heights) < len(self.bodies):
+            return
+        if not stands_upright(self.bar_links, heights, self.loads_above, self.stiffness):
             stated = self.bodies[giving[0]].bars
             rule = "the bodies topple under their weight: take stiffer bars, a larger spread or lower bodies"
             raise MisfitError(f"bodies.{giving[0]}.bars", stated and stated.model_dump(exclude_none=True), rule)
@@ -305,6 +308,11 @@ class Scene(Table):
         """Weight that each link carries at rest, (N-1,), N."""
         above = np.cumsum(self.masses[:0:-1])[::-1]
         return [GRAVITY * float(mass) for mass in above]
+
+    @property
+    def bar_links(self) -> list[BarLink | None]:
+        """The links of bars that give way in every direction, from below; None for any other link."""
+        return bar_links(self.bodies, self.loads_above, self.support_radius)
 
     @cached_property
     def damping(self) -> NDArray[np.float64]:

@@ -10,9 +10,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from reference.solver.by_reference import ByReference, by_reference, zeroed
 from reference.solver.collocation import CHANNELS, LANES, STAGES
 from reference.solver.compiled import compiled
+from reference.solver.compiled.by_reference import ByReference, by_reference, zeroed
 from reference.solver.polynomial import POWERS
 from reference.solver.system import Array, Complex
 

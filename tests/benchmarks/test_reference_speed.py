@@ -180,7 +180,7 @@ def test_the_cost_per_step_grows_linearly_with_the_number_of_bodies():
 FIRST_CALL = """
 import time
 from numba import njit
-import reference.problem.compiled_parts as parts
+import reference.solver.compiled.parts as parts
 if {apart}:
     parts.compiled_part = lambda **options: njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)
 import reference

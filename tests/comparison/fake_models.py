@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from comparison.analyses.motions.analysis import StoredMotion, chosen_places, shown_models
 from comparison.study.models import MODEL_HIERARCHY, Model, never
 from comparison.study.study import Study
-from reference.problem import GRAVITY, Amplification, Demands, Estimate, FloorSpectra, Outcome, Scene, Trajectory
-from reference.problem.demands import MOVING
+from reference.measures import Demands, Estimate, FloorSpectra
+from reference.measures.demands import MOVING
+from reference.problem import GRAVITY, Amplification, Outcome, Scene, Trajectory
 
 MOST = {"translational": 16, "spatial": 4}  # phases per axis: fewer than those of the real models, for small grids
 DEADLY = 2.0 * np.pi * 3 / 4  # alpha1, alpha2 of the one point of a 4 x 4 grid that a failing model fails at

@@ -33,8 +33,9 @@ def prepare() -> None:
         setattr(math, name, _also_of_rows(getattr(math, name), getattr(np, name)))
     builtins.max, builtins.min = _also_of_rows(max, np.maximum), _also_of_rows(min, np.minimum)  # type: ignore[assignment]
 
-    from reference.solver import by_reference, rows
+    from reference.solver import rows
     from reference.solver.collocation import LANES, STAGES
+    from reference.solver.compiled import by_reference
 
     by_reference.by_reference = lambda kind: lambda values: types.SimpleNamespace(**values._asdict())
     by_reference.zeroed = lambda kind, fields: lambda size: types.SimpleNamespace(**fields(size))

@@ -19,8 +19,9 @@ import reference
 from comparison.analyses.demands.analysis import PREFIX, DemandSurfaces, demand_statistics, with_demands
 from comparison.study.models import EXACT, REGULARIZED, SMALL
 from comparison.study.study import Study
-from reference.problem import Demands, Scene, load_scene, phase_axis
-from reference.problem.peak_demands import QUANTITIES
+from reference.measures import Demands
+from reference.measures.peak_demands import QUANTITIES
+from reference.problem import Scene, load_scene, phase_axis
 
 MODELS = (SMALL, EXACT, REGULARIZED)
 

@@ -27,8 +27,9 @@ from comparison.analyses.ensemble.analysis import (
 )
 from comparison.analyses.ensemble.command import FILES, main, table_text
 from comparison.analyses.ensemble.figure import draw_ensemble
-from reference.problem import Demands, Estimate, load_family, phase_distribution
-from reference.problem.distribution import FRACTILES
+from reference.measures import Demands, Estimate, phase_distribution
+from reference.measures.distribution import FRACTILES
+from reference.problem import load_family
 
 SCENE = """title = "two bodies"
 isolator = {radius = 0.25, friction = 0.05}

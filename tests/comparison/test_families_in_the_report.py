@@ -27,8 +27,9 @@ from comparison.surfaces.budget import budget
 from comparison.surfaces.distribution import Fractile
 from comparison.surfaces.surfaces import labeled_surfaces
 from comparison.surfaces.waterfall import waterfall
-from reference.problem import Demands, Estimate, load_family
-from reference.problem.distribution import FRACTILES
+from reference.measures import Demands, Estimate
+from reference.measures.distribution import FRACTILES
+from reference.problem import load_family
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"
 

@@ -34,8 +34,8 @@ from comparison.study.levels import levels_of
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from comparison.surfaces.tasks import surface_tasks
+from reference.command import StoppedError
 from reference.problem import load_scene
-from reference.problem.command import StoppedError
 
 SCENES = (load_scene("fig3-I"), load_scene("synthetic-pair"))
 WORDS = ("fig3-I", "--grid", "24", "--skip", "claims")

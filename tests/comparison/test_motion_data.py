@@ -29,8 +29,9 @@ from comparison.analyses.motions.page_data import (
 from comparison.runner.cache import Cache, Key
 from comparison.study.models import REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL, Model
 from multibody.film import contact_paths
-from reference.problem import Scene, builtin_scenes, demands, load_scene
-from reference.problem.demands import MOVING
+from reference.measures import demands
+from reference.measures.demands import MOVING
+from reference.problem import Scene, builtin_scenes, load_scene
 
 PHASE = (2.0, 0.7)
 MAX_LETTERS = 1.2e6  # of the motions of the default study

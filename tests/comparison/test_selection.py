@@ -16,12 +16,12 @@ from fake_models import fake_hierarchy
 
 from comparison.cli.options import parsed
 from comparison.registry import FEATURES, chosen_analyses, first_tasks
+from comparison.study.analyses import ANALYSES, selected
 from comparison.study.selection import Selection
 from comparison.study.study import Study
 from comparison.surfaces.figures.pictures import Pictures, pictures
 from comparison.surfaces.surfaces import labeled_surfaces
 from reference.problem import load_scene
-from reference.problem.analyses import ANALYSES, selected
 
 SCENES = Path(__file__).parents[2] / "reference/problem/scenes"
 GRID = ("--grid", "4")

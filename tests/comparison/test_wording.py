@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from comparison.wording import degrees, mathtext, percent, scientific, signed, significant, symbols
-from reference.problem import verbatim
+from reference.drawing import verbatim
 
 NAN = float("nan")
 

@@ -14,7 +14,7 @@ from multibody.integration.chunk import (
     last_near,
     slip_changes,
 )
-from reference.problem.demands import largest_displacement
+from reference.measures.demands import largest_displacement
 
 STEPS, CONTACTS = 57, 3
 DRAW = np.random.default_rng(5)

@@ -17,7 +17,8 @@ from multibody.integration.adaptive import Budget
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
 from multibody.models.depressions import rotation
-from reference.problem import GRAVITY, Outcome, Scene, SceneError, demands, load_scene
+from reference.measures import demands
+from reference.problem import GRAVITY, Outcome, Scene, SceneError, load_scene
 
 PHASE = (2.0, 0.7)
 PENTAGON = [[1.0, 0.8], [-0.9, 1.1], [-1.2, -0.7], [0.8, -1.0], [0.1, 0.9]]

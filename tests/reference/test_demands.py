@@ -11,7 +11,8 @@ import pytest
 
 import multibody
 import reference
-from reference.problem import GRAVITY, Accuracy, Demands, Estimate, Scene, State, Trajectory, demands, ground_peak
+from reference.measures import Demands, Estimate, demands
+from reference.problem import GRAVITY, Accuracy, Scene, State, Trajectory, ground_peak
 
 PHASE = (2.0, 0.7)
 RHO = 0.25

@@ -14,8 +14,8 @@ import pytest
 from numpy._core._multiarray_umath import __cpu_features__  # what this processor has, by NumPy's names
 
 import reference
+from reference.build_cache import build_folder
 from reference.problem import load_scene, phase_grid
-from reference.problem.build_cache import build_folder
 from reference.solver import chain, collocation
 
 ROOT = Path(__file__).parents[2]

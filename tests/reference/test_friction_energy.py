@@ -9,7 +9,8 @@ import pytest
 
 import multibody
 import reference
-from reference.problem import GRAVITY, Scene, State, Trajectory, demands
+from reference.measures import demands
+from reference.problem import GRAVITY, Scene, State, Trajectory
 
 PHASE = (2.0, 0.7)
 RHO = 0.25

@@ -8,7 +8,8 @@ from scipy.integrate import solve_ivp
 
 import multibody
 import reference
-from reference.problem import GRAVITY, Estimate, PeakDemands, Scene, demands, ground_acceleration, phase_grid
+from reference.measures import Estimate, PeakDemands, demands
+from reference.problem import GRAVITY, Scene, ground_acceleration, phase_grid
 
 V_REG = 1e-3
 SHARED = ("displacement", "base_shear", "acceleration", "drift", "contact_force_min", "contact_force_max")

@@ -13,8 +13,8 @@ import numba.core.registry
 import pytest
 
 import reference
-from reference.problem import user_cache as module
-from reference.problem.user_cache import user_cache
+from reference import build_cache as module
+from reference.build_cache import user_cache
 
 ROOT = Path(__file__).parents[2]
 
@@ -95,7 +95,7 @@ def test_every_function_that_is_kept_on_disk_is_kept_in_the_user_s_cache() -> No
 def test_numbas_settings_in_the_folder_do_not_say_where_builds_are(tmp_path: Path) -> None:
     pytest.importorskip("yaml")  # without it numba reads no such file
     (tmp_path / ".numba_config.yaml").write_text(f"cache_dir: {tmp_path}\n", encoding="utf-8")
-    ask = "from reference.problem import build_cache as b; print(b.build_folder(b.Path(b.__file__)))"
+    ask = "from reference import build_cache as b; print(b.build_folder(b.Path(b.__file__)))"
     environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
     environment |= {"PYTHONPATH": str(ROOT), "PYTHONSAFEPATH": "1"}
     run = subprocess.run(

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 import reference
 from reference import phase_maximum
-from reference.problem import Amplification, Scene, climb, phase_grid
+from reference.measures import climb
+from reference.problem import Amplification, Scene, phase_grid
 from reference.problem.symmetry import half_turns
 
 Array = NDArray[np.float64]

@@ -14,7 +14,8 @@ from matplotlib.patches import Rectangle
 
 from comparison.analyses.assumptions.variations import WITHIN, AssumptionCell
 from comparison.surfaces.figures.pairs import save
-from reference.problem import Scene, verbatim
+from reference.drawing import verbatim
+from reference.problem import Scene
 
 COLORS = ("#fde725", "#35b779", "#440154")  # within 1 %, within 5 %, beyond: told apart without color vision too
 NO_VALUE, NOT_TRIED = "0.6", "0.95"

@@ -20,9 +20,9 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
-from reference.problem import Scene, Trajectory, demands, ground_peak, untilted
-from reference.problem.bar_links import bar_links
-from reference.problem.demands import ANSWERED
+from reference.measures import demands
+from reference.measures.demands import ANSWERED
+from reference.problem import Scene, Trajectory, ground_peak, untilted
 
 Array = NDArray[np.float64]
 
@@ -195,7 +195,7 @@ def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> 
             plain, spatial = engines
             of_plain, tolerance = (max(engine.tolerance(study.tolerance), CLOSE_ENOUGH) for engine in engines)
             asked.append((scene, plain, None, of_plain))
-            loaded = UNDER_LOAD if any(link is not None for link in bar_links(scene)) else ()
+            loaded = UNDER_LOAD if any(link is not None for link in scene.bar_links) else ()
             asked += [(scene, spatial, variation, tolerance) for variation in (*variations, *loaded)]
     return asked
 

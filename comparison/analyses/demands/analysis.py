@@ -23,9 +23,10 @@ from comparison.study.models import Model, steps_of
 from comparison.study.study import Study
 from comparison.surfaces.distribution import CURVE, Fractile
 from comparison.surfaces.surfaces import NOT_ASKED
-from reference.problem import Estimate, Estimates, Scene, phase_axis, phase_distribution, phase_grid
-from reference.problem.distribution import FRACTILES, fractile
-from reference.problem.peak_demands import PER_BODY, QUANTITIES, demands_of_motions
+from reference.measures import Estimate, Estimates, phase_distribution
+from reference.measures.distribution import FRACTILES, fractile
+from reference.measures.peak_demands import PER_BODY, QUANTITIES, demands_of_motions
+from reference.problem import Scene, phase_axis, phase_grid
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Feature, Report, Section
 from comparison.surfaces.distribution import CURVE
-from reference.problem.peak_demands import QUANTITIES, unit_of
+from reference.measures.peak_demands import QUANTITIES, unit_of
 
 
 def demand_panels(scene: SceneResult, results: Results) -> list[Panel]:

@@ -23,8 +23,9 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL, Model
 from comparison.study.study import Study
-from reference.problem import Demands, Estimate, Family, Scene, SceneError, demands
-from reference.problem.distribution import fractile
+from reference.measures import Demands, Estimate, demands
+from reference.measures.distribution import fractile
+from reference.problem import Family, Scene, SceneError
 
 SCALE = "excitation.scale"
 FRACTILES = (0.16, 0.5, 0.84)

@@ -39,9 +39,9 @@ from comparison.runner.processes import process_pool
 from comparison.runner.progress import wide_console
 from comparison.study.models import EXACT, TRANSLATIONAL
 from comparison.wording import percent
+from reference.measures.peak_demands import unit_of
 from reference.problem import Family
 from reference.problem.families import family_of
-from reference.problem.peak_demands import unit_of
 from reference.problem.scene_file import scene_tables, scene_text
 
 TABLE = "ensemble.csv"

@@ -14,8 +14,9 @@ from matplotlib.figure import Figure
 
 from comparison.analyses.ensemble.analysis import FRACTILES, EnsembleResult, Quantity, of_quantity
 from comparison.surfaces.figures.pairs import save
-from reference.problem import GRAVITY, verbatim
-from reference.problem.peak_demands import unit_of
+from reference.drawing import verbatim
+from reference.measures.peak_demands import unit_of
+from reference.problem import GRAVITY
 
 TITLES = {
     "displacement": "isolator displacement",

@@ -9,8 +9,8 @@ from typing import Any, Literal
 from comparison.analyses.ensemble.analysis import FRACTILES, EnsembleResult, Point, Quantity, quantities
 from comparison.json_file import FILE_FORMAT, StoredFile, finite_or_none
 from comparison.study.models import TRANSLATIONAL
-from reference.problem import Estimate
-from reference.problem.peak_demands import unit_of
+from reference.measures import Estimate
+from reference.measures.peak_demands import unit_of
 
 FILE, PICTURE = "ensemble.json", "ensemble.png"
 SCHEMA: Literal["phase-resonance/ensemble"] = "phase-resonance/ensemble"

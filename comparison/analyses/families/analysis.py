@@ -18,7 +18,8 @@ from comparison.surfaces.budget import TOTAL
 from comparison.surfaces.steps import known_mu
 from comparison.surfaces.surfaces import common_phases
 from comparison.surfaces.waterfall import NAN, Waterfall, WaterfallBar
-from reference.problem import Demands, Estimate, Family, Scene
+from reference.measures import Demands, Estimate
+from reference.problem import Family, Scene
 
 
 @result

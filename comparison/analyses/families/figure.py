@@ -18,7 +18,8 @@ from comparison.surfaces.budget import TOTAL, BudgetEntry
 from comparison.surfaces.figures.file_names import figure_file
 from comparison.surfaces.waterfall import waterfall
 from comparison.wording import MAX_NAMES
-from reference.problem import Family, verbatim
+from reference.drawing import verbatim
+from reference.problem import Family
 
 COLORS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00")  # told apart by every eye
 MARKERS = "osD^v<>"  # and in print

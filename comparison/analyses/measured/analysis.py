@@ -21,7 +21,8 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, steps_of
 from comparison.study.study import Study
-from reference.problem import Estimate, Outcome, Scene, demands
+from reference.measures import Estimate, demands
+from reference.problem import Outcome, Scene
 from reference.problem.measured import OF_BODIES, Measured
 
 LACKING = Estimate(math.nan, math.nan, "the model has no such value")

@@ -8,7 +8,7 @@ from typing import Any
 
 from comparison.analyses.measured.analysis import MeasuredPeak, MeasuredPeaks
 from comparison.report.section import Feature, Report, Section
-from reference.problem.peak_demands import QUANTITIES, unit_of
+from reference.measures.peak_demands import QUANTITIES, unit_of
 
 
 def _context(report: Report, figures: Path) -> Mapping[str, Any]:

@@ -20,8 +20,9 @@ from comparison.study.batches import imported
 from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.surfaces.differences import pair_step
-from reference.problem import Demands, FloorSpectra, Outcome, Scene, Trajectory, demands, floor_spectra
-from reference.problem.demands import ANSWERED
+from reference.measures import Demands, FloorSpectra, demands, floor_spectra
+from reference.measures.demands import ANSWERED
+from reference.problem import Outcome, Scene, Trajectory
 
 Array = NDArray[np.float64]
 

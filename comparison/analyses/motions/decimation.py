@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.problem.build_cache import cached_on_disk
+from reference.build_cache import cached_on_disk
 
 Array = NDArray[np.float64]
 

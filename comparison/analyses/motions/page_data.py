@@ -48,7 +48,8 @@ from numpy.typing import NDArray
 from comparison.analyses.motions.analysis import Place, StoredMotion
 from comparison.analyses.motions.decimation import swing
 from comparison.report.section import Report
-from reference.problem import Demands, Estimate, Scene
+from reference.measures import Demands, Estimate
+from reference.problem import Scene
 
 Starts = dict[tuple[Place, str], int]
 

@@ -14,7 +14,7 @@ from matplotlib.ticker import NullLocator
 from comparison.analyses.tradeoff.trade import Answered, Entry, Trade
 from comparison.surfaces.figures.pairs import save
 from comparison.wording import mathtext
-from reference.problem import verbatim
+from reference.drawing import verbatim
 
 LOWEST, HIGHEST = 1e-12, 10.0
 # one hue for each family, a marker for each method in it: told apart without colors, too

@@ -28,9 +28,9 @@ from comparison.study.models import Model, models_of, pairs_of
 from comparison.study.study import Study
 from comparison.surfaces.steps import known_mu
 from comparison.surfaces.surfaces import asked_of
+from reference.measures.climb import Climb, Points, Surface, predicted, square_of
+from reference.measures.hills import GRID, hills
 from reference.problem import Scene
-from reference.problem.climb import Climb, Points, Surface, predicted, square_of
-from reference.problem.hills import GRID, hills
 
 Array = NDArray[np.float64]
 

@@ -18,7 +18,8 @@ from comparison.surfaces.figures.file_names import figure_file
 from comparison.surfaces.figures.pairs import QUARTER_NAMES, QUARTERS, SIGN_COLORS, closed
 from comparison.surfaces.steps import Step
 from comparison.wording import mathtext
-from reference.problem import Scene, verbatim
+from reference.drawing import verbatim
+from reference.problem import Scene
 
 LINEAR = 1e-6  # relative: below it the colors are linear, above it logarithmic in both directions
 

@@ -18,7 +18,8 @@ from comparison.surfaces.figures.file_names import figure_file, with_ending
 from comparison.surfaces.steps import Step
 from comparison.surfaces.surfaces import common_phases
 from comparison.wording import mathtext
-from reference.problem import Scene, verbatim
+from reference.drawing import verbatim
+from reference.problem import Scene
 
 Array = NDArray[np.float64]
 

@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from reference.problem import Demands, Scene, SceneError, load_scene
+from reference.measures import Demands
+from reference.measures.peak_demands import PER_BODY
+from reference.measures.peak_demands import QUANTITIES as DEMANDS
+from reference.problem import Scene, SceneError, load_scene
 from reference.problem.measured import OF_BODIES, QUANTITIES
-from reference.problem.peak_demands import PER_BODY
-from reference.problem.peak_demands import QUANTITIES as DEMANDS
 
 PEAK = {"quantity": "mu", "body": 2, "value": 2.3, "uncertainty": 0.1, "phases": [0.3, 1.1]}
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.problem.demands import Estimate
+from reference.measures.demands import Estimate
 from reference.problem.ranges import checked_array
 
 Array = NDArray[np.float64]

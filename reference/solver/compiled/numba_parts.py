@@ -1,5 +1,5 @@
 """
-How numba is made to build parts (compiled_parts.py): by its own passes, with another library for what they write.
+How numba is made to build parts (parts.py): by its own passes, with another library for what they write.
 
 All of this is numba's inside, which may change with any version.
 """

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from reference.problem.energy import Energy, energy_of
+from reference.measures.energy import Energy, energy_of
 from reference.problem.outcome import Outcome
 from reference.problem.result import Array, Trajectory, takes_motion
 

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.problem.build_cache import cached_on_disk
-from reference.problem.demands import ANSWERED
+from reference.build_cache import cached_on_disk
+from reference.measures.demands import ANSWERED
 from reference.problem.ranges import Range, checked_array, checked_number
 from reference.problem.result import Trajectory, takes_motion
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from reference.problem.distribution import FRACTILES, phase_distribution
+from reference.measures.distribution import FRACTILES, phase_distribution
 
 Array = NDArray[np.float64]
 

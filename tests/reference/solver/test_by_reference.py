@@ -9,7 +9,7 @@ from numba import njit
 from numba.core.runtime import _nrt_python, rtsys
 from numba.experimental import structref
 
-from reference.solver.by_reference import ALIGNMENT, ByReference, by_reference, zeroed
+from reference.solver.compiled.by_reference import ALIGNMENT, ByReference, by_reference, zeroed
 
 
 class PairType(ByReference):

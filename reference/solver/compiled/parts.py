@@ -38,7 +38,7 @@ def compiled_part(**options: Any) -> Callable[[Callable[..., Any]], Any]:
         The decorator.
     """
     if numba.version_info.short <= NEWEST_KNOWN:
-        from reference.problem.numba_parts import PartCompiler
+        from reference.solver.compiled.numba_parts import PartCompiler
 
         options["pipeline_class"] = PartCompiler
     decorate: Callable[[Callable[..., Any]], Any] = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reference.measures.demands import Demands, Estimate, demands
 from reference.problem.definition import ground_peak
-from reference.problem.demands import Demands, Estimate, demands
 from reference.problem.outcome import Outcome
-from reference.problem.phases import flat_phases
+from reference.problem.phases import flat_phases, phase_coordinates
 from reference.problem.result import Trajectory
 from reference.problem.scene import Scene
 
@@ -138,8 +138,6 @@ class PeakDemands(Mapping[str, Estimates]):
         (('phase', 'body'), 'm')
         """
         import xarray as xr  # loaded on first use
-
-        from reference.problem.labeled import phase_coordinates
 
         dims, alpha = phase_coordinates(self.phases)
         bodies = self["acceleration"].value.shape[-1] if "acceleration" in self else 0

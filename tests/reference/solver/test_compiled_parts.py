@@ -15,8 +15,8 @@ from numba.core.errors import TypingError
 from numba.extending import overload
 
 import reference
-from reference.problem.build_cache import cached_on_disk
-from reference.problem.compiled_parts import compiled_part
+from reference.build_cache import cached_on_disk
+from reference.solver.compiled.parts import compiled_part
 
 
 def gc_is_on():
@@ -141,7 +141,7 @@ def test_every_part_of_the_solver_is_compiled_once_for_floats_and_once_for_rows(
 
 
 UNKNOWN_NUMBA = """
-import reference.problem.compiled_parts as parts
+import reference.solver.compiled.parts as parts
 parts.NEWEST_KNOWN = 0, 0
 import reference
 print(reference.amplification(reference.load_scene("fig3-I"), [(0.3, 1.1)]).mu.tolist())

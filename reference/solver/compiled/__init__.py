@@ -11,8 +11,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from reference.problem.build_cache import cached_on_disk
-from reference.problem.compiled_parts import compiled_part
+from reference.build_cache import cached_on_disk
+from reference.solver.compiled.parts import compiled_part
 
 # divisions by zero give inf or NaN as in NumPy; other threads go on meanwhile
 OPTIONS = {"error_model": "numpy", "nogil": True}
@@ -25,4 +25,4 @@ def compiled(function: Callable[..., Any]) -> Any:
 
 def cached_entry_point(function: Callable[..., Any]) -> Any:
     """Compile `function` with everything it calls on first use, and keep the build on disk."""
-    return cached_on_disk(Path(__file__).parent, **OPTIONS)(function)
+    return cached_on_disk(Path(__file__).parents[1], **OPTIONS)(function)

@@ -1,0 +1,113 @@
+"""
+Functions that numba compiles and keeps on disk, in the user's cache, under a hash of the source they are made from.
+
+Numba looks at the file of a function alone when it decides whether a build is still good, not at what it calls in other
+files. A build that belongs to all of these sources together cannot go stale. Nothing is ever written into the installed
+package, which may be read-only or belong to somebody else.
+"""
+
+from __future__ import annotations
+
+import gc
+import hashlib
+import os
+import stat
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numba
+import platformdirs
+from numba.core.compiler import Compiler
+
+NAME = "phase-resonance"
+njit: Any = numba.njit
+config: Any = numba.config
+
+
+class _Uncollected(Compiler):  # type: ignore[misc]
+    """Numba's compiler while Python does not search for garbage: nearly all that it makes is in use to its end."""
+
+    def compile_extra(self, func: Any) -> Any:
+        """Compile a Python function."""
+        if not gc.isenabled():
+            return super().compile_extra(func)
+        gc.disable()
+        try:
+            return super().compile_extra(func)
+        finally:
+            gc.enable()
+
+
+def build_folder(sources: Path) -> Path | None:
+    """
+    Where the builds from a file, or from all Python files below a folder, are kept.
+
+    Below NUMBA_CACHE_DIR if the user set it, otherwise in the user's cache. None if neither can be written.
+    """
+    # not numba's own setting: a file in the working directory may have made it, and builds are run
+    named = os.environ.get("NUMBA_CACHE_DIR")
+    parent = Path(named) if named else user_cache()
+    if parent is None:
+        return None
+    digest = hashlib.sha256()
+    for source in sorted(sources.rglob("*.py")) if sources.is_dir() else [sources]:
+        digest.update(source.read_bytes())
+    return parent / f"numba-{digest.hexdigest()[:12]}"
+
+
+def cached_on_disk(sources: str | Path, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """
+    Decorate a function that numba compiles on its first call, with options of `numba.njit`, and keeps on disk.
+
+    sources: the file or folder with all that the function calls, usually `__file__`.
+    """
+    folder = build_folder(Path(sources))
+
+    def decorate(function: Callable[..., Any]) -> Any:
+        before = config.CACHE_DIR
+        config.CACHE_DIR = str(folder or "")
+        try:
+            decorate = njit(cache=folder is not None, pipeline_class=_Uncollected, no_cfunc_wrapper=True, **options)
+            return decorate(function)
+        finally:
+            config.CACHE_DIR = before
+
+    return decorate
+
+
+@cache
+def user_cache() -> Path | None:
+    """
+    The user's cache directory of this project, created if needed. All that is in it may be deleted at any time.
+
+    As the system has it: `~/.cache/phase-resonance` or below XDG_CACHE_HOME on Linux, `~/Library/Caches` on macOS,
+    `%LOCALAPPDATA%` on Windows. If it cannot be written, a private directory among the temporary files. None if that
+    cannot be written either.
+    """
+    return _writable(platformdirs.user_cache_path(NAME, appauthor=False)) or _private_temporary()
+
+
+def _writable(folder: Path) -> Path | None:
+    try:
+        if folder.is_absolute():  # not where the home directory is unknown
+            folder.mkdir(parents=True, exist_ok=True)
+            return folder if os.access(folder, os.W_OK) else None
+    except OSError:
+        pass
+    return None
+
+
+def _private_temporary() -> Path | None:
+    """Everybody may write beside it: what another user put there in advance is not loaded."""
+    user = os.getuid() if hasattr(os, "getuid") else None
+    folder = Path(tempfile.gettempdir()) / (NAME if user is None else f"{NAME}-{user}")
+    try:
+        folder.mkdir(mode=0o700, exist_ok=True)
+        status = folder.lstat()
+    except OSError:
+        return None
+    private = user is None or (status.st_uid == user and not status.st_mode & 0o077)
+    return _writable(folder) if stat.S_ISDIR(status.st_mode) and private else None

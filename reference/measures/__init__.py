@@ -1,0 +1,32 @@
+"""
+What is read off motions and surfaces, whichever side computed them.
+
+Functions
+---------
+demands                 what a motion demands of isolator and structure
+floor_spectra           response spectra of the floors of a motion
+phase_distribution      mean and fractiles of mu over uniform phases
+
+Classes
+-------
+Demands, PeakDemands                demands of one motion; of the motions of many phase pairs
+FloorSpectra, PhaseDistribution     what the functions return
+Estimate, Estimates                 a number with its error; arrays of them
+"""
+
+from reference.measures.demands import Demands, Estimate, demands
+from reference.measures.distribution import PhaseDistribution, phase_distribution
+from reference.measures.peak_demands import Estimates, PeakDemands
+from reference.measures.spectra import FloorSpectra, floor_spectra
+
+__all__ = [
+    "Demands",
+    "Estimate",
+    "Estimates",
+    "FloorSpectra",
+    "PeakDemands",
+    "PhaseDistribution",
+    "demands",
+    "floor_spectra",
+    "phase_distribution",
+]
