@@ -202,24 +202,9 @@ def checked_demand(
     axes: int = 2,
 ) -> tuple[System, Demand]:
     """
-    The scene in compiled form and what is asked of its runs.
+    The scene in compiled form and what is asked of its runs. Raises ValueError, one line, for a wrong argument.
 
-    Parameters
-    ----------
-    scene : Scene
-    equations, regularization, tolerance, cutoff, rest_condition
-        As in `amplification`.
-    axes : {2, 1}
-        1 for a motion in the plane of x and z.
-
-    Returns
-    -------
-    tuple of System and Demand
-
-    Raises
-    ------
-    ValueError
-        For an argument outside its range, in one line.
+    Arguments as of `amplification`; axes: 1 for a motion in the plane of x and z.
     """
     checked_choice("equations", equations, ("exact", "small"))
     checked_choice("rest_condition", rest_condition, ("consistent", "printed"))

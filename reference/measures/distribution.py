@@ -20,23 +20,11 @@ SAMPLING_FACTOR = 2.0
 
 def fractile(values: ArrayLike, probability: float) -> float:
     """
-    The value that a share of the values stays below: every fractile of this project is one of these.
+    The value that a share of M values in any order stays below: every fractile of this project is one of these.
 
-    Parameters
-    ----------
-    values : array_like
-        M values in any order; they may be infinite.
-    probability : float
-        0 to 1.
+    Linear between the values at the probabilities (k - 1/2)/M, k = 1 ... M (Hazen), and the smallest or largest value
+    beyond these. Values may be infinite: NaN between infinite ones of both signs.
 
-    Returns
-    -------
-    float
-        Linear between the values at the probabilities (k - 1/2)/M, k = 1 ... M (Hazen), and the smallest or largest
-        value beyond these. NaN between infinite values of both signs.
-
-    Examples
-    --------
     >>> fractile([4.0, 1.0, 2.0, 3.0], 0.5), fractile([4.0, 1.0, 2.0, 3.0], 0.84)
     (2.5, 3.86)
     """

@@ -17,23 +17,11 @@ MAX_CLIMBS = 12  # from the hills that may rise highest
 
 def hills(surface: Array, scene: Scene) -> Array:
     """
-    Phase pairs of a surface that are as high as their eight neighbors, those first that may rise highest between them.
+    Phase pairs (K, 2), rad, at which a surface is as high as at its eight neighbors, those first that may rise highest.
 
-    Parameters
-    ----------
-    surface : ndarray, (n, n)
-        On `phase_grid(n)`; NaN without an answer.
-    scene : Scene
-        Of pairs that a symmetry of the motion makes alike only one is listed.
+    surface: (n, n), on `phase_grid(n)`; NaN without an answer. At most MAX_CLIMBS pairs, and of those that a symmetry
+    of the motion makes alike only one.
 
-    Returns
-    -------
-    ndarray, (K, 2), rad
-        At most MAX_CLIMBS of them.
-
-    Examples
-    --------
-    >>> import numpy as np
     >>> from reference.problem import load_scene
     >>> alpha = 2.0 * np.pi * np.arange(8) / 8
     >>> hills(np.cos(2.0 * alpha)[:, None] + np.cos(2.0 * alpha)[None, :], load_scene("fig3-I")).tolist()

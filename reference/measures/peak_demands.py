@@ -45,24 +45,7 @@ QUANTITIES = {  # fields of `Demands` in words, and their units
 
 
 def unit_of(quantity: str) -> str:
-    """
-    Unit of a demand in words.
-
-    Parameters
-    ----------
-    quantity : str
-        Field of `Demands`.
-
-    Returns
-    -------
-    str
-        Empty for a pure number.
-
-    Examples
-    --------
-    >>> unit_of("base_shear"), unit_of("stops")
-    ('N', '')
-    """
+    """Unit of a demand, a field of `Demands`, in words; "" for a pure number."""
     unit = QUANTITIES[quantity][1]
     return "" if unit == "1" else unit
 
@@ -164,19 +147,9 @@ class PeakDemands(Mapping[str, Estimates]):
 
 def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], Trajectory]) -> PeakDemands:
     """
-    Demands of the motion at every phase pair.
+    Demands of the motion that `move` computes for every phase pair (2,) of `phases` (..., 2), rad.
 
-    Parameters
-    ----------
-    scene : Scene
-    phases : array_like, (..., 2), rad
-    move : callable
-        The motion of one phase pair (2,).
-
-    Returns
-    -------
-    PeakDemands
-        A pair without an answer is NaN; its status says why. The other pairs do not depend on it.
+    A pair without an answer is NaN; its status says why. The other pairs do not depend on it.
     """
     pairs, shape = flat_phases(phases)
     clock = time.process_time()

@@ -31,19 +31,8 @@ class LoadFactors:
 
 def load_factors(q: float) -> LoadFactors:
     """
-    Factors of a bar under load.
+    Factors of a bar under load, q = P l^2 / (4 E J) from 0 to (pi / 2)^2, at which it buckles sideways.
 
-    Parameters
-    ----------
-    q : float
-        P l^2 / (4 E J), from 0 to (pi / 2)^2, at which the bar buckles sideways.
-
-    Returns
-    -------
-    LoadFactors
-
-    Examples
-    --------
     >>> load_factors(0.0)
     LoadFactors(sway=1.0, sway_slope=-0.4, bending=1.0)
     """
@@ -54,24 +43,5 @@ def load_factors(q: float) -> LoadFactors:
 
 
 def buckling_load(bending_stiffness: float, length: float) -> float:
-    """
-    Load at which a bar between clamped ends that may move sideways buckles, pi^2 E J / l^2.
-
-    Parameters
-    ----------
-    bending_stiffness : float
-        E J, N m^2.
-    length : float
-        l, m.
-
-    Returns
-    -------
-    float
-        N.
-
-    Examples
-    --------
-    >>> round(buckling_load(1.0, 1.0), 4)
-    9.8696
-    """
+    """Load, N, at which a bar between clamped ends that may move sideways buckles: pi^2 E J / l^2, of N m^2 and m."""
     return math.pi**2 * bending_stiffness / length / length

@@ -102,25 +102,9 @@ def load_family(source: str | Path, amplitude: float | None = None) -> Family:
 
 def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) -> Family:
     """
-    The family of tables that are read already.
+    The family of tables that are read already. Raises SceneError as `load_family`.
 
-    Parameters
-    ----------
-    data : dict
-        Tables of a scene file in which values may run.
-    label : str
-        Name or path of the file, for errors and for its records.
-    amplitude : float, optional, m/s^2
-        As in `load_scene`.
-
-    Returns
-    -------
-    Family
-
-    Raises
-    ------
-    SceneError
-        As `load_family`.
+    label: name or path of the file, for errors and for its records. amplitude: m/s^2, as in `load_scene`.
     """
     name = Path(label).stem
     combine = data.get("combine")

@@ -34,25 +34,10 @@ NEW = "new"  # in a staging directory: what is being written
 
 def read_file(file: str | Path, largest: int) -> bytes:
     """
-    The content of a regular file: a pipe or a device may block, or never end.
+    The content of a regular file of at most `largest` bytes: a pipe or a device may block, or never end.
 
-    Parameters
-    ----------
-    file : str or Path
-        A symbolic link is followed.
-    largest : int
-        Bytes.
-
-    Returns
-    -------
-    bytes
-
-    Raises
-    ------
-    OSError
-        Also if it is no regular file, or larger; `strerror` says so.
-    ValueError
-        If it is no path at all, such as one with a null byte.
+    A symbolic link is followed. Raises OSError also if it is no regular file, or larger (`strerror` says so), and
+    ValueError if it is no path at all, such as one with a null byte.
     """
     flags = (getattr(os, name, 0) for name in ("O_NONBLOCK", "O_NOCTTY", "O_CLOEXEC", "O_BINARY"))
     handle = os.open(file, os.O_RDONLY | sum(flags))
@@ -76,18 +61,9 @@ def read_file(file: str | Path, largest: int) -> bytes:
 
 def write_atomically(file: Path, content: bytes) -> None:
     """
-    Write a file of our own, whole or not at all, in place of the one that is there.
+    Write a file of our own, whole or not at all, in place of the one that is there, which the caller knows is ours.
 
-    Parameters
-    ----------
-    file : Path
-        Replaced if it exists: the caller knows that it is ours.
-    content : bytes
-
-    Raises
-    ------
-    OSError
-        What was there is still there then.
+    Raises OSError: what was there is still there then.
     """
     part = _part(file, content)
     try:
@@ -101,14 +77,7 @@ def write_new(file: Path, content: bytes) -> Path:
     """
     Write a file under a name that nothing has: the one given, or the next free one (`run-2.gif` for `run.gif`).
 
-    Returns
-    -------
-    Path
-        The file written. Nothing that existed was touched.
-
-    Raises
-    ------
-    OSError
+    Returns the file written. Nothing that existed is touched. Raises OSError.
     """
     part = _part(file, content)
     try:

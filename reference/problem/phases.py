@@ -111,20 +111,10 @@ def flat_phases(phases: ArrayLike) -> tuple[Array, tuple[int, ...]]:
 
 def grid_axes(phases: Array) -> tuple[Array, Array] | None:
     """
-    The two axes of a grid of phases.
+    The two axes (A,) and (B,), rad, of a grid of phases (A, B, 2) or (A B, 2).
 
-    Parameters
-    ----------
-    phases : ndarray, (A, B, 2) or (A B, 2), rad
-        Any other array of pairs is no grid.
+    None if the pairs are no grid of at least 2 x 2 whose alpha_2 runs fastest.
 
-    Returns
-    -------
-    tuple of ndarray, (A,) and (B,), rad, or None
-        None if the pairs are no grid of at least 2 x 2 whose alpha_2 runs fastest.
-
-    Examples
-    --------
     >>> [axis.round(3).tolist() for axis in grid_axes(phase_grid(2))]
     [[0.0, 3.142], [0.0, 3.142]]
     """

@@ -12,17 +12,6 @@ def plain(value: Any) -> Any:
     """
     Lists and numbers of Python in place of arrays, tuples and numbers of numpy, at any depth of lists.
 
-    Parameters
-    ----------
-    value : object
-        Tables inside it stay as they are.
-
-    Returns
-    -------
-    object
-
-    Examples
-    --------
     >>> plain((np.float64(0.5), np.arange(2)))
     [0.5, [0, 1]]
     """
@@ -33,20 +22,8 @@ def plain(value: Any) -> Any:
 
 def hashable(value: Any) -> Hashable:
     """
-    Tuples and frozen sets in place of lists and tables, at any depth.
+    Tuples and frozen sets in place of lists and tables, at any depth: equal for equal values.
 
-    Parameters
-    ----------
-    value : object
-        Dictionaries and lists of anything that has a hash.
-
-    Returns
-    -------
-    Hashable
-        Equal for equal values.
-
-    Examples
-    --------
     >>> hash(hashable({"a": [1.0]})) == hash(hashable({"a": [1]}))
     True
     """

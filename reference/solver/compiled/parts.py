@@ -27,15 +27,7 @@ def compiled_part(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     """
     Decorate a function that only compiled functions call, and that makes, keeps and returns no arrays.
 
-    Parameters
-    ----------
-    **options
-        Of `numba.njit`, those of the entry point.
-
-    Returns
-    -------
-    callable
-        The decorator.
+    options: of `numba.njit`, those of the entry point.
     """
     if numba.version_info.short <= NEWEST_KNOWN:
         from reference.solver.compiled.numba_parts import PartCompiler
