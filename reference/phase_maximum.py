@@ -1,7 +1,7 @@
 """
 The worst initial phases: the largest value over all phase pairs, not over a grid of them.
 
-A grid finds the hills of the surface, and from each of the highest ones a climb goes on (`reference.measures.climb`).
+A grid finds local maxima, and from each of the highest ones a search goes on (`reference.measures.local_search`).
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.measures.climb import Climb, Surface, climb_on, follow_jump, kind_of, merged
-from reference.measures.hills import GRID, hills
+from reference.measures.local_maxima import GRID, local_maxima
+from reference.measures.local_search import LocalSearch, Surface, follow_jump, kind_of, merged, search_round
 from reference.problem import Scene, checked_phases
 from reference.problem.ranges import checked_choice
 from reference.problem.scene import takes_scene
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 QUANTITIES = ("amplification", "displacement")
 GRID_TOLERANCE = 1e-4  # relative error of mu there
 MAX_ROUNDS = 60
-MAX_SHORTFALL = 0.01  # of the maximum: climbs that end lower need not follow their jumps
+MAX_SHORTFALL = 0.01  # of the maximum: searches that end lower need not follow their jumps
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class PhaseMaximum:
     value : float
         mu_i, or the displacement in m. It is attained at `phases`.
     error : float
-        Estimated absolute error: of the solution there, and of the climb.
+        Estimated absolute error: of the solution there, and of the search.
     phases : tuple of float, rad
         (alpha_1, alpha_2) in [0, 2 pi). Symmetries of the scene may give other pairs with the same value.
     kind : {"smooth", "kink", "jump"}
@@ -45,9 +45,9 @@ class PhaseMaximum:
     side : tuple of float
         Of a jump: the direction in the plane of phases from it towards the pairs with large values. Otherwise NaN.
     runner_up : float
-        The highest other value at which a climb ended. NaN without one.
+        The highest other value at which a local search ended. NaN without one.
     climbs, reached : int
-        Hills from which a climb started, and climbs that ended at the maximum.
+        Local maxima of the grid from which a search started, and searches that ended at the maximum.
     evaluations : int
         Phase pairs that were computed.
     """
@@ -88,7 +88,7 @@ def worst_phases(
     equations, regularization, tolerance, cutoff
         As in `amplification`.
     starts : array_like, (K, 2), rad, optional
-        Where climbs begin. Without it at the hills of a grid of 48 x 48 phases (`hills` finds those of a surface).
+        Where searches begin. Without it at the local maxima of a grid of 48 x 48 phases.
 
     Returns
     -------
@@ -101,7 +101,8 @@ def worst_phases(
 
     Notes
     -----
-    The maximum is global as far as the grid shows its hill. `climbs`, `reached` and `runner_up` say what supports it.
+    The maximum is global as far as the grid has a local maximum near it. `climbs`, `reached` and `runner_up` say what
+    supports it.
     The denominator of (5.1) has kinks, and there mu has edges: the largest mu_2 of fig3-I stands on one.
 
     Examples
@@ -120,28 +121,28 @@ def worst_phases(
     surface = Surface(scene, amplification, {**law, "tolerance": tolerance}, body - 1, quantity)
     if starts is None:
         phases, taken = distinct(scene, GRID)
-        starts = hills(surface.at(phases, tolerance=max(tolerance, GRID_TOLERANCE)).value[taken], scene)
+        starts = local_maxima(surface.at(phases, tolerance=max(tolerance, GRID_TOLERANCE)).value[taken], scene)
     points = surface.at(checked_phases(starts))
-    climbs = [
-        Climb(points.phases[n], float(points.value[n]), float(points.error[n]), 2.0 * np.pi / GRID)
+    searches = [
+        LocalSearch(points.phases[n], float(points.value[n]), float(points.error[n]), 2.0 * np.pi / GRID)
         for n in np.flatnonzero(np.isfinite(points.value))
     ]
-    if not climbs:
+    if not searches:
         raise ValueError(f"scene {scene.name}: no phase pair has an answer; amplification says why")
     shifts: Array = np.pi * half_turns(scene).astype(float)
     for _ in range(MAX_ROUNDS):
-        highest = max(climb.value for climb in climbs)
-        active = [climb for climb in climbs if climb.may_reach(highest)]
+        highest = max(search.value for search in searches)
+        active = [search for search in searches if search.may_reach(highest)]
         if not active:
             break
-        climb_on(surface, active)
-        climbs = merged(climbs, shifts)
-    least = (1.0 - MAX_SHORTFALL) * max(climb.value for climb in climbs)
-    kinds = {climb: kind_of(surface, climb) for climb in climbs if climb.value >= least}
-    for climb in [climb for climb, (kind, _) in kinds.items() if kind == "jump"]:
-        follow_jump(surface, climb)
-        kinds[climb] = kind_of(surface, climb)
-    best, *others = sorted(merged(climbs, shifts), key=lambda climb: -climb.value)
+        search_round(surface, active)
+        searches = merged(searches, shifts)
+    least = (1.0 - MAX_SHORTFALL) * max(search.value for search in searches)
+    kinds = {search: kind_of(surface, search) for search in searches if search.value >= least}
+    for search in [search for search, (kind, _) in kinds.items() if kind == "jump"]:
+        follow_jump(surface, search)
+        kinds[search] = kind_of(surface, search)
+    best, *others = sorted(merged(searches, shifts), key=lambda search: -search.value)
     kind, side = kinds[best]
     alpha1, alpha2 = (best.phases % (2.0 * np.pi)).tolist()
     return PhaseMaximum(
@@ -151,7 +152,7 @@ def worst_phases(
         kind=kind,
         side=side,
         runner_up=others[0].value if others else float("nan"),
-        climbs=sum(climb.count for climb in climbs),
+        climbs=sum(search.count for search in searches),
         reached=best.count,
         evaluations=surface.evaluations,
     )

@@ -89,7 +89,7 @@ def test_the_engine_is_asked_where_its_ratio_to_the_equations_says_that_it_is_la
 
     sides = {TRANSLATIONAL.amplification: answering(engine), REGULARIZED.amplification: answering(equations)}
     monkeypatch.setattr("comparison.analyses.worst_phases.analysis.imported", sides.__getitem__)
-    monkeypatch.setattr("reference.measures.climb.ground_peak", lambda scene, phases: np.ones(len(phases)))
+    monkeypatch.setattr("reference.measures.local_search.ground_peak", lambda scene, phases: np.ones(len(phases)))
     worst = Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
     beside = _engine_beside(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
     assert beside.evaluations == ENGINE_POINTS

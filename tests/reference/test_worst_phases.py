@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 import reference
 from reference import phase_maximum
-from reference.measures import climb
+from reference.measures import local_search
 from reference.problem import Amplification, Scene, phase_grid
 from reference.problem.symmetry import half_turns
 
@@ -47,7 +47,7 @@ def scene_with(monkeypatch: pytest.MonkeyPatch, numerator: Surface, denominator:
         return Amplification(mu, np.full_like(mu, 1e-12), ok, never, 0.0)
 
     monkeypatch.setattr(phase_maximum, "amplification", amplification)
-    monkeypatch.setattr(climb, "ground_peak", lambda scene, phases: denominator(phases))
+    monkeypatch.setattr(local_search, "ground_peak", lambda scene, phases: denominator(phases))
     data = reference.load_scene("fig3-I").model_dump(exclude_none=True)
     data["excitation"]["amplitudes"] = [[1.0, 0.5], [0.3, 1.0], [0.1, 0.1]]
     scene = Scene.model_validate(data)

@@ -28,8 +28,8 @@ from comparison.study.models import Model, models_of, pairs_of
 from comparison.study.study import Study
 from comparison.surfaces.steps import known_mu
 from comparison.surfaces.surfaces import asked_of
-from reference.measures.climb import Climb, Points, Surface, predicted, square_of
-from reference.measures.hills import GRID, hills
+from reference.measures.local_maxima import GRID, local_maxima
+from reference.measures.local_search import LocalSearch, Points, Surface, predicted, square_of
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
@@ -157,7 +157,7 @@ def _starts(
         return None
     asked = asked_of(surfaces, scene, model)
     displacement = np.asarray(asked["displacement"].sel(model=model.key), float)
-    starts = hills(displacement if quantity == "displacement" else known_mu(asked.sel(body=body), model), scene)
+    starts = local_maxima(displacement if quantity == "displacement" else known_mu(asked.sel(body=body), model), scene)
     return starts if len(starts) else None
 
 
@@ -180,7 +180,7 @@ def _engine_beside(worst: Worst, scene: Scene, like: Model, model: Model, tolera
     """The engine at the worst phases of the equations `like` it, and its largest value in a square around them."""
     engine = _surface(scene, model, model.tolerance(tolerance), worst.body)
     start = engine.at(np.array([worst.phases]))
-    climb = Climb(start.phases[0], float(start.value[0]), float(start.error[0]), ENGINE_HALF_WIDTH)
+    climb = LocalSearch(start.phases[0], float(start.value[0]), float(start.error[0]), ENGINE_HALF_WIDTH)
     (corners, _), (square, _) = square_of(2), square_of(3)
     computed = engine.at(climb.phases + ENGINE_HALF_WIDTH * corners)
     equations = _surface(scene, like, TOLERANCE, worst.body).at(climb.phases + ENGINE_HALF_WIDTH * square)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import runpy
 import time
 from importlib import resources
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +14,6 @@ from hypothesis import strategies as st
 
 from reference.problem import GRAVITY
 from reference.problem.record_files import RecordError, at2_samples, csv_samples
-from reference.problem.synthetic import texts
 
 finite = st.floats(-1e3, 1e3)
 PLAIN = "time [s],ax [g]\n0,0.1\n0.01,0.2\n"
@@ -222,7 +223,7 @@ def test_of_a_file_that_is_no_record_nothing_is_quoted(read, text):
 def test_shipped_records_are_those_of_their_formula():
     """To the digits printed: a machine's sine may differ in the last bit."""
     folder = resources.files("reference.problem") / "examples"
-    made = texts()
+    made = runpy.run_path(str(Path(__file__).parents[3] / "docs" / "synthetic_records.py"))["texts"]()
     assert sorted(made) == sorted(entry.name for entry in folder.iterdir() if not entry.name.endswith(".toml"))
     for name, text in made.items():
         there = (folder / name).read_text()

@@ -1,4 +1,4 @@
-"""Hills of a surface over the phases: where the climbs to its maximum begin."""
+"""Local maxima of a surface on a grid of phases: where the searches for its maximum begin."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from reference.problem.symmetry import sources
 
 Array = NDArray[np.float64]
 
-GRID = 48  # phases per axis on which the hills are found
-MAX_CLIMBS = 12  # from the hills that may rise highest
+GRID = 48  # phases per axis on which the local maxima are found
+MAX_STARTS = 12  # those that may rise highest
 
 
-def hills(surface: Array, scene: Scene) -> Array:
+def local_maxima(surface: Array, scene: Scene) -> Array:
     """
     Phase pairs (K, 2), rad, at which a surface is as high as at its eight neighbors, those first that may rise highest.
 
-    surface: (n, n), on `phase_grid(n)`; NaN without an answer. At most MAX_CLIMBS pairs, and of those that a symmetry
+    surface: (n, n), on `phase_grid(n)`; NaN without an answer. At most MAX_STARTS pairs, and of those that a symmetry
     of the motion makes alike only one.
 
     >>> from reference.problem import load_scene
     >>> alpha = 2.0 * np.pi * np.arange(8) / 8
-    >>> hills(np.cos(2.0 * alpha)[:, None] + np.cos(2.0 * alpha)[None, :], load_scene("fig3-I")).tolist()
+    >>> local_maxima(np.cos(2.0 * alpha)[:, None] + np.cos(2.0 * alpha)[None, :], load_scene("fig3-I")).tolist()
     [[0.0, 0.0]]
     """
     points = len(surface)
@@ -35,4 +35,4 @@ def hills(surface: Array, scene: Scene) -> Array:
     places = places[sources(scene, points)[places] == places]
     high, low = height.ravel()[places], lowest.ravel()[places]
     may_reach = high + 0.5 * (high - low)
-    return phase_grid(points)[places[np.argsort(-may_reach, kind="stable")][:MAX_CLIMBS]]
+    return phase_grid(points)[places[np.argsort(-may_reach, kind="stable")][:MAX_STARTS]]

@@ -1,9 +1,9 @@
 """
-Climbing on a surface over the phases whose denominator is known exactly.
+Local search on a surface over the phases whose denominator is known exactly.
 
 In a square around the best pair of phases, the numerator is interpolated by a polynomial and divided by the exact
 denominator, and the pair at which this quotient is largest is computed next. The square moves with the best pair, and
-shrinks where that pair lies inside. The exact denominator lets a climb follow its kinks, on which maxima of mu may
+shrinks where that pair lies inside. The exact denominator lets a search follow its kinks, on which maxima of mu may
 stand and which no polynomial of mu itself can show. Beside a jump of the numerator the square closes on a high pair,
 and `follow_jump` goes along the jump to the highest one.
 """
@@ -36,10 +36,10 @@ MOVED = 0.8  # of the half width: a best pair farther from the center moves the 
 NODES, MANY_NODES = 3, 5  # of a square's polynomial along each axis: at first, and after a prediction that is not good
 GOOD_PREDICTION = 0.1  # largest error of a prediction over the differences in the square
 SHRINK, SHRINK_SLOWLY = 0.2, 0.6  # after a good prediction, and after another
-PROMISE = 2.0  # times the differences in its square: a climb that lies farther below the highest one ends
+PROMISE = 2.0  # times the differences in its square: a search that lies farther below the highest one ends
 # rounds, and times what they have gained: likewise. Beside a jump a square has large differences however small it is
 LATEST_ROUNDS, GAIN_PROMISE = 6, 10.0
-MAX_MERGED_WIDTH = 0.04  # rad: climbs into a common square that is smaller have found one maximum
+MAX_MERGED_WIDTH = 0.04  # rad: searches into a common square that is smaller have found one maximum
 JUMP_HALF_WIDTH = 0.07  # rad, of the first square in which a jump is followed
 JUMP_ROUNDS, JUMP_READINGS = 2, 5
 DIRECTIONS = 32  # in which the surface beside a maximum is looked at
@@ -70,7 +70,7 @@ class Points:
 
 @dataclass
 class Surface:
-    """What is climbed: mu of one body, or the displacement of the platform, m."""
+    """What is searched: mu of one body, or the displacement of the platform, m."""
 
     scene: Scene
     amplification: Callable[..., Amplification]
@@ -97,7 +97,7 @@ class Surface:
 
 
 @dataclass(eq=False)
-class Climb:
+class LocalSearch:
     """The best phase pair so far, and the square that is searched next."""
 
     phases: Array  # (2,), rad
@@ -106,7 +106,7 @@ class Climb:
     half_width: float  # rad
     differences: float = np.inf  # between values in the last square
     nodes: int = NODES  # of the next square along each axis
-    count: int = 1  # climbs that have become this one
+    count: int = 1  # searches that have become this one
     history: list[tuple[float, float]] = field(default_factory=list)  # half width and value after each round
 
     def take(self, points: Points) -> None:
@@ -116,7 +116,7 @@ class Climb:
             self.phases, self.value, self.error = points.phases[top], float(points.value[top]), float(points.error[top])
 
     def may_reach(self, highest: float) -> bool:
-        """Whether the climb goes on: its square is not closed yet, and can hold the highest value."""
+        """Whether the search goes on: its square is not closed yet, and can hold the highest value."""
         promise = PROMISE * self.differences
         if len(self.history) > LATEST_ROUNDS:
             promise = min(promise, GAIN_PROMISE * (self.value - self.history[-1 - LATEST_ROUNDS][1]))
@@ -137,47 +137,47 @@ def square_of(nodes: int) -> tuple[Array, Array]:
     return places, np.linalg.inv(chebyshev.chebvander2d(places[:, 0], places[:, 1], [nodes - 1, nodes - 1]))
 
 
-def climb_on(surface: Surface, climbs: Sequence[Climb]) -> None:
-    """One round of all climbs at once: their squares, then the pairs predicted to be best."""
-    places = [climb.phases + climb.half_width * square_of(climb.nodes)[0] for climb in climbs]
+def search_round(surface: Surface, searches: Sequence[LocalSearch]) -> None:
+    """One round of all searches at once: their squares, then the pairs predicted to be best."""
+    places = [search.phases + search.half_width * square_of(search.nodes)[0] for search in searches]
     ends = np.cumsum([len(place) for place in places]).tolist()
     computed = surface.at(np.concatenate(places))
     squares = [computed.part(slice(end - len(place), end)) for place, end in zip(places, ends)]
-    predictions = [predicted(surface, climb, square) for climb, square in zip(climbs, squares)]
+    predictions = [predicted(surface, search, square) for search, square in zip(searches, squares)]
     best = surface.at(np.array([phases for phases, _ in predictions]))
-    for n, (climb, square, (_, value)) in enumerate(zip(climbs, squares, predictions)):
-        center = climb.phases
-        climb.take(square)
-        climb.take(best.part(slice(n, n + 1)))
+    for n, (search, square, (_, value)) in enumerate(zip(searches, squares, predictions)):
+        center = search.phases
+        search.take(square)
+        search.take(best.part(slice(n, n + 1)))
         known = square.value[np.isfinite(square.value)]
-        climb.differences = float(np.ptp(known)) if len(known) else 0.0
+        search.differences = float(np.ptp(known)) if len(known) else 0.0
         miss = abs(value - float(best.value[n]))
-        good = miss <= GOOD_PREDICTION * climb.differences
-        climb.nodes = NODES if good else MANY_NODES
-        if np.abs(climb.phases - center).max() < MOVED * climb.half_width:
-            climb.half_width *= SHRINK if good else SHRINK_SLOWLY
-        climb.history.append((climb.half_width, climb.value))
-        if max(miss, climb.differences) <= climb.error:
-            climb.half_width = 0.0
+        good = miss <= GOOD_PREDICTION * search.differences
+        search.nodes = NODES if good else MANY_NODES
+        if np.abs(search.phases - center).max() < MOVED * search.half_width:
+            search.half_width *= SHRINK if good else SHRINK_SLOWLY
+        search.history.append((search.half_width, search.value))
+        if max(miss, search.differences) <= search.error:
+            search.half_width = 0.0
 
 
-def predicted(surface: Surface, climb: Climb, square: Points) -> tuple[Array, float]:
+def predicted(surface: Surface, search: LocalSearch, square: Points) -> tuple[Array, float]:
     """Where the interpolated numerator over the exact denominator is largest in the square, and its value there."""
     known = np.isfinite(square.numerator)
     if not known.any():
-        return climb.phases, -np.inf
+        return search.phases, -np.inf
     numerator = np.where(known, square.numerator, square.numerator[known].min())
     nodes = math.isqrt(len(numerator))
     coefficients = (square_of(nodes)[1] @ numerator).reshape(nodes, nodes)
 
     def quotient(first: Array, second: Array) -> Array:
-        phases = climb.phases + climb.half_width * np.stack([first, second], axis=-1)
+        phases = search.phases + search.half_width * np.stack([first, second], axis=-1)
         denominator = surface.denominator(phases.reshape(-1, 2)).reshape(first.shape)
         values: Array = chebyshev.chebval2d(first, second, coefficients) / denominator
         return values
 
     place, value = _largest(quotient, [COARSE, *[FINE] * (READINGS - 1)])
-    return climb.phases + climb.half_width * place, value
+    return search.phases + search.half_width * place, value
 
 
 def _largest(function: Callable[[Array, Array], Array], readings: list[Array]) -> tuple[Array, float]:
@@ -206,45 +206,45 @@ def _largest(function: Callable[[Array, Array], Array], readings: list[Array]) -
     return np.array([middle, second[top]]), float(values[top])
 
 
-def follow_jump(surface: Surface, climb: Climb) -> None:
+def follow_jump(surface: Surface, search: LocalSearch) -> None:
     """From a place beside a jump to the highest one along it, by computed values alone."""
-    center, half_width = climb.phases, JUMP_HALF_WIDTH
+    center, half_width = search.phases, JUMP_HALF_WIDTH
 
     def value(first: Array, second: Array) -> Array:
         phases = center + half_width * np.stack([first, second], axis=-1)
         points = surface.at(phases.reshape(-1, 2))
-        climb.take(points)
+        search.take(points)
         return points.value.reshape(first.shape)
 
     for _ in range(JUMP_ROUNDS):
-        climb.history.append((half_width, climb.value))
+        search.history.append((half_width, search.value))
         _largest(value, [FINE] * JUMP_READINGS)
-        center, half_width = climb.phases, 0.1 * half_width
-    climb.history.append((half_width, climb.value))
+        center, half_width = search.phases, 0.1 * half_width
+    search.history.append((half_width, search.value))
 
 
-def merged(climbs: list[Climb], shifted: Array) -> list[Climb]:
-    """Climbs without those whose best pair, shifted by a row of (K, 2), rad, lies in the square of a higher one."""
-    kept: list[Climb] = []
-    for climb in sorted(climbs, key=lambda climb: -climb.value):
+def merged(searches: list[LocalSearch], shifted: Array) -> list[LocalSearch]:
+    """Searches without those whose best pair, shifted by a row of (K, 2), rad, lies in the square of a higher one."""
+    kept: list[LocalSearch] = []
+    for search in sorted(searches, key=lambda search: -search.value):
         for higher in kept:
-            apart = climb.phases + shifted - higher.phases
+            apart = search.phases + shifted - higher.phases
             apart = np.abs(np.remainder(apart + np.pi, 2.0 * np.pi) - np.pi).max(axis=1).min()
-            width = max(climb.half_width, higher.half_width, MIN_HALF_WIDTH)
+            width = max(search.half_width, higher.half_width, MIN_HALF_WIDTH)
             if apart <= width <= MAX_MERGED_WIDTH:
-                higher.count += climb.count
+                higher.count += search.count
                 break
         else:
-            kept.append(climb)
+            kept.append(search)
     return kept
 
 
-def kind_of(surface: Surface, climb: Climb) -> tuple[str, tuple[float, float]]:
+def kind_of(surface: Surface, search: LocalSearch) -> tuple[str, tuple[float, float]]:
     """What the surface has at the maximum, and to which side of a jump it lies: from its fall at two distances."""
     angle = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
     directions = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    far, near = (climb.value - surface.at(climb.phases + distance * directions).value for distance in (FAR, NEAR))
-    clear = near > CLEAR_FALL * climb.error
+    far, near = (search.value - surface.at(search.phases + distance * directions).value for distance in (FAR, NEAR))
+    clear = near > CLEAR_FALL * search.error
     jumps = clear & (near > JUMP_FALL * far)
     if jumps.any() and not jumps.all():
         x, y = directions[~jumps].sum(axis=0)

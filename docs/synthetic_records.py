@@ -1,5 +1,5 @@
 """
-The synthetic records that are shipped as examples: `python -m reference.problem.synthetic FOLDER` writes them again.
+The synthetic records that are shipped as examples: `python docs/synthetic_records.py FOLDER` writes them again.
 
 The ground's velocity along axis k = 0, 1, 2 (x, y, z) over 0 <= t <= T is
     v_k(t) = w(t) sum_j f_j^(-1/2) sin(2 pi f_j t + 2 pi j (k + 1) (sqrt(5) - 1) / 2),   w(t) = sin^2(pi (t/T)^0.7),
