@@ -6,13 +6,14 @@ Compiled code passes them by reference: as a tuple, every call would copy and co
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from types import SimpleNamespace
 
 import numpy as np
+from numba import njit
 
 from reference.solver.collocation import CHANNELS, LANES, STAGES
 from reference.solver.compiled import compiled
-from reference.solver.compiled.by_reference import ByReference, by_reference, zeroed
+from reference.solver.compiled.by_reference import ByReference, by_reference, empty
 from reference.solver.polynomial import POWERS
 from reference.solver.system import Array, Complex
 
@@ -109,55 +110,66 @@ class Work:
     look: float  # s, after which the run looks ahead, or ends if it may not end early by itself
 
 
-def _fields(bodies: int) -> dict[str, Array | Complex | float]:
-    """Of Work for so many bodies."""
+def _fill(work: Work, bodies: int) -> None:
+    """Zeros in every field, for so many bodies."""
     n, s, c, lanes = bodies, STAGES, CHANNELS, LANES
-    arrays: dict[str, Array | Complex] = {
-        "phase": np.zeros(2),
-        "x": np.zeros((n, 2)),
-        "v": np.zeros((n, 2)),
-        "a0": np.zeros((n, 2)),
-        "total0": np.zeros((n, 3)),
-        "x1": np.zeros((n, 2)),
-        "v1": np.zeros((n, 2)),
-        "a": np.zeros((n, 2, lanes)),
-        "ground": np.zeros((3, lanes)),
-        "total": np.zeros((n, 3, lanes)),
-        "free": np.zeros((2, lanes)),
-        "feedback": np.zeros((2, s, lanes)),
-        "inverse": np.zeros((n, 2, c), np.complex128),
-        "load": np.zeros((n, 2, c), np.complex128),
-        "channels": np.zeros(lanes),
-        "gain": np.zeros((2, c), np.complex128),
-        "stage": np.zeros((9, lanes)),
-        "slopes": np.zeros((12, lanes)),
-        "matrix": np.zeros((2 * s, 2, lanes)),
-        "residual": np.zeros((2, lanes)),
-        "turn_matrix": np.zeros((s, 1, lanes)),
-        "pivots": np.zeros(2 * s),
-        "chain": np.zeros((n, 2, lanes)),
-        "velocity": np.zeros((n, 2, lanes)),
-        "turning": np.zeros((12, lanes)),
-        "levels": np.zeros(lanes),
-        "edges": np.zeros(2 * MAX_PARTS),
-        "powers": np.zeros((5, POWERS)),
-        "dense": np.zeros((2, lanes)),
-        "scale": np.zeros(n),
-        "defect": np.zeros(n),
-        "guess": np.zeros((2, POWERS)),
-        "waves": np.zeros(2, np.complex128),
-        "turns": np.zeros(2, np.complex128),
-        "elapsed": np.zeros(lanes),
-        "series": np.zeros((SERIES_TERMS, 2)),
-        "best": np.zeros(n),
-        "reading_error": np.zeros(n),
-        "drift": np.zeros(n),
-    }
-    return {name: arrays.get(name, 0.0) for name in Work.__annotations__}
+    work.phase = np.zeros(2)
+    work.x = np.zeros((n, 2))
+    work.v = np.zeros((n, 2))
+    work.a0 = np.zeros((n, 2))
+    work.total0 = np.zeros((n, 3))
+    work.x1 = np.zeros((n, 2))
+    work.v1 = np.zeros((n, 2))
+    work.a = np.zeros((n, 2, lanes))
+    work.ground = np.zeros((3, lanes))
+    work.total = np.zeros((n, 3, lanes))
+    work.free = np.zeros((2, lanes))
+    work.feedback = np.zeros((2, s, lanes))
+    work.inverse = np.zeros((n, 2, c), np.complex128)
+    work.load = np.zeros((n, 2, c), np.complex128)
+    work.channels = np.zeros(lanes)
+    work.gain = np.zeros((2, c), np.complex128)
+    work.stage = np.zeros((9, lanes))
+    work.slopes = np.zeros((12, lanes))
+    work.matrix = np.zeros((2 * s, 2, lanes))
+    work.residual = np.zeros((2, lanes))
+    work.turn_matrix = np.zeros((s, 1, lanes))
+    work.pivots = np.zeros(2 * s)
+    work.chain = np.zeros((n, 2, lanes))
+    work.velocity = np.zeros((n, 2, lanes))
+    work.turning = np.zeros((12, lanes))
+    work.levels = np.zeros(lanes)
+    work.edges = np.zeros(2 * MAX_PARTS)
+    work.powers = np.zeros((5, POWERS))
+    work.dense = np.zeros((2, lanes))
+    work.scale = np.zeros(n)
+    work.defect = np.zeros(n)
+    work.guess = np.zeros((2, POWERS))
+    work.waves = np.zeros(2, np.complex128)
+    work.turns = np.zeros(2, np.complex128)
+    work.elapsed = np.zeros(lanes)
+    work.series = np.zeros((SERIES_TERMS, 2))
+    work.best = np.zeros(n)
+    work.reading_error = np.zeros(n)
+    work.drift = np.zeros(n)
+    work.time = work.angle = work.log_speed = work.log_ratio = work.start2 = 0.0
+    work.length = work.stretched = work.fitting = work.growth = work.held = 0.0
+    work.entered = work.left = work.old_length = work.end = work.steps = 0.0
+    work.reach2 = work.peaked = work.settled = work.look = 0.0
 
 
 system_by_reference, record_by_reference = by_reference(_SystemType), by_reference(_RecordType)
-workspace: Callable[[int], Work] = zeroed(_WorkType, _fields)  # for runs with this many bodies
+_fields = SimpleNamespace()
+_fill(_fields, 2)  # type: ignore[arg-type]
+_empty, _compiled_fill = empty(_WorkType, vars(_fields)), njit(nogil=True)(_fill)
+
+
+@njit(nogil=True)
+def workspace(bodies: int) -> Work:
+    """For runs with this many bodies."""
+    work = _empty()
+    _compiled_fill(work, bodies)
+    return work
 
 
 @compiled

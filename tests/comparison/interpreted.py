@@ -38,7 +38,7 @@ def prepare() -> None:
     from reference.solver.compiled import by_reference
 
     by_reference.by_reference = lambda kind: lambda values: types.SimpleNamespace(**values._asdict())
-    by_reference.zeroed = lambda kind, fields: lambda size: types.SimpleNamespace(**fields(size))
+    by_reference.empty = lambda kind, fields: types.SimpleNamespace
 
     def put(array: Any, place: Any, values: Any) -> None:
         array[place][:LANES] = values

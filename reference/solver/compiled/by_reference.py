@@ -3,18 +3,17 @@ Numba's types of structures that compiled code passes by reference.
 
 Numba can do this itself (`structref.register`). It spells out all fields of a structure in the name of every function
 with such an argument, and again wherever a field is read: thousands of characters each time, to write and to read. Its
-constructors take every field as an argument, and its `np.zeros` is compiled for every kind of array.
+constructors take every field as an argument.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import cached_property
 from typing import Any
 
-import numpy as np
 from numba import typeof
-from numba.core import cgutils, types
+from numba.core import types
 from numba.core.datamodel import default_manager
 from numba.core.datamodel.models import StructRefModel
 from numba.core.extending import infer_getattr, lower_getattr_generic, lower_setattr_generic
@@ -22,10 +21,6 @@ from numba.core.imputils import impl_ret_borrowed
 from numba.core.typing.templates import AttributeTemplate
 from numba.experimental import structref
 from numba.extending import intrinsic
-from numba.np.arrayobj import populate_array
-
-_MEMORY: Any = types.MemInfoPointer(types.voidptr)  # type: ignore[attr-defined]
-ALIGNMENT = 64  # bytes: a row of eight numbers lies in one line of the processor's cache
 
 
 class ByReference(types.StructRef):  # type: ignore[misc, name-defined]
@@ -117,48 +112,15 @@ def by_reference(kind: type[ByReference]) -> Any:
     return made
 
 
-def zeroed(kind: type[ByReference], fields: Callable[[int], Mapping[str, Any]]) -> Any:
-    """
-    A function of compiled code that makes such a structure of zeros for a size, all its arrays in one piece of memory.
-
-    fields: floats, and arrays of any values, by the size, which is the length of some of their axes.
-    """
-    known, longer = fields(2), fields(3)
-    arrays = {name: value for name, value in known.items() if isinstance(value, np.ndarray)}
-    structure = kind([(name, typeof(value)) for name, value in known.items()])
+def empty(kind: type[ByReference], fields: Mapping[str, Any]) -> Any:
+    """A function of compiled code that makes such a structure with fields of the types of `fields`, all bits zero."""
+    structure = kind([(name, typeof(value)) for name, value in fields.items()])
 
     @intrinsic
-    def made(context: Any, size: Any) -> Any:
+    def made(context: Any) -> Any:
         def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            def constant(number: int) -> Any:
-                return context.get_constant(types.intp, number)
+            return _new(context, builder, structure)
 
-            size = context.cast(builder, arguments[0], signature.args[0], types.intp)
-            shapes, places, end = {}, {}, constant(0)
-            for name, array in arrays.items():
-                lengths = zip(array.shape, longer[name].shape)
-                shapes[name] = [constant(short) if short == long else size for short, long in lengths]
-                places[name], count = end, constant(array.itemsize)
-                for length in shapes[name]:
-                    count = builder.mul(count, length)
-                end = builder.and_(builder.add(end, builder.add(count, constant(ALIGNMENT - 1))), constant(-ALIGNMENT))
-            memory = context.nrt.meminfo_alloc_aligned(builder, end, ALIGNMENT)
-            data = context.nrt.meminfo_data(builder, memory)
-            cgutils.memset(builder, data, end, 0)
-            reference = _new(context, builder, structure)
-            for name in arrays:
-                field, itemsize = structure.field_dict[name], arrays[name].itemsize
-                strides = [constant(itemsize)]
-                for length in shapes[name][:0:-1]:
-                    strides.insert(0, builder.mul(strides[0], length))
-                array = context.make_array(field)(context, builder)
-                first = builder.bitcast(builder.gep(data, [places[name]]), array.data.type)
-                populate_array(array, first, shapes[name], strides, itemsize, memory)
-                context.nrt.incref(builder, field, array._getvalue())
-                builder.store(array._getvalue(), structure.pointer(context, builder, reference, name))
-            context.nrt.decref(builder, _MEMORY, memory)
-            return reference
-
-        return structure(size), lower
+        return structure(), lower
 
     return made

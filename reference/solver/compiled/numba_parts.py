@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import operator
 from functools import cache
-from typing import Any, ClassVar
+from typing import Any
 
 from llvmlite.binding import Linkage
 from numba.core import types
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
+from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import LoweringPass, register_pass
 from numba.core.runtime.context import NRTContext
 from numba.core.typed_passes import AnnotateTypes, InlineOverloads, IRLegalization, NopythonRewrites
@@ -85,23 +85,6 @@ class _AsPart(LoweringPass):  # type: ignore[misc]
         return False
 
 
-class _SharedFlags(Flags):  # type: ignore[misc]
-    """
-    Numba's options of a function, as one object for all functions with the same options.
-
-    Numba looks up what an operator does by the options as well, tens of thousands of times. It compares one object
-    with itself at once, and two of them value by value.
-    """
-
-    _known: ClassVar[dict[str, Flags]] = {}
-    __eq__ = object.__eq__
-    __hash__ = object.__hash__
-
-    def copy(self) -> Flags:
-        """Return the shared object, which numba uses while it compiles."""
-        return self._known.setdefault(repr(self), self)
-
-
 class _RememberedFunctions(Context):  # type: ignore[misc]
     """Numba's lookup of what functions return, which asks once for a function of numba and types of arguments."""
 
@@ -126,7 +109,6 @@ class PartCompiler(CompilerBase):  # type: ignore[misc]
 
     def compile_extra(self, func: Any) -> Any:
         """Compile a Python function."""
-        self.state.flags = _SharedFlags(self.state.flags)
         self.state.typingctx = remembered_functions(self.state.typingctx)
         return super().compile_extra(func)
 
