@@ -22,6 +22,7 @@ from comparison.analyses.measured import feature as measured
 from comparison.analyses.motions.analysis import Motions
 from comparison.analyses.scaling import feature as scaling
 from comparison.analyses.tradeoff import feature as tradeoff
+from comparison.analyses.validation import feature as validation
 from comparison.analyses.worst_phases import feature as worst_phases
 from comparison.report.building import build_report
 from comparison.report.page import BUDGET, DIFFERENCES, MODELS, OUTCOMES, PROVENANCE, SURFACES, VERIFICATION
@@ -52,6 +53,7 @@ FEATURES: tuple[Feature, ...] = (
     errata.FEATURE,
     assumptions.FEATURE,
     measured.FEATURE,
+    validation.FEATURE,
     benchmarks.FEATURE,
     extremes.FEATURE,
     tradeoff.FEATURE,

@@ -20,6 +20,7 @@ ANALYSES = (
     "errata",
     "assumptions",
     "measured",
+    "validation",
     "benchmarks",
     "extremes",
     "tradeoff",

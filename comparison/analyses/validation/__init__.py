@@ -1,0 +1,1 @@
+"""Measured motions beside what both sides compute."""

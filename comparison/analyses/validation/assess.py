@@ -1,0 +1,118 @@
+"""Comparison errors and their uncertainties, as in ASME V&V 20, all of about 95 %; and how a side computes a motion."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
+
+import multibody
+import reference
+from comparison.analyses.validation.table import ENGINE, EQUATIONS, NONE, SMOOTHED, VALID, Comparison, Curve, Quantity
+from comparison.json_file import finite_or_none
+from reference.problem import Scene, State, Trajectory
+from reference.problem.demands import ANSWERED
+
+Array = NDArray[np.float64]
+SIDES = (EQUATIONS, SMOOTHED, ENGINE)
+COVERAGE = 2.0  # standard deviations of an expanded uncertainty
+
+
+class Answer(NamedTuple):
+    """What one side computes, (Q,), with its numerical errors."""
+
+    values: Array
+    errors: Array
+
+
+class Found(NamedTuple):
+    """What one experiment adds to the table."""
+
+    quantities: list[Quantity]
+    inputs: list[str]
+    facts: list[str]
+    curves: list[Curve]
+
+
+class Data(NamedTuple):
+    """What was measured: names and units of the quantities, their use, D and u_D."""
+
+    names: Sequence[str]
+    units: Sequence[str]
+    use: Sequence[str]
+    values: Array
+    uncertainty: Array
+
+
+def motion_of(
+    side: str,
+    scene: Scene,
+    phases: tuple[float, float],
+    place: Array,
+    regularization: float,
+    tolerance: float,
+    equations: str = "exact",
+) -> Trajectory:
+    """The motion of bodies released from rest at `place` (N,), m along x; the tolerance is the engine's."""
+    start = np.column_stack([place, np.zeros_like(place)])
+    initial = State(start, np.zeros_like(start))
+    if side == ENGINE:
+        return multibody.trajectory(scene, phases, tolerance=tolerance, regularization=regularization, initial=initial)
+    threshold = regularization if side == SMOOTHED else None
+    return reference.trajectory(scene, phases, equations, threshold, 1e-7, initial=initial)
+
+
+def answer(motion: Trajectory, read: Callable[[Trajectory], Array], count: int) -> Answer:
+    """What is read from a motion, `count` values, and its errors; NaN from one that ended early."""
+    nothing = np.full(count, np.nan)
+    if motion.status not in ANSWERED or motion.accuracy is None:
+        return Answer(nothing, nothing)
+    values, others = read(motion), [read(each) for each in motion.accuracy.coarser]
+    errors = [motion.accuracy.error_of(value, rest) for value, *rest in zip(values, *others)]
+    return Answer(values, np.array(errors))
+
+
+def spline(motion: Trajectory) -> CubicHermiteSpline:
+    """Position of the platform along x, m."""
+    return CubicHermiteSpline(motion.time, motion.position[:, 0, 0], motion.velocity[:, 0, 0])
+
+
+def given(name: str, value: float, uncertainty: float, unit: str, source: str) -> str:
+    """An input as a sentence."""
+    return f"{name} {value:.5g} ± {uncertainty:.2g} {unit}".rstrip() + f" ({source})"
+
+
+def combined(changes: Sequence[Array]) -> Array:
+    """u_input: the root of the sum of the squared changes that the uncertainty of each input makes."""
+    total: Array = np.sqrt(np.sum(np.square(changes), axis=0))
+    return total
+
+
+def quantities(
+    experiment: str,
+    data: Data,
+    inputs: Array,
+    answers: Mapping[str, Answer],
+    explain: Callable[[int, float], tuple[str, str]],
+) -> list[Quantity]:
+    """The table of one run; explain: verdict and cause of quantity k, whose E exceeds this u_val."""
+    rows = []
+    for k, (name, unit, use) in enumerate(zip(data.names, data.units, data.use)):
+        sides, cause = {}, ""
+        for side, (values, errors) in answers.items():
+            error = float(values[k] - data.values[k])
+            allowed = math.hypot(errors[k], inputs[k], data.uncertainty[k])
+            verdict = VALID
+            if not (math.isfinite(error) and math.isfinite(allowed)):
+                verdict = NONE
+            elif abs(error) > allowed:
+                verdict, cause = explain(k, allowed)
+            numbers = (float(values[k]), error, float(errors[k]), allowed)
+            sides[side] = Comparison(*map(finite_or_none, numbers), verdict)
+        measured, spread, propagated = (float(row[k]) for row in (data.values, data.uncertainty, inputs))
+        rows.append(Quantity(experiment, name, unit, use, measured, spread, propagated, cause, sides))
+    return rows

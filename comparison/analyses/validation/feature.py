@@ -1,0 +1,56 @@
+"""Measured motions: in the report."""
+
+from __future__ import annotations
+
+from itertools import groupby
+
+from comparison.analyses.validation.files import FRAME_SOURCE, PENDULUM_SOURCE
+from comparison.analyses.validation.table import ENGINE, EQUATIONS, INPUT, LAW, MEANING, NONE, STORED, VALID, Validation
+from comparison.report.plots import Panel
+from comparison.report.section import Feature, Section
+
+COLORS = {VALID: "v-converged", LAW: "v-limit", INPUT: "v-refused", NONE: "v-FAILED"}  # class of each verdict
+LOOKS = {"measured": {"color": "ink", "width": 2.4}, EQUATIONS: {"color": 0}, ENGINE: {"color": 1, "dash": "5 3"}}
+
+
+def panels(table: Validation) -> list[Panel]:
+    """A plot for every experiment: measured and computed."""
+    drawn = []
+    for title, group in groupby(table.curves, key=lambda curve: curve.panel):
+        curves = list(group)
+        few = max(len(curve.x) for curve in curves) < 200
+        series = [
+            {"name": curve.name, "x": list(curve.x), "y": list(curve.y), "marks": few, **LOOKS[curve.name]}
+            for curve in curves
+        ]
+        plot = {
+            "label": f"{title}: {curves[0].axes[1]} over {curves[0].axes[0]}; " + ", ".join(LOOKS),
+            "x": {"title": curves[0].axes[0]},
+            "y": {"title": curves[0].axes[1]},
+            "series": series,
+        }
+        drawn.append({"title": title, "plot": plot})
+    return drawn
+
+
+FEATURE = Feature(
+    "validation",
+    Validation,
+    "measured motions beside what both sides compute; null unless python -m comparison.validation left it beside the "
+    "report",
+    load=STORED.load,
+    section=Section(
+        "validation",
+        "Measured motions",
+        "validation/section.html.j2",
+        ("validation",),
+        "python -m comparison.validation FOLDER makes it of measured files, beside the report; the next run of the "
+        "study shows it",
+        lambda report, figures: {
+            "validation_panels": panels,
+            "validation_verdicts": MEANING,
+            "validation_colors": COLORS,
+            "validation_sources": (FRAME_SOURCE, PENDULUM_SOURCE),
+        },
+    ),
+)

@@ -1,0 +1,257 @@
+"""
+The shaken frame: one friction ratio is fitted to the motion of one run, the other runs are predicted.
+
+With y the motion of the base, z that of the top plate, both absolute, and r w g the friction of the disc of mass w,
+
+    M z'' + C z' + K z + r w g sign(z') = K y + C y'
+
+is the platform on the isolator, shaken by -(K y + C y') / M. Viscous damping is friction that grows with the speed,
+mu(v) = mu_0 + C v / (m_sum g), of the velocity-dependent law far below its upper limit. A second body ten times as
+heavy on a link so soft that it does nothing lends its weight: the sphere is then eleven times as large and as good
+as a parabola, as a spring is.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from comparison.analyses.validation import assess
+from comparison.analyses.validation.assess import COVERAGE, SIDES, Answer, Array, Found
+from comparison.analyses.validation.files import Shaken
+from comparison.analyses.validation.table import ENGINE, EQUATIONS, INPUT, LAW, Curve
+from reference.problem import GRAVITY, Scene, Trajectory
+
+HEAVY, LOOSE = 10.0, 1e4  # mass of the second body over that of the platform; period of its link, s
+FAST = 1.0  # by how much friction would grow at infinite speed: the slope at zero is what counts
+CYCLES = 12  # computed, of which the last is read
+SAMPLES = 250  # of a cycle, as measured
+HARMONICS = 6  # fitted to the base motion
+SPEED = 2.0  # mm/s: slower is at rest
+WIDTH = 4  # samples to either side of a velocity
+REGULARIZATION = 1e-4  # m/s, of the engine
+TOLERANCE = 1e-3  # of the engine
+FIRST = 0.250  # kg, weight of the disc in the run that the ratio is fitted to, if the folder has it
+STEP = 0.005  # of ratio and scale, for slopes
+NAMES = ("half range", "rms about the mean", "share of time at rest", "phase of the starts", "phase of the stops")
+UNITS = ("mm", "mm", "%", "deg", "deg")
+
+
+class Setup(NamedTuple):
+    """Inputs of the computation: of the frame, of the base motion, of the disc."""
+
+    mass: float = 3.0799  # kg
+    stiffness: float = 1191.0  # N/m
+    damping: float = 0.6690  # N s/m
+    scale: float = 1.0  # of the base motion
+    second: float = 0.0  # share of the measured second harmonic
+    disc: float = 1.0  # its weight over the stated one
+    ratio: float = 0.3  # friction
+
+
+ASSUMED = {  # uncertainty of each input, its name, unit and source
+    "mass": (0.01 * Setup().mass, "mass", "kg", "authors; 1 % assumed"),
+    "stiffness": (0.01 * Setup().stiffness, "stiffness", "N/m", "authors; 1 % assumed"),
+    "damping": (0.2 * Setup().damping, "viscous damping", "N s/m", "authors; 20 % assumed"),
+    "scale": (0.01, "base motion over plate motion, scales of the sensors", "", "1 % assumed"),
+    "second": (1.0, "share of the second harmonic of the base", "", "0 or the measured one, 1 % of the first: assumed"),
+    "disc": (0.01, "weight of the disc over the stated one", "", "authors; 1 % assumed"),
+}
+REFITTED = ("mass", "stiffness", "damping", "scale", "second")  # with these the ratio is fitted again
+
+
+class Cycles(NamedTuple):
+    """A measured run, folded: motions (J, SAMPLES), mm, from the largest position of the base on."""
+
+    run: Shaken
+    motions: Array
+    frequency: float  # Hz
+    amplitude: float  # mm, of the base
+    second: complex  # mm, its second harmonic
+
+    @property
+    def mean(self) -> Array:
+        """The mean cycle about its mean, mm."""
+        mean: Array = self.motions.mean(axis=0)
+        return mean - mean.mean()
+
+
+def fold(run: Shaken) -> Cycles:
+    """The whole cycles of a run, by the fundamental of the base motion."""
+    time = run.time - run.time[0]
+    spectrum = np.abs(np.fft.rfft(run.base - run.base.mean()))
+    first = float(np.argmax(spectrum)) / (time[-1] + time[1])
+
+    def fitted(frequency: float) -> tuple[Array, Array]:
+        turns = 2.0 * np.pi * frequency * np.outer(time, np.arange(HARMONICS + 1))
+        terms = np.hstack([np.cos(turns), np.sin(turns[:, 1:])])
+        factors: Array = np.linalg.lstsq(terms, run.base, rcond=None)[0]
+        return factors, run.base - terms @ factors
+
+    scaled = least_squares(lambda factor: fitted(first * factor[0])[1], [1.0], x_scale=1e-3, xtol=1e-12, ftol=1e-12)
+    frequency = first * float(scaled.x[0])
+    factors, _ = fitted(frequency)
+    harmonics = factors[1 : HARMONICS + 1] - 1j * factors[HARMONICS + 1 :]
+    begin = np.angle(harmonics[0])
+    phase = frequency * time + begin / (2.0 * np.pi)
+    whole = range(math.ceil(phase[0]), math.floor(phase[-1]))
+    grid = np.arange(SAMPLES) / SAMPLES
+    motions = np.array([np.interp(number + grid, phase, run.plate) for number in whole])
+    return Cycles(run, motions, frequency, abs(harmonics[0]), complex(harmonics[1] * np.exp(-2j * begin)))
+
+
+def read_cycle(motion: Array, frequency: float) -> Array:
+    """
+    The quantities of one cycle (SAMPLES,), mm: NAMES.
+
+    The plate starts and stops where its speed passes SPEED, before and behind each of its two largest speeds; the
+    phases are from the turn of the base on, means of both directions.
+    """
+    speed = (np.roll(motion, -WIDTH) - np.roll(motion, WIDTH)) * frequency * SAMPLES / (2 * WIDTH)
+    ends = []
+    for sign in (-1.0, 1.0):
+        top = int(np.argmax(sign * speed))
+        turned = np.roll(sign * speed, -top)
+        ends.append([top - _first_below(turned[np.arange(0, -SAMPLES, -1)]), top + _first_below(turned)])
+    starts, stops = (np.array(ends).T - [0.0, 0.5 * SAMPLES]) * 360.0 / SAMPLES
+    moving = (stops - starts).sum() / 360.0
+    middles = [np.angle(np.exp(1j * np.radians(phases)).sum(), deg=True) % 360.0 for phases in (starts, stops)]
+    return np.array([0.5 * np.ptp(motion), motion.std(), 100.0 * (1.0 - moving), *middles])
+
+
+def _first_below(speed: Array) -> float:
+    """Place at which a speed that begins above SPEED passes it."""
+    below = np.flatnonzero(speed < SPEED)
+    if not len(below) or below[0] == 0:
+        return math.nan
+    k = int(below[0])
+    return float(k - (SPEED - speed[k]) / (speed[k - 1] - speed[k]))
+
+
+def scene_of(cycles: Cycles, setup: Setup) -> tuple[Scene, tuple[float, float]]:
+    """The frame as a scene with its phases."""
+    weight = (1.0 + HEAVY) * setup.mass * GRAVITY
+    base = setup.scale * np.array([cycles.amplitude, setup.second * cycles.second]) * 1e-3
+    turns = 2j * np.pi * cycles.frequency * np.array([1.0, 2.0])
+    ground = -(setup.stiffness + setup.damping * turns) * base / setup.mass
+    mu = setup.ratio * setup.disc * cycles.run.weight * GRAVITY / weight
+    scene = {
+        "title": f"Shaken frame, {1e3 * cycles.run.weight:g} g",
+        "name": "shaken-frame",
+        "duration": CYCLES / cycles.frequency,
+        "isolator": {
+            "radius": weight / setup.stiffness,
+            "friction": {"slow": mu, "fast": mu + FAST, "rate": setup.damping / (weight * FAST)},
+        },
+        "bodies": [{"mass": setup.mass}, {"mass": HEAVY * setup.mass, "period": [LOOSE, LOOSE]}],
+        "excitation": {
+            "amplitudes": [np.abs(ground).tolist(), [0.0, 0.0]],
+            "periods": [1.0 / cycles.frequency, 0.5 / cycles.frequency],
+            "decay": [0.0, 0.0],
+        },
+    }
+    phases = np.angle(ground)
+    return Scene.model_validate(scene), (float(phases[0]), float(phases[1]))
+
+
+def last_cycle(motion: Trajectory, frequency: float) -> Array:
+    """The last computed cycle, (SAMPLES,), mm about its mean."""
+    grid = (CYCLES - 1 + np.arange(SAMPLES) / SAMPLES) / frequency
+    place: Array = 1e3 * assess.spline(motion)(grid)
+    return place - place.mean()
+
+
+def compute(side: str, cycles: Cycles, setup: Setup) -> Trajectory:
+    """The motion of a run by one side, from the base's largest position on."""
+    scene, phases = scene_of(cycles, setup)
+    place = np.array([1e-3 * cycles.amplitude, 0.0])
+    return assess.motion_of(side, scene, phases, place, REGULARIZATION, TOLERANCE, "small")
+
+
+def read(cycles: Cycles, motion: Trajectory) -> Answer:
+    """The quantities of a computed motion of a run."""
+    rate = cycles.frequency
+    return assess.answer(motion, lambda each: read_cycle(last_cycle(each, rate), rate), len(NAMES))
+
+
+def solve(cycles: Cycles, setup: Setup) -> Array:
+    """The quantities of a run by the equations."""
+    return read(cycles, compute(EQUATIONS, cycles, setup)).values
+
+
+def fit(cycles: Cycles, setup: Setup, *names: str) -> tuple[Setup, Array]:
+    """The inputs for which the equations come closest to the mean cycle, and their scatter (J, names)."""
+
+    def curve(at: Setup) -> Array:
+        return last_cycle(compute(EQUATIONS, cycles, at), cycles.frequency)
+
+    for _ in range(12):
+        nearby = [setup._replace(**{name: getattr(setup, name) + STEP}) for name in names]
+        begin = curve(setup)
+        slopes = np.column_stack([(curve(each) - begin) / STEP for each in nearby])
+        change = np.linalg.lstsq(slopes, cycles.mean - begin, rcond=None)[0]
+        setup = setup._replace(**{n: max(1e-3, getattr(setup, n) + part) for n, part in zip(names, change)})
+        if np.abs(change).max() < 1e-5:
+            break
+    each = cycles.motions - cycles.motions.mean(axis=1, keepdims=True) - cycles.mean
+    scatter: Array = np.linalg.lstsq(slopes, each.T, rcond=None)[0].T
+    return setup, scatter
+
+
+def compare(runs: Sequence[Shaken]) -> Found:
+    """All runs of a folder: the ratio is fitted to one, the others are predicted."""
+    folded = [fold(run) for run in runs]
+    first = min(folded, key=lambda cycles: (abs(cycles.run.weight - FIRST) > 1e-9, cycles.run.weight))
+    setup, scatter = fit(first, Setup(), "ratio")
+    spread = COVERAGE * float(scatter[:, 0].std(ddof=1))
+    other, _ = fit(first, setup, "ratio", "scale")
+    varied = [setup._replace(ratio=setup.ratio + spread), setup._replace(disc=setup.disc + ASSUMED["disc"][0])]
+    for name in REFITTED:
+        varied.append(fit(first, setup._replace(**{name: getattr(setup, name) + ASSUMED[name][0]}), "ratio")[0])
+    parts = [
+        _compare_run(each, "calibrated" if each is first else "predicted", setup, varied, other) for each in folded
+    ]
+    inputs = [
+        assess.given(f"frame: {name}", getattr(setup, key), size, unit, source)
+        for key, (size, name, unit, source) in ASSUMED.items()
+    ]
+    source = f"fitted to the motion of the run with {1e3 * first.run.weight:g} g; its scatter over the cycles"
+    inputs.append(assess.given("frame: friction ratio", setup.ratio, spread, "", source))
+    rows, facts, curves = ([item for part in parts for item in part[k]] for k in (0, 2, 3))
+    return Found(rows, inputs, facts, curves)
+
+
+def _compare_run(cycles: Cycles, use: str, setup: Setup, varied: Sequence[Setup], other: Setup) -> Found:
+    """One run; other: setup with ratio and base motion fitted to the first run, as an input that might explain an E."""
+    found = [read_cycle(motion, cycles.frequency) for motion in cycles.motions]
+    data = assess.Data(NAMES, UNITS, [use] * 5, np.mean(found, axis=0), COVERAGE * np.std(found, axis=0, ddof=1))
+    motions = {side: compute(side, cycles, setup) for side in SIDES}
+    answers = {side: read(cycles, motion) for side, motion in motions.items()}
+    inputs = assess.combined([solve(cycles, each) - answers[EQUATIONS].values for each in varied])
+    own, _ = fit(cycles, setup, "ratio")
+    by_input, by_ratio = (np.abs(solve(cycles, each) - data.values) for each in (other, own))
+
+    def explain(k: int, allowed: float) -> tuple[str, str]:
+        shift = f"a base motion of {100.0 * (other.scale - 1.0):+.1f} % and ratio {other.ratio:.3f}"
+        if by_input[k] <= allowed:
+            return INPUT, f"gone with {shift}"
+        if by_ratio[k] <= allowed:
+            return LAW, f"gone with the ratio of this run, {own.ratio:.3f}: the ratio depends on the load"
+        return LAW, f"gone neither with the ratio of this run, {own.ratio:.3f}, nor with {shift}"
+
+    rows = assess.quantities(cycles.run.name, data, inputs, answers, explain)
+    best = last_cycle(compute(EQUATIONS, cycles, own), cycles.frequency)
+    lines = {"measured": cycles.mean} | {
+        side: last_cycle(motions[side], cycles.frequency) for side in (EQUATIONS, ENGINE)
+    }
+    fact = (
+        f"{cycles.run.name}: the friction ratio of this run alone is {own.ratio:.3f}; the motion over a cycle is then "
+        f"off by {np.std(best - cycles.mean):.3f} mm rms, and by {np.std(lines[EQUATIONS] - cycles.mean):.3f} mm with "
+        f"{setup.ratio:.3f}"
+    )
+    axes, turn = ("phase of the base, deg", "top plate, mm"), (np.arange(SAMPLES) * 360.0 / SAMPLES).tolist()
+    return Found(rows, [], [fact], [Curve(cycles.run.name, axes, name, turn, y.tolist()) for name, y in lines.items()])
