@@ -96,7 +96,7 @@ def _decay(file: Path) -> Swing:
         instants = _series(file, "Theta1.time", content["time"])
         return Swing(instants, _series(file, "Theta1.values", content["signals"]["values"], len(instants)) - np.pi)
     except (KeyError, IndexError, TypeError) as error:
-        raise _wrong(file, "Theta1", "must be a structure with time and signals.values") from error
+        raise wrong_file(file, "Theta1", "must be a structure with time and signals.values") from error
 
 
 def _large(file: Path) -> Swing:
@@ -107,7 +107,7 @@ def _large(file: Path) -> Swing:
             for names in (("Time_id", "Time_vad"), ("Y_id", "Y_vad"))
         )
     except (IndexError, TypeError, ValueError) as error:
-        raise _wrong(file, "Y_id", "must be cells of angles and rates, (2, T)") from error
+        raise wrong_file(file, "Y_id", "must be cells of angles and rates, (2, T)") from error
     instants = _series(file, "Time", time)
     return Swing(instants, _series(file, "Y", angle, len(instants)) - np.pi)
 
@@ -129,17 +129,18 @@ def _series(file: Path, name: str, values: Any, count: int | None = None) -> Arr
     """A column of finite samples; rising at even steps where it is the time, `count` is None."""
     series = np.asarray(values)
     if series.dtype.kind not in "fiu" or series.ndim != 1 or not 500 <= len(series) <= MAX_SAMPLES:
-        raise _wrong(file, name, f"must be one column of 500 to {MAX_SAMPLES} numbers")
+        raise wrong_file(file, name, f"must be one column of 500 to {MAX_SAMPLES} numbers")
     series = series.astype(float)
     if count is not None and len(series) != count:
-        raise _wrong(file, name, f"must have as many samples as the time, {count}, not {len(series)}")
+        raise wrong_file(file, name, f"must have as many samples as the time, {count}, not {len(series)}")
     if not np.isfinite(series).all():
-        raise _wrong(file, name, "must be finite numbers")
+        raise wrong_file(file, name, "must be finite numbers")
     steps = np.diff(series)
     if count is None and not (steps.min() > 0.0 and np.ptp(steps) < 1e-3 * steps.mean()):
-        raise _wrong(file, name, "must rise in even steps")
+        raise wrong_file(file, name, "must rise in even steps")
     return series
 
 
-def _wrong(file: Path, name: str, rule: str) -> SceneError:
+def wrong_file(file: Path | str, name: str, rule: str) -> SceneError:
+    """What is wrong with a variable of a file, in one line."""
     return SceneError("command line", "FOLDER", str(file), f"{name} {rule}")

@@ -22,7 +22,7 @@ from scipy.optimize import least_squares
 
 from comparison.analyses.validation import assess
 from comparison.analyses.validation.assess import COVERAGE, SIDES, Answer, Array, Found
-from comparison.analyses.validation.files import Shaken
+from comparison.analyses.validation.files import Shaken, wrong_file
 from comparison.analyses.validation.table import ENGINE, EQUATIONS, INPUT, LAW, Curve
 from reference.problem import GRAVITY, Scene, Trajectory
 
@@ -30,6 +30,7 @@ HEAVY, LOOSE = 10.0, 1e4  # mass of the second body over that of the platform; p
 FAST = 1.0  # by how much friction would grow at infinite speed: the slope at zero is what counts
 CYCLES = 12  # computed, of which the last is read
 SAMPLES = 250  # of a cycle, as measured
+FEWEST = 3  # whole cycles of a run
 HARMONICS = 6  # fitted to the base motion
 SPEED = 2.0  # mm/s: slower is at rest
 WIDTH = 4  # samples to either side of a velocity
@@ -99,6 +100,9 @@ def fold(run: Shaken) -> Cycles:
     begin = np.angle(harmonics[0])
     phase = frequency * time + begin / (2.0 * np.pi)
     whole = range(math.ceil(phase[0]), math.floor(phase[-1]))
+    if len(whole) < FEWEST:
+        rule = f"must have {FEWEST} whole cycles of the base, not {len(whole)}"
+        raise wrong_file(f"s_b_{1e3 * run.weight:g}g_y.mat", "y", rule)
     grid = np.arange(SAMPLES) / SAMPLES
     motions = np.array([np.interp(number + grid, phase, run.plate) for number in whole])
     return Cycles(run, motions, frequency, abs(harmonics[0]), complex(harmonics[1] * np.exp(-2j * begin)))

@@ -14,7 +14,7 @@ from scipy.special import ellipk
 
 from comparison.analyses.validation import assess
 from comparison.analyses.validation.assess import COVERAGE, SIDES, Answer, Array, Data, Found
-from comparison.analyses.validation.files import Swing
+from comparison.analyses.validation.files import DECAY, LARGE, Swing, wrong_file
 from comparison.analyses.validation.table import ENGINE, EQUATIONS, INPUT, LAW, Curve
 from reference.problem import GRAVITY, Scene, Trajectory
 
@@ -24,7 +24,7 @@ COULOMB, HALF = 10, 5  # half swings that lose the same angle; of these, how man
 SHOWN = (5, 10, 11, 12, 13)  # turning points in the table, the first one being number 0
 PARTS = 20_001  # instants of a half swing
 ANGLES, FITTED, REFITTED = (1.5, 1.25, 1.0), 0.3, 0.6  # rad, amplitudes of half periods predicted, fitted, tried
-WINDOW = 0.1  # rad, of amplitudes about each of them
+WINDOW, FEWEST = 0.1, 4  # rad, of amplitudes about each of them; half swings in it
 
 
 def compare_decay(swing: Swing) -> Found:
@@ -32,6 +32,8 @@ def compare_decay(swing: Swing) -> Found:
     step = float(np.min(np.diff(np.unique(swing.angle))))
     instants, turns = _turns(swing, STEPS * step)
     numbers = np.arange(SHOWN[-1] + 1)
+    if len(turns) < len(numbers):
+        raise wrong_file(DECAY, "Theta1", f"must have {len(numbers)} turning points, not {len(turns)}")
     sides = (-1.0) ** numbers
     terms = np.column_stack([np.ones(len(numbers)), -numbers, sides])  # first angle, loss, middle of the swings
     along, fitted = np.sign(turns[0]) * sides * turns[: len(numbers)], slice(0, COULOMB + 1)
@@ -84,6 +86,9 @@ def compare_large(swing: Swing) -> Found:
     passages = _passages(swing)
     sizes = np.array([np.abs(swing.angle[(swing.time > a) & (swing.time < b)]).max() for a, b in pairwise(passages)])
     periods = np.diff(passages)
+    for angle in (*ANGLES, FITTED, REFITTED):
+        if np.sum(np.abs(sizes - angle) < WINDOW) < FEWEST:
+            raise wrong_file(LARGE, "Y", f"must have {FEWEST} half swings within {WINDOW} of {angle} rad")
     values, spreads = np.transpose([_near(sizes, periods, angle) for angle in (*ANGLES, FITTED, REFITTED)])
     at_rest = [0.5 * np.pi / float(ellipk(np.sin(0.5 * angle) ** 2)) for angle in (FITTED, REFITTED)]
     (half, other), scatter = values[-2:] * at_rest, float(spreads[-2] * at_rest[0])
@@ -136,7 +141,7 @@ def _motion(
 
 
 def _turns(swing: Swing, back: float) -> tuple[Array, Array]:
-    """Instants, in the middle of the encoder's step, and angles at which the pendulum turns by more than `back`."""
+    """Instants, in the middle of the encoder's step, and angles of turns by more than `back`; at last the rest."""
     turns: list[tuple[float, float]] = []
     best, way, first, last = swing.angle[0], 0.0, swing.time[0], swing.time[0]
     for time, angle in zip(swing.time, swing.angle):
@@ -149,7 +154,9 @@ def _turns(swing: Swing, back: float) -> tuple[Array, Array]:
         elif way * (best - angle) > back:
             turns.append((0.5 * (first + last), best))
             way, best, first, last = -way, angle, time, time
-    return tuple(np.array(turns).T)  # type: ignore[return-value]
+    turns.append((last, swing.angle[-1]))
+    instants, angles = np.array(turns).T
+    return instants, angles
 
 
 def _of_mean(values: Array) -> float:
