@@ -17,7 +17,7 @@ from markupsafe import Markup
 from comparison.analyses.motions.page_data import packed, packed_motions
 from comparison.report.glossary import emphasized, term
 from comparison.report.page_data import page_data
-from comparison.report.results import Results
+from comparison.report.results import VALIDATED, Results
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Feature, Report, Section
 from comparison.report.verification import CHECKS
@@ -87,6 +87,7 @@ def _page(template: str, sections: Sequence[Section], figures: Path, report: Rep
         alerts=_alert_groups(results),
         has_engine=any(model.side == "engine" for model in _applied(study)),
         question=_question(study),
+        validated=VALIDATED,
         cards=[_card(scene, axes) for scene in results.scenes],
         scales=axes,
         effects={model.key: model.effect or model.title for model in study.hierarchy},

@@ -8,7 +8,7 @@ from typing import Any
 
 from comparison.analyses.assumptions.validity import ASSUMPTIONS
 from comparison.analyses.demands.pdf import HEADINGS, demand_rows, demands_note
-from comparison.report.results import Results
+from comparison.report.results import VALIDATED, Results
 from comparison.report.run_result import ModelDescription
 from comparison.report.scene_result import ModelOutcome, SceneResult
 from comparison.surfaces.acceptance import Limit
@@ -76,6 +76,7 @@ def pdf_data(results: Results, shown: Sequence[Headline], maps: Sequence[dict[st
         "models": [_model(results, model) for model in results.models if _outcomes(results, model)],
         "assumptions": [[a.number, a.statement, a.engine, a.relaxed] for a in ASSUMPTIONS],
         **_limits(results),
+        "validated": VALIDATED,
         "measurements": results.measurements,
         "provenance": _provenance(results),
     }

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from math import isnan
 
-from comparison.report.results import Results
+from comparison.report.results import VALIDATED, Results
 from comparison.surfaces.waterfall import WaterfallBar
 from comparison.wording import degrees, percent, signed
 from reference.problem import Outcome
@@ -32,7 +32,7 @@ def summary_text(results: Results) -> str:
         f"{name} {run.provenance[name]}" for name in ("commit", "exudyn", "numba") if name in run.provenance
     )
     parts.append(
-        f"The two codes are cross-verified, not validated: {results.measurements}.  \n"
+        f"The two codes are cross-verified. {VALIDATED}, and {results.measurements}.  \n"
         f"{_code(run.command)}: {run.took}, began {run.began}; {made}. "
         f"{listed}: `index.html` of the report."
     )

@@ -19,6 +19,7 @@ COMMANDS = (
     "comparison.claims",
     "comparison.assumptions",
     "comparison.benchmarks",
+    "comparison.validation",
     "comparison.extremes",
     "comparison.tradeoff",
     "comparison.ensemble",

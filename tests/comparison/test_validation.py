@@ -162,6 +162,17 @@ def test_both_sides_agree_on_all_recorded_quantities():
         assert abs(engine.value - smoothed.value) <= engine.numerical + smoothed.numerical, each
 
 
+def test_the_page_on_validation_has_the_recorded_table():
+    page = (Path(__file__).parents[2] / "docs" / "validation.md").read_text(encoding="utf-8")
+    for each in recorded().quantities:
+        equations, engine = each.sides[EQUATIONS], each.sides[ENGINE]
+        cells = [f"{each.experiment}: {each.name}, {each.unit}", each.use, f"{each.measured:.5g}"]
+        sides = [number for side in (equations, engine) for number in (side.error, side.numerical)]
+        numbers = [each.data, each.inputs, *sides, equations.validation]
+        assert "| ".join(["", *(f"{cell} " for cell in [*cells, *(f"{n:.2g}" for n in numbers)])]) in page
+        assert equations.verdict == engine.verdict
+
+
 def wrong_series(folder: Path) -> None:
     save(folder, 250)
     savemat(folder / "s_b_250g_x.mat", {"t": np.arange(700.0), "x": np.zeros((700, 3))})
