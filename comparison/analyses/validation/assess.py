@@ -38,6 +38,16 @@ class Found(NamedTuple):
     curves: list[Curve]
 
 
+def joined(parts: Sequence[Found]) -> Found:
+    """What several experiments add."""
+    return Found(
+        [each for part in parts for each in part.quantities],
+        [each for part in parts for each in part.inputs],
+        [each for part in parts for each in part.facts],
+        [each for part in parts for each in part.curves],
+    )
+
+
 class Data(NamedTuple):
     """What was measured: names and units of the quantities, their use, D and u_D."""
 
@@ -111,8 +121,8 @@ def quantities(
                 verdict = NONE
             elif abs(error) > allowed:
                 verdict, cause = explain(k, allowed)
-            numbers = (float(values[k]), error, float(errors[k]), allowed)
-            sides[side] = Comparison(*map(finite_or_none, numbers), verdict)
+            value, off, numerical, limit = map(finite_or_none, (float(values[k]), error, float(errors[k]), allowed))
+            sides[side] = Comparison(value, off, numerical, limit, verdict)
         measured, spread, propagated = (float(row[k]) for row in (data.values, data.uncertainty, inputs))
         rows.append(Quantity(experiment, name, unit, use, measured, spread, propagated, cause, sides))
     return rows

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from comparison.analyses.validation import frame, pendulum
+from comparison.analyses.validation import assess, frame, pendulum
 from comparison.analyses.validation.files import FRAME_SOURCE, PENDULUM_SOURCE, read_folder
 from comparison.analyses.validation.table import ENGINE, EQUATIONS, MEANING, NONE, STORED, Validation, recorded
 from comparison.cli.arguments import CommandParser, command, writing
@@ -56,8 +56,7 @@ def compared(folder: Path) -> Validation:
     found += [pendulum.compare_large(measured.large)] if measured.large else []
     seconds = round(time.process_time() - begin, 1)
     run = {"command": f"{STORED.command} FOLDER", "seconds": seconds, "provenance": provenance()}
-    quantities, inputs, facts, curves = ([item for each in found for item in each[k]] for k in range(4))
-    return Validation(quantities, inputs, facts, curves, run)
+    return Validation(*assess.joined(found), run)
 
 
 def print_validation(console: Console, table: Validation) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import groupby
+from typing import Any
 
 from comparison.analyses.validation.files import FRAME_SOURCE, PENDULUM_SOURCE
 from comparison.analyses.validation.table import ENGINE, EQUATIONS, INPUT, LAW, MEANING, NONE, STORED, VALID, Validation
@@ -10,7 +11,11 @@ from comparison.report.plots import Panel
 from comparison.report.section import Feature, Section
 
 COLORS = {VALID: "v-converged", LAW: "v-limit", INPUT: "v-refused", NONE: "v-FAILED"}  # class of each verdict
-LOOKS = {"measured": {"color": "ink", "width": 2.4}, EQUATIONS: {"color": 0}, ENGINE: {"color": 1, "dash": "5 3"}}
+LOOKS: dict[str, dict[str, Any]] = {
+    "measured": {"color": "ink", "width": 2.4},
+    EQUATIONS: {"color": 0},
+    ENGINE: {"color": 1, "dash": "5 3"},
+}
 
 
 def panels(table: Validation) -> list[Panel]:

@@ -77,8 +77,9 @@ class Cycles(NamedTuple):
     @property
     def mean(self) -> Array:
         """The mean cycle about its mean, mm."""
-        mean: Array = self.motions.mean(axis=0)
-        return mean - mean.mean()
+        mean = self.motions.mean(axis=0)
+        about: Array = mean - mean.mean()
+        return about
 
 
 def fold(run: Shaken) -> Cycles:
@@ -165,8 +166,9 @@ def scene_of(cycles: Cycles, setup: Setup) -> tuple[Scene, tuple[float, float]]:
 def last_cycle(motion: Trajectory, frequency: float) -> Array:
     """The last computed cycle, (SAMPLES,), mm about its mean."""
     grid = (CYCLES - 1 + np.arange(SAMPLES) / SAMPLES) / frequency
-    place: Array = 1e3 * assess.spline(motion)(grid)
-    return place - place.mean()
+    place = 1e3 * assess.spline(motion)(grid)
+    about: Array = place - place.mean()
+    return about
 
 
 def compute(side: str, cycles: Cycles, setup: Setup) -> Trajectory:
@@ -225,8 +227,7 @@ def compare(runs: Sequence[Shaken]) -> Found:
     ]
     source = f"fitted to the motion of the run with {1e3 * first.run.weight:g} g; its scatter over the cycles"
     inputs.append(assess.given("frame: friction ratio", setup.ratio, spread, "", source))
-    rows, facts, curves = ([item for part in parts for item in part[k]] for k in (0, 2, 3))
-    return Found(rows, inputs, facts, curves)
+    return assess.joined([Found([], inputs, [], []), *parts])
 
 
 def _compare_run(cycles: Cycles, use: str, setup: Setup, varied: Sequence[Setup], other: Setup) -> Found:

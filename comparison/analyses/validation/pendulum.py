@@ -76,9 +76,8 @@ def compare_decay(swing: Swing) -> Found:
     drawn = {"measured": sizes} | {side: 1e3 * _computed_turns(motions[side])[1] for side in (EQUATIONS, ENGINE)}
     axes = ("number of the turning point", "angle, mrad")
     curves = [Curve("pendulum, decay", axes, name, numbers.tolist(), y.tolist()) for name, y in drawn.items()]
-    return Found(
-        rows, [assess.given(f"pendulum, decay: {name}", *rest, source) for name, *rest in named], [fact], curves
-    )
+    given = [assess.given(f"pendulum, decay: {name}", value, size, unit, source) for name, value, size, unit in named]
+    return Found(rows, given, [fact], curves)
 
 
 def compare_large(swing: Swing) -> Found:
@@ -187,7 +186,7 @@ def _zeros(motion: Trajectory) -> Array:
 def _computed_turns(motion: Trajectory) -> tuple[Array, Array]:
     """Instants and angles, towards the side of each turn, of the turning points from the first on; at last the rest."""
     place, end = assess.spline(motion), float(motion.time[-1])
-    found = []
+    found: list[tuple[float, float]] = []
     for begin, stop in pairwise([0.0, *_zeros(motion), end]):
         dense = np.linspace(begin, stop, PARTS)
         along = place(dense) * (-1.0) ** len(found)
