@@ -68,7 +68,7 @@ def read_folder(folder: Path) -> Measured:
     if not folder.is_dir():
         raise SceneError("command line", "FOLDER", str(folder), "must be a folder with the measured files")
     files = {file.name: file for file in sorted([*folder.glob("*.mat"), *folder.glob("*/*.mat")])}
-    named = [match for match in map(FRAME.fullmatch, files) if match]
+    named = [match for name in files if (match := FRAME.fullmatch(name))]
     plates, bases = ({match[1]: files[match[0]] for match in named if match[2] == axis} for axis in "xy")
     for grams in plates.keys() ^ bases.keys():
         missing = "y" if grams in plates else "x"
