@@ -14,8 +14,8 @@ import multibody
 import reference
 from comparison.analyses.validation.table import ENGINE, EQUATIONS, NONE, SMOOTHED, VALID, Comparison, Curve, Quantity
 from comparison.json_file import finite_or_none
+from reference.measures.demands import ANSWERED
 from reference.problem import Scene, State, Trajectory
-from reference.problem.demands import ANSWERED
 
 Array = NDArray[np.float64]
 SIDES = (EQUATIONS, SMOOTHED, ENGINE)
