@@ -52,20 +52,8 @@ class StoredFile(Generic[T]):
         """
         What the command left in a folder.
 
-        Parameters
-        ----------
-        folder : Path
-            Folder that may hold the file.
-
-        Returns
-        -------
-        kind or None
-            None if there is no such file.
-
-        Raises
-        ------
-        ValueError
-            In one line, if the file is anything else, of another version, or cannot be read, as a pipe.
+        folder: folder that may hold the file. Returns none if there is no such file. Raises ValueError: in one line, if
+        the file is anything else, of another version, or cannot be read, as a pipe.
         """
         file = folder / self.name
         if not file.exists():

@@ -64,22 +64,10 @@ def main(
     """
     Run the study the command line asks for.
 
-    Parameters
-    ----------
-    argv : sequence of str, optional
-        Words of the command line; those of this process if none are given.
-    hierarchy : sequence of Model
-        The models, each adding one effect to the one before.
-    executor : Executor or callable
-        What makes an executor for a number of workers, or any executor, which is left open.
-    models : mapping of str to callable or str, optional
-        Engines of the user by name, as `--model` enters them: a function at the top level of a module, or its place as
-        "module:function".
-
-    Returns
-    -------
-    int
-        Exit code.
+    argv: words of the command line; those of this process if none are given. hierarchy: the models, each adding one
+    effect to the one before. executor: what makes an executor for a number of workers, or any executor, which is left
+    open. models: engines of the user by name, as `--model` enters them: a function at the top level of a module, or its
+    place as "module:function".
     """
     began = start_time()
     with stoppable():

@@ -69,19 +69,8 @@ def jobs(options: argparse.Namespace) -> int:
     """
     Number of worker processes that `--jobs` asks for.
 
-    Parameters
-    ----------
-    options : argparse.Namespace
-        Parsed by a `CommandParser` with `add_computing`.
-
-    Returns
-    -------
-    int
-
-    Raises
-    ------
-    SceneError
-        For a wrong number, and for `--jobs` together with `--scheduler`.
+    options: parsed by a `CommandParser` with `add_computing`. Raises SceneError: for a wrong number, and for `--jobs`
+    together with `--scheduler`.
     """
     if options.scheduler is not None and options.jobs is not None:
         rule = "counts processes of this machine, --scheduler takes all workers of a cluster: give one of the two"
@@ -93,23 +82,7 @@ def whole_number(option: str, text: str, least: int, most: int) -> int:
     """
     The value of an option that takes a whole number.
 
-    Parameters
-    ----------
-    option : str
-        Its name, for the message.
-    text : str
-        As it was typed.
-    least, most : int
-        Range.
-
-    Returns
-    -------
-    int
-
-    Raises
-    ------
-    SceneError
-        One line.
+    option: its name, for the message. text: as it was typed. least, most: range. Raises SceneError.
     """
     rule = f"must be a whole number from {least} to {most}"
     try:
@@ -125,25 +98,8 @@ def number(option: str, text: str, least: float, most: float, unit: str) -> floa
     """
     The value of an option that takes a number.
 
-    Parameters
-    ----------
-    option : str
-        Its name, for the message.
-    text : str
-        As it was typed.
-    least, most : float
-        Range.
-    unit : str
-        For the message.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    SceneError
-        One line.
+    option: its name, for the message. text: as it was typed. least, most: range. unit: for the message. Raises
+    SceneError.
     """
     rule = f"must be a number from {least:g} to {most:g}, {unit}"
     try:

@@ -56,12 +56,7 @@ def print_closing(console: Console, results: Results, options: Options, words: S
     """
     The last lines of a run.
 
-    Parameters
-    ----------
-    words : sequence of str
-        The words of the command line.
-    report : Path
-        Folder of the report.
+    words: the words of the command line. report: folder of the report.
     """
     _print_differences(console, results)
     console.print(f"The run took {results.run.took}.", soft_wrap=True)

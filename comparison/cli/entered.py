@@ -66,23 +66,8 @@ def entered_models(specs: Sequence[str], limit: str | None = None, scheduler: st
     """
     The models that `--model` enters.
 
-    Parameters
-    ----------
-    specs : sequence of str
-        Values of the option.
-    limit : str, optional
-        Value of `--model-limit`.
-    scheduler : str, optional
-        Value of `--scheduler`, whose workers cannot import what lies on this machine.
-
-    Returns
-    -------
-    tuple of Model
-
-    Raises
-    ------
-    SceneError
-        One line.
+    specs: values of the option. limit: value of `--model-limit`. scheduler: value of `--scheduler`, whose workers
+    cannot import what lies on this machine. Raises SceneError.
     """
     seconds = TIME_LIMIT if limit is None else number(LIMIT_OPTION, limit, 1.0, 1e6, "s of processor time")
     if specs and scheduler is not None:
@@ -109,19 +94,8 @@ def as_words(engines: Engines) -> list[str]:
     """
     Engines given in Python as words of the command line.
 
-    Parameters
-    ----------
-    engines : mapping of str to str or callable
-        By name: the function, or where it is as "module:function[@KEY]".
-
-    Returns
-    -------
-    list of str
-
-    Raises
-    ------
-    SceneError
-        If a worker process could not import a function by its name.
+    engines: by name: the function, or where it is as "module:function[@KEY]". Raises SceneError: if a worker process
+    could not import a function by its name.
     """
     words = []
     for name, function in engines.items():
@@ -170,15 +144,7 @@ def look_at(path: str) -> tuple[str, dict[str, str]]:
     """
     Import a function. Runs inside a worker process.
 
-    Parameters
-    ----------
-    path : str
-        "module:name".
-
-    Returns
-    -------
-    tuple
-        Why it cannot be entered, or empty; and what its numbers depend on.
+    path: "module:name". Returns why it cannot be entered, or empty; and what its numbers depend on.
     """
     module, name = path.split(":")
     with silent():

@@ -52,15 +52,7 @@ def study_files(name: str) -> dict[str, bytes]:
     """
     The files of a new study.
 
-    Parameters
-    ----------
-    name : str
-        Of the study.
-
-    Returns
-    -------
-    dict of str to bytes
-        Contents by the path below the directory of the study.
+    name: of the study. Returns contents by the path below the directory of the study.
     """
     folder = files("comparison.cli") / "study_template"
     texts = {file: (folder / source).read_text(encoding="utf-8") for file, source in TEMPLATE.items()}
@@ -74,16 +66,7 @@ def write_directory(place: Path, contents: Mapping[str, bytes]) -> None:
     """
     Write files into a directory that is not there, or empty: all of them or none.
 
-    Parameters
-    ----------
-    place : Path
-    contents : mapping of str to bytes
-        By the path below the directory.
-
-    Raises
-    ------
-    OSError
-        Everything is as it was then.
+    contents: by the path below the directory. Raises OSError: everything is as it was then.
     """
     inside = place.is_dir()  # it stays the same directory: it may be the one in which the command was typed
     made = make_parents(place.parent)

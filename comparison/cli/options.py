@@ -53,19 +53,7 @@ def parsed(argv: Sequence[str]) -> Options:
     """
     Options of `python -m comparison.run`, all checked.
 
-    Parameters
-    ----------
-    argv : sequence of str
-        Words of the command line.
-
-    Returns
-    -------
-    Options
-
-    Raises
-    ------
-    SceneError, UsageError
-        One line: file or option, key, value, rule.
+    Raises SceneError, UsageError.
     """
     words = _parser().parse_args(argv)
     names: list[str] = words.scenes or builtin_scenes()

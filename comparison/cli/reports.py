@@ -62,26 +62,9 @@ class Reports:
     """
     Writes the reports of a run.
 
-    Parameters
-    ----------
-    options : Options
-    jobs : int
-        Workers.
-    words : sequence of str
-        The command line.
-    began : Clock
-        When the run began.
-
-    Attributes
-    ----------
-    place : Path
-        Where the reports are: beside the folder of the options if that holds something else.
-    results : Results or None
-        What the last one says; None before the first.
-    level : Level or None
-        Whose report it is.
-    seconds : float
-        The longest time that one took to write, s.
+    jobs: workers. began: when the run began. place: where the reports are: beside the folder of the options if that
+    holds something else. results: what the last one says; None before the first. level: whose report it is. seconds:
+    the longest time that one took to write, s.
     """
 
     def __init__(self, options: Options, jobs: int, words: Sequence[str], began: Clock) -> None:

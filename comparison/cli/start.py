@@ -82,10 +82,7 @@ def start(module: str) -> NoReturn:
     """
     Import a command, run it and end the process with its exit code.
 
-    Parameters
-    ----------
-    module : str
-        Full name of the module whose `main()` is the command.
+    module: full name of the module whose `main()` is the command.
     """
     _started.append(Clock.now())
     gc.set_threshold(*COLLECTIONS)

@@ -60,28 +60,9 @@ def build_report(
     """
     Everything that the report of a run is made from.
 
-    Parameters
-    ----------
-    study, surfaces : Study, xr.Dataset
-        What was computed.
-    found : mapping of str to object
-        What the features found, by their keys.
-    faults : sequence of Fault
-        What solvers reported.
-    run : mapping
-        Command, times, provenance.
-    features : sequence of Feature
-        In the order of the page.
-    kind : type of Results
-        With a field for each feature that has a result.
-    no_pdf : str
-        Why there is no report.pdf, "" where there is one.
-    families : sequence of Family
-        Those of more than one scene.
-
-    Returns
-    -------
-    Report
+    study, surfaces: what was computed. found: what the features found, by their keys. faults: what solvers reported.
+    run: command, times, provenance. features: in the order of the page. kind: with a field for each feature that has a
+    result. no_pdf: why there is no report.pdf, "" where there is one. families: those of more than one scene.
     """
     rows, lacking = differences(study, surfaces), unanswered(study, surfaces)
     completed = [

@@ -35,17 +35,8 @@ def pages(figures: Path, report: Report) -> dict[str, str]:
     """
     index.html, which answers the question, and verification.html, which verifies the tool.
 
-    Parameters
-    ----------
-    figures : Path
-        Folder with the pictures of the report.
-    report : Report
-        All that is shown.
-
-    Returns
-    -------
-    dict of str to str
-        Pages by file name. Each needs no other file and no network.
+    figures: folder with the pictures of the report. report: all that is shown. Returns pages by file name. Each needs
+    no other file and no network.
     """
     answers = [section for section in report.sections if not section.verifies]
     verifies = [section for section in report.sections if section.verifies]

@@ -41,27 +41,12 @@ def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **s
     """
     What an entered function answers, in the form of `multibody.amplification`.
 
-    Parameters
-    ----------
-    scene : Scene
-    phases : ndarray, (M, 2)
-        rad.
-    engine : mapping
-        "function": where it is, as "module:name". All else only tells its versions apart in the cache.
-    **settings
-        Those of the reference's model with the same law and the tolerance asked. The function gets those it names.
-
-    Returns
-    -------
-    Amplification
-        NaN in `error` where the function states none, in `instant` and `displacement` where it has none. `cost` is
-        measured here, with the processes that the function starts.
-
-    Raises
-    ------
-    ValueError, TypeError, RuntimeError
-        If the function answers in another form, or ends the process. What it raises itself is not caught; a note says
-        in which line of the user's files.
+    phases: (M, 2), rad. engine: "function": where it is, as "module:name". All else only tells its versions apart in
+    the cache. **settings: those of the reference's model with the same law and the tolerance asked. The function gets
+    those it names. Returns NaN in `error` where the function states none, in `instant` and `displacement` where it has
+    none. `cost` is measured here, with the processes that the function starts. Raises ValueError, TypeError,
+    RuntimeError: if the function answers in another form, or ends the process. What it raises itself is not caught; a
+    note says in which line of the user's files.
     """
     with silent():
         function = entered_function(engine["function"])
@@ -81,12 +66,8 @@ def note_line(error: BaseException, file: Path | None) -> None:
     """
     Add to an exception where in the user's files it arose, as a note.
 
-    Parameters
-    ----------
-    error : BaseException
-    file : Path or None
-        The file of the engine. Files of its folder and of the folders in it are the user's, but for this project and
-        for installed packages. Without one there is no note.
+    file: the file of the engine. Files of its folder and of the folders in it are the user's, but for this project and
+    for installed packages. Without one there is no note.
     """
     if file is None:
         return
@@ -114,19 +95,8 @@ def entered_function(path: str | Callable[..., Any]) -> Callable[..., Any]:
     """
     The function of an entered engine.
 
-    Parameters
-    ----------
-    path : str or callable
-        "module:name", or the function.
-
-    Returns
-    -------
-    callable
-
-    Raises
-    ------
-    TypeError
-        If it cannot be called with a scene and phases. What the module raises on import is not caught.
+    path: "module:name", or the function. Raises TypeError: if it cannot be called with a scene and phases. What the
+    module raises on import is not caught.
     """
     if isinstance(path, str):
         module, name = path.split(":")
@@ -146,21 +116,9 @@ def entered_model(name: str, engine: Mapping[str, Any], like: str = LIKE, limit:
     """
     The model of an entered engine.
 
-    Parameters
-    ----------
-    name : str
-        Key and title.
-    engine : mapping
-        As `amplification` takes it.
-    like : str
-        Key of the reference's model with the same law, whose settings the function is called with.
-    limit : float
-        Most processor time of one call, s.
-
-    Returns
-    -------
-    Model
-        The last of a hierarchy: no step of another model leads over it.
+    name: key and title. engine: as `amplification` takes it. like: key of the reference's model with the same law,
+    whose settings the function is called with. limit: most processor time of one call, s. Returns the last of a
+    hierarchy: no step of another model leads over it.
     """
     model = next(known for known in MODEL_HIERARCHY if known.key == like)
     return Model(

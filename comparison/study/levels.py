@@ -40,17 +40,8 @@ def levels_of(study: Study, first: Mapping[str, int]) -> list[Level]:
     """
     The levels of a study, from coarse to fine; each begins with the phase pairs of the one before.
 
-    Parameters
-    ----------
-    study : Study
-        The whole question.
-    first : mapping of str to int
-        The level that an analysis is first made at, by its key.
-
-    Returns
-    -------
-    list of Level
-        The last is the study itself. A level that would add nothing is left out.
+    study: the whole question. first: the level that an analysis is first made at, by its key. Returns the last is the
+    study itself. A level that would add nothing is left out.
     """
     made = [key for key in first if study.selecting(key).scenes]
     studies: list[Study] = []

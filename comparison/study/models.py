@@ -163,11 +163,8 @@ def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str]
     A like-for-like difference of every entered engine, then the total one, that within the paper's assumptions, and the
     like-for-like one: what the scene allows.
 
-    Parameters
-    ----------
-    left_out
-        Keys of models without results. The total then leads from the first to the last model that has values. The
-        other two compare fixed models: without one of these they are left out.
+    left_out: keys of models without results. The total then leads from the first to the last model that has values. The
+    other two compare fixed models: without one of these they are left out.
     """
     asked = steps_of(scene, hierarchy)
     models = [model for model in asked if model.key not in left_out]
@@ -324,15 +321,7 @@ def with_softened_bars(hierarchy: Sequence[Model], scenes: Sequence[Scene]) -> t
     """
     The hierarchy with the step that softens bars, where a scene has bars without it.
 
-    Parameters
-    ----------
-    hierarchy : sequence of Model
-    scenes : sequence of Scene
-
-    Returns
-    -------
-    tuple of Model
-        The step comes last: like for like and all models before it have the stiffness without load.
+    Returns the step comes last: like for like and all models before it have the stiffness without load.
     """
     functions = {model.amplification for model in hierarchy}
     steps = (SOFTENED_TRANSLATIONAL, SOFTENED_SPATIAL)

@@ -64,17 +64,8 @@ def checked_limits(
     """
     Every limit that the scenes of a study state, compared with what was found.
 
-    Parameters
-    ----------
-    rows
-        Differences of the pairs of models that could be compared.
-    lacking
-        Models without a value somewhere.
-
-    Returns
-    -------
-    list of Limit
-        In the order of scenes and keys. A scene that states no limit has none.
+    rows: differences of the pairs of models that could be compared. lacking: models without a value somewhere. Returns
+    in the order of scenes and keys. A scene that states no limit has none.
     """
     limits = []
     for scene in study.scenes:

@@ -155,16 +155,6 @@ def held_out_places(study: Study, scene: Scene, model: Model) -> Indices:
     Phase pairs that the model does not compute, chosen at random, as places on the whole grid, alpha2 running fastest.
 
     The same in every run. No two of them are mirror images of each other, and none of a computed phase pair.
-
-    Parameters
-    ----------
-    study : Study
-    scene : Scene
-    model : Model
-
-    Returns
-    -------
-    ndarray, (n,)
     """
     mirrored = model.symmetric(scene) and study.grid % study.stride(model) == 0 and not study.full
     same = sources(scene, study.grid) if mirrored else np.arange(study.grid**2)
@@ -204,17 +194,7 @@ def completions(
     The model before it is the nearest in the hierarchy that is compared and has all phases. A spatial model on 8 x 8
     phases or fewer is listed, too: it is not to be drawn as a surface even where the study has no more.
 
-    Parameters
-    ----------
-    study : Study
-    surfaces : xr.Dataset
-    scene : Scene
-    held_out : mapping or None
-        What `CompletedSurfaces` collected; None where nothing was held out.
-
-    Returns
-    -------
-    list of Completion
+    held_out: what `CompletedSurfaces` collected; None where nothing was held out.
     """
     if scene.recorded:
         return []
@@ -231,18 +211,7 @@ def completions(
 
 
 def with_completed(surfaces: xr.Dataset, listed: Sequence[Completion]) -> xr.Dataset:
-    """
-    The surfaces with the variable `completed`, mu where a completed surface may be drawn, and its certificate.
-
-    Parameters
-    ----------
-    surfaces : xr.Dataset
-    listed : sequence of Completion
-
-    Returns
-    -------
-    xr.Dataset
-    """
+    """The surfaces with the variable `completed`, mu where a completed surface may be drawn, and its certificate."""
     completed, per_body = xr.full_like(surfaces["mu"], np.nan), xr.full_like(surfaces["mu"][..., 0, 0], np.nan)
     completed.attrs = {
         "units": "1",
@@ -355,18 +324,8 @@ def interpolated(values: Array, phase: Array, every: Array) -> Array:
     """
     A function of both phases that is known at some phase pairs, by thin plates.
 
-    Parameters
-    ----------
-    values : (K, K) array
-        At `phase`; NaN where it is not known.
-    phase : (K,) array
-        The phases of either axis, rad.
-    every : (L,) array
-        Those at which the values are wanted, rad.
-
-    Returns
-    -------
-    (L, L) array
+    values: (K, K), at `phase`; NaN where it is not known. phase: (K,), the phases of either axis, rad. every: (L,),
+    those at which the values are wanted, rad.
     """
     known = np.isfinite(values.ravel())
     made: Array = RBFInterpolator(_torus(phase)[known], values.ravel()[known])(_torus(every))

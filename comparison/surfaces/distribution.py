@@ -44,16 +44,7 @@ def distributions(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Dist
     """
     One for each model and body with an answer, in this order.
 
-    Parameters
-    ----------
-    study : Study
-    surfaces : xr.Dataset
-    scene : Scene
-        With phases.
-
-    Returns
-    -------
-    list of Distribution
+    scene: with phases.
     """
     listed = []
     for model in models_of(scene, study.hierarchy):

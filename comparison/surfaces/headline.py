@@ -92,18 +92,8 @@ def headline(study: Study, surfaces: xr.Dataset, scene: Scene, bars: Waterfall, 
     """
     The headline of one body.
 
-    Parameters
-    ----------
-    bars : Waterfall
-        Of this body.
-    rows : sequence of Difference
-        Of the study.
-
-    Returns
-    -------
-    Headline
-        Its mean is the total of the bars, its largest difference the largest that the page shows of the first and any
-        engine model.
+    bars: of this body. rows: of the study. Returns its mean is the total of the bars, its largest difference the
+    largest that the page shows of the first and any engine model.
     """
     body, largest = bars.body, bars.largest
     pair = next(pair for pair in study.pairs(scene) if pair.key == "total")

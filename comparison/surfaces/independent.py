@@ -19,19 +19,9 @@ def independent_phases(
     """
     Number of orbits of phase pairs under the symmetries that all the models have.
 
-    Parameters
-    ----------
-    models : sequence of Model
-        The models compared. Two phase pairs count once only if every model gives both the same mu.
-    known : (K, K) array of bool
-        The phase pairs that count.
-    stride : int
-        They are every so many-th of the study's phases.
-
-    Returns
-    -------
-    int
-        The same with and without --full, which computes mirror images but does not make them independent.
+    models: the models compared. Two phase pairs count once only if every model gives both the same mu. known: (K, K),
+    the phase pairs that count. stride: they are every so many-th of the study's phases. Returns the same with and
+    without --full, which computes mirror images but does not make them independent.
     """
     if scene.recorded:
         return int(known.any())

@@ -44,17 +44,8 @@ def bars_of(bars: Sequence[WaterfallBar], total: WaterfallBar, scale: Scale) -> 
     """
     The bars of one waterfall, each beginning where the one before it ends, and the total from zero.
 
-    Parameters
-    ----------
-    bars, total : sequence of WaterfallBar, WaterfallBar
-        Relative sizes.
-    scale : Scale
-        The axis.
-
-    Returns
-    -------
-    list of Bar
-        One per step, then the total. A step without a value has no bar and moves nothing.
+    bars, total: relative sizes. scale: the axis. Returns one per step, then the total. A step without a value has no
+    bar and moves nothing.
     """
     drawn, start = [], 0.0
     for bar in bars:

@@ -136,17 +136,7 @@ class Assumptions(Analysis[ValidityRanges]):
 
 
 def describe(validity: ValidityRange) -> str:
-    """
-    One line for people: where mu_i stays within a share of the translational result.
-
-    Parameters
-    ----------
-    validity : ValidityRange
-
-    Returns
-    -------
-    str
-    """
+    """One line for people: where mu_i stays within a share of the translational result."""
     what = f"mu_{validity.body} stays within {100.0 * validity.share:g} %"
     if validity.key == "ring":
         if validity.holds is None:
@@ -173,16 +163,7 @@ def describe_shortening(scene: Scene, loaded: Sequence[AssumptionCell]) -> list[
     """
     One line for people on assumption (iv): what it changes that bars shorten as they sway.
 
-    Parameters
-    ----------
-    scene : Scene
-    loaded : sequence of AssumptionCell
-        Of UNDER_LOAD, in that order; or none.
-
-    Returns
-    -------
-    list of str
-        Empty without cells.
+    loaded: of UNDER_LOAD, in that order; or none. Returns empty without cells.
     """
     if len(loaded) != len(UNDER_LOAD):
         return []
@@ -199,18 +180,7 @@ def describe_shortening(scene: Scene, loaded: Sequence[AssumptionCell]) -> list[
 
 
 def describe_torsion(scene: Scene, cell: AssumptionCell) -> str:
-    """
-    One line for people: what an uneven variation changes, and how far its bodies turn about the vertical.
-
-    Parameters
-    ----------
-    scene : Scene
-    cell : AssumptionCell
-
-    Returns
-    -------
-    str
-    """
+    """One line for people: what an uneven variation changes, and how far its bodies turn about the vertical."""
     moved = [f"off the axis by {cell.variation.offset * (scene.support_radius or 0.0):g} m along x and y"]
     turned = [f"with their links at {cell.variation.yaw:g} rad to the axes"]
     where = " and ".join((moved if cell.variation.offset else []) + (turned if cell.variation.yaw else []))

@@ -175,17 +175,8 @@ def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> 
     """
     What has to be computed: the translational model and every variation of the spatial one.
 
-    Parameters
-    ----------
-    study : Study
-        Every scene with phases to which both models of the engine apply.
-    variations : sequence of Variation
-        UNDER_LOAD is added where bars give way.
-
-    Returns
-    -------
-    list of tuple
-        Scene, model, variation (None: the scene itself), tolerance.
+    study: every scene with phases to which both models of the engine apply. variations: UNDER_LOAD is added where bars
+    give way. Returns scene, model, variation (None: the scene itself), tolerance.
     """
     asked: list[Arguments] = []
     for scene in study.phased:
@@ -201,20 +192,7 @@ def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> 
 
 
 def variation_tasks(study: Study, stage: str, variations: Sequence[Variation] = FEW) -> list[Task]:
-    """
-    `variation_arguments` as tasks.
-
-    Parameters
-    ----------
-    study : Study
-    stage : str
-        Stage of the tasks.
-    variations : sequence of Variation
-
-    Returns
-    -------
-    list of Task
-    """
+    """`variation_arguments` as tasks."""
     return [
         Task(
             varied,
@@ -231,16 +209,7 @@ def assumption_cells(tasks: Sequence[Task], results: TaskResults) -> list[Assump
     """
     Every variation against the translational model of its scene.
 
-    Parameters
-    ----------
-    tasks : sequence of Task
-        `variation_tasks`.
-    results : TaskResults
-        Their results.
-
-    Returns
-    -------
-    list of AssumptionCell
+    tasks: `variation_tasks`. results: their results.
     """
     answers = [(task.argument, results.value(task, _without_value)) for task in tasks]
     held_against = {scene.name: answer for (scene, _, variation, _), answer in answers if variation is None}
@@ -255,14 +224,7 @@ def varied(task: Arguments) -> Solved:
     """
     One variation at PHASES. Runs inside a worker process.
 
-    Parameters
-    ----------
-    task : tuple
-        As in `variation_arguments`.
-
-    Returns
-    -------
-    Solved
+    task: as in `variation_arguments`.
     """
     scene, model, variation, tolerance = task
     short = scene.with_values({"duration": min(scene.duration, DURATION)})
@@ -317,15 +279,6 @@ def ranges(scenes: Sequence[Scene], cells: Sequence[AssumptionCell]) -> list[Val
     Where every mu_i stays within each share of WITHIN.
 
     Over rings at the stated heights, over heights at the stated ring, over offsets and over angles at both.
-
-    Parameters
-    ----------
-    scenes : sequence of Scene
-    cells : sequence of AssumptionCell
-
-    Returns
-    -------
-    list of ValidityRange
     """
     validity = []
     for scene in scenes:

@@ -63,13 +63,7 @@ class Answer:
 
 @dataclass(frozen=True)
 class BenchmarkTable(Analysis[Benchmarks]):
-    """
-    Every benchmark by the equations, by the equations with the engine's friction law, and by the engine.
-
-    Parameters
-    ----------
-    cases : sequence of Case
-    """
+    """Every benchmark by the equations, by the equations with the engine's friction law, and by the engine."""
 
     key, stage = "benchmarks", "benchmarks"
     cases: Sequence[Case]

@@ -55,24 +55,10 @@ class Case:
     """
     One benchmark.
 
-    Attributes
-    ----------
-    title : str
-    source : str
-        Where the numbers are published.
-    evidence : str
-        For what it is evidence.
-    published : sequence of Published
-    reading : Reading
-        Gives a value for each of `published`.
-    scene : Scene
-    phases : tuple of float, rad
-    start : sequence of (float, float), m
-        Where the bodies are released from rest; at the equilibrium if empty.
-    regularization : float, m/s
-        v_reg of the engine, and of the equations that are compared with it.
-    difference : str
-        What the source models and this project does not, or the other way round; empty where the models are the same.
+    source: where the numbers are published. evidence: for what it is evidence. reading: gives a value for each of
+    `published`. phases: rad. start: m, where the bodies are released from rest; at the equilibrium if empty.
+    regularization: m/s, v_reg of the engine, and of the equations that are compared with it. difference: what the
+    source models and this project does not, or the other way round; empty where the models are the same.
     """
 
     title: str
@@ -93,13 +79,7 @@ def shipped(name: str, values: Mapping[str, Any] | None = None) -> Scene:
 
 
 def cases() -> list[Case]:
-    """
-    The benchmarks whose inputs are shipped.
-
-    Returns
-    -------
-    list of Case
-    """
+    """The benchmarks whose inputs are shipped."""
     return [*_wear_power(), _release(), _coulomb_damping(), _den_hartog(), _harmonic_block(), _pulse(), *_linear()]
 
 

@@ -25,19 +25,7 @@ def mastodon(path: Path) -> Case:
     """
     The benchmark with the input motion of a file.
 
-    Parameters
-    ----------
-    path : Path
-        CSV with the columns time [s], ax, ay and az, the vertical one.
-
-    Returns
-    -------
-    Case
-
-    Raises
-    ------
-    SceneError
-        One line, if the file is no such motion.
+    path: CSV with the columns time [s], ax, ay and az, the vertical one. Raises SceneError.
     """
     try:
         samples = csv_samples(read_file(path, LARGEST).decode("utf-8-sig"))

@@ -29,36 +29,14 @@ docs/validation.md of the project.
 
 
 def page(table: Benchmarks) -> str:
-    """
-    The page.
-
-    Parameters
-    ----------
-    table : Benchmarks
-
-    Returns
-    -------
-    str
-        Markdown.
-    """
+    """The page."""
     counts = [f"- **{verdict}** ({table.counts()[verdict.value]}): {text}" for verdict, text in MEANING.items()]
     parts = [HEAD, short_table(table), "\n".join(counts), *map(_section, table.benchmarks)]
     return "\n\n".join(part.strip("\n") for part in parts) + "\n"
 
 
 def short_table(table: Benchmarks) -> str:
-    """
-    Five numbers, one of each kind, with the verdict where it is not "met".
-
-    Parameters
-    ----------
-    table : Benchmarks
-
-    Returns
-    -------
-    str
-        A table in Markdown; without the lines that are not in `table`.
-    """
+    """Five numbers, one of each kind, with the verdict where it is not "met"."""
     by_name = {each.name: each for each in table.benchmarks}
     lines = ["| benchmark | published | equations | engine |", "|---|---|---|---|"]
     for name, place in SHORT:

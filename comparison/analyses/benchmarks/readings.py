@@ -24,15 +24,7 @@ def positions_at(motion: Trajectory, times: ArrayLike) -> Array:
     """
     Position of the platform along x at some instants.
 
-    Parameters
-    ----------
-    motion : Trajectory
-    times : array_like, (T,), s
-
-    Returns
-    -------
-    ndarray, (T,), m
-        NaN behind the end of a motion that ended early.
+    times: (T,), s. Returns NaN behind the end of a motion that ended early.
     """
     instants = np.asarray(times, dtype=float)
     values: Array = _along(motion, 0)(instants)
@@ -43,14 +35,7 @@ def turning_points(motion: Trajectory) -> Array:
     """
     Positions of the platform along x where its velocity changes sign.
 
-    Parameters
-    ----------
-    motion : Trajectory
-
-    Returns
-    -------
-    ndarray, m
-        In the order of time. Where the last swing ends in rest or creep, the last one is where it ends.
+    Returns in the order of time. Where the last swing ends in rest or creep, the last one is where it ends.
     """
     speed = motion.velocity[:, 0, 0]
     moving = np.flatnonzero(np.abs(speed) > STILL * np.abs(speed).max())
@@ -68,14 +53,7 @@ def path_length(motion: Trajectory, begin: float, end: float) -> float:
     """
     Way that the platform slides.
 
-    Parameters
-    ----------
-    motion : Trajectory
-    begin, end : float, s
-
-    Returns
-    -------
-    float, m
+    begin, end: s.
     """
     dense = np.stack([_along(motion, axis)(_dense(motion, begin, end)) for axis in (0, 1)])
     return float(np.hypot(*np.diff(dense)).sum())
@@ -85,34 +63,14 @@ def extremes(motion: Trajectory, axis: int, begin: float = 0.0) -> tuple[float, 
     """
     Smallest and largest position of the platform.
 
-    Parameters
-    ----------
-    motion : Trajectory
-    axis : int
-        0 for x, 1 for y.
-    begin : float, s
-        From this instant to the end.
-
-    Returns
-    -------
-    tuple of float, m
+    axis: 0 for x, 1 for y. begin: s, from this instant to the end.
     """
     dense = _along(motion, axis)(_dense(motion, begin, float(motion.time[-1])))
     return float(dense.min()), float(dense.max())
 
 
 def ranges(motion: Trajectory) -> list[float]:
-    """
-    Smallest and largest position of the platform along x, then along y.
-
-    Parameters
-    ----------
-    motion : Trajectory
-
-    Returns
-    -------
-    list of float, m
-    """
+    """Smallest and largest position of the platform along x, then along y."""
     return [*extremes(motion, 0), *extremes(motion, 1)]
 
 
@@ -120,32 +78,14 @@ def half_range(motion: Trajectory, begin: float) -> float:
     """
     Amplitude of the platform's oscillation along x.
 
-    Parameters
-    ----------
-    motion : Trajectory
-    begin : float, s
-        From this instant to the end: a whole period.
-
-    Returns
-    -------
-    float, m
+    begin: s, from this instant to the end: a whole period.
     """
     lowest, highest = extremes(motion, 0, begin)
     return 0.5 * (highest - lowest)
 
 
 def period(motion: Trajectory) -> float:
-    """
-    Mean time between two passages of the platform through x = 0 in the same direction.
-
-    Parameters
-    ----------
-    motion : Trajectory
-
-    Returns
-    -------
-    float, s
-    """
+    """Mean time between two passages of the platform through x = 0 in the same direction."""
     passages = _along(motion, 0).roots(extrapolate=False)
     return float(np.diff(passages[::2]).mean())
 

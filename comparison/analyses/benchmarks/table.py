@@ -104,11 +104,7 @@ class Benchmarks:
     """
     All benchmarks.
 
-    Attributes
-    ----------
-    benchmarks : sequence of Benchmark
-    run : mapping
-        How it was made; empty until a command says so.
+    run: how it was made; empty until a command says so.
     """
 
     __pydantic_config__ = FILE_FORMAT
@@ -122,10 +118,7 @@ class Benchmarks:
         """
         Numbers of the equations and of the engine by verdict.
 
-        Returns
-        -------
-        dict of str to int
-            From the best verdict to the worst, zeros included.
+        Returns from the best verdict to the worst, zeros included.
         """
         seen = Counter(
             row.numbers[side].verdict for each in self.benchmarks for row in each.rows for side in (EQUATIONS, ENGINE)

@@ -180,17 +180,7 @@ def demand_statistics(study: Study, demands: xr.Dataset, scene: Scene) -> list[D
     """
     One for each demand, body and model with an answer.
 
-    Parameters
-    ----------
-    study : Study
-    demands : xr.Dataset
-        From `DemandSurfaces`.
-    scene : Scene
-
-    Returns
-    -------
-    list of DemandStatistics
-        In the order of QUANTITIES; none for a scene without this analysis.
+    demands: from `DemandSurfaces`. Returns in the order of QUANTITIES; none for a scene without this analysis.
     """
     if scene.name not in demands["scene"]:
         return []

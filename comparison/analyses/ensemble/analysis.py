@@ -107,14 +107,8 @@ class Ensemble(Analysis[EnsembleResult]):
     """
     Demands of every scene of a family by the equations, and by the engine at `subset` of them.
 
-    Parameters
-    ----------
-    family : Family
-        Every scene has a recorded motion.
-    subset : int
-        Scenes that the engine computes, spread evenly over motions and scales.
-    tolerance : float
-        Relative error asked of the largest accelerations by the engine; the equations take theirs.
+    family: every scene has a recorded motion. subset: scenes that the engine computes, spread evenly over motions and
+    scales. tolerance: relative error asked of the largest accelerations by the engine; the equations take theirs.
     """
 
     key, stage = "ensemble", "ensemble"
@@ -171,16 +165,7 @@ def refuse_unfit(family: Family, label: str) -> None:
     """
     Whether a family can be an ensemble.
 
-    Parameters
-    ----------
-    family : Family
-    label : str
-        Its file, for the message.
-
-    Raises
-    ------
-    SceneError
-        Unless every scene has a recorded motion.
+    label: its file, for the message. Raises SceneError: unless every scene has a recorded motion.
     """
     for scene in family.scenes:
         if not scene.recorded:

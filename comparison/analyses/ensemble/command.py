@@ -94,19 +94,7 @@ def asked_family(options: argparse.Namespace) -> Family:
     """
     The scene with every motion of `--suite` at every scale of `--scales`; what is not given stays as the file has it.
 
-    Parameters
-    ----------
-    options : argparse.Namespace
-        Of the command line.
-
-    Returns
-    -------
-    Family
-
-    Raises
-    ------
-    SceneError
-        One line, for a scene, suite or scale that cannot be used.
+    Raises SceneError.
     """
     data = scene_tables(scene_text(options.scene), options.scene)
     loading: Any = data.get("excitation")

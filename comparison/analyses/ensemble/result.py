@@ -147,15 +147,7 @@ def stored(result: EnsembleResult, run: Mapping[str, Any]) -> StoredEnsemble:
     """
     The content of the file.
 
-    Parameters
-    ----------
-    result : EnsembleResult
-    run : mapping
-        Command, times, provenance.
-
-    Returns
-    -------
-    StoredEnsemble
+    run: command, times, provenance.
     """
     scene, names = result.family.scenes[0], quantities(result.points)
     stripes = [

@@ -28,14 +28,7 @@ class Extremes(Analysis[Matrix]):
     """
     Every model at every extreme. The cells have scenes of their own: the study chooses nothing.
 
-    Parameters
-    ----------
-    rows : sequence of Row
-        Extremes.
-    columns : sequence of Column
-        Models.
-    limit : float
-        Most processor time of one cell, s, rounded up.
+    limit: most processor time of one cell, s, rounded up.
     """
 
     key, stage = "extremes", "extremes"
@@ -82,15 +75,7 @@ def reduced(every: Sequence[Row]) -> list[Row]:
     """
     The extremes for a quick look: those that take a fraction of a second.
 
-    Parameters
-    ----------
-    every : sequence of Row
-        Extremes.
-
-    Returns
-    -------
-    list of Row
-        Without the rows that take long, and mostly without the models of the engine.
+    Returns without the rows that take long, and mostly without the models of the engine.
     """
     chosen = [
         replace(row, columns=tuple(key for key in row.columns if key in REFERENCE or row.group in BRIEF))

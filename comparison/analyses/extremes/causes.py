@@ -59,16 +59,6 @@ def cause(row: Row, model: str) -> str:
     """
     Why a model may have no answer.
 
-    Parameters
-    ----------
-    row : Row
-        The extreme.
-    model : str
-        Key of the model.
-
-    Returns
-    -------
-    str
-        One sentence, or nothing if no reason is known.
+    model: key of the model. Returns one sentence, or nothing if no reason is known.
     """
     return CAUSES.get((row.group, row.title), {}).get(model, "")

@@ -37,17 +37,7 @@ def cells(rows: Sequence[Row], columns: Sequence[Column] = COLUMNS) -> list[Cell
     """
     Every model that each extreme concerns.
 
-    Parameters
-    ----------
-    rows : sequence of Row
-        Extremes.
-    columns : sequence of Column
-        Models.
-
-    Returns
-    -------
-    list of Cell
-        Row by row.
+    Returns row by row.
     """
     return [Cell(row, column) for row in rows for column in columns if _concerns(row, column)]
 
@@ -61,15 +51,7 @@ def solve_cell(cell: Cell) -> Entry:
     """
     Ask the model, ask for more accuracy until that confirms or contradicts the answer, and judge.
 
-    Parameters
-    ----------
-    cell : Cell
-        Extreme and model.
-
-    Returns
-    -------
-    Entry
-        The verdict. Whatever the model raises is one, too.
+    cell: extreme and model. Returns the verdict. Whatever the model raises is one, too.
     """
     row, column = cell.row, cell.column
     tolerance = float(row.settings.get("tolerance", column.tolerance))
@@ -137,19 +119,8 @@ def read_scene(stated: Mapping[str, Any]) -> Scene:
     """
     A scene as a file would give it: keys without a value are absent.
 
-    Parameters
-    ----------
-    stated : mapping
-        Tables and keys of a scene file, values that are None among them.
-
-    Returns
-    -------
-    Scene
-
-    Raises
-    ------
-    SceneError
-        If a value is against a rule.
+    stated: tables and keys of a scene file, values that are None among them. Raises SceneError: if a value is against a
+    rule.
     """
     try:
         return Scene.model_validate({**_without_none(stated), "name": "extreme"})

@@ -58,21 +58,7 @@ def judged_matrix(
     """
     The matrix with all that is known of its run; stored cells are not judged again.
 
-    Parameters
-    ----------
-    extremes : Extremes
-        The cells.
-    options : argparse.Namespace
-        Of the command line.
-    words : sequence of str
-        The command line.
-    console : Console
-    executor : Executor or callable
-        What makes the processes of this machine, or an executor in their place.
-
-    Returns
-    -------
-    Matrix
+    extremes: the cells. executor: what makes the processes of this machine, or an executor in their place.
     """
     begin = time.monotonic()
     tasks = extremes.tasks()

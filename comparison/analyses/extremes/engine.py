@@ -33,27 +33,10 @@ def amplification(
     """
     As `multibody.amplification`, without reductions and with few levels.
 
-    Parameters
-    ----------
-    scene : Scene
-    phases : array_like, (M, 2)
-        rad.
-    model : str
-        "translational" or "spatial".
-    regularization : float or None
-        v_reg, m/s; None in a lubricated scene.
-    tolerance : float
-        Relative error asked of every mu.
-    contact_stiffness : float, optional
-        N/m, at the first level. The next ones come to that of the study by equal factors.
-    step : float, optional
-        s, the largest at the first level, halved from level to level.
-    max_work : float
-        Steps of the engine that a point may take.
-
-    Returns
-    -------
-    Amplification
+    phases: (M, 2), rad. model: "translational" or "spatial". regularization: v_reg, m/s; None in a lubricated scene.
+    tolerance: relative error asked of every mu. contact_stiffness: N/m, at the first level. The next ones come to that
+    of the study by equal factors. step: s, the largest at the first level, halved from level to level. max_work: steps
+    of the engine that a point may take.
     """
     levels = multibody.levels(scene, model, tolerance, regularization)[:MAX_LEVELS]
     if contact_stiffness is not None:

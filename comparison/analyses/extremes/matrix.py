@@ -64,14 +64,8 @@ class Matrix:
     """
     Every model at the extremes of every quantity, judged by finer runs.
 
-    Attributes
-    ----------
-    columns : mapping of str to str
-        Titles of the models by key.
-    rows : sequence of Extreme
-        One for each extreme.
-    run : mapping
-        How it was made; empty until a command says so.
+    columns: titles of the models by key. rows: one for each extreme. run: how it was made; empty until a command says
+    so.
     """
 
     __pydantic_config__ = FILE_FORMAT
@@ -87,10 +81,7 @@ class Matrix:
         """
         Number of cells of each verdict.
 
-        Returns
-        -------
-        dict of str to int
-            From the best verdict to the worst, zeros included.
+        Returns from the best verdict to the worst, zeros included.
         """
         seen = Counter(entry.verdict for row in self.rows for entry in row.entries.values())
         return {verdict.value: seen[verdict.value] for verdict in Verdict}
@@ -103,15 +94,7 @@ class Matrix:
         """
         The cells of one verdict.
 
-        Parameters
-        ----------
-        verdict : str
-            A `Verdict`.
-
-        Returns
-        -------
-        list of tuple
-            Row, title of the column, entry.
+        verdict: a `Verdict`. Returns row, title of the column, entry.
         """
         return [
             (row, self.columns[key], entry)

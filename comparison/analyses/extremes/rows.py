@@ -115,15 +115,7 @@ def entered_column(model: Model) -> Column:
     """
     The column of an engine of the user.
 
-    Parameters
-    ----------
-    model : Model
-        As `study.entered.entered_model` makes it.
-
-    Returns
-    -------
-    Column
-        Confirmed by the equations with the same law.
+    model: as `study.entered.entered_model` makes it. Returns confirmed by the equations with the same law.
     """
     law = {key: value for key, value in model.settings.items() if key != "engine"}
     like = str(model.like) if model.like in ALL else "exact"
@@ -153,31 +145,11 @@ def scene(
     """
     The plain scene, `fig3-I` at twice its amplitude, with one quantity or a few changed.
 
-    Parameters
-    ----------
-    amplitudes : (2 or 3, 2)
-        Of x, y and upward motion for either harmonic, m/s^2.
-    periods : (2,)
-        Of the harmonics, s.
-    decay : (2,)
-        Of the harmonics, 1/s.
-    duration : float
-        s.
-    masses : (N,)
-        kg, from below.
-    link : (2,)
-        Periods of the links in x and y, s.
-    damping : float or (2,), optional
-        Of the links: ratio of critical, or coefficients along x and y, N s/m.
-    storey : float
-        Height from body to body, m.
-    **isolator
-        Keys of the isolator's table.
-
-    Returns
-    -------
-    dict
-        As in a scene file; a value of None stands for an absent key.
+    amplitudes: of x, y and upward motion for either harmonic, m/s^2. periods: (2,), of the harmonics, s. decay: (2,),
+    of the harmonics, 1/s. duration: s. masses: (N,), kg, from below. link: (2,), periods of the links in x and y, s.
+    damping: (2,), of the links: ratio of critical, or coefficients along x and y, N s/m. storey: height from body to
+    body, m. **isolator: keys of the isolator's table. Returns as in a scene file; a value of None stands for an absent
+    key.
     """
     if "radius" not in isolator:
         isolator = {"period": 1.0, **isolator}
@@ -214,10 +186,7 @@ def rows() -> Iterator[Row]:
     """
     Every extreme.
 
-    Yields
-    ------
-    Row
-        In the order of the matrix.
+    Returns in the order of the matrix.
     """
     yield from _friction_laws()
     yield from _numerics_of_the_engine()

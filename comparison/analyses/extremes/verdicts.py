@@ -76,23 +76,9 @@ def judged(reply: Reply, finer: Sequence[Reply], tolerance: float, invalid: bool
     """
     The verdict on an answer.
 
-    Parameters
-    ----------
-    reply : Reply
-        The answer.
-    finer : sequence of Reply
-        Other answers to the same question, the most trusted first.
-    tolerance : float
-        Relative error that was asked.
-    invalid : bool
-        Whether the input is against the rules.
-    right : sequence of str
-        Outcomes that may stand in place of an answer; any named one if empty.
-
-    Returns
-    -------
-    Judged
-        That of the worst phase pair.
+    finer: other answers to the same question, the most trusted first. tolerance: relative error that was asked.
+    invalid: whether the input is against the rules. right: outcomes that may stand in place of an answer; any named one
+    if empty. Returns that of the worst phase pair.
     """
     if reply.raised:
         return Judged(Verdict.FAILED, f"raises {reply.raised}")

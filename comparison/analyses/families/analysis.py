@@ -72,10 +72,7 @@ def family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfall]]) 
     """
     One per bar and body, then the total of the body.
 
-    Parameters
-    ----------
-    waterfalls : mapping of str to sequence of Waterfall
-        By name of the scene, one per body.
+    waterfalls: by name of the scene, one per body.
     """
     steps = []
     for body in range(1, family.bodies + 1):
@@ -133,10 +130,7 @@ def family_demands_over_phases(
     """
     One per model, quantity and body, from all phases instead of stored motions.
 
-    Parameters
-    ----------
-    statistics : mapping of str to sequence of DemandStatistics
-        By name of the scene.
+    statistics: by name of the scene.
     """
     found = {
         (scene.name, row.model, row.quantity, row.body): row
@@ -158,14 +152,8 @@ def listed_demands(demands: Demands) -> Iterator[tuple[str, int, Estimate]]:
     """
     Every demand of a motion.
 
-    Parameters
-    ----------
-    demands : Demands
-
-    Yields
-    ------
-    tuple of str, int and Estimate
-        Field of `Demands`; body from 1, 0 where the demand is of the isolator, of a drift the upper body; the number.
+    Returns field of `Demands`; body from 1, 0 where the demand is of the isolator, of a drift the upper body; the
+    number.
     """
     for field in fields(demands):
         estimates = getattr(demands, field.name)

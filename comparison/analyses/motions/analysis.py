@@ -48,32 +48,13 @@ class StoredMotion:
     """
     One motion at a place, thinned.
 
-    Attributes
-    ----------
-    place : Place
-    model : str
-        Key of the model.
-    time : ndarray, (T,), s
-    position, acceleration : ndarray, (T, N, 2), m and m/s^2
-        Displacement relative to the plate, and absolute acceleration.
-    stick : tuple of (float, float), s
-        Intervals of rest, or of creep below v_reg.
-    status : str
-        How the motion ended.
-    error_message : str
-        Why there is no motion, or "".
-    contact_force : ndarray, (T,), N
-        Normal force of the isolator. This and the arrays below are empty in a motion that lacks them.
-    isolator_force : ndarray, (T, 2), N
-        Horizontal force of the bodies on the isolator.
-    support_force : ndarray, (T, K), N
-        Normal force of every support of the spatial model.
-    yaw : ndarray, (T,), rad
-        Turn of the platform about the vertical, of the spatial model.
-    demands : Demands or None
-        Of the motion before it was thinned. None if it was not computed.
-    spectra : FloorSpectra or None
-        Likewise.
+    model: key of the model. time: (T,), s. position, acceleration: (T, N, 2), displacement relative to the plate, and
+    absolute acceleration. stick: s, intervals of rest, or of creep below v_reg. status: how the motion ended.
+    error_message: why there is no motion, or "". contact_force: (T,), N, normal force of the isolator. This and the
+    arrays below are empty in a motion that lacks them. isolator_force: (T, 2), N, horizontal force of the bodies on the
+    isolator. support_force: (T, K), N, normal force of every support of the spatial model. yaw: (T,), rad, turn of the
+    platform about the vertical, of the spatial model. demands: of the motion before it was thinned. None if it was not
+    computed. spectra: likewise.
     """
 
     place: Place

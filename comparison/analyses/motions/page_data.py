@@ -155,18 +155,7 @@ def _blocks(motion: StoredMotion) -> dict[str, list[int]]:
 
 
 def significant_digits(values: NDArray[np.float64], digits: int) -> list[Any]:
-    """
-    Nested lists of numbers with so many significant digits.
-
-    Parameters
-    ----------
-    values : ndarray
-    digits : int
-
-    Returns
-    -------
-    list
-    """
+    """Nested lists of numbers with so many significant digits."""
     if values.ndim > 1:
         return [significant_digits(part, digits) for part in values]
     return [float(f"{value:.{digits}g}") for value in values]

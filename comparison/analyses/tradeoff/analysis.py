@@ -43,12 +43,7 @@ class TradeOff(Analysis[list[MeasuredTrade]]):
     """
     Error against compute time of every setting, in every scene with phases.
 
-    Parameters
-    ----------
-    quick : bool
-        Fewer points and values.
-    entered : tuple of Model
-        Engines of the user.
+    quick: fewer points and values. entered: engines of the user.
     """
 
     key, stage = "tradeoff", "trade-off"
@@ -123,19 +118,8 @@ def functions(scene: Scene, quick: bool, others: Sequence[Setting] = ()) -> dict
     """
     Every function that is called for a scene, once each.
 
-    Parameters
-    ----------
-    scene : Scene
-        Scene with phases.
-    quick : bool
-        Fewer points and values.
-    others : sequence of Setting
-        Measured besides those of the scene.
-
-    Returns
-    -------
-    dict of str to tuple
-        By its key: function, number of phase pairs, about how many s each takes.
+    scene: scene with phases. quick: fewer points and values. others: measured besides those of the scene. Returns by
+    its key: function, number of phase pairs, about how many s each takes.
     """
     points = {question.key: question.quick if quick else question.points for question in asked(scene)}
     measured = [*settings(scene, quick), *others]
@@ -153,19 +137,8 @@ def entry(setting: Setting, measured: Measured, reference_solution: Array) -> En
     """
     What one setting gave.
 
-    Parameters
-    ----------
-    setting : Setting
-        Method and value of its parameter.
-    measured : Measured
-        M phase pairs under it.
-    reference_solution : ndarray, (M, N)
-        mu of the same phase pairs that the errors are against.
-
-    Returns
-    -------
-    Entry
-        Not yet compared with other settings.
+    setting: method and value of its parameter. measured: M phase pairs under it. reference_solution: (M, N), mu of the
+    same phase pairs that the errors are against. Returns not yet compared with other settings.
     """
     error = np.abs(measured.mu / reference_solution - 1.0)
     error_estimate = measured.error_estimate / np.abs(measured.mu)

@@ -106,21 +106,8 @@ def measured_trades(
     """
     The trades of the scenes with all that is known of their run; what is stored is not measured again.
 
-    Parameters
-    ----------
-    scenes : sequence of Scene
-    options : argparse.Namespace
-        Of the command line.
-    words : sequence of str
-        The command line.
-    console : Console
-    executor : Executor or callable
-        What makes the processes of this machine, or an executor in their place.
-
-    Returns
-    -------
-    list of MeasuredTrade
-        In the order of the scenes.
+    executor: what makes the processes of this machine, or an executor in their place. Returns in the order of the
+    scenes.
     """
     entered = entered_models(options.model, options.model_limit, options.scheduler)
     tradeoff, study = TradeOff(options.quick, entered), Study(tuple(scenes), 1, TOLERANCE)

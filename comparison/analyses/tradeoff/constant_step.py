@@ -17,22 +17,8 @@ def factors_at_constant_step(scene: Scene, phases: ArrayLike, solver: str, step:
     """
     mu of the translational model at a constant step.
 
-    Parameters
-    ----------
-    scene : Scene
-    phases : array_like, (M, 2)
-        rad.
-    solver : str
-        An integrator of `multibody.single_run`.
-    step : float
-        s.
-    v_reg : float
-        m/s.
-
-    Returns
-    -------
-    ndarray, (M, N)
-        NaN where the engine gives up.
+    phases: (M, 2), rad. solver: an integrator of `multibody.single_run`. step: s. v_reg: m/s. Returns NaN where the
+    engine gives up.
     """
     pairs = checked_phases(phases)
     peaks = np.full((len(pairs), len(scene.bodies)), np.nan)

@@ -132,15 +132,7 @@ def with_slope(quantity: str, unit: str, model: str, values: Sequence[float], se
     """
     The series with its slope.
 
-    Parameters
-    ----------
-    quantity, unit, model : str
-    values, seconds : sequence of float
-        As in `Series`; NaN where there is no measurement.
-
-    Returns
-    -------
-    Series
+    values, seconds: as in `Series`; NaN where there is no measurement.
     """
     slope, uncertainty = fitted_slope(values, seconds)
     numbers = finite_or_none(slope), finite_or_none(uncertainty)

@@ -40,20 +40,7 @@ def measured_growth(
     """
     All series of a scene with what is known of their run; what is stored is not measured again, but for the workers.
 
-    Parameters
-    ----------
-    scene : Scene
-    options : argparse.Namespace
-        Of the command line.
-    words : sequence of str
-        The command line.
-    console : Console
-    executor : Executor or callable
-        What makes the processes of this machine, or an executor in their place.
-
-    Returns
-    -------
-    MeasuredGrowth
+    executor: what makes the processes of this machine, or an executor in their place.
     """
     begin = time.monotonic()
     growth, study = Growth(), Study((scene,), 1, TOLERANCE)

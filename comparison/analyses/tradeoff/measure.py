@@ -86,15 +86,8 @@ def measure(measurement: Measurement) -> Measured:
     """
     Call the function, warm. Runs inside a worker process.
 
-    Parameters
-    ----------
-    measurement : Measurement
-        Scene, function and phase pairs.
-
-    Returns
-    -------
-    Measured
-        Without values, and with the reason, where the function raises.
+    measurement: scene, function and phase pairs. Returns without values, and with the reason, where the function
+    raises.
     """
     path, settings = measurement.function
     if path not in _warm:
@@ -128,15 +121,7 @@ def joined(parts: Sequence[Measured]) -> Measured:
     """
     The measurements of one function, in the order of their phase pairs, as one.
 
-    Parameters
-    ----------
-    parts : sequence of Measured
-        At least one.
-
-    Returns
-    -------
-    Measured
-        Times added up; the first of the error messages.
+    parts: at least one. Returns times added up; the first of the error messages.
     """
     return Measured(
         np.concatenate([part.mu for part in parts]),

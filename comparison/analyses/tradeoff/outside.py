@@ -95,29 +95,9 @@ def motion(scene: Scene, phase: ArrayLike, method: str, tolerance: float, v_reg:
     """
     A motion by SciPy.
 
-    Parameters
-    ----------
-    scene : Scene
-    phase : array_like, (2,)
-        rad.
-    method : str
-        Of `scipy.integrate.solve_ivp`.
-    tolerance : float
-        Relative tolerance of a step.
-    v_reg : float
-        m/s.
-
-    Returns
-    -------
-    times : ndarray, (T,)
-        s: the solver's own steps, SAMPLES, and closer ones near the peaks.
-    states : ndarray, (T, 4 N)
-        Positions, m, and velocities, m/s.
-
-    Raises
-    ------
-    ValueError
-        If the solver fails.
+    phase: (2,), rad. method: of `scipy.integrate.solve_ivp`. tolerance: relative tolerance of a step. v_reg: m/s.
+    times: s: the solver's own steps, SAMPLES, and closer ones near the peaks. states: Positions, m, and velocities,
+    m/s. Raises ValueError: if the solver fails.
     """
     run = solve_ivp(
         slope, (0.0, scene.duration), np.zeros(4 * len(scene.bodies)), method, dense_output=True,
@@ -142,22 +122,7 @@ def accelerations(scene: Scene, phase: ArrayLike, times: Array, states: Array, v
     """
     Sizes of the absolute accelerations of a motion.
 
-    Parameters
-    ----------
-    scene : Scene
-    phase : array_like, (2,)
-        rad.
-    times : ndarray, (T,)
-        s.
-    states : ndarray, (T, 4 N)
-        As of `motion`.
-    v_reg : float
-        m/s.
-
-    Returns
-    -------
-    ndarray, (T, N)
-        m/s^2.
+    phase: (2,), rad. times: (T,), s. states: (T, 4 N), as of `motion`. v_reg: m/s.
     """
     constants, count = constants_of(scene, phase, v_reg), len(scene.bodies)
     a = slopes(times, states, constants)[:, 2 * count :].reshape(-1, count, 2)
@@ -183,26 +148,8 @@ def factors_by_scipy(scene: Scene, phases: ArrayLike, method: str, tolerance: fl
     """
     mu by `scipy.integrate.solve_ivp`.
 
-    Parameters
-    ----------
-    scene : Scene
-    phases : array_like, (M, 2)
-        rad.
-    method : str
-        Of `solve_ivp`.
-    tolerance : float
-        Relative tolerance of a step.
-    v_reg : float
-        m/s.
-
-    Returns
-    -------
-    ndarray, (M, N)
-
-    Raises
-    ------
-    ValueError
-        If the solver fails at a phase pair.
+    phases: (M, 2), rad. method: of `solve_ivp`. tolerance: relative tolerance of a step. v_reg: m/s. Raises ValueError:
+    if the solver fails at a phase pair.
     """
     pairs: Array = checked_phases(phases)
     return np.array([factors(scene, phase, *motion(scene, phase, method, tolerance, v_reg), v_reg) for phase in pairs])

@@ -104,17 +104,7 @@ QUESTIONS = (
 
 
 def asked(scene: Scene) -> list[Question]:
-    """
-    The questions that a scene allows.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    list of Question
-    """
+    """The questions that a scene allows."""
     return [question for question in QUESTIONS if question.key != "spatial" or has_spatial_data(scene)]
 
 
@@ -122,15 +112,7 @@ def settings(scene: Scene, quick: bool = False) -> list[Setting]:
     """
     Every setting that is measured for a scene.
 
-    Parameters
-    ----------
-    scene : Scene
-    quick : bool
-        Every other one of the expensive ones.
-
-    Returns
-    -------
-    list of Setting
+    quick: every other one of the expensive ones.
     """
     keys = {question.key for question in asked(scene)}
     every = [*_reference(scene), *_scipy(quick), *_engine(quick)]
@@ -230,14 +212,7 @@ def entered_settings(models: Sequence[Model]) -> list[Setting]:
     """
     Engines of the user at the tolerances that they take, or as they are.
 
-    Parameters
-    ----------
-    models : sequence of Model
-        As `study.entered.entered_model` makes them.
-
-    Returns
-    -------
-    list of Setting
+    models: as `study.entered.entered_model` makes them.
     """
     keys = {question.key for question in QUESTIONS}
     measured = []

@@ -30,24 +30,8 @@ def reference_run(
 
     The solver has no largest step: events and this tolerance alone make its steps.
 
-    Parameters
-    ----------
-    scene : Scene
-    phases : array_like, (M, 2)
-        rad.
-    inside : float
-        Tolerance inside a step.
-    equations : str
-        "small" or "exact".
-    regularization : float or None
-        v_reg, m/s; None: set-valued friction.
-
-    Returns
-    -------
-    mu : ndarray, (M, N)
-        NaN without an answer.
-    step : float
-        Mean step, s.
+    phases: (M, 2), rad. inside: tolerance inside a step. equations: "small" or "exact". regularization: v_reg, m/s;
+    None: set-valued friction. mu: NaN without an answer. step: Mean step, s.
     """
     pairs = checked_phases(phases)
     system, demand = checked_demand(scene, equations, regularization, 1e-6, None, "consistent")
@@ -68,26 +52,9 @@ def engine_run(
     """
     One run of the engine for each phase pair, at its USUAL_LEVEL but for the arguments.
 
-    Parameters
-    ----------
-    scene : Scene
-    phases : array_like, (M, 2)
-        rad.
-    model : str
-        "translational" or "spatial".
-    regularization : float
-        v_reg, m/s.
-    step : float
-        Factor on the largest step and on the turn allowed in one.
-    penetration : float, optional
-        Of the contact under the weight, in rho: the inverse of its stiffness.
-    newton : float, optional
-        Relative tolerance of Newton's iteration.
-
-    Returns
-    -------
-    ndarray, (M, N)
-        mu, NaN without an answer.
+    phases: (M, 2), rad. model: "translational" or "spatial". regularization: v_reg, m/s. step: factor on the largest
+    step and on the turn allowed in one. penetration: of the contact under the weight, in rho: the inverse of its
+    stiffness. newton: relative tolerance of Newton's iteration. Returns mu, NaN without an answer.
     """
     pairs = checked_phases(phases)
     usual = multibody.levels(scene, model, 1e-3, regularization)[USUAL_LEVEL]

@@ -168,16 +168,7 @@ def with_pareto_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
     """
     The entries with `pareto_front` filled in.
 
-    Parameters
-    ----------
-    entries : sequence of Entry
-    bodies : int
-        Number of bodies N.
-
-    Returns
-    -------
-    list of Entry
-        Compared within each question, among those that answer it at every point.
+    bodies: number of bodies N. Returns compared within each question, among those that answer it at every point.
     """
     marks: dict[int, list[bool]] = {place: [False] * bodies for place in range(len(entries))}
     for question in {entry.question for entry in entries}:
@@ -222,18 +213,8 @@ def labeled(
     """
     Every value by setting, point and body.
 
-    Parameters
-    ----------
-    entries : sequence of Entry
-        One for each setting.
-    mu, reference_solution, error_estimate : sequence of ndarray, (P, N)
-        For each setting; a question with fewer points leaves the rest NaN.
-    phases : ndarray, (M, 2)
-        The whole sample, rad.
-
-    Returns
-    -------
-    xr.Dataset
+    entries: one for each setting. mu, reference_solution, error_estimate: (P, N), for each setting; a question with
+    fewer points leaves the rest NaN. phases: (M, 2), the whole sample, rad.
     """
     count, bodies = len(phases), mu[0].shape[1]
 

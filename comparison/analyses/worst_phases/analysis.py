@@ -113,18 +113,8 @@ def nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, mode
     """
     The largest mu over all phases of a model or, where it was not searched, of another one near it.
 
-    Parameters
-    ----------
-    found : sequence of Worst
-    models : sequence of str
-        Keys of the models of the scene in their order.
-    scene, model : str
-    body : int
-
-    Returns
-    -------
-    Worst or None
-        Of the model, else of the next one that was searched, else of the last one before; None without any.
+    models: keys of the models of the scene in their order. Returns of the model, else of the next one that was
+    searched, else of the last one before; None without any.
     """
     searched = {
         worst.model: worst

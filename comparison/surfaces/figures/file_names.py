@@ -13,17 +13,9 @@ def figure_file(scene: str, *parts: str, ending: str = ".png") -> str:
     """
     Name of a file that belongs to a scene.
 
-    Parameters
-    ----------
-    scene
-        Name of the scene, in which there may be dots, as in "frame[friction=0.02]".
-    parts
-        What the figure shows, as "body1", "total".
-
-    Returns
-    -------
-    str
-        The parts joined by hyphens; a longer name than file systems allow is cut and ends in a hash of the whole.
+    scene: name of the scene, in which there may be dots, as in "frame[friction=0.02]". parts: what the figure shows, as
+    "body1", "total". Returns the parts joined by hyphens; a longer name than file systems allow is cut and ends in a
+    hash of the whole.
     """
     stem = "-".join([scene, *parts])
     written = stem.encode(errors="surrogateescape")

@@ -64,16 +64,7 @@ def draw_surface(axes: Axes, phase: np.ndarray, height: np.ndarray, limits: tupl
     """
     One gray surface in the manner of the paper.
 
-    Parameters
-    ----------
-    axes : Axes3D
-    phase : ndarray, (n + 1,), rad
-        With both ends.
-    height : ndarray, (n + 1, n + 1)
-    limits : tuple of float
-        Of the height axis.
-    name : str
-        Of the height.
+    phase: rad, with both ends. limits: of the height axis. name: of the height.
     """
     assert isinstance(axes, Axes3D)
     low, high = limits if limits[0] < limits[1] else (0.9 * limits[0] - 0.1, 1.1 * limits[1] + 0.1)

@@ -40,19 +40,9 @@ def draw_maps(
     """
     The maps of one scene as SVG, the same bytes for the same numbers.
 
-    Parameters
-    ----------
-    models : (Model, Model)
-        The first model and the engine model.
-    bodies : sequence of int
-        One or two bodies, from 1.
-    completed : sequence of Completion
-        Of the scene. Where the engine's surface may be drawn as completed, it is, and dots mark the computed phases.
-
-    Returns
-    -------
-    bytes
-        Phases run to the right (alpha1) and upward (alpha2). A cross marks the highest value.
+    models: the first model and the engine model. bodies: one or two bodies, from 1. completed: of the scene. Where the
+    engine's surface may be drawn as completed, it is, and dots mark the computed phases. Returns phases run to the
+    right (alpha1) and upward (alpha2). A cross marks the highest value.
     """
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(WIDTH, HEIGHT), dpi=RESOLUTION)
