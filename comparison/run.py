@@ -29,11 +29,11 @@ from rich.console import Console
 from comparison.cli.arguments import EndedEarlyError, command
 from comparison.cli.closing import print_check, print_closing, print_faults, print_level
 from comparison.cli.computing import ending_early
-from comparison.cli.entered import Engines, as_words
 from comparison.cli.options import Options, parsed
 from comparison.cli.reports import Complete, Reports, computed_level
 from comparison.cli.start import Clock, start_time
 from comparison.cli.terminal import print_models_left_out, print_plan, print_stored
+from comparison.cli.user_models import Engines, as_words
 from comparison.registry import chosen_analyses, first_tasks, levels
 from comparison.runner.cache import Cache, store_beside
 from comparison.runner.deadline import Deadline, TimeUpError

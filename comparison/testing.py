@@ -10,9 +10,9 @@ import numpy as np
 import xarray as xr
 
 from comparison.study.batches import execute_batch
-from comparison.study.entered import entered_model
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, with_softened_bars
 from comparison.study.study import Study
+from comparison.study.user_models import user_model
 from comparison.surfaces.differences import pair_step
 from comparison.surfaces.surfaces import labeled_surfaces
 from comparison.surfaces.unanswered import unanswered
@@ -96,7 +96,7 @@ def assert_consistent(
     with_total = any(name.startswith("total") for name in stated)
     hierarchy = [*(with_softened_bars(MODEL_HIERARCHY, (scene,)) if with_total else MODEL_HIERARCHY)]
     if engine is not None:
-        hierarchy.append(entered_model(ENGINE, {"function": engine}, law))
+        hierarchy.append(user_model(ENGINE, {"function": engine}, law))
     pairs = {pair.key: pair for pair in pairs_of(scene, hierarchy)}
     alike = "like-for-like" if engine is None else ENGINE
     asked = {name: pairs.get("total" if name.startswith("total") else alike) for name in stated}

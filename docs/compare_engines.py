@@ -24,7 +24,7 @@ from matplotlib.figure import Figure
 import reference
 from comparison.runner.environment import PACKAGES
 from comparison.runner.processes import Workers
-from comparison.study.entered import amplification
+from comparison.study.user_models import amplification
 from reference.problem import load_scene, phase_grid
 from reference.problem.symmetry import sources
 

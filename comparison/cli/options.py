@@ -9,7 +9,7 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from comparison.cli.arguments import CommandParser, jobs, number, whole_number
-from comparison.cli.entered import add_models, entered_models
+from comparison.cli.user_models import add_models, user_models
 from comparison.registry import EARLIER
 from comparison.runner.cache import refuse_foreign_store
 from comparison.runner.output import destination, refuse_foreign_report
@@ -76,7 +76,7 @@ def parsed(argv: Sequence[str]) -> Options:
         max_work=_optional("--max-work", words.max_work, 1.0, 1e12, "steps of the engine for a phase pair"),
         scheduler=words.scheduler,
         selection=Selection.of((scene for family in families for scene in family.scenes), only, skip, also),
-        models=entered_models(words.model, words.model_limit, words.scheduler),
+        models=user_models(words.model, words.model_limit, words.scheduler),
     )
     if options.check:
         _refuse_limits_of_no_engine(options.scenes, [model.key for model in options.models])

@@ -117,9 +117,9 @@ def _costs(report: Report, figures: Path) -> Mapping[str, Any]:
 
 def _models(report: Report, figures: Path) -> Mapping[str, Any]:
     models = _applied(report.study)
-    own = [model for model in models if model.side != "entered"]
-    entered = [model for model in models if model.side == "entered"]
-    return {"hierarchy": own, "entered": entered, "properties": _properties(own)}
+    own = [model for model in models if model.side != "user"]
+    supplied = [model for model in models if model.side == "user"]
+    return {"hierarchy": own, "supplied": supplied, "properties": _properties(own)}
 
 
 def content_policy(script: str, style: str) -> str:

@@ -30,7 +30,7 @@ def page_data(report: Report) -> str:
     JSON of all that is drawn; NaN is null.
 
     grid: phases per axis of the study. titles: by model. scenes, each: name, title, bodies, duration (s), recorded,
-    flat (whether it is a flat slider); pairs, each: key, title, sentence, first, second (models), entered (whether the
+    flat (whether it is a flat slider); pairs, each: key, title, sentence, first, second (models), supplied (whether the
     second is an engine of the user), contours (per body: polylines [[alpha1, alpha2], ...], rad, on which |D| = u_D),
     uncertainty (per body: u_D relative to the first model on the phases of both, or null where both are surfaces);
     models (by key: see `_model`); contact (`contact_geometry`); places (row, column, phases or null under a record,
@@ -79,7 +79,7 @@ def _pair(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
         "sentence": pair.sentence,
         "first": pair.first.key,
         "second": pair.second.key,
-        "entered": pair.second.side == "entered",
+        "user": pair.second.side == "user",
         "contours": [crossings(step.size, step.uncertainty, step.alpha1) if surfaces else [] for step in steps],
         "uncertainty": None if surfaces else [_rows(step.uncertainty, ERROR_DIGITS) for step in steps],
     }
@@ -88,7 +88,7 @@ def _pair(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
 def _surface(report: Report, scene: Scene, model: Model) -> bool:
     """Whether the values of a model are drawn as a surface as they are: what may need completing is not."""
     incomplete = any((each.scene, each.model) == (scene.name, model.key) for each in report.completions)
-    return model.side != "entered" and not incomplete
+    return model.side != "user" and not incomplete
 
 
 def _models(report: Report, scene: Scene) -> dict[str, Any]:

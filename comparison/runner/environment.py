@@ -15,7 +15,7 @@ from pathlib import Path
 
 PACKAGES = ("exudyn", "llvmlite", "numba", "numpy", "scipy")
 OURS = ("reference", "multibody", "comparison")
-ENTERED = "comparison.study.entered"  # engines of the user are called through it; their own source is in the settings
+USER_MODELS = "comparison.study.user_models"  # calls them; their source is in the settings
 SHARED = ("reference.problem", "comparison.study.batches")  # what every model is asked through
 DRAWING = ("matplotlib", "pillow", "xarray")
 ANSWERING = ("reference", "multibody", "comparison.study", "comparison.analyses", "comparison.wording")
@@ -24,7 +24,7 @@ ANSWERING = ("reference", "multibody", "comparison.study", "comparison.analyses"
 def environment_fingerprint(model: str) -> dict[str, str]:
     """Versions of the packages that compute, and hashes of the source behind the function `model` ("package:name")."""
     module = model.split(":")[0]
-    return _environment(PACKAGES, (*SHARED, module if module == ENTERED else module.split(".")[0]))
+    return _environment(PACKAGES, (*SHARED, module if module == USER_MODELS else module.split(".")[0]))
 
 
 def task_environment_fingerprint(module: str) -> dict[str, str]:

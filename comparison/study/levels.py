@@ -12,8 +12,8 @@ from comparison.study.study import Study
 
 # phases per axis at the first two levels; the third is the whole study
 MOST: tuple[Mapping[str, float], ...] = (
-    {"reference": 16, "engine": 8, "spatial": 4, "entered": 8},
-    {"reference": float("inf"), "engine": float("inf"), "spatial": 8, "entered": float("inf")},
+    {"reference": 16, "engine": 8, "spatial": 4, "user": 8},
+    {"reference": float("inf"), "engine": float("inf"), "spatial": 8, "user": float("inf")},
 )
 
 

@@ -87,7 +87,7 @@ class Model:
     whether mirrored phases (symmetry.py) are known to give mirrored motions of the scene and are not computed again.
     `refusal`: the function that tells from the scene alone
     why all phase pairs would be refused, or "" ("package:function", the contract of `multibody.refusal`). `side`:
-    "entered" for an engine of the user (entered.py), which has no place in the steps from model to model and no
+    "user" for a user-supplied engine (user_models.py), which has no place in the steps from model to model and no
     trajectory. `like`: key of the reference's model that such an engine is compared with. `timeout`: most processor
     time of one call, s.
     """
@@ -95,7 +95,7 @@ class Model:
     key: str
     title: str
     adds: str
-    side: Literal["reference", "engine", "entered"]
+    side: Literal["reference", "engine", "user"]
     amplification: str
     trajectory: str
     settings: Mapping[str, object]
@@ -154,14 +154,14 @@ def models_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
 
 
 def steps_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
-    """The models of the scene that lead from one to the next: all but those that a user has entered."""
-    return [model for model in models_of(scene, hierarchy) if model.side != "entered"]
+    """The models of the scene that lead from one to the next: all but those that a user supplies."""
+    return [model for model in models_of(scene, hierarchy) if model.side != "user"]
 
 
 def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str] = ()) -> list[Pair]:
     """
-    A like-for-like difference of every entered engine, then the total one, that within the paper's assumptions, and the
-    like-for-like one: what the scene allows.
+    A like-for-like difference of every user-supplied engine, then the total one, that within the paper's assumptions,
+    and the like-for-like one: what the scene allows.
 
     left_out: keys of models without results. The total then leads from the first to the last model that has values. The
     other two compare fixed models: without one of these they are left out.
@@ -184,12 +184,12 @@ def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str]
             sentence = "same geometry and same friction law on both sides: this gap must close"
             pairs.append(Pair("like-for-like", "like for like", sentence, reference, engine))
     of_users = []
-    for entered in models_of(scene, hierarchy):
-        if entered.side == "entered" and entered.key not in left_out:
-            like = next((model for model in equations if model.key == entered.like), reference)
+    for supplied in models_of(scene, hierarchy):
+        if supplied.side == "user" and supplied.key not in left_out:
+            like = next((model for model in equations if model.key == supplied.like), reference)
             if like in models:
-                sentence = f"the {like.title} against an engine that the user entered: what it solves is not known here"
-                of_users.append(Pair(entered.key, f"{entered.title}, like for like", sentence, like, entered))
+                sentence = f"the {like.title} against a user-supplied engine: what it solves is not known here"
+                of_users.append(Pair(supplied.key, f"{supplied.title}, like for like", sentence, like, supplied))
     return of_users + pairs
 
 

@@ -30,7 +30,7 @@ def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
 
 def _group(model: Model) -> str:
     """The worker group of a model: engines of the user share none with anything else."""
-    return model.key if model.side == "entered" else ""
+    return model.key if model.side == "user" else ""
 
 
 @dataclass(frozen=True)

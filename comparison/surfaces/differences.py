@@ -73,7 +73,7 @@ def differences(study: Study, surfaces: xr.Dataset) -> list[Difference]:
 
 def _difference(study: Study, surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> Difference:
     signed = pair_step(surfaces, scene, pair, body)
-    hierarchy = [] if pair.second.side == "entered" else steps(study, surfaces, scene, body)
+    hierarchy = [] if pair.second.side == "user" else steps(study, surfaces, scene, body)
     stride, common = known_to_all([*hierarchy, signed])
     mean, spread = signed.mean(common, stride)
     status = common_phases(surfaces, scene, [pair.first.key, pair.second.key])["status"]

@@ -159,7 +159,7 @@ def _of_engines(study: Study, scene: Scene, body: int, rows: Sequence[Difference
     row_of = {row.pair: row for row in rows if (row.scene, row.body) == (scene.name, body)}
     sentences = []
     for pair in study.pairs(scene):
-        if pair.second.side != "entered":
+        if pair.second.side != "user":
             continue
         row = row_of[pair.key]
         known, axis = row.asked - row.unanswered, math.isqrt(row.asked)

@@ -131,7 +131,7 @@ def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
 
 def advice(study: Study, scene: Scene, model: Model, outcome: str) -> str:
     """What an outcome of a model on a scene means, and what helps."""
-    if model.side == "entered" and outcome in (Outcome.SOLVER_FAILED, Outcome.TIME_LIMIT, Outcome.WORKER_DIED):
+    if model.side == "user" and outcome in (Outcome.SOLVER_FAILED, Outcome.TIME_LIMIT, Outcome.WORKER_DIED):
         return "see what the solvers reported"
     refused = ""
     if outcome in (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED):  # the latter of bars that would buckle

@@ -100,9 +100,9 @@ def test_a_changed_command_keeps_what_stands_behind_two_dashes() -> None:
     assert without_scheduler(["--scheduler", "tcp://a:1", "--", "--scheduler", "b"]) == ["--", "--scheduler", "b"]
 
 
-def test_engines_given_in_python_are_entered_in_spite_of_two_dashes(command: Callable[..., Run]) -> None:
+def test_engines_given_in_python_are_used_in_spite_of_two_dashes(command: Callable[..., Run]) -> None:
     words = ["--grid", "2", "--plan", "--", "fig3-I"]
-    assert main(words, fake_hierarchy(), ThreadPoolExecutor, models={"mine": "entered_engines:plain"}) == 0
+    assert main(words, fake_hierarchy(), ThreadPoolExecutor, models={"mine": "user_engines:plain"}) == 0
 
 
 def test_a_long_name_of_a_scene_cuts_no_number(capsys: pytest.CaptureFixture[str]) -> None:

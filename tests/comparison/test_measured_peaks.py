@@ -16,9 +16,9 @@ from known_analyses import collected
 
 import reference
 from comparison.analyses.measured.analysis import MeasuredPeaks
-from comparison.study.entered import entered_model
 from comparison.study.models import EXACT, MODEL_HIERARCHY, RESOLVED, SMALL, TRANSLATIONAL
 from comparison.study.study import Study
+from comparison.study.user_models import user_model
 from reference.problem import Scene, load_scene
 
 PHASES = (0.3, 1.1)
@@ -104,8 +104,8 @@ def test_a_record_is_compared_without_phases():
     assert math.isfinite(only.computed[0].value)
 
 
-def test_an_entered_engine_which_has_no_motions_is_not_asked():
-    study = Study((synthetic(0.0),), 1, 1e-3, (EXACT, entered_model("mine", {"function": "nowhere:mu"})))
+def test_a_user_engine_which_has_no_motions_is_not_asked():
+    study = Study((synthetic(0.0),), 1, 1e-3, (EXACT, user_model("mine", {"function": "nowhere:mu"})))
     assert {task.argument[1].key for task in MeasuredPeaks().tasks(study)} == {"exact"}
 
 

@@ -143,8 +143,8 @@ def test_a_mistake_moves_the_steps_to_and_from_its_model_and_no_other(
     assert list(moved) == blamed, f"{mistake.what}: {moved}"
     assert closure(steps(wrong.study, wrong.surfaces, SCENE, mistake.body)) < 1e-14
     if TOTAL not in blamed:
-        entered, left = moved.values()
-        assert left == pytest.approx(-entered, rel=1e-9), "it cancels in the total"
+        supplied, left = moved.values()
+        assert left == pytest.approx(-supplied, rel=1e-9), "it cancels in the total"
     assert min(map(abs, moved.values())) > 1e-3, "a change one would see in the table"
 
 

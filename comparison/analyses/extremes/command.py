@@ -18,11 +18,11 @@ from rich.console import Console
 from comparison.analyses.extremes.analysis import LIMIT, Extremes, reduced
 from comparison.analyses.extremes.cells import cells
 from comparison.analyses.extremes.matrix import FILE, PICTURE, STORED, Matrix
-from comparison.analyses.extremes.rows import COLUMNS, ENGINE, EQUATIONS, STATED, entered_column, rows
+from comparison.analyses.extremes.rows import COLUMNS, ENGINE, EQUATIONS, STATED, rows, user_column
 from comparison.analyses.extremes.verdicts import Verdict
 from comparison.cli.arguments import CommandParser, command, jobs, number, writing
 from comparison.cli.computing import computed, run_facts
-from comparison.cli.entered import add_models, entered_models
+from comparison.cli.user_models import add_models, user_models
 from comparison.runner.executors import Pool
 from comparison.runner.output import destination, made_by, publish, refuse_foreign_files
 from comparison.runner.processes import process_pool
@@ -92,11 +92,11 @@ def _chosen(options: argparse.Namespace) -> Extremes:
         raise SceneError("command line", "--only", options.only, rule)
     limit = LIMIT if options.limit is None else number("--limit", options.limit, 0.1, 1e6, "s of processor time")
     jobs(options)  # refused before anything else is looked at
-    entered = entered_models(options.model, options.model_limit, options.scheduler)
+    supplied = user_models(options.model, options.model_limit, options.scheduler)
     every = list(rows())
     kept = [row for row in (reduced(every) if options.reduced else every) if options.rows in row.name]
     columns = [column for column in COLUMNS if not options.models or column.key in options.models]
-    columns += [entered_column(model) for model in entered]
+    columns += [user_column(model) for model in supplied]
     if not cells(kept, columns):
         raise SceneError("command line", "--rows", options.rows, "no cell is left: take part of a row's name")
     return Extremes(kept, columns, limit)

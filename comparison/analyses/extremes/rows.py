@@ -111,11 +111,11 @@ COLUMNS = (
 ALL = tuple(column.key for column in COLUMNS)
 
 
-def entered_column(model: Model) -> Column:
+def user_column(model: Model) -> Column:
     """
     The column of an engine of the user.
 
-    model: as `study.entered.entered_model` makes it. Returns confirmed by the equations with the same law.
+    model: as `study.user_models.user_model` makes it. Returns confirmed by the equations with the same law.
     """
     law = {key: value for key, value in model.settings.items() if key != "engine"}
     like = str(model.like) if model.like in ALL else "exact"

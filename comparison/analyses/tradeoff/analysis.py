@@ -12,15 +12,15 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from comparison.analyses.tradeoff.measure import Function, Measured, Measurement, joined, measure, sample, without_value
-from comparison.analyses.tradeoff.settings import Question, Setting, asked, entered_settings, settings
+from comparison.analyses.tradeoff.settings import Question, Setting, asked, settings, user_settings
 from comparison.analyses.tradeoff.trade import Answered, Entry, Trade, labeled, quantile, with_pareto_fronts
 from comparison.json_file import finite_or_none
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
-from comparison.study.entered import engine_of
 from comparison.study.models import Model
 from comparison.study.study import Study
+from comparison.study.user_models import engine_of
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
@@ -43,12 +43,12 @@ class TradeOff(Analysis[list[MeasuredTrade]]):
     """
     Error against compute time of every setting, in every scene with phases.
 
-    quick: fewer points and values. entered: engines of the user.
+    quick: fewer points and values. supplied: engines of the user.
     """
 
     key, stage = "tradeoff", "trade-off"
     quick: bool = False
-    entered: tuple[Model, ...] = ()
+    supplied: tuple[Model, ...] = ()
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """Every function of every scene, its sample in parts of about CHUNK seconds."""
@@ -61,8 +61,8 @@ class TradeOff(Analysis[list[MeasuredTrade]]):
     def _by_function(self, scene: Scene) -> dict[str, list[Task]]:
         """The tasks of a scene by the key of their function."""
         tasks: dict[str, list[Task]] = {}
-        limits = {engine_of(model.settings)["function"]: model.timeout for model in self.entered}
-        for name, (function, count, seconds) in functions(scene, self.quick, entered_settings(self.entered)).items():
+        limits = {engine_of(model.settings)["function"]: model.timeout for model in self.supplied}
+        for name, (function, count, seconds) in functions(scene, self.quick, user_settings(self.supplied)).items():
             each = seconds * scene.duration / 20.0
             size = int(np.clip(CHUNK / each, 1, count))
             phases = sample(count)
@@ -89,7 +89,7 @@ class TradeOff(Analysis[list[MeasuredTrade]]):
         }
         questions = {question.key: question for question in asked(scene)}
         entries, answers, reference_solutions = [], [], []
-        for setting in [*settings(scene, self.quick), *entered_settings(self.entered)]:
+        for setting in [*settings(scene, self.quick), *user_settings(self.supplied)]:
             question = questions[setting.question]
             count = question.quick if self.quick else question.points
             reference_solution = measured[key(setting.against or question.reference_solution)].upto(count)

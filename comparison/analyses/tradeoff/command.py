@@ -26,7 +26,7 @@ from comparison.analyses.tradeoff.settings import CONSTANT, ENGINE, LEVEL, REFER
 from comparison.analyses.tradeoff.trade import FILE, SCHEMA, STORED, Trade, TradeFile, load
 from comparison.cli.arguments import CommandParser, command, jobs, writing
 from comparison.cli.computing import computed, run_facts
-from comparison.cli.entered import add_models, entered_models
+from comparison.cli.user_models import add_models, user_models
 from comparison.runner.executors import Pool
 from comparison.runner.output import destination, made_by, netcdf, publish, refuse_foreign_files
 from comparison.runner.processes import process_pool
@@ -109,8 +109,8 @@ def measured_trades(
     executor: what makes the processes of this machine, or an executor in their place. Returns in the order of the
     scenes.
     """
-    entered = entered_models(options.model, options.model_limit, options.scheduler)
-    tradeoff, study = TradeOff(options.quick, entered), Study(tuple(scenes), 1, TOLERANCE)
+    supplied = user_models(options.model, options.model_limit, options.scheduler)
+    tradeoff, study = TradeOff(options.quick, supplied), Study(tuple(scenes), 1, TOLERANCE)
     tasks, width = tradeoff.tasks(study), jobs(options)
     about = STARTING + sum(task.seconds for task in tasks) / width
     for scene in scenes:

@@ -25,7 +25,7 @@ FAMILIES = (
     ("Exudyn", "#b3541e", "#f0a35e"),
     ("translational", "#6a1b9a", "#ce93d8"),
     ("spatial", "#6a1b9a", "#ce93d8"),
-    ("entered", "#b3124b", "#ec7aa2"),
+    ("user", "#b3124b", "#ec7aa2"),
 )
 MARKERS = "osD^v<>PX*"
 MAX_TICKS = 6  # labels of the axis of times that do not touch

@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from comparison.study.entered import engine_of
 from comparison.study.models import V_REG, Model, dry, has_spatial_data
+from comparison.study.user_models import engine_of
 from reference.problem import Scene
 
 REFERENCE, ENGINE = "reference:amplification", "multibody:amplification"
@@ -208,11 +208,11 @@ def _constant(quick: bool) -> list[Setting]:
     ]  # fmt: skip
 
 
-def entered_settings(models: Sequence[Model]) -> list[Setting]:
+def user_settings(models: Sequence[Model]) -> list[Setting]:
     """
     Engines of the user at the tolerances that they take, or as they are.
 
-    models: as `study.entered.entered_model` makes them.
+    models: as `study.user_models.user_model` makes them.
     """
     keys = {question.key for question in QUESTIONS}
     measured = []
@@ -225,7 +225,7 @@ def entered_settings(models: Sequence[Model]) -> list[Setting]:
         for value in (1e-2, 1e-3, 1e-4, 1e-5) if takes_tolerance else (1e-3,):
             parameter = "tolerance of mu" if takes_tolerance else "as it is, beside a tolerance of"
             measured.append(
-                Setting(str(question), f"entered: {model.title}", parameter, "", value, model.amplification,
+                Setting(str(question), f"user model: {model.title}", parameter, "", value, model.amplification,
                         {**model.settings, "tolerance": value}, 1.0, against=against)
             )  # fmt: skip
     return measured

@@ -149,7 +149,7 @@ function pick(phases) {
   showMotions();
 }
 // an engine of the user, else the first pair whose second model is drawn as a surface: points beside a surface look as if they differed from it
-const drawnPair = body => (sceneNow().pairs.find(pair => pair.entered || surfaceOf(sceneNow(), pair.second, body).sheet) ?? sceneNow().pairs[0]).key;
+const drawnPair = body => (sceneNow().pairs.find(pair => pair.user || surfaceOf(sceneNow(), pair.second, body).sheet) ?? sceneNow().pairs[0]).key;
 // another scene: the motion where its difference is largest
 const firstPlace = () => sceneNow().places.length ? 0 : null;
 function chooseScene(scene, body = 1) {

@@ -39,7 +39,7 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
     Write `path`, PNG, and the same as PDF: for every body the surface of the paper's equations and that of the engine
     under the paper's assumption that no body turns, on one height scale per body.
     """
-    pairs = [pair for pair in study.pairs(scene) if pair.second.side != "entered"]
+    pairs = [pair for pair in study.pairs(scene) if pair.second.side != "user"]
     first, last = pairs[0].first, pairs[-1].second
     bodies = len(scene.bodies)
     with mpl.rc_context(PRINT):

@@ -20,16 +20,16 @@ from comparison.cli.arguments import CommandParser, number
 from comparison.runner.environment import engine_fingerprint
 from comparison.runner.executors import TimeLimitError, WorkerDiedError
 from comparison.runner.processes import Workers
-from comparison.study.entered import (
+from comparison.study.models import MODEL_HIERARCHY, Model
+from comparison.study.user_models import (
     LIKE,
     TIME_LIMIT,
-    entered_function,
-    entered_model,
     names_of,
     note_line,
     silent,
+    user_function,
+    user_model,
 )
-from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.wording import exception_line
 from reference.problem import SceneError
 from reference.problem.acceptance import ENGINE_NAME, Acceptance
@@ -58,11 +58,11 @@ def add_models(parser: CommandParser) -> None:
     parser.add_argument(
         LIMIT_OPTION,
         metavar="SECONDS",
-        help=f"most processor time of one call of an entered engine (default {TIME_LIMIT:g})",
+        help=f"most processor time of one call of a user-supplied engine (default {TIME_LIMIT:g})",
     )
 
 
-def entered_models(specs: Sequence[str], limit: str | None = None, scheduler: str | None = None) -> tuple[Model, ...]:
+def user_models(specs: Sequence[str], limit: str | None = None, scheduler: str | None = None) -> tuple[Model, ...]:
     """
     The models that `--model` enters.
 
@@ -85,7 +85,7 @@ def entered_models(specs: Sequence[str], limit: str | None = None, scheduler: st
     if specs and (folder := os.getcwd()) not in sys.path and "" not in sys.path:
         sys.path.append(folder)  # behind all else: a file of the user hides no module of the project
     return tuple(
-        entered_model(name, _looked_at(spec, function), like, seconds)
+        user_model(name, _looked_at(spec, function), like, seconds)
         for spec, (name, function, like) in zip(specs, parts)
     )
 
@@ -144,12 +144,12 @@ def look_at(path: str) -> tuple[str, dict[str, str]]:
     """
     Import a function. Runs inside a worker process.
 
-    path: "module:name". Returns why it cannot be entered, or empty; and what its numbers depend on.
+    path: "module:name". Returns why it cannot be used, or empty; and what its numbers depend on.
     """
     module, name = path.split(":")
     with silent():
         try:
-            function = entered_function(path)
+            function = user_function(path)
             return "", {"names": names_of(function), **engine_fingerprint(module)}
         except ModuleNotFoundError as error:
             missing = error.name or module

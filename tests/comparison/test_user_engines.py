@@ -13,9 +13,9 @@ from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
-import entered_engines
 import numpy as np
 import pytest
+import user_engines
 import xarray as xr
 from conftest import Run
 from fake_models import fake_hierarchy, smooth
@@ -23,20 +23,20 @@ from known_analyses import collected
 
 import reference
 from comparison.analyses.extremes.cells import cells
-from comparison.analyses.extremes.rows import entered_column, rows
+from comparison.analyses.extremes.rows import rows, user_column
 from comparison.analyses.extremes.verdicts import Reply, judged
 from comparison.analyses.tradeoff import analysis
 from comparison.analyses.tradeoff.analysis import TradeOff
 from comparison.analyses.tradeoff.figure import draw_tradeoff
-from comparison.analyses.tradeoff.settings import QUESTIONS, entered_settings
-from comparison.cli.entered import as_words, entered_models, look_at
+from comparison.analyses.tradeoff.settings import QUESTIONS, user_settings
+from comparison.cli.user_models import as_words, look_at, user_models
 from comparison.runner.environment import engine_fingerprint, source_digest
 from comparison.runner.processes import process_pool
 from comparison.study.batches import execute_batch
-from comparison.study.entered import amplification, entered_model
 from comparison.study.levels import levels_of
 from comparison.study.models import Model, pairs_of
 from comparison.study.study import Study
+from comparison.study.user_models import amplification, user_model
 from comparison.surfaces.budget import budget
 from comparison.surfaces.differences import differences, pair_step
 from comparison.surfaces.headline import headline
@@ -49,13 +49,13 @@ from reference.problem import Outcome, SceneError, load_scene
 DOCS = Path(__file__).parents[2] / "docs/other-engines.md"
 SCENE = load_scene("fig3-I")
 PHASES = np.array([(0.0, 0.0), (1.0, 2.0)])
-RAISES = entered_engines.raises.__code__.co_firstlineno + 1
-RAISES_INSIDE = entered_engines.raises_in_scipy.__code__.co_firstlineno + 3
-ASKS = entered_engines.asks_us_wrongly.__code__.co_firstlineno + 3
+RAISES = user_engines.raises.__code__.co_firstlineno + 1
+RAISES_INSIDE = user_engines.raises_in_scipy.__code__.co_firstlineno + 3
+ASKS = user_engines.asks_us_wrongly.__code__.co_firstlineno + 3
 
 
-def entered(function: str, name: str = "mine", like: str = "regularised") -> Model:
-    return entered_model(name, {"function": f"entered_engines:{function}"}, like)
+def supplied(function: str, name: str = "mine", like: str = "regularised") -> Model:
+    return user_model(name, {"function": f"user_engines:{function}"}, like)
 
 
 def studied(*models: Model) -> tuple[Study, xr.Dataset]:
@@ -127,12 +127,12 @@ def test_a_wrong_spelling_is_one_line_and_exit_code_2(command: Callable[..., Run
 
 
 def test_a_name_is_there_once_and_a_cluster_has_no_engine_of_this_machine(command: Callable[..., Run]) -> None:
-    twice = command("fig3-I", "--model", "a=entered_engines:plain", "--model", "a=entered_engines:raises")
+    twice = command("fig3-I", "--model", "a=user_engines:plain", "--model", "a=user_engines:raises")
     assert (twice.code, twice.err.count("\n")) == (2, 1)
     assert "a is there twice" in twice.err
-    far = command("fig3-I", "--model", "a=entered_engines:plain", "--scheduler", "tcp://127.0.0.1:1")
+    far = command("fig3-I", "--model", "a=user_engines:plain", "--scheduler", "tcp://127.0.0.1:1")
     assert (far.code, "give one of the two" in far.err) == (2, True)
-    limit = command("fig3-I", "--model", "a=entered_engines:plain", "--model-limit", "soon")
+    limit = command("fig3-I", "--model", "a=user_engines:plain", "--model-limit", "soon")
     assert (limit.code, "--model-limit = 'soon': must be a number" in limit.err) == (2, True)
 
 
@@ -140,9 +140,9 @@ def test_a_name_is_there_once_and_a_cluster_has_no_engine_of_this_machine(comman
     ("path", "fault"),
     [
         ("no_such_module:f", "there is no module no_such_module: run the command in the folder of its file"),
-        ("entered_engines:nothing", "entered_engines has no nothing"),
-        ("entered_engines:NUMBER", "cannot be called as NUMBER(scene, phases): NUMBER is int, not a function"),
-        ("entered_engines:with_three", "cannot be called as with_three(scene, phases): missing a required argument"),
+        ("user_engines:nothing", "user_engines has no nothing"),
+        ("user_engines:NUMBER", "cannot be called as NUMBER(scene, phases): NUMBER is int, not a function"),
+        ("user_engines:with_three", "cannot be called as with_three(scene, phases): missing a required argument"),
         (
             "engine_that_raises:f",
             "importing engine_that_raises raises ZeroDivisionError: division by zero (engine_that_raises.py, line 2)",
@@ -170,19 +170,19 @@ def test_a_process_that_the_import_ends_is_named_and_harms_no_other(
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", [*sys.path])
     with pytest.raises(SceneError, match="importing it ends the process: exit code 7"):
-        entered_models(["mine=engine_that_leaves:f"])
+        user_models(["mine=engine_that_leaves:f"])
 
 
-def test_functions_are_entered_from_python_by_their_place() -> None:
-    words = as_words({"a": entered_engines.plain, "b": "entered_engines:raises@exact"})
-    assert words == ["--model", "a=entered_engines:plain", "--model", "b=entered_engines:raises@exact"]
+def test_functions_are_used_from_python_by_their_place() -> None:
+    words = as_words({"a": user_engines.plain, "b": "user_engines:raises@exact"})
+    assert words == ["--model", "a=user_engines:plain", "--model", "b=user_engines:raises@exact"]
     with pytest.raises(SceneError, match=r"models: a = '.*<lambda>': worker processes import an engine by its name"):
         as_words({"a": lambda scene, phases: None})
 
 
 @pytest.mark.parametrize("form", ["plain", "with_error", "as_object", "as_full_object", "as_list"])
 def test_every_form_of_answer_is_read(form: str) -> None:
-    answer = amplification(SCENE, PHASES, engine={"function": f"entered_engines:{form}"}, tolerance=1e-3)
+    answer = amplification(SCENE, PHASES, engine={"function": f"user_engines:{form}"}, tolerance=1e-3)
     np.testing.assert_array_equal(answer.mu, smooth(SCENE, PHASES, 1e-3).mu)
     if form in ("with_error", "as_full_object"):
         np.testing.assert_array_equal(answer.error, 1e-3 * answer.mu)
@@ -197,11 +197,11 @@ def test_every_form_of_answer_is_read(form: str) -> None:
 @pytest.mark.parametrize(
     ("function", "message"),
     [
-        ("raises", f"RuntimeError: the matrix is singular (entered_engines.py, line {RAISES})"),
-        ("raises_in_scipy", f"ZeroDivisionError: division by zero (entered_engines.py, line {RAISES_INSIDE})"),
+        ("raises", f"RuntimeError: the matrix is singular (user_engines.py, line {RAISES})"),
+        ("raises_in_scipy", f"ZeroDivisionError: division by zero (user_engines.py, line {RAISES_INSIDE})"),
         (
             "asks_us_wrongly",
-            f"ValueError: equations = 'none': must be one of exact, small (entered_engines.py, line {ASKS})",
+            f"ValueError: equations = 'none': must be one of exact, small (user_engines.py, line {ASKS})",
         ),
         ("misshapen", "ValueError: the engine's mu has shape (3,), asked: (4, 2)"),
         ("texts", "TypeError: the engine's mu has <U1 in place of real numbers"),
@@ -212,7 +212,7 @@ def test_every_form_of_answer_is_read(form: str) -> None:
     ],
 )
 def test_what_is_no_answer_costs_its_own_points_and_says_why(function: str, message: str) -> None:
-    model = replace(entered(function), batch=4)
+    model = replace(supplied(function), batch=4)
     study = Study((SCENE,), 2, 1e-3, [*fake_hierarchy(), model])
     (batch,) = [batch for batch in study.batches() if batch.model == "mine" and len(batch.phases) == 4]
     result = execute_batch(batch)
@@ -222,19 +222,19 @@ def test_what_is_no_answer_costs_its_own_points_and_says_why(function: str, mess
 
 
 def test_values_that_are_none_are_never_ok() -> None:
-    answer = amplification(SCENE, PHASES, engine={"function": "entered_engines:half"})
+    answer = amplification(SCENE, PHASES, engine={"function": "user_engines:half"})
     assert list(answer.status) == [Outcome.SOLVER_FAILED, "ok"]
     assert np.isnan(answer.mu[0]).all()
-    own_words = amplification(SCENE, PHASES, engine={"function": "entered_engines:own_words"})
+    own_words = amplification(SCENE, PHASES, engine={"function": "user_engines:own_words"})
     assert list(own_words.status) == [Outcome.RIM_REACHED, Outcome.SOLVER_FAILED]
 
 
 def test_the_function_gets_what_it_names_of_the_law_that_it_is_held_against() -> None:
     def told(like: str) -> SimpleNamespace:
-        entered_engines.told.clear()
-        model = entered("listens", like=like)
+        user_engines.told.clear()
+        model = supplied("listens", like=like)
         amplification(SCENE, PHASES, **model.settings, tolerance=1e-3)
-        return SimpleNamespace(**entered_engines.told)
+        return SimpleNamespace(**user_engines.told)
 
     assert told("regularised") == SimpleNamespace(tolerance=1e-3, regularization=1e-3)
     assert told("exact") == SimpleNamespace(tolerance=1e-3, regularization=None)
@@ -244,14 +244,14 @@ def test_the_function_gets_what_it_names_of_the_law_that_it_is_held_against() ->
 def test_the_documentation_names_every_argument_that_is_passed(like: str) -> None:
     text = DOCS.read_text(encoding="utf-8")
     table = text.split("| by name | passed | value |")[1].split("\n\n")[0]
-    entered_engines.told.clear()
-    (batch, *_) = (b for b in Study((SCENE,), 1, 1e-3, [entered("takes_all", like=like)], full=True).batches())
+    user_engines.told.clear()
+    (batch, *_) = (b for b in Study((SCENE,), 1, 1e-3, [supplied("takes_all", like=like)], full=True).batches())
     execute_batch(batch)
     rows = {line.split("`")[1]: line for line in table.splitlines()[2:]}
-    assert set(entered_engines.told) <= set(rows)
+    assert set(user_engines.told) <= set(rows)
     passed = {name for name, row in rows.items() if "| always |" in row or f"| with `@{like}` |" in row}
-    assert set(entered_engines.told) - {"full"} == passed
-    if entered_engines.told["regularization"] is None:
+    assert set(user_engines.told) - {"full"} == passed
+    if user_engines.told["regularization"] is None:
         assert f"`@{like}`" in rows["regularization"].split("`None`")[1]
 
 
@@ -259,7 +259,7 @@ def test_the_documentation_names_every_argument_that_is_passed(like: str) -> Non
 def test_the_engine_of_the_documentation_answers_under_every_law(stranger: str, like: str) -> None:
     function = stranger.removeprefix("mine=")
     sys.path.append(".")
-    model = entered_model("mine", {"function": function}, like)
+    model = user_model("mine", {"function": function}, like)
     (batch,) = Study((SCENE.with_values({"duration": 1.0}),), 1, 1e-3, [model]).batches()
     answer = execute_batch(batch)
     assert (answer.error_message, answer.status) == ("", ["ok"])
@@ -268,7 +268,7 @@ def test_the_engine_of_the_documentation_answers_under_every_law(stranger: str, 
 
 
 def test_no_difference_to_an_unknown_error_is_real_and_one_to_a_stated_error_is() -> None:
-    study, surfaces = studied(entered("plain", "silent"), entered("with_error", "open"))
+    study, surfaces = studied(supplied("plain", "silent"), supplied("with_error", "open"))
     pairs = {pair.key: pair for pair in study.pairs(SCENE)}
     for body in (1, 2):
         silent, stated = (pair_step(surfaces, SCENE.name, pairs[key], body) for key in ("silent", "open"))
@@ -282,9 +282,9 @@ def test_no_difference_to_an_unknown_error_is_real_and_one_to_a_stated_error_is(
 
 
 @pytest.mark.parametrize("function", ["plain", "raises"])
-def test_an_entered_engine_changes_no_other_number(function: str) -> None:
+def test_a_user_engine_changes_no_other_number(function: str) -> None:
     alone, without = studied()
-    study, surfaces = studied(entered(function))
+    study, surfaces = studied(supplied(function))
     others = [model.key for model in alone.hierarchy]
     xr.testing.assert_identical(surfaces.sel(model=others), without)
     assert repr(budget(study, surfaces)) == repr(budget(alone, without))  # repr: NaN is not equal to itself
@@ -312,7 +312,7 @@ def test_an_entered_engine_changes_no_other_number(function: str) -> None:
     ],
 )
 def test_the_headline_and_the_first_pair_are_those_of_the_engine_of_the_user(function: str, said: str) -> None:
-    study, surfaces = studied(entered(function))
+    study, surfaces = studied(supplied(function))
     rows = differences(study, surfaces)
     assert [pair.key for pair in study.pairs(SCENE)] == ["mine", "total", "translational", "like-for-like"]
     for body in (1, 2):
@@ -330,7 +330,7 @@ def acceptance(limits: str, folder: Path) -> str:
 
 
 def test_check_counts_the_missing_values_of_every_model(command: Callable[..., Run]) -> None:
-    engine = ("--model", "none=entered_engines:without_values")
+    engine = ("--model", "none=user_engines:without_values")
     run = command("fig3-I", "--grid", "2", *engine, "--check", hierarchy=fake_hierarchy(gap=5e-5))
     assert run.code == 1
     line = "fig3-I: acceptance.failed: 4 points without an answer (none 4 of 4), 0 allowed"
@@ -342,7 +342,7 @@ def test_check_counts_the_missing_values_of_every_model(command: Callable[..., R
 
 
 def test_a_value_with_an_error_as_large_as_itself_is_missing(command: Callable[..., Run]) -> None:
-    engine = ("--model", "vague=entered_engines:vague")
+    engine = ("--model", "vague=user_engines:vague")
     run = command("fig3-I", "--grid", "2", *engine, "--check", hierarchy=fake_hierarchy(gap=5e-5))
     assert (run.code, "4 points without an answer (vague 4 of 4)" in run.err) == (1, True)
     assert "vague: only values with errors above half of them at any of 4 phase pairs" in run.out
@@ -350,7 +350,7 @@ def test_a_value_with_an_error_as_large_as_itself_is_missing(command: Callable[.
 
 @pytest.mark.parametrize("limit", ["median", "maximum", "ratio"])
 def test_a_scene_limits_every_engine_by_its_name(command: Callable[..., Run], tmp_path: Path, limit: str) -> None:
-    engines = ("--model", "good=entered_engines:with_error", "--model", "bad=entered_engines:off_with_error")
+    engines = ("--model", "good=user_engines:with_error", "--model", "bad=user_engines:off_with_error")
     tables = "".join(
         f"[acceptance.{name}]\n{limit} = {2.0 if limit == 'ratio' else 0.02}\n" for name in ("good", "bad")
     )
@@ -371,14 +371,14 @@ def test_a_scene_limits_every_engine_by_its_name(command: Callable[..., Run], tm
 
 def test_one_body_beyond_a_limit_breaks_it(command: Callable[..., Run], tmp_path: Path) -> None:
     scene = acceptance("[acceptance.mine]\nmedian = 0.02\n", tmp_path)
-    run = command(scene, "--grid", "2", "--model", "mine=entered_engines:off_in_the_second_body", "--check")
+    run = command(scene, "--grid", "2", "--model", "mine=user_engines:off_in_the_second_body", "--check")
     assert run.err == "limit broken: limited: body 2: acceptance.mine.median: 0.021 found, 0.02 allowed\n"
 
 
 def test_a_limit_in_units_of_errors_needs_all_of_them(command: Callable[..., Run], tmp_path: Path) -> None:
     scene = acceptance("[acceptance.mine]\nratio = 2.0\n", tmp_path)
     for function in ("plain", "with_one_error"):
-        run = command(scene, "--grid", "2", "--model", f"mine=entered_engines:{function}", "--check")
+        run = command(scene, "--grid", "2", "--model", f"mine=user_engines:{function}", "--check")
         assert run.code == 1
         assert "body 1: acceptance.mine.ratio: an error estimate is missing, 2 allowed" in run.err
 
@@ -400,10 +400,12 @@ def test_it_is_held_against_the_model_of_its_law_and_where_that_does_not_apply_a
     None
 ):
     for like in ("small", "exact", "resolved", "regularised"):
-        pairs = {pair.key: pair.first.key for pair in pairs_of(SCENE, [*fake_hierarchy(), entered("plain", like=like)])}
+        pairs = {
+            pair.key: pair.first.key for pair in pairs_of(SCENE, [*fake_hierarchy(), supplied("plain", like=like)])
+        }
         assert pairs["mine"] == like
     wet = load_scene("fig4-viscous")
-    pairs = {pair.key: pair.first.key for pair in pairs_of(wet, [*fake_hierarchy(), entered("plain")])}
+    pairs = {pair.key: pair.first.key for pair in pairs_of(wet, [*fake_hierarchy(), supplied("plain")])}
     assert pairs["mine"] == pairs["like-for-like"] == "exact"
 
 
@@ -411,13 +413,13 @@ def test_it_is_held_against_the_model_of_its_law_and_where_that_does_not_apply_a
 def test_it_is_asked_for_one_phase_pair_in_a_call(like: str) -> None:
     linear = SCENE.with_values({"isolator.friction": 0.0})
     study = Study(
-        (SCENE, linear.with_values({"name": "linear"})), 4, 1e-3, [*fake_hierarchy(), entered("plain", like=like)]
+        (SCENE, linear.with_values({"name": "linear"})), 4, 1e-3, [*fake_hierarchy(), supplied("plain", like=like)]
     )
     assert {len(batch.phases) for batch in study.batches() if batch.model == "mine"} == {1}
 
 
 def test_the_first_level_asks_it_at_no_more_phases_than_the_translational_engine() -> None:
-    study = Study((SCENE,), 48, 1e-3, [*fake_hierarchy(), entered("plain")])
+    study = Study((SCENE,), 48, 1e-3, [*fake_hierarchy(), supplied("plain")])
     first = levels_of(study, {})[0].study
     assert len(first.axis(first.hierarchy[-1])) == 8
 
@@ -443,7 +445,7 @@ def test_its_source_and_that_of_its_helpers_are_part_of_what_its_results_are_fou
 @pytest.mark.long
 def test_engines_that_hang_print_or_end_their_process_cost_nobody_else_anything(command: Callable[..., Run]) -> None:
     engines = ("plain", "prints", "computes-for-ever", "waits-for-ever", "leaves", "spoils-its-process")
-    words = [word for name in engines for word in ("--model", f"{name}=entered_engines:{name.replace('-', '_')}")]
+    words = [word for name in engines for word in ("--model", f"{name}=user_engines:{name.replace('-', '_')}")]
     words += ["--only", "differences", "--model-limit", "2"]
     run = command("fig3-I", "--grid", "2", *words, executor=process_pool)
     assert run.code == 0
@@ -474,41 +476,41 @@ def test_the_extremes_judge_an_engine_that_claims_nothing_by_how_far_it_is_off()
     assert verdict(1e-2, error=1e-4)[0] == "FAILED", "a false claim is one"
 
 
-def test_every_extreme_of_its_law_concerns_an_entered_engine_but_none_of_the_numerics_of_ours() -> None:
+def test_every_extreme_of_its_law_concerns_a_user_engine_but_none_of_the_numerics_of_ours() -> None:
     every = list(rows())
-    met = {cell.row.name for cell in cells(every, [entered_column(entered("plain"))])}
+    met = {cell.row.name for cell in cells(every, [user_column(supplied("plain"))])}
     alike = {row.name for row in every if "regularised" in row.columns and not row.amplification}
     assert met == alike
     assert all(row.name not in met for row in every if row.amplification)
 
 
-def test_the_curve_of_an_entered_engine_runs_over_the_tolerance_that_it_takes() -> None:
+def test_the_curve_of_a_user_engine_runs_over_the_tolerance_that_it_takes() -> None:
     def curve(names: str, like: str = "regularised") -> list[tuple[str, float, bool]]:
-        model = entered_model("mine", {"function": "entered_engines:plain", "names": names}, like)
-        return [(one.question, one.value, one.against is None) for one in entered_settings([model])]
+        model = user_model("mine", {"function": "user_engines:plain", "names": names}, like)
+        return [(one.question, one.value, one.against is None) for one in user_settings([model])]
 
     assert curve("tolerance") == [("regularised", value, True) for value in (1e-2, 1e-3, 1e-4, 1e-5)]
     assert curve("") == [("regularised", 1e-3, True)]
     assert curve("", like="resolved") == [("exact", 1e-3, False)]
-    tasks = TradeOff(True, (entered("plain"),)).tasks(Study((SCENE,), 1, 1e-3))
+    tasks = TradeOff(True, (supplied("plain"),)).tasks(Study((SCENE,), 1, 1e-3))
     mine = [task for task in tasks if task.group]
     assert mine
     assert all(task.timeout == 60.0 * len(task.argument.phases) for task in mine)
 
 
-def test_the_measured_trade_has_the_curve_of_an_entered_engine_and_one_that_raises_costs_no_other(
+def test_the_measured_trade_has_the_curve_of_a_user_engine_and_one_that_raises_costs_no_other(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(analysis, "settings", lambda scene, quick: [])
     monkeypatch.setattr(analysis, "asked", lambda scene: [one for one in QUESTIONS if one.key == "regularised"])
-    models = entered("as_reference", "good"), entered("raises", "bad")
+    models = supplied("as_reference", "good"), supplied("raises", "bad")
     scene = SCENE.with_values({"duration": 1.0})
     (measured,) = collected(
         TradeOff(True, models), Study((scene,), 1, 1e-3), executor=lambda jobs: ThreadPoolExecutor(1)
     )
     good, bad = measured.trade.entries
     assert (good.answered, bad.answered) == (good.points, 0)
-    assert bad.error_message == f"RuntimeError: the matrix is singular (entered_engines.py, line {RAISES})"
+    assert bad.error_message == f"RuntimeError: the matrix is singular (user_engines.py, line {RAISES})"
     assert max(error for error in good.most if error is not None) == pytest.approx(1e-3, rel=1e-3)
     assert good.error_estimate == [None, None], "it states none"
     assert good.pareto_front == (True, True)

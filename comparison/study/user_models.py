@@ -28,7 +28,7 @@ from reference.problem import Amplification, Outcome, Scene
 
 Array = NDArray[np.float64]
 
-CALLED_THROUGH = "comparison.study.entered:amplification"
+CALLED_THROUGH = "comparison.study.user_models:amplification"
 LIKE = "regularised"  # key of the reference's model that an engine is compared with unless it names another
 MOST = 8  # phases per axis, as the dearest model of the hierarchy: what a call costs is unknown
 TIME_LIMIT = 60.0  # s of processor time of one call, which is asked for one phase pair
@@ -39,7 +39,7 @@ UNKNOWN_ERROR = np.nan  # of an engine that states none
 
 def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **settings: Any) -> Amplification:
     """
-    What an entered function answers, in the form of `multibody.amplification`.
+    What an supplied function answers, in the form of `multibody.amplification`.
 
     phases: (M, 2), rad. engine: "function": where it is, as "module:name". All else only tells its versions apart in
     the cache. **settings: those of the reference's model with the same law and the tolerance asked. The function gets
@@ -49,7 +49,7 @@ def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **s
     note says in which line of the user's files.
     """
     with silent():
-        function = entered_function(engine["function"])
+        function = user_function(engine["function"])
         begin = _processor_time()
         try:
             answer = function(scene, np.array(phases), **_named_by(function, settings))
@@ -91,9 +91,9 @@ def _file_of(function: Callable[..., Any]) -> Path | None:
         return None
 
 
-def entered_function(path: str | Callable[..., Any]) -> Callable[..., Any]:
+def user_function(path: str | Callable[..., Any]) -> Callable[..., Any]:
     """
-    The function of an entered engine.
+    The function of a user-supplied engine.
 
     path: "module:name", or the function. Raises TypeError: if it cannot be called with a scene and phases. What the
     module raises on import is not caught.
@@ -112,9 +112,9 @@ def entered_function(path: str | Callable[..., Any]) -> Callable[..., Any]:
     return function  # type: ignore[no-any-return]
 
 
-def entered_model(name: str, engine: Mapping[str, Any], like: str = LIKE, limit: float = TIME_LIMIT) -> Model:
+def user_model(name: str, engine: Mapping[str, Any], like: str = LIKE, limit: float = TIME_LIMIT) -> Model:
     """
-    The model of an entered engine.
+    The model of a user-supplied engine.
 
     name: key and title. engine: as `amplification` takes it. like: key of the reference's model with the same law,
     whose settings the function is called with. limit: most processor time of one call, s. Returns the last of a
@@ -125,7 +125,7 @@ def entered_model(name: str, engine: Mapping[str, Any], like: str = LIKE, limit:
         key=name,
         title=name,
         adds=f"User-supplied engine, compared with the {model.title}.",
-        side="entered",
+        side="user",
         amplification=CALLED_THROUGH,
         trajectory="",
         settings={**model.settings, "engine": dict(engine)},
