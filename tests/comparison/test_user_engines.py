@@ -453,12 +453,12 @@ def test_engines_that_hang_print_or_end_their_process_cost_nobody_else_anything(
     with xr.open_dataset(run.report / "surfaces.nc", engine="h5netcdf") as data:
         outcomes = {name: set(data["status"].sel(model=name).values.ravel().tolist()) for name in engines}
         mu = data["mu"].sel(model=["small", "plain", "prints"]).values
-    assert {name: outcomes[name] for name in engines} == {
+    assert outcomes.pop("leaves") - {"time limit"} == {"worker died"}, "after two deaths it may not be asked again"
+    assert outcomes == {
         "plain": {"ok"},
         "prints": {"ok"},
         "computes-for-ever": {"time limit"},
         "waits-for-ever": {"time limit"},
-        "leaves": {"worker died"},
         "spoils-its-process": {"ok"},
     }
     assert np.isfinite(mu).all()
