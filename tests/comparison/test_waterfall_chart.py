@@ -12,8 +12,8 @@ from comparison.surfaces.waterfall_chart import bars_of, log_scale, scale_of
 NAN = float("nan")
 
 
-def _bar(model: str, size: float, error: float = 1e-4, real: bool = True) -> WaterfallBar:
-    return WaterfallBar(model=model, size=size, error=error, real=real)
+def _bar(model: str, size: float, error: float = 1e-4) -> WaterfallBar:
+    return WaterfallBar(model, size, error)
 
 
 STEPS = [_bar("exact", 0.02), _bar("resolved", -0.10), _bar("spatial", 0.03)]
@@ -48,7 +48,7 @@ def test_ticks_are_round_and_inside() -> None:
 
 
 def test_a_step_without_a_value_has_no_bar_and_moves_nothing() -> None:
-    steps = [STEPS[0], _bar("resolved", NAN, NAN, real=False), _bar("spatial", 0.01)]
+    steps = [STEPS[0], _bar("resolved", NAN, NAN), _bar("spatial", 0.01)]
     scale = scale_of([(steps, TOTAL)])
     first, missing, last, _ = bars_of(steps, TOTAL, scale)
     assert (missing.kind, missing.width, missing.text) == ("none", 0.0, "no value")
@@ -56,7 +56,7 @@ def test_a_step_without_a_value_has_no_bar_and_moves_nothing() -> None:
 
 
 def test_what_is_not_real_is_gray_and_shows_its_error() -> None:
-    bar = bars_of([_bar("exact", 0.0001, error=0.0003, real=False)], TOTAL, scale_of([(STEPS, TOTAL)]))[0]
+    bar = bars_of([_bar("exact", 0.0001, error=0.0003)], TOTAL, scale_of([(STEPS, TOTAL)]))[0]
     assert bar.kind == "unreal"
     assert bar.text == "+0.01 ± 0.03 %"
 
@@ -70,7 +70,7 @@ def test_a_size_has_the_digits_that_its_error_leaves(size: float, error: float, 
 
 
 def test_a_study_without_any_value_has_a_scale() -> None:
-    scale = scale_of([([_bar("exact", NAN, NAN, real=False)], _bar("exact", NAN, NAN, real=False))])
+    scale = scale_of([([_bar("exact", NAN, NAN)], _bar("exact", NAN, NAN))])
     assert scale.low < 0.0 < scale.high
 
 
