@@ -51,7 +51,7 @@ def _page(template: str, sections: Sequence[Section], figures: Path, report: Rep
     templates = resources.files("comparison.report") / "templates"
     style = (templates / "report.css").read_text(encoding="utf-8")
     script = "\n".join((templates / name).read_text(encoding="utf-8") for name in SCRIPTS)
-    axes = scales(results)
+    axes = scales([waterfall for scene in results.scenes for waterfall in scene.waterfalls])
     shown = [section for section in sections if section.present(results)]
     absent = [
         (section.title, results.absent.get(section.name, section.absent))

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from comparison.report.results import Results
 from comparison.surfaces.waterfall import Waterfall, WaterfallBar
 from comparison.wording import difference
 
@@ -74,9 +73,8 @@ def scale_of(waterfalls: Iterable[tuple[Sequence[WaterfallBar], WaterfallBar]]) 
     return Scale(low, high, tuple(_ticks(low, high)))
 
 
-def scales(results: Results) -> dict[str, Scale]:
+def scales(every: Sequence[Waterfall]) -> dict[str, Scale]:
     """The axes of the means and of the largest differences, each one for all scenes and bodies."""
-    every = [waterfall for scene in results.scenes for waterfall in scene.waterfalls]
     return {
         "mean": scale_of((waterfall.bars, waterfall.total) for waterfall in every),
         "largest": scale_of((waterfall.largest.bars, waterfall.largest.total) for waterfall in every),
