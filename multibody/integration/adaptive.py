@@ -179,7 +179,7 @@ def go_on(
         if openings is not None:
             motion = openings.with_gaps(motion)
         size = absolute_accelerations(model, motion, ground)
-        step_ratio = _step_ratio(motion, engine, size[:, 0], float(result.peaks.value[0]), step, level.slip_change)
+        step_ratio = _step_ratio(motion, engine, size, result.peaks.value, step, level)
         last = len(motion.time) - 1
         failing = _first(step_ratio > 1.0)
         rejected = divisions < level.max_divisions and failing <= last
@@ -317,19 +317,19 @@ def _record_settling(result: EngineRun, time: Array, size: Array, displacement: 
         result.settled = float(time[row])
 
 
-def _step_ratio(motion: Motion, engine: Engine, platform: Array, peak: float, step: float, slip_change: float) -> Array:
+def _step_ratio(motion: Motion, engine: Engine, size: Array, peaks: Array, step: float, level: Level) -> Array:
     """
     Each step over what is allowed there, (T,).
 
-    platform: size of its absolute acceleration, (T,). slip_change: allowed change of the slip velocity in one step.
+    size: of the absolute accelerations, (T, N). peaks: (N,), so far.
     """
-    per_change = step / slip_change
+    per_change = step / level.slip_change
     step_ratio = _slip_change(motion, engine, per_change)
     if engine.model.friction is not None:
-        allowed = min(FEEDBACK_PER_SLIP_CHANGE * slip_change, MAX_FEEDBACK)
+        allowed = min(FEEDBACK_PER_SLIP_CHANGE * level.slip_change, MAX_FEEDBACK)
         step_ratio = np.maximum(step_ratio, step / allowed * engine.model.friction.feedback(motion.slip))
     if len(engine.model.ground.knots):
-        step_ratio = np.maximum(step_ratio, _behind_kinks(motion, platform, engine, peak, per_change))
+        step_ratio = np.maximum(step_ratio, _behind_kinks(motion, size, engine, peaks, per_change, level.error_floor))
     return step_ratio
 
 
@@ -342,21 +342,25 @@ def _slip_change(motion: Motion, engine: Engine, per_change: float) -> Array:
     return changes
 
 
-def _behind_kinks(motion: Motion, size: Array, engine: Engine, peak: float, per_change: float) -> Array:
+def _behind_kinks(motion: Motion, size: Array, engine: Engine, peaks: Array, per_change: float, floor: float) -> Array:
     """
-    First step behind a kink of the loading over what is allowed, (T,), where the peak may be: zero elsewhere.
+    First step behind a kink of the loading over what is allowed, (T,), where a body's peak may be: zero elsewhere.
 
     While the platform creeps, its acceleration follows the ground's with the relaxation of regularized friction. Behind
-    a kink its slope changes, which longer steps would take for a swing.
+    a kink its slope changes, which longer steps would take for a swing. Bodies that turn with it and dampers follow.
+    Samples on one parabola, within `floor` of the peak, follow no kink.
     """
-    step_ratio, model = np.zeros(len(motion.time)), engine.model
+    step_ratio, model, last = np.zeros(len(motion.time)), engine.model, len(motion.time) - 1
     rows = kinks(motion.time, model.ground.knots, model.ground.near)
+    rows = rows[rows < last]
     if len(rows) and np.isfinite(model.corner):
+        largest = np.maximum(peaks, size.max(axis=0))
+        bent = np.abs(np.diff(size[np.minimum(rows + np.arange(4)[:, None], last)], 3, axis=0)[0]) > floor * largest
         rows = rows[
-            (size[rows] > CANDIDATE_FRACTION * max(peak, float(size.max())))
+            (bent & (size[rows] > CANDIDATE_FRACTION * largest)).any(axis=1)
             & (motion.slip[rows].min(axis=1) < model.corner)
         ]
-        step_ratio[np.minimum(rows + 1, len(step_ratio) - 1)] = per_change / (KINK_STEP_RATIO * model.relaxation)
+        step_ratio[rows + 1] = per_change / (KINK_STEP_RATIO * model.relaxation)
     return step_ratio
 
 

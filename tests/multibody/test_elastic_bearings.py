@@ -117,18 +117,18 @@ def test_a_building_on_a_plane_stays_within_its_error(seed: int) -> None:
     assert share_of_errors(*on_a_plane(seed)) <= 1.0
 
 
-AT_A_SAMPLE = pytest.mark.xfail(strict=True, reason="a peak at a sample, 1.4 stated errors off")
-
-
 @pytest.mark.long
-@pytest.mark.parametrize("seed", [0, 1, pytest.param(2, marks=AT_A_SAMPLE), 3, 4])
+@pytest.mark.parametrize("seed", range(5))
 def test_a_building_under_a_record_stays_within_its_error(seed: int) -> None:
     assert share_of_errors(*recorded(seed)) <= 1.0
 
 
-def test_a_peak_that_stiff_links_make_at_the_start_is_in_the_error() -> None:
-    """They swing for two square roots of the penetration: levels 0 and 1 agree, 1.4 errors from elastic_chain.py."""
-    scene, phase, v_reg = recorded(0)
+@pytest.mark.parametrize(
+    ("seed", "mu"), [(0, [0.99133843, 0.80543322]), (2, [0.98553951, 0.88931466])], ids=["start", "sample"]
+)
+def test_a_peak_behind_a_kink_of_the_record_is_within_its_error(seed: int, mu: list[float]) -> None:
+    """Stiff links swing and friction relaxes: levels 0 and 1 agreed by chance, 1.4 errors from elastic_chain.py."""
+    scene, phase, v_reg = recorded(seed)
     engine = multibody.amplification(Scene.model_validate(scene), [phase], "spatial", v_reg)
     assert engine.status[0] == Outcome.OK
-    assert (np.abs(engine.mu[0] - [0.99133843, 0.80543322]) <= engine.error[0]).all()
+    assert (np.abs(engine.mu[0] - mu) <= engine.error[0]).all()
