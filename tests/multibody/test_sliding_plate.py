@@ -99,9 +99,9 @@ def share_of_errors(case: Case, model: str) -> float:
     return max(share, float(abs(away) / uncertain))
 
 
-@pytest.mark.parametrize(("seed", "flat", "recorded"), [(1, False, False), (16, True, False), (1, True, True)])
+@pytest.mark.parametrize(("seed", "flat", "recorded"), [(16, True, False), (1, True, True)])
 def test_a_platform_thrown_up_moves_as_flights_and_impacts_say(seed: int, flat: bool, recorded: bool) -> None:
-    """Sixteen landings on spheres, six on a plane (mu is 11 % less without restitution), and one under a record."""
+    """On a plane: six landings (mu is 11 % less without restitution), and one under a record."""
     assert share_of_errors(jumping(seed, flat, recorded, 0.5), "spatial") <= 1.0
 
 
