@@ -72,11 +72,16 @@ def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> 
 
 
 def _of_start(peaks: Peaks, level: Level, model: EngineModel) -> Array:
-    """Error (N,) of peaks that links which swing at the start make: all of what they add to the first sample."""
+    """
+    Error (N,) of peaks that links which swing at the start make: all of what they add to the first sample.
+
+    Such a swing at most doubles that sample; a larger peak is another one.
+    """
     if model.depressions is None or peaks.first is None:
         return np.zeros_like(peaks.value)
     starting = peaks.instant < STARTING_TIME * math.sqrt(level.penetration)
-    added: Array = np.where(starting, np.abs(peaks.value - peaks.first), 0.0)
+    swings = starting & (peaks.value <= 2.0 * peaks.first)
+    added: Array = np.where(swings, np.abs(peaks.value - peaks.first), 0.0)
     return added
 
 

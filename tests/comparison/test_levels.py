@@ -229,7 +229,7 @@ def test_what_an_earlier_level_has_computed_is_no_work_of_the_next_and_not_skipp
     display, tasks = Display(100.0, 1), [Task(math.sqrt, number, "roots") for number in (1.0, 4.0)]
     runner = Runner(TaskResults(), Console(quiet=True), 1, ThreadPoolExecutor, display, {"roots": 10.0})
     for _ in range(2):
-        runner.run_tasks(tasks)
+        runner.run(tasks)
     assert (display.total, display.done) == (100.0, 10.0)
 
 

@@ -47,7 +47,7 @@ def stored(scene: Scene, model: Model) -> StoredMotion:
 def found(*motions: StoredMotion) -> Any:
     """What the report is made from, as far as motions are concerned."""
     axis = np.array([0.0, np.pi])
-    return SimpleNamespace(motions=motions, surfaces={"alpha1": axis, "alpha2": axis})
+    return SimpleNamespace(found={"motions": motions}, surfaces={"alpha1": axis, "alpha2": axis})
 
 
 def read_back(packed: str, about: dict[str, Any]) -> dict[str, NDArray[np.float64]]:

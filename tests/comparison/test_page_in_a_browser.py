@@ -311,7 +311,7 @@ def test_the_copy_reaches_the_clipboard(browser: Browser, finished: Path) -> Non
 
 
 def test_every_folded_plot_is_drawn_when_the_page_goes_to_paper(browser: Browser, finished: Path) -> None:
-    page = _opened(browser, finished / "index.html", LAPTOP).page
+    page = _opened(browser, finished / "verification.html", LAPTOP).page
     drawn = page.evaluate("""() => {
         dispatchEvent(new Event('beforeprint'));
         return [...document.querySelectorAll('[data-plot]')].map(box => Boolean(box.querySelector('svg')));
