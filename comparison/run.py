@@ -141,7 +141,7 @@ def _run(
         try:
             for level in levels(study):
                 complete = computed_level(level, runner)
-                if level.last or reports.is_due:
+                if level.last or reports.is_due(complete, runner):
                     before = reports.results
                     said = reports.write(complete, runner)
                     deadline.keep_free(reports.seconds)

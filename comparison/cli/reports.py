@@ -75,10 +75,10 @@ class Reports:
         self.level: Level | None = None
         self.seconds = 0.0
 
-    @property
-    def is_due(self) -> bool:
-        """Whether a level that is complete gets a report although others follow."""
-        return time.monotonic() - self._last >= PATIENCE
+    def is_due(self, complete: Complete, runner: Runner) -> bool:
+        """Whether a level gets a report although others follow: not where an earlier run has computed all of it."""
+        new = any(task.key not in runner.results.stored for task in complete.tasks)
+        return new and time.monotonic() - self._last >= PATIENCE
 
     def write(self, complete: Complete, runner: Runner, stopped: bool = False) -> Results:
         """Write the report of a level; that of the last one, unless the run was ended, with drawings and a PDF."""

@@ -106,6 +106,14 @@ def test_each_level_has_a_whole_report_that_names_it(
     assert "fig3-I, platform" in run.out[first : run.out.index("Level 2 of 3: ")]
 
 
+@pytest.mark.usefixtures("every_level")
+def test_a_repeated_run_writes_the_report_of_the_last_level_alone(command: Callable[..., Run]) -> None:
+    assert "Level 2 of 3: " in command(*WORDS).out
+    again = command(*WORDS)
+    assert again.code == 0
+    assert "of 3: " not in again.out
+
+
 class Ends:
     """Ends a run by `error` when the result of some number is stored."""
 
