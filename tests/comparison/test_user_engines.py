@@ -46,6 +46,7 @@ from comparison.surfaces.unanswered import compared_study, unanswered
 from comparison.surfaces.waterfall import waterfall
 from reference.problem import Outcome, SceneError, load_scene
 
+ONLY = ("--only", "differences")  # what the limits are held to, without pictures
 DOCS = Path(__file__).parents[2] / "docs/other-engines.md"
 SCENE = load_scene("fig3-I")
 PHASES = np.array([(0.0, 0.0), (1.0, 2.0)])
@@ -343,7 +344,7 @@ def test_check_counts_the_missing_values_of_every_model(command: Callable[..., R
 
 def test_a_value_with_an_error_as_large_as_itself_is_missing(command: Callable[..., Run]) -> None:
     engine = ("--model", "vague=user_engines:vague")
-    run = command("fig3-I", "--grid", "2", *engine, "--check", hierarchy=fake_hierarchy(gap=5e-5))
+    run = command("fig3-I", "--grid", "2", *engine, *ONLY, "--check", hierarchy=fake_hierarchy(gap=5e-5))
     assert (run.code, "4 points without an answer (vague 4 of 4)" in run.err) == (1, True)
     assert "vague: only values with errors above half of them at any of 4 phase pairs" in run.out
 
@@ -354,7 +355,7 @@ def test_a_scene_limits_every_engine_by_its_name(command: Callable[..., Run], tm
     tables = "".join(
         f"[acceptance.{name}]\n{limit} = {2.0 if limit == 'ratio' else 0.02}\n" for name in ("good", "bad")
     )
-    run = command(acceptance(tables, tmp_path), "--grid", "2", *engines, "--check")
+    run = command(acceptance(tables, tmp_path), "--grid", "2", *engines, *ONLY, "--check")
     found = 21.0 if limit == "ratio" else 0.021  # it claims 1e-3
     allowed = 2 if limit == "ratio" else 0.02
     assert run.code == 1
@@ -371,14 +372,14 @@ def test_a_scene_limits_every_engine_by_its_name(command: Callable[..., Run], tm
 
 def test_one_body_beyond_a_limit_breaks_it(command: Callable[..., Run], tmp_path: Path) -> None:
     scene = acceptance("[acceptance.mine]\nmedian = 0.02\n", tmp_path)
-    run = command(scene, "--grid", "2", "--model", "mine=user_engines:off_in_the_second_body", "--check")
+    run = command(scene, "--grid", "2", "--model", "mine=user_engines:off_in_the_second_body", *ONLY, "--check")
     assert run.err == "limit broken: limited: body 2: acceptance.mine.median: 0.021 found, 0.02 allowed\n"
 
 
 def test_a_limit_in_units_of_errors_needs_all_of_them(command: Callable[..., Run], tmp_path: Path) -> None:
     scene = acceptance("[acceptance.mine]\nratio = 2.0\n", tmp_path)
     for function in ("plain", "with_one_error"):
-        run = command(scene, "--grid", "2", "--model", f"mine=user_engines:{function}", "--check")
+        run = command(scene, "--grid", "2", "--model", f"mine=user_engines:{function}", *ONLY, "--check")
         assert run.code == 1
         assert "body 1: acceptance.mine.ratio: an error estimate is missing, 2 allowed" in run.err
 
@@ -387,11 +388,11 @@ def test_limits_of_an_engine_that_is_not_there_are_refused_before_anything_is_co
     command: Callable[..., Run], tmp_path: Path
 ) -> None:
     scene = acceptance("[acceptance.mine]\nmedian = 0.02\n", tmp_path)
-    run = command(scene, "--grid", "2", "--check", hierarchy=fake_hierarchy("forbidden"))
+    run = command(scene, "--grid", "2", *ONLY, "--check", hierarchy=fake_hierarchy("forbidden"))
     assert (run.code, run.err.count("\n")) == (2, 1)
     assert "acceptance.mine = {'median': 0.02}: this study has no engine of this name" in run.err
     assert "--model mine=module:function enters it" in run.err
-    unchecked = command(scene, "--grid", "2")
+    unchecked = command(scene, "--grid", "2", *ONLY)
     assert unchecked.code == 0
     assert "no engine mine in this study" in (unchecked.report / "summary.md").read_text(encoding="utf-8")
 
