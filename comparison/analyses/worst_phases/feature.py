@@ -55,7 +55,7 @@ def _kind(worst: Worst) -> str:
     if worst.kind == "jump":
         first, second = (f"{side:+.2f}" for side in worst.side)
         return f"beside a jump, approached from ({first}, {second})"
-    return "on an edge of the surface" if worst.kind == "kink" else "on a smooth hill"
+    return "on an edge of the surface" if worst.kind == "kink" else "on a smooth maximum"
 
 
 def _context(report: Report, figures: Path) -> Mapping[str, Any]:
