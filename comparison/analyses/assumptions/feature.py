@@ -92,7 +92,7 @@ def _range(each: ValidityRange) -> str:
     """The values for which a body stays within the share, in a few words."""
     wide = each.key == "ring"  # the smaller ring changes more; of all else the larger value
     if each.holds is None:
-        return "none tried"
+        return "no value tried"
     limit = f"{'≥' if wide else '≤'} {each.holds:.3g}"
     return f"{limit} (all tried)" if each.fails is None else f"{limit}, not {each.fails:.3g}"
 
