@@ -47,8 +47,10 @@ def recorded(folder: Path, *options: str, compiled: bool = False) -> Recording:
         return seconds
 
     def print_lines() -> None:
-        for line in process.stdout or ():
-            event(line.rstrip())
+        assert process.stdout is not None
+        with process.stdout:
+            for line in process.stdout:
+                event(line.rstrip())
 
     def written() -> str:
         with suppress(FileNotFoundError):  # before the first report, and while one takes the place of another

@@ -13,7 +13,7 @@ import pytest
 from first_command import Recording, print_costs, recorded
 
 MOST_OVER = 1.0  # s after a deadline
-MOST_REPEATED = 5.0  # s; seen: 3
+MOST_REPEATED = 5.0  # s
 
 
 @pytest.fixture(scope="module")
