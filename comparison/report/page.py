@@ -38,28 +38,48 @@ def pages(figures: Path, report: Report) -> dict[str, str]:
     figures: folder with the pictures of the report. report: all that is shown. Returns pages by file name. Each needs
     no other file and no network.
     """
-    answers = [section for section in report.sections if not section.verifies]
-    verifies = [section for section in report.sections if section.verifies]
+    study, results = report.study, report.results
+    axes = scales([waterfall for scene in results.scenes for waterfall in scene.waterfalls])
+    answers = {
+        "alerts": _alert_groups(results),
+        "has_engine": any(model.side == "engine" for model in _applied(study)),
+        "question": _question(study),
+        "validated": VALIDATED,
+        "cards": [_card(scene, axes) for scene in results.scenes],
+        "scales": axes,
+        "effects": {model.key: model.effect or model.title for model in study.hierarchy},
+        "data": packed(page_data(report).encode()),
+        "motions": packed_motions(report),
+    }
+    missing = [("Report as PDF", results.no_pdf)] if results.no_pdf else []
     return {
-        "index.html": _page("report.html.j2", answers, figures, report, packed_motions(report)),
-        "verification.html": _page("verification.html.j2", verifies, figures, report),
+        "index.html": _page("report.html.j2", figures, report, False, answers, missing),
+        "verification.html": _page(
+            "verification.html.j2", figures, report, True, {"data": packed(b"null"), "motions": ""}
+        ),
     }
 
 
-def _page(template: str, sections: Sequence[Section], figures: Path, report: Report, motions: str = "") -> str:
+def _page(
+    template: str,
+    figures: Path,
+    report: Report,
+    verifies: bool,
+    context: Mapping[str, Any],
+    missing: Sequence[tuple[str, str]] = (),
+) -> str:
+    """One page with its sections; missing: title and reason of what it lacks besides sections."""
     study, results = report.study, report.results
     templates = resources.files("comparison.report") / "templates"
     style = (templates / "report.css").read_text(encoding="utf-8")
     script = "\n".join((templates / name).read_text(encoding="utf-8") for name in SCRIPTS)
-    axes = scales([waterfall for scene in results.scenes for waterfall in scene.waterfalls])
+    sections = [section for section in report.sections if section.verifies == verifies]
     shown = [section for section in sections if section.present(results)]
     absent = [
         (section.title, results.absent.get(section.name, section.absent))
         for section in sections
         if section not in shown
     ]
-    if results.no_pdf and motions:
-        absent.append(("Report as PDF", results.no_pdf))
     common: dict[str, Any] = {
         "results": results,
         "study": study,
@@ -69,21 +89,12 @@ def _page(template: str, sections: Sequence[Section], figures: Path, report: Rep
     load = _environment().get_template
     bodies = [load(section.template).render({**common, **section.context(report, figures)}) for section in shown]
     return load(template).render(
-        common,
+        {**common, **context},
         policy=content_policy(script, style),
         style=style,
         script=script,
         sections=[(section, Markup(body)) for section, body in zip(shown, bodies)],
-        absent=absent,
-        alerts=_alert_groups(results),
-        has_engine=any(model.side == "engine" for model in _applied(study)),
-        question=_question(study),
-        validated=VALIDATED,
-        cards=[_card(scene, axes) for scene in results.scenes],
-        scales=axes,
-        effects={model.key: model.effect or model.title for model in study.hierarchy},
-        data=packed(page_data(report).encode() if motions else b"null"),
-        motions=motions,
+        absent=[*absent, *missing],
     )
 
 
@@ -160,7 +171,7 @@ ALERTS = {
     "fault": ("error of a solver", "errors of solvers"),
     "swing": ("wide swing of the platform", "wide swings of the platform"),
     "travel": ("travel of the isolator nearly used up", "travels of isolators nearly used up"),
-}  # title of one and of several alerts of a kind  # title of one and of several alerts of a kind
+}  # title of one and of several alerts of a kind
 
 
 def _alert_groups(results: Results) -> list[dict[str, Any]]:
