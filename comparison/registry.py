@@ -25,9 +25,17 @@ from comparison.analyses.tradeoff import feature as tradeoff
 from comparison.analyses.validation import feature as validation
 from comparison.analyses.worst_phases import feature as worst_phases
 from comparison.report.building import build_report
-from comparison.report.page import BUDGET, DIFFERENCES, MODELS, OUTCOMES, PROVENANCE, SURFACES, VERIFICATION
 from comparison.report.results import Results
 from comparison.report.section import Feature, Report
+from comparison.report.surface_sections import (
+    BUDGET,
+    DIFFERENCES,
+    MODELS,
+    OUTCOMES,
+    PROVENANCE,
+    SURFACES,
+    VERIFICATION,
+)
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
 from comparison.study.levels import Level, levels_of

@@ -1,4 +1,4 @@
-"""The pages of a report: their shell, and the sections on the surfaces themselves."""
+"""The pages of a report: shell and first screen."""
 
 from __future__ import annotations
 
@@ -19,14 +19,13 @@ from comparison.report.glossary import emphasized, term
 from comparison.report.page_data import page_data
 from comparison.report.results import VALIDATED, Results
 from comparison.report.scene_result import SceneResult
-from comparison.report.section import Feature, Report, Section
-from comparison.report.verification import CHECKS
+from comparison.report.section import Report
+from comparison.report.surface_sections import applied_models
 from comparison.study.study import Study
 from comparison.surfaces.alert_result import Alert
 from comparison.surfaces.waterfall import Waterfall
-from comparison.surfaces.waterfall_chart import Scale, charts, log_scale, scales
+from comparison.surfaces.waterfall_chart import Scale, charts, scales
 from comparison.wording import degrees, percent, scientific, signed, significant, symbols
-from reference.problem import Outcome
 
 SCRIPTS = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions.js", "page.js")
 
@@ -42,7 +41,7 @@ def pages(figures: Path, report: Report) -> dict[str, str]:
     axes = scales([waterfall for scene in results.scenes for waterfall in scene.waterfalls])
     answers = {
         "alerts": _alert_groups(results),
-        "has_engine": any(model.side == "engine" for model in _applied(study)),
+        "has_engine": any(model.side == "engine" for model in applied_models(study)),
         "question": _question(study),
         "validated": VALIDATED,
         "cards": [_card(scene, axes) for scene in results.scenes],
@@ -96,41 +95,6 @@ def _page(
         sections=[(section, Markup(body)) for section, body in zip(shown, bodies)],
         absent=[*absent, *missing],
     )
-
-
-def _applied(study: Study) -> list[Any]:
-    """The models that some scene of the study has."""
-    return [model for model in study.hierarchy if any(model.applies(scene) for scene in study.scenes)]
-
-
-def _surfaces(report: Report, figures: Path) -> Mapping[str, Any]:
-    return {"record_tables": _record_tables(report.study, report.results)}
-
-
-def _differences(report: Report, figures: Path) -> Mapping[str, Any]:
-    rows = [row for scene in report.results.scenes_with("differences") for row in scene.differences]
-    return {"rows": rows, "dots": log_scale([size for row in rows for size in (abs(row.mean), row.maximum)])}
-
-
-def _budget(report: Report, figures: Path) -> Mapping[str, Any]:
-    entries = [entry for scene in report.results.scenes_with("budget") for entry in scene.budget]
-    return {"budget": entries, "means": _means(report.results)}
-
-
-def _costs(report: Report, figures: Path) -> Mapping[str, Any]:
-    outcomes = _outcomes(report.results)
-    return {
-        "outcomes": outcomes,
-        "limited": any(not math.isnan(row["travel_share"]) for row in outcomes),
-        "most_cost": max((row["cost"] for row in outcomes), default=0.0) or 1.0,
-    }
-
-
-def _models(report: Report, figures: Path) -> Mapping[str, Any]:
-    models = _applied(report.study)
-    own = [model for model in models if model.side != "user"]
-    supplied = [model for model in models if model.side == "user"]
-    return {"hierarchy": own, "supplied": supplied, "properties": _properties(own)}
 
 
 def content_policy(script: str, style: str) -> str:
@@ -190,13 +154,6 @@ def _alert_groups(results: Results) -> list[dict[str, Any]]:
     ]
 
 
-def _means(results: Results) -> dict[tuple[str, int, str], float]:
-    """The signed means of the waterfalls by scene, body, and model or "total"."""
-    every = [waterfall for scene in results.scenes for waterfall in scene.waterfalls]
-    steps = {(w.scene, w.body, bar.model): bar.size for w in every for bar in w.bars}
-    return steps | {(w.scene, w.body, "total"): w.total.size for w in every}
-
-
 def _card(scene: SceneResult, axes: dict[str, Scale]) -> dict[str, Any]:
     """One scene on the first screen."""
     bodies = [
@@ -224,88 +181,3 @@ def _place_of(waterfall: Waterfall) -> str:
     """Where the largest difference is."""
     first, second = waterfall.largest.phases
     return f"at ({degrees(first)}, {degrees(second)})" if math.isfinite(first) else "no difference is known"
-
-
-def _record_tables(study: Study, results: Results) -> list[dict[str, Any]]:
-    """What stands in place of surfaces for every body of a scene under a record."""
-    titles = {model.key: model.title for model in results.models}
-    tables = []
-    for number, (scene, result) in enumerate(zip(study.scenes, results.scenes)):
-        for waterfall in result.waterfalls if result.recorded else ():
-            bars = {bar.model: bar for bar in waterfall.bars}
-            rows = [
-                {"title": titles[value.model], "value": value, "bar": bars.get(value.model)}
-                for value in result.values
-                if value.body == waterfall.body
-            ]
-            tables.append({"scene": number, "body": waterfall.body, "excitation": scene.excitation, "rows": rows})
-    return tables
-
-
-def _properties(hierarchy: Sequence[Any]) -> list[dict[str, Any]]:
-    """Rows of the table of assumptions; in each, which models depart from the one before them."""
-    names = list(dict.fromkeys(name for model in hierarchy for name in model.assumptions))
-    table = []
-    for name in names:
-        texts = [model.assumptions.get(name, "") for model in hierarchy]
-        cells = [{"text": text, "differs": i > 0 and text != texts[i - 1]} for i, text in enumerate(texts)]
-        table.append({"name": name, "cells": cells})
-    return table
-
-
-def _outcomes(results: Results) -> list[dict[str, Any]]:
-    titles = {model.key: model.title for model in results.models}
-    return [
-        {
-            "scene": scene.name,
-            "model": titles[key],
-            "points": model.points,
-            "cost": model.cost,
-            "cap_share": model.cap_share,
-            "travel_share": model.travel_share,
-            "others": [f"{model.outcomes[outcome]} × {outcome}: {text}" for outcome, text in model.advice.items()],
-            "ok": model.outcomes.get(Outcome.OK.value, 0),
-        }
-        for scene in results.scenes
-        for key, model in scene.models.items()
-    ]
-
-
-SURFACES = Feature(
-    "surfaces",
-    section=Section(
-        "surfaces",
-        "Surfaces and motions",
-        "sections/surfaces.html.j2",
-        context=_surfaces,
-        title_recorded="Values and motions under the records",
-        folded=False,
-    ),
-)
-DIFFERENCES = Feature(
-    "differences",
-    section=Section("differences", "Differences", "sections/differences.html.j2", context=_differences),
-)
-BUDGET = Feature(
-    "budget",
-    section=Section("budget", "Causes of the difference", "sections/budget.html.j2", context=_budget),
-)
-OUTCOMES = Feature(
-    "outcomes",
-    section=Section("outcomes", "Outcomes and cost", "sections/outcomes.html.j2", context=_costs),
-)
-MODELS = Feature(
-    "models",
-    section=Section("models", "Models compared", "sections/models.html.j2", context=_models),
-)
-VERIFICATION = Feature(
-    "verification",
-    section=Section(
-        "verification",
-        "Tests of each code alone",
-        "sections/verification.html.j2",
-        context=lambda report, figures: {"checks": CHECKS},
-        verifies=True,
-    ),
-)
-PROVENANCE = Feature("provenance", section=Section("provenance", "Provenance", "sections/provenance.html.j2"))
