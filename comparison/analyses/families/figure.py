@@ -11,12 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from comparison.analyses.families.analysis import FamilyStep, family_steps
+from comparison.analyses.families.analysis import FamilyStep
 from comparison.report.section import Report
 from comparison.study.models import Model
 from comparison.surfaces.budget import TOTAL, BudgetEntry
 from comparison.surfaces.figures.file_names import figure_file
-from comparison.surfaces.waterfall import waterfall
 from comparison.wording import MAX_NAMES
 from reference.drawing import verbatim
 from reference.problem import Family
@@ -32,15 +31,11 @@ def family_figure_name(family: Family, body: int) -> str:
 
 def draw_families(folder: Path, report: Report) -> None:
     """Write the figure of every body of every family into `folder`, PNG."""
-    study, surfaces = report.study, report.surfaces
     entries = [entry for scene in report.results.scenes for entry in scene.budget]
-    for family in report.found["families"]:
-        bodies = range(1, family.bodies + 1)
-        bars = {scene.name: [waterfall(study, surfaces, scene, body) for body in bodies] for scene in family.scenes}
-        means = family_steps(family, bars)
-        for body in bodies:
+    for family, found in zip(report.found["families"], report.results.of("families"), strict=True):
+        for body in range(1, family.bodies + 1):
             path = folder / family_figure_name(family, body)
-            draw_family(path, family, means, entries, study.hierarchy, body)
+            draw_family(path, family, found.steps, entries, report.study.hierarchy, body)
 
 
 def draw_family(
