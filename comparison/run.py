@@ -139,7 +139,8 @@ def _run(
     with progress(console, total, jobs) as display, Deadline(began.wall, options.budget) as deadline:
         runner = Runner(results, console, jobs, pool, display, stages)
         try:
-            for level in levels(study):
+            planned = levels(study)
+            for level in planned if results.missing(surfaces) else planned[-1:]:
                 complete = computed_level(level, runner)
                 if level.last or reports.is_due(complete, runner):
                     before = reports.results

@@ -81,7 +81,7 @@ class Task:
         digest = hashlib.sha256(item.encode()).hexdigest()
         return Key(json.dumps(about, indent=1, sort_keys=True), digest, BATCH if self.batch else RESULT)
 
-    @property
+    @cached_property
     def batch(self) -> Divisible | None:
         """Its argument, if that is divisible."""
         return self.argument if isinstance(self.argument, Divisible) else None
@@ -160,10 +160,10 @@ def fingerprint(value: Any) -> Any:
         return ["array", str(value.dtype), value.shape, content]
     if isinstance(value, xr.Dataset):
         return ["data", [[str(name), fingerprint(value[name].values)] for name in sorted(map(str, value.variables))]]
-    if isinstance(value, Divisible):
-        return fingerprint(value.identity())
     if isinstance(value, tuple | list):
         return [fingerprint(part) for part in value]
+    if hasattr(value, "identity"):
+        return fingerprint(value.identity())
     if isinstance(value, Mapping):
         return [[key, fingerprint(part)] for key, part in sorted(value.items())]
     if is_dataclass(value) and not isinstance(value, type):
