@@ -11,10 +11,11 @@ from pathlib import Path
 import pytest
 from fake_models import fake_hierarchy, known_motions
 from known_analyses import analyses_are, known_others
-from runs import Run, quick_figure, quick_figures
+from runs import Here, Run, quick_figure, quick_figures
 
 from comparison.analyses.assumptions import figure as assumptions
 from comparison.analyses.errata.analysis import Effect
+from comparison.cli import user_models
 from comparison.run import main
 from comparison.study.models import Model
 
@@ -29,6 +30,7 @@ def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pyte
     """The command line with fake models in threads of this process and quick figures; --out in an empty directory."""
     monkeypatch.setattr(assumptions, "draw_assumptions", quick_figure)
     quick_figures(monkeypatch)
+    monkeypatch.setattr(user_models, "Workers", Here)
     analyses_are(monkeypatch, motions=[])
 
     def run(

@@ -66,12 +66,12 @@ def _every_number_is_met_or_explained(table: Benchmarks) -> None:
             assert row.numbers[ENGINE].verdict in (Verdict.MET, Verdict.FRICTION), (each.name, row)
 
 
-def test_the_engine_meets_the_published_numbers_or_its_friction_explains_them():
+def test_the_engine_meets_published_numbers_or_is_explained():
     _every_number_is_met_or_explained(_judged([BY_NAME[name] for name in CHEAP]))
 
 
 @pytest.mark.long
-def test_the_engine_meets_all_published_numbers_or_its_friction_explains_them():
+def test_the_engine_meets_all_published_numbers():
     _every_number_is_met_or_explained(_judged([BY_NAME[name] for name in BY_NAME if name not in CHEAP]))
 
 
@@ -146,7 +146,7 @@ def test_a_reading_does_not_depend_on_where_the_instants_are():
     assert readings.positions_at(coarse, [1.01]) == pytest.approx(readings.positions_at(fine, [1.01]), rel=1e-5)
 
 
-def test_turning_points_are_in_order_and_the_last_is_where_the_motion_ends():
+def test_turning_points_end_where_the_motion_ends():
     case = BY_NAME["sdnd100"]
     assert np.array(answer(case, EQUATIONS).values) == pytest.approx([-0.65, 0.45, -0.25, 0.05], abs=1e-7)
 
@@ -162,7 +162,7 @@ def _verdicts(difference: str = "", **sides: tuple[float, float]) -> dict[str, s
     return {side: number.verdict for side, number in numbers.items()}
 
 
-def test_a_number_is_met_within_both_errors_and_else_explained_or_not():
+def test_a_number_is_met_within_both_errors():
     near, far = (1.005, 1e-3), (1.2, 1e-3)
     assert _verdicts(equations=near, smoothed=near, engine=near)[ENGINE] == Verdict.MET
     assert _verdicts(equations=near, smoothed=far, engine=(1.2005, 1e-3))[ENGINE] == Verdict.FRICTION

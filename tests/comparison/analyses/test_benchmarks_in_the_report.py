@@ -35,7 +35,7 @@ FOUND = Benchmarks(
 )
 
 
-def test_benchmarks_beside_a_report_are_part_of_the_next_and_stay_there(command: Callable[..., Run], tmp_path: Path):
+def test_benchmarks_beside_a_report_are_part_of_the_next(command: Callable[..., Run], tmp_path: Path):
     report = command(*SMALL).report
     assert "python -m comparison.benchmarks makes it" in page_of(report, "verification.html")
     publish(report, {FILE: STORED.as_json(FOUND), PAGE: b"a page"}, "comparison.benchmarks")
@@ -59,7 +59,7 @@ def test_benchmarks_beside_a_report_are_part_of_the_next_and_stay_there(command:
     assert summary["benchmarks"]["benchmarks"][0]["rows"][0]["published"] == 2.0242
 
 
-def test_a_file_of_that_name_which_is_no_table_is_refused_in_one_line(command: Callable[..., Run], tmp_path: Path):
+def test_a_file_that_is_no_table_is_refused_in_one_line(command: Callable[..., Run], tmp_path: Path):
     publish(tmp_path / "report", {FILE: b"{}"}, "comparison.benchmarks")
     run = command(*SMALL)
     assert run.code == 2

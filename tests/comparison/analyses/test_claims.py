@@ -68,7 +68,7 @@ CENTERED = {**PAPER, "fig3-II": _seen(TWO, QUADRANTS, apart=0.0)}
 
 
 @pytest.mark.parametrize("claim", CLAIMS, ids=lambda c: f"{c.figure}: {c.says}")
-def test_every_claim_holds_on_surfaces_as_the_paper_describes_them(claim: Claim) -> None:
+def test_every_claim_holds_on_surfaces_as_described(claim: Claim) -> None:
     verdict = claim.verdict(CENTERED if "quadrants" in claim.says else PAPER)
     assert verdict.finding.holds, verdict.found
 
@@ -147,7 +147,7 @@ def test_a_case_without_an_answer_leaves_its_claims_open() -> None:
     assert _claim("Fig. 3c", "two peaks").verdict(changed).finding.holds
 
 
-def test_similarity_compares_the_same_phases_of_a_coarser_surface() -> None:
+def test_similarity_compares_the_same_phases() -> None:
     coarse = {"one": Evidence(FOUR[..., None], 0.0), "two": Evidence(FOUR[::2, ::2, None], 0.0)}
     assert similar("one", 1, "two", 1)(coarse).found == "correlation 1.00"
 
@@ -157,7 +157,7 @@ def _planted(names: str) -> Claim:
     return Claim("Fig. 0", names, "r", ("fig3-I",), lambda e: judged(f"{e['fig3-I'].swing:g}" in names.split(), "f"))
 
 
-def test_the_table_names_the_best_reading_and_what_none_reproduces() -> None:
+def test_the_table_names_the_best_reading() -> None:
     readings = [Reading(amplitude) for amplitude in (1.0, 2.0, 3.0)]
     columns = [{"fig3-I": replace(ONE_AXIS, swing=reading.amplitude)} for reading in readings]
     wanted = [_planted("1 2"), _planted("2"), _planted("none"), replace(_planted("3"), weaker=True)]
@@ -177,7 +177,7 @@ def test_readings_share_every_surface_they_can() -> None:
     assert {reading.peak for reading in EVERY_READING} >= {"supremum", "resolved", "regularised"}
 
 
-def test_a_case_that_fails_or_dies_is_named_and_the_others_answered(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_case_that_fails_is_named_and_the_others_answered(monkeypatch: pytest.MonkeyPatch) -> None:
     def gathered(question: Question) -> Evidence:
         if question.case == "fig4-dry":
             raise RuntimeError("singular")
@@ -278,7 +278,7 @@ def test_evidence_of_the_paper_is_what_the_equations_give() -> None:
 
 
 @pytest.mark.long
-def test_four_peaks_and_three_valleys_are_a_matter_of_the_drawing() -> None:
+def test_four_peaks_are_a_matter_of_the_drawing() -> None:
     """1 m/s^2, resolved peak: two ridges on the square that closes; cut open they are the paper's four and three."""
     table = collected(Claims(16, [Reading()], [_claim("Fig. 3a", "four"), _claim("Fig. 3c", "two")]), PAPERS)
     assert [row[0].finding for row in table.verdicts] == [Finding.AS_DRAWN] * 2

@@ -23,7 +23,7 @@ def _study(*names: str) -> Study:
     return Study(tuple(load_scene(name) for name in names), 2, 1e-3)
 
 
-def test_every_limit_comes_in_order_and_a_lubricated_scene_has_only_the_contact(
+def test_a_lubricated_scene_has_only_the_limit_of_the_contact(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def planted(scene: Scene) -> tuple[Array, Array]:
@@ -82,7 +82,7 @@ def test_a_contact_ten_times_stiffer_is_ten_times_closer(monkeypatch: pytest.Mon
 
 
 @pytest.mark.long
-def test_regularization_is_of_first_order_and_the_supremum_is_not_reached() -> None:
+def test_regularization_is_of_first_order() -> None:
     scene = load_scene("fig3-II")
     resolved, supremum = (limit_trends((scene, number)) for number in (0, 1))
     assert [trend.verdict for trend in resolved] == ["like the power 1"] * 2

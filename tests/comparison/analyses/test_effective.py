@@ -24,7 +24,7 @@ def _model(**settings: object) -> Model:
     return replace(fake_hierarchy()[-1], trajectory="fake_models:sliding", settings=settings)
 
 
-def test_what_the_model_really_computed_with_is_read_from_its_motion() -> None:
+def test_what_a_model_computed_with_is_read_from_its_motion() -> None:
     values = read_back((load_scene("fig3-I"), _model(**TRUE)))
     assert values.error_message == ""
     assert values.radius == pytest.approx(TRUE["radius"], rel=1e-12)
@@ -39,7 +39,7 @@ def test_in_a_lubricated_scene_friction_is_read_per_speed() -> None:
 
 
 @pytest.mark.parametrize(("slow", "fast"), [(0.05, 0.1), (0.1, 0.05)])
-def test_where_friction_depends_on_the_velocity_the_fast_one_is_read(slow: float, fast: float) -> None:
+def test_of_friction_that_varies_the_fast_one_is_read(slow: float, fast: float) -> None:
     law = {"slow": slow, "fast": fast, "rate": 20.0}
     scene = load_scene("fig3-I").with_values({"isolator.friction": law, "duration": 3.0})
     model = next(model for model in MODEL_HIERARCHY if model.key == "exact")
@@ -70,14 +70,14 @@ def test_a_motion_that_ended_early_has_no_value() -> None:
     assert np.isnan(values.radius)
 
 
-def test_a_platform_that_never_moves_has_no_radius_and_no_friction() -> None:
+def test_a_platform_that_never_moves_has_no_radius() -> None:
     values = read_back((load_scene("fig3-I"), _model(**TRUE, swing=0.0)))
     assert np.isnan(values.radius)
     assert np.isnan(values.friction)
     assert values.mass == pytest.approx(TRUE["mass"], rel=1e-12)
 
 
-def test_every_scene_has_its_own_statement_and_its_models_below_it() -> None:
+def test_every_scene_has_its_statement_and_its_models() -> None:
     study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), 2, 1e-3, fake_hierarchy())
     rows = collected(EffectiveValues(), study)
     dry = ["scene", "small", "exact", "resolved", "regularised", "translational", "spatial"]
@@ -85,7 +85,7 @@ def test_every_scene_has_its_own_statement_and_its_models_below_it() -> None:
     assert [row.model for row in rows if row.scene == "fig4-viscous"] == ["scene", "small", "exact", *dry[-2:]]
 
 
-def test_the_summary_carries_them_with_null_for_what_is_not_known(command: Callable[..., Run]) -> None:
+def test_the_summary_has_null_for_what_is_not_known(command: Callable[..., Run]) -> None:
     run = command("fig3-I", "--grid", "2")
     (scene,) = summary_of(run.report)["scenes"]
     assert scene["effective"][0]["model"] == "scene"
@@ -102,7 +102,7 @@ def test_the_dampers_of_both_sides_are_those_of_the_scene() -> None:
     assert np.isnan(read_back((load_scene("fig3-I").with_values({"duration": 2.0}), models["exact"])).damping)
 
 
-def test_the_bars_of_every_model_are_as_stiff_as_the_scene_states_them_or_as_the_weight_leaves_them() -> None:
+def test_the_bars_of_every_model_are_as_stiff_as_stated() -> None:
     bars = {"count": 4, "bending_stiffness": 0.8, "length": 1.0, "axial_stiffness": 2900.0, "spread": 0.8}
     scene = load_scene("fig3-I").with_values({"duration": 2.0, "bodies.1.period": None, "bodies.1.bars": bars})
     assert stated(scene).stiffness == pytest.approx(12.0 * 4 * 0.8)

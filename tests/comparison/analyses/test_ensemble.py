@@ -82,7 +82,7 @@ def test_fractiles_of_known_numbers_are_those_of_numpy() -> None:
         assert uncertain_fractile(numbers, share).error == 0.0
 
 
-def test_an_ensemble_and_the_phases_have_one_definition_of_fractiles() -> None:
+def test_ensemble_and_phases_have_one_definition_of_fractiles() -> None:
     """(k - 1/2)/M: 84 % of four values lies 0.86 of the way from the third to the fourth."""
     values = [1.0, 2.0, 3.0, 4.0]
     of_phases = phase_distribution(np.reshape(values, (2, 2)), np.zeros((2, 2)))
@@ -90,7 +90,7 @@ def test_an_ensemble_and_the_phases_have_one_definition_of_fractiles() -> None:
     assert of_phases.fractiles[FRACTILES.index(0.84)].value == pytest.approx(3.86)
 
 
-def test_the_error_of_a_fractile_covers_every_change_within_the_errors() -> None:
+def test_the_error_of_a_fractile_covers_every_change() -> None:
     random = np.random.default_rng(2)
     values, errors = random.uniform(1.0, 2.0, 9), random.uniform(0.0, 0.2, 9)
     for share in (0.16, 0.5, 0.84):
@@ -198,7 +198,7 @@ def test_the_engine_is_asked_at_different_motions_and_scales(folder: Path) -> No
     assert len({family.columns[SCALE][place] for place in three}) == 3
 
 
-def test_the_command_writes_the_demands_of_every_motion_at_every_scale(folder: Path) -> None:
+def test_the_command_writes_the_demands_of_every_motion(folder: Path) -> None:
     assert run("mine.toml", "--suite", "suite", "--scales", "0.5", "1", "2", "--engine", "1") == 0
     assert {file.name for file in Path("out").iterdir()} == {*FILES, "manifest.json"}
     summary = content()
@@ -231,7 +231,7 @@ def test_the_engine_agrees_like_for_like_at_its_motion(folder: Path, undrawn: No
             assert row["points"] == 1
 
 
-def test_a_file_whose_keys_run_needs_no_option_and_gives_the_same(folder: Path, undrawn: None) -> None:
+def test_a_family_file_gives_the_same_as_the_options(folder: Path, undrawn: None) -> None:
     run("mine.toml", "--suite", "suite", "--scales", "0.5", "1", "2", "--engine", "0")
     first = content()["stripes"]
     text = SCENE[: SCENE.index("excitation")].replace("title", 'combine = "product"\ntitle')
@@ -241,7 +241,7 @@ def test_a_file_whose_keys_run_needs_no_option_and_gives_the_same(folder: Path, 
     assert content()["stripes"] == first
 
 
-def test_motions_that_reach_the_rim_are_counted_and_the_others_are_kept(folder: Path) -> None:
+def test_motions_that_reach_the_rim_are_counted(folder: Path) -> None:
     assert run("mine.toml", "--suite", "suite", "--scales", "1", "12", "2", "--engine", "0") == 0
     summary = content()
     assert summary["outcomes"]["rim reached"] >= 1
@@ -298,9 +298,7 @@ def test_a_plan_says_what_it_would_cost_and_computes_nothing(folder: Path, capsy
 
 
 @pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@A1", "\tx"])
-def test_a_text_that_a_spreadsheet_would_compute_stands_behind_an_apostrophe(
-    monkeypatch: pytest.MonkeyPatch, text: str
-) -> None:
+def test_a_formula_stands_behind_an_apostrophe(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
     monkeypatch.setattr(
         "comparison.analyses.ensemble.command.as_rows", lambda result: [{"motion": text, "scale": -1.0}]
     )

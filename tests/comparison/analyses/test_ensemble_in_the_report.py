@@ -99,9 +99,7 @@ def test_the_ensemble_beside_a_report_is_part_of_the_next(command: Callable[...,
     assert 'id="ensemble"' not in page_of(report)
 
 
-def test_a_file_that_is_no_ensemble_is_refused_before_anything_is_computed(
-    command: Callable[..., Run], tmp_path: Path
-) -> None:
+def test_a_file_that_is_no_ensemble_is_refused_at_the_start(command: Callable[..., Run], tmp_path: Path) -> None:
     report = command(*SMALL).report
     (report / FILE).write_text('{"schema": "phase-resonance/ensemble", "scene": 3}')
     run = command(*SMALL)

@@ -22,7 +22,7 @@ def beside(report: Path) -> None:
     publish(report, {FILE: STORED.as_json(FOUND), **picture}, "comparison.extremes")
 
 
-def test_the_matrix_beside_a_report_is_part_of_the_next_and_stays_there(command: Callable[..., Run]) -> None:
+def test_the_matrix_beside_a_report_is_part_of_the_next(command: Callable[..., Run]) -> None:
     report = command(*SMALL).report
     assert "python -m comparison.extremes makes it" in page_of(report, "verification.html")
     beside(report)
@@ -48,9 +48,7 @@ def test_the_matrix_may_be_there_before_the_first_report(command: Callable[..., 
     assert summary["extremes"]["rows"][1]["entries"]["spatial"]["reason"] == "step limit"
 
 
-def test_a_file_of_that_name_which_is_no_matrix_is_refused_in_one_line(
-    command: Callable[..., Run], tmp_path: Path
-) -> None:
+def test_a_file_that_is_no_matrix_is_refused_in_one_line(command: Callable[..., Run], tmp_path: Path) -> None:
     beside(tmp_path / "report")
     (tmp_path / "report" / "extremes.json").write_text("{}", encoding="utf-8")
     run = command(*SMALL)

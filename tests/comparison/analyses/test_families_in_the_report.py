@@ -40,7 +40,7 @@ def file(tmp_path: Path) -> Path:
     return place
 
 
-def test_a_range_and_other_files_are_computed_and_reported_in_one_run(command: Callable[..., Run], file: Path) -> None:
+def test_a_range_and_other_files_are_one_study(command: Callable[..., Run], file: Path) -> None:
     run = command(str(file), str(SCENES / "fig4-viscous.toml"), "--grid", "2")
     assert run.code == 0
     names = [scene["name"] for scene in summary_of(run.report)["scenes"]]
@@ -58,7 +58,7 @@ def test_without_a_range_there_is_no_such_section(command: Callable[..., Run]) -
     assert not list((run.report / "figures").glob("*-family.png"))
 
 
-def test_the_figure_shows_mean_and_largest_step_of_every_scene_in_percent(
+def test_the_figure_of_a_family_shows_every_step_in_percent(
     file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     family = load_family(file)
@@ -85,7 +85,7 @@ def test_the_figure_shows_mean_and_largest_step_of_every_scene_in_percent(
     assert imread(path).std() > 0.05, "not an empty picture"
 
 
-def test_the_results_have_every_curve_and_step_over_the_value_that_runs(file: Path) -> None:
+def test_the_results_have_every_curve_and_step_of_a_family(file: Path) -> None:
     """The smooth fake model: mu_1 = 3 + cos a1 + sin a2, so 1, 3 and 5 on a 4 x 4 grid; the engine 1 % above."""
     family = load_family(file)
     study = Study(family.scenes, 4, 1e-3, fake_hierarchy(gap=0.01))
@@ -108,7 +108,7 @@ def test_the_results_have_every_curve_and_step_over_the_value_that_runs(file: Pa
     assert steps["translational", 1].real == (True, False, True)
 
 
-def test_demands_of_stored_motions_have_their_band_over_the_value_that_runs(file: Path) -> None:
+def test_demands_of_stored_motions_have_their_band(file: Path) -> None:
     family = load_family(file)
     estimates = {field.name: Estimate(1.0, 0.0) for field in fields(Demands) if field.name != "status"}
     estimates |= {"acceleration": (Estimate(2.0, 0.0),) * 2, "drift": (Estimate(3.0, 0.0),), "support_force_min": None}
@@ -137,7 +137,7 @@ def test_demands_of_stored_motions_have_their_band_over_the_value_that_runs(file
     assert family_demands(family, []) == []
 
 
-def test_demands_of_all_phases_take_the_place_of_those_of_stored_motions(file: Path) -> None:
+def test_demands_of_all_phases_go_before_stored_motions(file: Path) -> None:
     family = load_family(file)
 
     def statistics(value: float) -> list[DemandStatistics]:

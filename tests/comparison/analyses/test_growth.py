@@ -46,7 +46,7 @@ def test_a_tall_scene_has_its_bodies_one_above_the_other(bodies: int) -> None:
     assert scene.isolator.ring >= bodies
 
 
-def test_the_cost_of_the_equations_grows_with_bodies_and_phase_pairs() -> None:
+def test_the_cost_grows_with_bodies_and_phase_pairs() -> None:
     few = [
         replace(QUANTITIES[0], values=(2, 4, 8), models=QUANTITIES[2].models),
         replace(QUANTITIES[2], values=(4, 16, 64)),
@@ -66,7 +66,7 @@ def test_the_larger_half_of_a_series_gives_its_slope_or_none() -> None:
     assert with_slope("bodies", "", "exact", (1.0, 2.0, 4.0), (1.0, 4.0, 16.0)).slope == pytest.approx(2.0)
 
 
-def test_table_and_figure_cope_with_what_has_no_answer_and_are_read_back(tmp_path: Path) -> None:
+def test_growth_without_an_answer_is_read_back(tmp_path: Path) -> None:
     growth = growth_of(
         with_slope("bodies", "", "exact", (2.0, 4.0), (0.1, float("nan"))),
         with_slope("workers", "", "exact", (1.0,), (2.0,)),

@@ -46,7 +46,7 @@ def synthetic(noise: float) -> Scene:
 
 
 @pytest.mark.parametrize(("noise", "exceeds"), [(0.0, False), (0.9, False), (-1.1, True)])
-def test_a_difference_exceeds_the_uncertainties_where_it_is_larger_than_both(noise, exceeds):
+def test_a_difference_exceeds_the_sum_of_both_uncertainties(noise, exceeds):
     peaks = compared(synthetic(noise), EXACT)
     assert [each.quantity for each in peaks] == ["mu", "displacement", "acceleration", "drift", "base_shear"]
     for each in peaks:
@@ -86,7 +86,7 @@ def test_a_quantity_that_a_model_lacks_is_not_known():
     assert only.computed[0].status == "the model has no such value"
 
 
-def test_a_residual_of_a_platform_that_still_moves_says_so_beside_the_measured_one():
+def test_a_residual_of_a_platform_that_still_moves_says_so():
     displacement, residual = peak("displacement", 0.03, 0.001), peak("residual", 0.01, 0.001)
     scene = PLAIN.with_values({"duration": 1.2, "measured": [displacement, residual]})
     moving, rest = compared(scene, EXACT, TRANSLATIONAL)

@@ -76,7 +76,7 @@ def motions(scene: Scene) -> list[StoredMotion]:
     return [stored(scene, model) for model in (SMALL, TRANSLATIONAL, SPATIAL)]
 
 
-def test_the_packed_columns_are_the_motion_within_what_thinning_and_rounding_leave(scene, motions) -> None:
+def test_the_packed_columns_are_the_motion(scene, motions) -> None:
     everything = found(*motions)
     [place] = json.loads(json.dumps(list(places(everything, scene, starts_of(motions))), allow_nan=False))
     packed = packed_motions(everything)
@@ -94,7 +94,7 @@ def test_the_packed_columns_are_the_motion_within_what_thinning_and_rounding_lea
                 )
 
 
-def test_lines_between_the_packed_instants_give_forces_and_accelerations(scene, motions) -> None:
+def test_lines_between_packed_instants_give_the_motion(scene, motions) -> None:
     whole = reference.trajectory(scene, PHASE, equations="small")
     kept = motions[0].blocks()
     parts = {
@@ -109,7 +109,7 @@ def test_lines_between_the_packed_instants_give_forces_and_accelerations(scene, 
         assert (np.abs(lines - columns) <= 1.001 * SHARE * swing(columns)).all(), name
 
 
-def test_the_extremes_that_the_demands_name_are_in_the_stored_motion(motions) -> None:
+def test_the_extremes_of_the_demands_are_in_the_stored_motion(motions) -> None:
     for motion in motions:
         assert motion.demands is not None
         force = np.linalg.norm(motion.isolator_force, axis=1).max()
@@ -119,7 +119,7 @@ def test_the_extremes_that_the_demands_name_are_in_the_stored_motion(motions) ->
             assert motion.support_force.max() == pytest.approx(motion.demands.support_force_max.value, rel=1e-12)
 
 
-def test_the_path_of_the_contact_point_follows_from_position_and_yaw_as_the_layout_says(scene) -> None:
+def test_the_path_of_the_contact_follows_from_the_layout(scene) -> None:
     motion = multibody.trajectory(scene, PHASE, "spatial")
     geometry = contact_geometry(scene)
     (x, y), yaw = motion.position[:, 0, :2].T, motion.extra["yaw"]

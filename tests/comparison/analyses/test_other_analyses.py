@@ -23,7 +23,7 @@ def page(finished: Path) -> str:
     return both_pages(finished)
 
 
-def test_the_page_states_the_definition_of_a_peak_and_the_best_reading(page: str) -> None:
+def test_the_page_states_the_best_reading(page: str) -> None:
     assert (
         "(how far one must go down from it to reach anything higher) is at least\n30 % of the surface’s range" in page
     )
@@ -45,7 +45,7 @@ def test_the_page_draws_the_spike_and_lists_the_forced_ratios(page: str) -> None
     assert "How intensively the bodies above the platform are forced" in page
 
 
-def test_exponents_stand_with_their_uncertainty_and_noise_has_none(page: str) -> None:
+def test_exponents_stand_with_their_uncertainty(page: str) -> None:
     rows = page.split('id="scaling"', 1)[1].split("</table>", 1)[0]
     assert "2.00 ± 0.00" in rows
     assert re.sub("<.*?>", "", rows).count("1: 4.0e-03, 0.5: 1.0e-03, 0.25: 2.5e-04") == 1
@@ -68,7 +68,7 @@ def test_the_summary_has_them_without_nan(finished: Path) -> None:
     assert summary["convergence"][0]["exponent"] is None
 
 
-def test_claims_are_tested_only_where_every_scene_of_the_paper_is_studied() -> None:
+def test_claims_are_tested_only_with_all_scenes_of_the_paper() -> None:
     every = Study(tuple(load_scene(name) for name in builtin_scenes()), 4, 1e-3)
     assert Claims().tasks(every)
     study = Study((load_scene("fig3-I"),), 4, 1e-3)

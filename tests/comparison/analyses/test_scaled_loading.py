@@ -61,7 +61,7 @@ def test_a_step_that_jumps_has_no_exponent(monkeypatch: pytest.MonkeyPatch) -> N
     assert {trend.verdict[:15] for trend in trends if trend.what.startswith(STEP)} == {"no single slope"}
 
 
-def test_a_lubricated_scene_has_one_peak_and_one_that_fails_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_lubricated_scene_has_one_peak(monkeypatch: pytest.MonkeyPatch) -> None:
     assert len(_found(monkeypatch, lambda s: 0.03 * s**2, "fig4-viscous")) == 2 * 2
 
     def broken(*args: object, **settings: object) -> None:

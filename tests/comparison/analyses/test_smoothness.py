@@ -36,7 +36,7 @@ def test_the_exponent_is_that_of_the_shape(kind: str) -> None:
     assert bend.exponent == pytest.approx({"smooth": 2.0, "fold": 1.0, "jump": 0.0}[kind], abs=0.34)
 
 
-def test_every_body_is_judged_by_its_own_surface_and_where_it_bends() -> None:
+def test_every_body_is_judged_by_its_own_surface() -> None:
     smooth, fold = bends(_both(phase_grid(16)).reshape(16, 16, 2), _both)
     assert (smooth.kind, fold.kind) == ("smooth", "fold")
     alpha1, alpha2 = fold.phases

@@ -75,7 +75,7 @@ def test_the_share_of_points_is_met_by_a_value_that_occurred() -> None:
     assert quantile(np.array([np.nan]), 0.5) is None
 
 
-def test_a_setting_that_leaves_points_without_a_value_or_solves_another_model_is_not_on_the_front() -> None:
+def test_a_setting_with_gaps_is_not_on_the_front() -> None:
     setting = Setting("exact", "one", "step", "", 1.0, RUN, {}, 1.0)
     reference_solution = np.ones((3, 1))
     good = entry(
@@ -106,7 +106,7 @@ def test_the_error_of_the_reference_falls_with_its_tolerance(trade: Trade, quest
         assert (errors[-1] < 1e-8).all()
 
 
-def test_every_error_estimate_of_the_reference_holds_at_95_percent_of_the_points(trade: Trade) -> None:
+def test_error_estimates_of_the_reference_hold(trade: Trade) -> None:
     controlled = [setting for setting in trade.entries if setting.controlled and setting.method.startswith("reference")]
     assert controlled
     for setting in controlled:
@@ -125,7 +125,7 @@ def test_scipy_and_the_engine_tend_to_the_truth_of_the_reference(trade: Trade) -
     assert any("translational engine" in line for line in checks)
 
 
-def test_v_reg_is_a_model_error_that_falls_towards_the_peak_that_motion_resolves(trade: Trade) -> None:
+def test_v_reg_is_a_model_error_that_falls(trade: Trade) -> None:
     curve = [setting for setting in trade.of("exact") if "faster than v_reg" in setting.method]
     errors = np.array([setting.most for setting in curve], dtype=float)
     assert len(curve) > 2
@@ -133,7 +133,7 @@ def test_v_reg_is_a_model_error_that_falls_towards_the_peak_that_motion_resolves
     assert (np.diff(errors[:, 1]) < 0.0).all(), "mu_2 is well conditioned: in proportion to v_reg"
 
 
-def test_truths_are_a_hundred_times_tighter_than_every_tolerance_held_against_them() -> None:
+def test_truths_are_a_hundred_times_tighter_than_tolerances() -> None:
     for question in QUESTIONS:
         of_question = [setting for setting in settings(load_scene("fig3-I")) if setting.question == question.key]
         side = "multibody" if question.key == "spatial" else "reference"
@@ -190,7 +190,7 @@ def test_of_a_file_that_is_no_trade_nothing_is_quoted(tmp_path: Path) -> None:
     assert "a-secret" not in str(refusal.value)
 
 
-def test_a_trade_of_an_earlier_version_is_refused_in_one_line_that_names_the_key(trade: Trade, tmp_path: Path) -> None:
+def test_a_trade_of_an_earlier_version_names_the_key(trade: Trade, tmp_path: Path) -> None:
     text = STORED.as_json(TradeFile(SCHEMA, [trade])).decode().replace('"pareto_front"', '"front"')
     (tmp_path / FILE).write_text(text, encoding="utf-8")
     with pytest.raises(
@@ -217,7 +217,7 @@ def _known(scene: Scene, phases: np.ndarray, gap: float, tolerance: float = 1e-6
     return Amplification(mu, 1e-3 * mu, np.full(len(phases), "ok"), nothing, 0.0)
 
 
-def test_the_command_measures_nothing_twice_and_its_values_come_back_to_the_last_bit(
+def test_the_command_measures_nothing_twice(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = f"{__name__}:_known"
@@ -246,7 +246,7 @@ def test_the_command_measures_nothing_twice_and_its_values_come_back_to_the_last
 
 @pytest.mark.parametrize("low", [4.2e-4, 6.8e-4, 9.5e-4, 0.23, 7.0])
 @pytest.mark.parametrize("ratio", [1.2, 1.7, 3.0, 10.0, 4e3, 1e9])
-def test_the_axis_of_times_has_three_to_six_round_ticks_however_wide_it_is(low: float, ratio: float) -> None:
+def test_the_axis_of_times_has_three_to_six_round_ticks(low: float, ratio: float) -> None:
     ticks = round_ticks(low, low * ratio)
     assert 3 <= len(ticks) <= MAX_TICKS
     assert all(low <= tick <= low * ratio and float(f"{tick:.2g}") == tick for tick in ticks)

@@ -46,7 +46,7 @@ def measure(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path, str], int]:
     return run
 
 
-def test_the_diagrams_beside_a_report_are_part_of_the_next_and_stay_there(
+def test_the_diagrams_beside_a_report_are_part_of_the_next(
     command: Callable[..., Run], measure: Callable[[Path, str], int]
 ) -> None:
     report = command(*SMALL).report
@@ -68,7 +68,7 @@ def test_the_diagrams_beside_a_report_are_part_of_the_next_and_stay_there(
 
 
 @pytest.mark.long
-def test_diagrams_of_another_scene_are_added_and_said_to_be_none_of_the_study(
+def test_diagrams_of_another_scene_are_said_to_be_so(
     command: Callable[..., Run], measure: Callable[[Path, str], int], tmp_path: Path
 ) -> None:
     for name in ("fig3-I", "fig3-II", "fig3-II"):
@@ -80,9 +80,7 @@ def test_diagrams_of_another_scene_are_added_and_said_to_be_none_of_the_study(
     assert "(fig3-II)</span>: not a scene of this study" in page
 
 
-def test_a_file_of_that_name_which_is_no_trade_is_refused_in_one_line(
-    command: Callable[..., Run], tmp_path: Path
-) -> None:
+def test_a_file_that_is_no_trade_is_refused_by_the_study(command: Callable[..., Run], tmp_path: Path) -> None:
     (tmp_path / "report").mkdir()
     (tmp_path / "report" / FILE).write_text("{}", encoding="utf-8")
     run = command(*SMALL)
@@ -91,9 +89,7 @@ def test_a_file_of_that_name_which_is_no_trade_is_refused_in_one_line(
     assert "not a measured trade" in run.err
 
 
-def test_growth_beside_a_report_is_part_of_it_where_a_value_is_missing_too(
-    command: Callable[..., Run], tmp_path: Path
-) -> None:
+def test_growth_with_a_gap_beside_a_report_is_part_of_it(command: Callable[..., Run], tmp_path: Path) -> None:
     run_of_growth = {**RUN, "provenance": {"commit": "abc", "processor": "one"}}
     series = [
         with_slope("bodies", "", "engine", (2.0, 4.0, 8.0), (1.0, 4.0, 16.0)),

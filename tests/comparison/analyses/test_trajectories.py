@@ -28,7 +28,7 @@ def _between(time: NDArray[np.float64], values: NDArray[np.float64], kept: NDArr
     return np.stack([np.interp(time, time[kept], column[kept]) for column in values.T], axis=1)
 
 
-def test_straight_lines_between_the_instants_left_miss_nothing_by_more_than_is_said() -> None:
+def test_lines_between_the_kept_instants_miss_little() -> None:
     time = np.linspace(0.0, 20.0, 20001)
     values = np.stack([np.sin(7.0 * time) * np.exp(-time / 4.0), np.sign(np.sin(3.0 * time)) * 40.0], axis=1)
     kept = thinned(time, values, np.array([123]))
@@ -45,7 +45,7 @@ def test_a_single_high_instant_is_never_thinned_away() -> None:
     assert {499, 500, 501} <= set(thinned(time, values, np.zeros(0, int)).tolist())
 
 
-def test_the_largest_difference_of_every_body_is_among_the_places() -> None:
+def test_the_largest_difference_of_every_body_is_a_place() -> None:
     study, surfaces = _studied(12)
     for body, row, column in ((1, 3, 9), (2, 6, 0)):
         place = {"alpha1": surfaces["alpha1"][row], "alpha2": surfaces["alpha2"][column]}
@@ -59,7 +59,7 @@ def test_the_largest_difference_of_every_body_is_among_the_places() -> None:
     assert len(places) == 9, "two of each difference, and five evenly spread"
 
 
-def test_where_a_difference_is_largest_the_engine_model_that_has_it_moves() -> None:
+def test_at_the_largest_difference_its_own_model_moves() -> None:
     study, surfaces = _studied(12)
     for model, row, column in (("spatial", 3, 9), ("translational", 6, 0)):
         place = {"alpha1": surfaces["alpha1"][row], "alpha2": surfaces["alpha2"][column]}

@@ -118,7 +118,7 @@ def test_losses_and_later_turns_of_a_known_swing_are_met():
         assert {side.verdict for side in each.sides.values()} == {VALID}, each
 
 
-def test_half_periods_at_large_angles_are_those_of_elliptic_integrals():
+def test_half_periods_are_those_of_elliptic_integrals():
     rate, amplitude, time = np.pi / 0.39, 1.6, 0.0
     instants, angles = [], []
     while amplitude > 0.2:

@@ -32,7 +32,7 @@ def study_of(*scenes: Scene) -> Study:
     return Study(scenes, 4, 1e-3, MODEL_HIERARCHY)
 
 
-def test_exact_equations_and_the_counterpart_of_the_engine_are_searched_for_every_body() -> None:
+def test_exact_and_like_equations_are_searched_for_every_body() -> None:
     searched = [task.argument[1:5] for task in WorstPhases().tasks(study_of(SHORT))]
     assert [(model.key, body) for model, _, quantity, body in searched if quantity == "amplification"] == [
         (key, body) for key in ("exact", "regularised") for body in (1, 2)
@@ -49,7 +49,7 @@ def test_a_record_has_no_worst_phases() -> None:
 
 
 @pytest.mark.long
-def test_the_engine_confirms_the_maximum_of_the_equations_within_both_errors() -> None:
+def test_the_engine_confirms_the_maximum_of_the_equations() -> None:
     equations, engine = worst_of((SHORT, REGULARIZED, TRANSLATIONAL, "amplification", 2, 1e-3, None))
     assert engine.model == "translational"
     assert abs(engine.at_start - equations.value) <= engine.start_error + equations.error
@@ -70,7 +70,7 @@ def test_an_engine_without_an_answer_there_says_why(monkeypatch: pytest.MonkeyPa
     assert engine.reason == Outcome.STEP_LIMIT.value
 
 
-def test_the_engine_is_asked_where_its_ratio_to_the_equations_says_that_it_is_largest(
+def test_the_engine_is_asked_where_its_ratio_says(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def equations(phases: Any) -> Any:

@@ -71,16 +71,14 @@ def test_a_wrong_scene_file_is_named_with_key_value_and_rule(
     assert list(tmp_path.iterdir()) == [file]
 
 
-def test_a_wrong_second_scene_stops_the_run_before_the_first_is_computed(command: Callable[..., Run]) -> None:
+def test_a_wrong_second_scene_stops_the_run_at_the_start(command: Callable[..., Run]) -> None:
     run = command("fig3-I", "missing.toml", hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert run.err.startswith("missing.toml: ")
     assert not run.report.exists()
 
 
-def test_an_amplitude_that_makes_a_scene_impossible_names_the_scene(
-    command: Callable[..., Run], tmp_path: Path
-) -> None:
+def test_an_impossible_amplitude_names_the_scene(command: Callable[..., Run], tmp_path: Path) -> None:
     good = ROOT / "reference/problem/scenes/fig3-I.toml"
     file = tmp_path / "still.toml"
     matrix = "amplitudes = [[1.0, 0.0], [0.0, 1.0]]"
@@ -135,9 +133,7 @@ def test_out_refuses_a_file_and_the_working_directory(
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
-def test_out_that_cannot_be_written_is_refused_before_anything_is_computed(
-    command: Callable[..., Run], tmp_path: Path
-) -> None:
+def test_out_that_cannot_be_written_is_refused_at_the_start(command: Callable[..., Run], tmp_path: Path) -> None:
     locked = tmp_path / "locked"
     locked.mkdir()
     locked.chmod(stat.S_IRUSR | stat.S_IXUSR)

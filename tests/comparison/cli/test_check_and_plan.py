@@ -38,7 +38,7 @@ def test_check_exits_1_and_names_scene_body_key_found_and_limit(command: Callabl
     assert "acceptance.maximum" not in run.err, "5e-4 is within the 1e-3 allowed there"
 
 
-def test_check_names_a_like_for_like_gap_beyond_twice_its_uncertainty(command: Callable[..., Run]) -> None:
+def test_check_names_a_gap_beyond_twice_its_uncertainty(command: Callable[..., Run]) -> None:
     run = command(*SMALL, "--check", hierarchy=fake_hierarchy(gap=2.1e-3))  # the engine claims 1e-3
     assert run.code == 1
     assert "limit broken: fig3-I: body 1: acceptance.ratio: 2.1 found, 2 allowed" in run.err
@@ -46,7 +46,7 @@ def test_check_names_a_like_for_like_gap_beyond_twice_its_uncertainty(command: C
     assert "acceptance.ratio" not in command(*SMALL, "--check", hierarchy=fake_hierarchy(gap=1.9e-3)).err
 
 
-def test_without_check_a_broken_limit_is_reported_but_not_an_exit_code(command: Callable[..., Run]) -> None:
+def test_without_check_a_broken_limit_is_no_exit_code(command: Callable[..., Run]) -> None:
     run = command(*SMALL, hierarchy=fake_hierarchy(gap=5e-4))
     assert run.code == 0
     assert "acceptance limits broken" in page_of(run.report)
@@ -71,9 +71,7 @@ def test_plan_refuses_what_takes_more_work_than_is_allowed(command: Callable[...
     assert "refused" not in command(*SMALL, "--plan", hierarchy=MODEL_HIERARCHY).out
 
 
-def test_a_scene_that_states_a_part_of_what_the_spatial_model_needs_is_told_the_rest(
-    command: Callable[..., Run], tmp_path: Path
-) -> None:
+def test_a_scene_is_told_what_the_spatial_model_lacks(command: Callable[..., Run], tmp_path: Path) -> None:
     lines = (SCENES / "fig3-I.toml").read_text("utf-8").splitlines()
 
     def planned(name: str, *left_out: str) -> str:
@@ -86,9 +84,7 @@ def test_a_scene_that_states_a_part_of_what_the_spatial_model_needs_is_told_the_
     assert told not in planned("plain.toml", "sphere_radius", "supports", "ring", "height", "size")
 
 
-def test_plan_of_many_scenes_fits_a_screen_and_gives_each_reason_once(
-    command: Callable[..., Run], tmp_path: Path
-) -> None:
+def test_plan_of_many_scenes_fits_a_screen(command: Callable[..., Run], tmp_path: Path) -> None:
     text = (SCENES / "fig3-I.toml").read_text("utf-8")
     values = ", ".join(str(0.05 + 0.001 * number) for number in range(22))
     (tmp_path / "many.toml").write_text(
@@ -99,7 +95,7 @@ def test_plan_of_many_scenes_fits_a_screen_and_gives_each_reason_once(
     assert sum("adding pi to either phase" in line for line in out) == 1
 
 
-def test_the_closing_table_has_a_row_for_every_scene_body_and_pair(command: Callable[..., Run]) -> None:
+def test_the_closing_table_has_every_scene_body_and_pair(command: Callable[..., Run]) -> None:
     run = command("fig3-I", "fig4-viscous", "--grid", "2")
     table = run.out.split("Relative differences", 1)[1].splitlines()
     heading = next(line for line in table if "std. dev." in line).split()

@@ -61,7 +61,7 @@ def test_the_next_commands_work_as_they_are_printed(
     assert "4 x 4 phases" in capfd.readouterr().out.replace("\n", " ")
 
 
-def test_a_command_that_changed_the_loading_offers_no_film_of_another(command: Callable[..., Run]) -> None:
+def test_a_changed_loading_offers_no_film_of_another(command: Callable[..., Run]) -> None:
     run = command("fig3-I", "--grid", "2", "--amplitude", "0.5", hierarchy=errors_in({"spatial": 0.1}))
     assert not any("multibody.animate" in line for line in after_report(run))
 
@@ -73,7 +73,7 @@ def test_a_scene_of_a_file_is_filmed_from_its_file(command: Callable[..., Run], 
     assert f"multibody.animate '{place}' --phases" in run.out
 
 
-def test_options_of_a_printed_command_stand_before_the_scenes_of_which_one_begins_with_a_dash(
+def test_printed_options_stand_before_scenes_with_a_dash(
     command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -155,6 +155,7 @@ def test_the_times_of_a_run_are_the_same_in_every_place(
     assert "predicted" not in run.out
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell")
 def test_the_processor_time_of_a_running_process_is_counted() -> None:
     before = Clock.now()

@@ -24,7 +24,7 @@ def compare(before: Path, after: Path) -> tuple[int, str]:
 
 
 @pytest.mark.long
-def test_one_changed_bit_and_one_changed_number_are_found_and_times_are_not(finished: Path, tmp_path: Path) -> None:
+def test_a_changed_bit_and_a_changed_number_are_found(finished: Path, tmp_path: Path) -> None:
     other = tmp_path / "other"
     shutil.copytree(finished, other)
     summary = summary_of(other)

@@ -64,7 +64,7 @@ def called(script: Path, *words: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.long
-def test_the_modules_beside_a_user_are_not_imported_by_the_script_or_its_workers(script: Path) -> None:
+def test_modules_beside_a_user_are_not_imported(script: Path) -> None:
     run = called(script, "extremes", "--models", "small", "--rows", "outside the rules", "--jobs", "2")
     assert run.returncode == 0, run.stderr
     matrix = json.loads((script.parent.parent / "work/report/extremes.json").read_text(encoding="utf-8"))
@@ -90,7 +90,8 @@ def test_workers_of_the_script_import_nothing_from_the_folder(script: Path) -> N
     assert "mine" in run.stdout
 
 
-def test_workers_of_a_program_elsewhere_import_nothing_from_there(script: Path) -> None:
+@pytest.mark.long
+def test_workers_of_a_program_elsewhere_import_nothing_there(script: Path) -> None:
     imported = planted(script)
     script.write_text(
         "import os\n"
@@ -103,12 +104,6 @@ def test_workers_of_a_program_elsewhere_import_nothing_from_there(script: Path) 
     run = called(script)
     assert not imported.exists(), imported.read_text(encoding="utf-8")
     assert (run.returncode, run.stdout) == (0, "None None\n"), "what a task starts is searched as ever"
-
-
-def test_the_script_plans_a_study(script: Path) -> None:
-    run = called(script, "run", "fig4-viscous", "--plan")
-    assert (run.returncode, run.stderr) == (0, "")
-    assert "nothing was computed" in run.stdout
 
 
 def test_an_unknown_command_is_one_line_with_the_nearest(script: Path) -> None:
@@ -128,7 +123,8 @@ def test_the_script_states_its_version(script: Path) -> None:
     assert (run.returncode, run.stdout, run.stderr) == (0, f"phase-resonance {reference.__version__}\n", "")
 
 
-def test_an_engine_that_cannot_be_loaded_is_one_line_that_says_what_it_needs(tmp_path: Path) -> None:
+@pytest.mark.long
+def test_an_engine_that_cannot_be_loaded_is_one_line(tmp_path: Path) -> None:
     lines = "Tried, in order:\\n  libGL.so.1: cannot open shared object file"
     (tmp_path / "exudyn.py").write_text(f"raise ImportError('{lines}')\n", encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT)])}
@@ -151,7 +147,7 @@ def test_every_command_states_the_version(name: str, capsys: pytest.CaptureFixtu
 
 @pytest.mark.parametrize("name", COMMANDS)
 @pytest.mark.parametrize("words", [("--no-such-option",), ("--jobs", "0"), ("--out",)])
-def test_a_wrong_option_of_every_command_is_one_line_and_exit_code_2(
+def test_a_wrong_option_of_every_command_is_one_line(
     name: str, words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
 ) -> None:
     main = import_module(COMMANDS[name][0]).main
@@ -164,7 +160,7 @@ def test_a_wrong_option_of_every_command_is_one_line_and_exit_code_2(
 COMPUTING = tuple(name for name in COMMANDS if name not in ("init", "animate", "validation"))  # these have no workers
 
 
-def test_the_shared_options_are_the_same_in_every_command_that_computes(capsys: pytest.CaptureFixture[str]) -> None:
+def test_shared_options_are_the_same_in_every_command(capsys: pytest.CaptureFixture[str]) -> None:
     helps = set()
     for name in COMPUTING:
         with pytest.raises(SystemExit):

@@ -45,7 +45,7 @@ def test_it_writes_every_file_of_the_template(study: Path) -> None:
     assert [name for name, content in study_files("x").items() if b"@NAME@" in content or b"@REQ" in content] == []
 
 
-def test_its_continuous_integration_installs_the_version_that_made_it(study: Path) -> None:
+def test_its_requirement_is_the_version_that_made_it(study: Path) -> None:
     lines = (study / "requirements.txt").read_text(encoding="utf-8").splitlines()
     asked = {parsed.name: parsed for parsed in map(Requirement, (line for line in lines if not line.startswith("#")))}
     wanted = asked["phase-resonance"]
@@ -91,7 +91,7 @@ def test_the_requirement_is_where_pip_found_the_project(
     ],
 )
 @pytest.mark.parametrize("pushed", [True, False])
-def test_a_checkout_is_found_by_the_commit_that_its_repository_has(
+def test_a_checkout_is_found_by_its_commit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, origin: str, address: str, pushed: bool
 ) -> None:
     said = {"rev-parse": COMMIT, "branch": "origin/main" if pushed else "", "remote": origin}
@@ -150,7 +150,7 @@ def test_what_its_continuous_integration_runs_passes(study: Path, words: list[st
 @pytest.mark.parametrize(
     ("schema", "name"), [("github-workflows", ".github/workflows/study.yml"), ("gitlab-ci", ".gitlab-ci.yml")]
 )
-def test_its_files_for_continuous_integration_follow_their_schema(study: Path, schema: str, name: str) -> None:
+def test_its_workflows_follow_their_schema(study: Path, schema: str, name: str) -> None:
     check = [sys.executable, "-m", "check_jsonschema", "--builtin-schema", f"vendor.{schema}", str(study / name)]
     run = subprocess.run(check, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stdout + run.stderr
@@ -189,7 +189,7 @@ REFUSED: dict[str, tuple[Callable[[Path], Path], str]] = {
 
 
 @pytest.mark.parametrize(("place", "rule"), REFUSED.values(), ids=REFUSED.keys())
-def test_a_directory_that_cannot_be_taken_is_one_line_and_stays_as_it_was(
+def test_a_directory_that_cannot_be_taken_stays_as_it_was(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], place: Callable[[Path], Path], rule: str
 ) -> None:
     path = place(tmp_path / "study")

@@ -38,10 +38,6 @@ def test_every_file_the_readme_points_to_exists() -> None:
         assert (ROOT / target).exists(), target
 
 
-def test_nothing_is_left_to_be_filled_in() -> None:
-    assert not re.search(r"TODO|TBD|XXX|<!--(?! test: )|\?\?\?", README)
-
-
 def test_the_keys_that_the_guide_shows_make_a_scene() -> None:
     page = (GUIDE / "building.md").read_text(encoding="utf-8")
     blocks = re.findall(r"^```toml\n(.*?)^```$", page, flags=re.MULTILINE | re.DOTALL)

@@ -150,7 +150,7 @@ def test_beyond_u_d_counts_differences_of_both_signs(tables: Tables) -> None:
     assert len(shares) > 2, "there are negative ones among them"
 
 
-def test_ring_and_bar_of_the_chart_are_at_95_percent_and_the_maximum(report: Path) -> None:
+def test_ring_and_bar_of_the_chart_are_at_95_percent_and_maximum(report: Path) -> None:
     page = page_of(report)
     charts = re.findall(r'<svg class="dots body-(\d)".*?</svg>', page)
     drawn = re.findall(r'<svg class="dots body-\d".*?</svg>', page)
@@ -240,7 +240,7 @@ def test_means_of_the_steps_in_the_table_are_the_bars(tables: Tables, summary: d
         assert row["maximum"] == in_percent(sizes.max())
 
 
-def test_the_terminal_has_the_statistics_and_the_times_of_the_page(
+def test_the_terminal_has_statistics_and_times_of_the_page(
     command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     run = command("fig3-I", "--grid", str(GRID), "--skip", "assumptions", hierarchy=distinct_hierarchy())
@@ -286,7 +286,7 @@ def heights(key: str, body: int, count: int) -> Array:
     return by_phase(first_mu(body, phases) * (1.0 + differences_of(key, body, phases)))
 
 
-def test_a_pair_of_surfaces_has_each_under_its_title_and_the_map_its_axes(
+def test_a_pair_of_surfaces_has_each_under_its_title(
     solved: tuple[Study, xr.Dataset], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     study, surfaces = solved
@@ -316,7 +316,7 @@ def test_a_pair_of_surfaces_has_each_under_its_title_and_the_map_its_axes(
     assert f"largest of 4 × 4: {np.abs(sizes).max():.2g} %" in difference.get_title()
 
 
-def test_maps_for_print_have_each_model_under_its_title_and_alpha1_to_the_right(
+def test_maps_for_print_have_each_model_under_its_title(
     solved: tuple[Study, xr.Dataset], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     study, surfaces = solved
@@ -342,7 +342,7 @@ def test_what_is_not_real_is_explained_as_not_real(report: Path) -> None:
     assert tip.startswith("Not larger than five times the error estimates")
 
 
-def test_a_largest_value_names_its_grid_and_the_search_over_all_phases(
+def test_a_largest_value_names_its_grid_and_the_search(
     solved: tuple[Study, xr.Dataset],
 ) -> None:
     study, surfaces = solved

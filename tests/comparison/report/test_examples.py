@@ -20,7 +20,3 @@ def test_an_example_gives_what_it_shows(name: str) -> None:
     result = doctest.testmod(import_module(name))
     assert result.attempted > 0
     assert result.failed == 0
-
-
-def test_there_are_examples() -> None:
-    assert "comparison.analyses.tradeoff.trade" in MODULES

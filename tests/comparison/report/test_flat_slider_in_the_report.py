@@ -24,7 +24,7 @@ FLAT = load_scene("fig3-I").with_values({"isolator.period": None, "isolator.radi
 
 
 @pytest.mark.parametrize("model", MODEL_HIERARCHY, ids=lambda model: model.key)
-def test_the_motion_of_every_model_shows_a_plane_and_its_friction(model):
+def test_every_motion_shows_a_plane_and_its_friction(model):
     assert model in models_of(FLAT, MODEL_HIERARCHY)
     values = read_back((FLAT, model))
     assert values.error_message == ""
@@ -57,7 +57,7 @@ def test_the_report_of_a_flat_slider_is_valid_json_and_names_it(command: Callabl
     assert "flat slider" in page_of(done.report)
 
 
-def test_errata_of_matrices_that_are_infinite_on_a_plane_are_left_out():
+def test_errata_that_are_infinite_on_a_plane_are_left_out():
     measured = [erratum.measure(FLAT) for erratum in ERRATA if erratum.measure is not None]
     assert any(change is None for change in measured)
     assert all(change is None or change.shape[1] == 2 for change in measured)

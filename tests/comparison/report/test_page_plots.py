@@ -28,13 +28,13 @@ SLOW, FAST = _entry("slow", 0.2, 1e-7, 1e-7), _entry("fast", 0.01, 5e-4)
 TRADE = Trade("fig3-I", "Case I", "0", 2, [QUESTION], [SLOW, FAST], {})
 
 
-def test_the_answer_in_words_is_the_cheapest_method_that_meets_the_error() -> None:
+def test_the_answer_is_the_cheapest_method_within_the_error() -> None:
     (answer,) = tradeoff_answers(TRADE)
     assert "for 1e-03 ask fast, tolerance 0.001 (10 ms)" in answer["text"]
     assert "for 1e-06 ask slow, tolerance 1e-07 (200 ms)" in answer["text"]
 
 
-def test_a_method_that_does_not_estimate_its_error_is_asked_only_without_one_that_does() -> None:
+def test_a_method_without_an_estimate_is_the_last_resort() -> None:
     quick = replace(FAST, method="quick", seconds=1e-3, controlled=False)
     (both,), (alone,) = (tradeoff_answers(replace(TRADE, entries=entries)) for entries in ([FAST, quick], [quick]))
     assert "for 1e-03 ask fast" in both["text"]
@@ -53,7 +53,7 @@ def test_no_panel_has_more_curves_than_can_be_told_apart() -> None:
     assert all(len(panel["plot"]["series"]) == MAX_CURVES for panel in panels)
 
 
-def test_a_fitted_slope_is_in_the_legend_and_nan_is_no_number_of_a_plot() -> None:
+def test_a_fitted_slope_is_in_the_legend() -> None:
     trend = Trend(
         scene="fig3-I", body=1, what="exact minus small, supremum", parameter=(1.0, 0.5), medians=(0.1, float("nan")),
         exponent=2.01, uncertainty=0.03, points=8, pairs=4, expected=2.0, verdict="",
@@ -66,7 +66,7 @@ def test_a_fitted_slope_is_in_the_legend_and_nan_is_no_number_of_a_plot() -> Non
 
 
 @pytest.mark.parametrize("word", GLOSSARY)
-def test_every_word_of_the_glossary_is_explained_where_it_stands_first(word: str) -> None:
+def test_a_word_of_the_glossary_is_explained_where_it_is_first(word: str) -> None:
     text = str(explained(f"The {word} & the {word}."))
     assert text.count("data-tip") == 1
     assert "&amp;" in text

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from fake_models import fake_hierarchy, known_motions, silenced
 from report_texts import flat, page_of, text_of
-from runs import RUN, Run
+from runs import RUN, Run, quick_figures
 from studies import solved
 
 from comparison.analyses.demands.pdf import demand_rows
@@ -25,6 +25,12 @@ from reference.problem import Scene, load_scene
 SCENES = ("fig3-I", "fig3-II", "fig4-dry", "fig4-viscous")
 
 
+@pytest.fixture(autouse=True)
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Maps are drawn in another test."""
+    quick_figures(monkeypatch)
+
+
 def studied(scenes: list[Scene], hierarchy: tuple[Model, ...], grid: int = 4) -> Report:
     study = Study(tuple(scenes), grid, 1e-3, hierarchy)
     surfaces = solved(study)
@@ -37,7 +43,7 @@ def _called(scene: Scene, name: str, title: str) -> Scene:
 
 
 @pytest.mark.long
-def test_the_papers_scenes_are_on_two_to_four_pages_with_every_sentence(tmp_path: Path) -> None:
+def test_the_papers_scenes_fit_four_pages_with_every_sentence(tmp_path: Path) -> None:
     report = studied([load_scene(name) for name in SCENES], fake_hierarchy(gap=0.01), grid=24)
     pdf.write_pdf(tmp_path / "report.pdf", report)
     pages, text = text_of(tmp_path / "report.pdf")
@@ -74,7 +80,7 @@ def test_any_study_has_two_to_four_pages(case: str, tmp_path: Path) -> None:
         assert flat("10 largest differences of 60 are shown") in flat(text)
 
 
-def test_titles_are_text_and_never_markup_and_the_same_results_give_the_same_bytes(tmp_path: Path) -> None:
+def test_titles_are_text_and_the_bytes_are_reproducible(tmp_path: Path) -> None:
     title = '#panic("x") *b* _i_ $a$ @ref <label> \\ `raw` = // [c] "q" \ud800'
     scene = _called(load_scene("fig3-I"), "#let", title)
     report = studied([scene], fake_hierarchy(gap=0.01), 2)

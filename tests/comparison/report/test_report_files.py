@@ -177,7 +177,7 @@ def test_the_page_needs_no_other_file_and_no_network(finished: Path) -> None:
     assert re.findall(r"@import|url\(", style) == []
 
 
-def test_the_page_names_every_scene_body_model_and_says_what_it_is_not(finished: Path) -> None:
+def test_the_page_names_every_scene_body_and_model(finished: Path) -> None:
     page = page_of(finished)
     for text in ("(fig3-I)", "(fig4-viscous)", "platform: ", "body 2: ", "no building has been compared"):
         assert text in page

@@ -38,7 +38,7 @@ def test_the_summary_names_every_broken_limit_and_every_verdict(finished: Path) 
     assert "no building has been compared, and this study has no measured peaks" in text
 
 
-def test_tables_of_the_summary_have_one_width_and_the_planted_size(finished: Path) -> None:
+def test_tables_of_the_summary_have_the_planted_size(finished: Path) -> None:
     lines = (finished / "summary.md").read_text(encoding="utf-8").splitlines()
     tables = [_cells(line) for line in lines if line.startswith("|")]
     assert [len(row) for row in tables] == [10] * 14 + [9] * 6, "differences; five steps, the total and its phase pairs"
@@ -55,7 +55,7 @@ def test_a_sound_run_says_that_its_limits_hold(command: Callable[..., object]) -
     assert (suites.get("tests"), suites.get("failures")) == ("5", "0")
 
 
-def test_junit_has_one_case_per_limit_and_scene_and_fails_the_broken_ones(finished: Path) -> None:
+def test_junit_fails_the_broken_limits_of_every_scene(finished: Path) -> None:
     suites = ElementTree.parse(finished / "junit.xml").getroot()
     assert [suite.get("name") for suite in suites] == ["fig3-I", "fig4-viscous"]
     for suite in suites:
@@ -83,7 +83,7 @@ def _objects(schema: dict[str, Any]) -> Iterator[dict[str, Any]]:
             yield from _objects(part)
 
 
-def test_every_key_of_the_summary_is_documented_and_as_documented(finished: Path) -> None:
+def test_every_key_of_the_summary_is_as_documented(finished: Path) -> None:
     schema = json.loads((finished / "summary.schema.json").read_text(encoding="utf-8"))
     Draft202012Validator.check_schema(schema)
     summary = summary_of(finished)
@@ -100,7 +100,7 @@ def test_the_summary_read_back_is_the_results(finished: Path) -> None:
     assert json.loads(StudyResults.model_validate_json(text).as_json()) == json.loads(text)
 
 
-def test_the_page_and_every_text_have_the_sentences_of_the_results(finished: Path) -> None:
+def test_page_and_summary_have_the_sentences_of_the_results(finished: Path) -> None:
     summary = summary_of(finished)
     page, text = ((finished / name).read_text(encoding="utf-8") for name in ("index.html", "summary.md"))
     shown = unescape(re.sub("<.*?>", "", page))

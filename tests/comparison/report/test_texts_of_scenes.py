@@ -50,7 +50,7 @@ def test_members_of_a_family_have_figures_of_their_own(tmp_path: Path) -> None:
     ]
 
 
-def test_a_name_with_dots_keeps_them_and_one_that_is_too_long_is_cut() -> None:
+def test_a_name_with_dots_keeps_them_and_a_long_one_is_cut() -> None:
     assert with_ending(Path("a[b=0.02]-paper"), ".pdf").name == "a[b=0.02]-paper.pdf"
     assert with_ending(Path("a[b=0.02].png"), ".pdf").name == "a[b=0.02].pdf"
     long = [figure_file("é" * 150 + end, "body1", "total") for end in "ab"]
@@ -58,9 +58,7 @@ def test_a_name_with_dots_keeps_them_and_one_that_is_too_long_is_cut() -> None:
     assert all(len(name.encode()) <= 255 and name.endswith("-body1-total.png") for name in long)
 
 
-def test_brackets_in_names_and_titles_are_printed_and_crash_nothing(
-    command: Callable[..., Run], tmp_path: Path
-) -> None:
+def test_brackets_in_names_and_titles_are_printed(command: Callable[..., Run], tmp_path: Path) -> None:
     scene = _written(tmp_path, "fam.toml", "a [/b] [bold]c :warning:", "{values = [0.02, 0.04]}")
     plan = command(scene, "--plan", "--out", str(tmp_path / "[x] y"))
     assert plan.code == 0
@@ -101,9 +99,7 @@ def test_dollars_in_a_title_are_letters_of_every_figure(tmp_path: Path) -> None:
     assert (tmp_path / "family.png").stat().st_size > 0
 
 
-def test_two_scenes_of_one_name_are_refused_before_anything_is_computed(
-    command: Callable[..., Run], tmp_path: Path
-) -> None:
+def test_two_scenes_of_one_name_are_refused_at_the_start(command: Callable[..., Run], tmp_path: Path) -> None:
     family = _written(tmp_path, "fam.toml", friction="{values = [0.02, 0.4]}")
     member = _written(tmp_path, "fam[friction=0.4].toml")
     run = command(family, member, hierarchy=fake_hierarchy("forbidden"))
@@ -112,7 +108,7 @@ def test_two_scenes_of_one_name_are_refused_before_anything_is_computed(
     assert run.err.count("\n") == 1
 
 
-def test_junit_and_summary_are_well_formed_whatever_a_scene_is_called() -> None:
+def test_junit_and_summary_are_well_formed_for_any_name() -> None:
     title = "[a](http://b) #1 $x$ &copy; ~~c~~ <b>\n| d"
     valid = load_scene("fig3-I")
     scene = Scene.model_construct(**{**dict(valid), "name": "a\x00\x01\ud800\ufffe<b>", "title": title})
@@ -128,7 +124,7 @@ def test_junit_and_summary_are_well_formed_whatever_a_scene_is_called() -> None:
     assert np.unique([line.count("|") for line in text.splitlines() if line.startswith("| a")]).size <= 2
 
 
-def test_a_page_of_records_says_nothing_of_phases_over_which_it_is_not(command: Callable[..., Run]) -> None:
+def test_a_page_of_records_says_nothing_of_phases(command: Callable[..., Run]) -> None:
     run = command("synthetic-pair")
     page = page_of(run.report)
     top = page[page.index("<h1>") : page.index("<nav")]

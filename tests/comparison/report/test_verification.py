@@ -8,7 +8,7 @@ import pytest
 from places import ROOT
 from report_texts import page_of
 
-from comparison.report.verification import CHECKS, ENGINE, REFERENCE, Check
+from comparison.report.verification import CHECKS, Check
 
 TESTS = ROOT / "tests"
 
@@ -16,10 +16,6 @@ TESTS = ROOT / "tests"
 @pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.test)
 def test_every_check_the_report_lists_exists(check: Check) -> None:
     assert f"def {check.test}(" in (TESTS / check.file).read_text(encoding="utf-8")
-
-
-def test_both_sides_are_checked_alone() -> None:
-    assert {check.side for check in CHECKS} == {REFERENCE, ENGINE}
 
 
 def test_the_report_lists_them(finished: Path) -> None:

@@ -38,12 +38,12 @@ def test_shares_and_sizes_keep_the_digits_that_matter() -> None:
     assert degrees(3.14159265) == "180°"
 
 
-def test_a_share_below_the_rounding_of_the_tables_is_not_given_digits() -> None:
+def test_a_share_below_rounding_has_no_digits() -> None:
     assert (percent(5e-9), percent(-5e-9), percent(1e-6)) == ("< 0.0001 %", "< 0.0001 %", "0.0001 %")
     assert [signed(value) for value in (0.123, -0.0123, 0.0, -5e-9)] == ["+12 %", "−1.2 %", "0 %", "< 0.0001 %"]
 
 
-def test_figures_write_indices_and_leave_the_dollars_of_a_scene_alone() -> None:
+def test_figures_write_indices_and_leave_dollars_alone() -> None:
     assert mathtext("exact equations, v_reg") == r"exact equations, $v_{\mathrm{reg}}$"
     assert (verbatim("5 $ a_b"), mathtext("a $")) == (r"5 \$ a_b", r"a \$")
 

@@ -26,9 +26,7 @@ def _task(**changed: object) -> Task:
     return task
 
 
-def test_a_batch_belongs_to_scene_model_settings_versions_and_source(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_batch_belongs_to_scene_model_versions_and_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def is_stored(**changed: object) -> bool:
         return not TaskResults(Cache(tmp_path)).missing([_task(**changed)])
 
@@ -51,7 +49,7 @@ def test_a_batch_belongs_to_scene_model_settings_versions_and_source(
             assert not is_stored(), name
 
 
-def test_results_of_the_fast_module_of_exudyn_are_not_those_of_the_default(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_results_of_the_fast_engine_module_are_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("EXUDYN_MODULE", raising=False)
     usual = _task().key
     monkeypatch.setenv("EXUDYN_MODULE", "fast")

@@ -57,7 +57,7 @@ def workers(tmp_path: Path) -> Iterator[LocalCluster]:
     started.end()
 
 
-def test_the_numbers_are_those_of_this_machine_even_when_a_worker_is_killed_in_the_middle(
+def test_numbers_of_a_cluster_are_those_of_this_machine(
     workers: LocalCluster,
 ) -> None:
     here = _results("uneven", 1, ThreadPoolExecutor)
@@ -69,7 +69,7 @@ def test_the_numbers_are_those_of_this_machine_even_when_a_worker_is_killed_in_t
 
 
 @pytest.mark.long
-def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on_in_process(
+def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on(
     workers: LocalCluster, command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     put = Cache.put
@@ -108,7 +108,7 @@ def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on_in_process(
 
 @pytest.mark.long
 @pytest.mark.parametrize("nanny", [False, True])
-def test_a_hang_ends_at_its_limit_and_costs_no_worker_of_the_cluster(tmp_path: Path, nanny: bool) -> None:
+def test_a_hang_costs_no_worker_of_the_cluster(tmp_path: Path, nanny: bool) -> None:
     started = LocalCluster(tmp_path, workers=1, nanny=nanny)
     tasks = [
         Task(hangs_in_compiled_code, str(tmp_path / "hanging"), "test", 2.0, timeout=4.0),

@@ -17,7 +17,7 @@ from comparison.surfaces.tasks import batch_results, surface_tasks
 from reference.problem import load_scene
 
 
-def test_results_are_the_same_to_the_last_bit_for_any_number_of_jobs() -> None:
+def test_results_are_the_same_bits_for_any_number_of_jobs() -> None:
     study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy("uneven", batch=1))
     tasks = surface_tasks(study)
     order: list[Task] = []

@@ -64,7 +64,7 @@ def _bytes(answers: list[BatchResult]) -> list[object]:
 
 @pytest.mark.long
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="fork")
-def test_a_run_killed_at_random_instants_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
+def test_a_run_killed_at_random_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
     script = SCRIPT.format(here=str(HELPERS), root=str(ROOT), instants=INSTANTS)
     subprocess.run([sys.executable, "-c", script], cwd=tmp_path, check=True)
     quiet = Console(quiet=True)
@@ -81,7 +81,7 @@ def test_a_run_killed_at_random_instants_goes_on_to_the_same_bytes(tmp_path: Pat
     assert sum(batches == 72 and 0 < others < 48 for batches, others in before) > 3, "of these some after the surfaces"
 
 
-def test_the_same_command_computes_nothing_twice_and_fresh_computes_all(command: Callable[..., Run]) -> None:
+def test_nothing_is_computed_twice_and_fresh_computes_all(command: Callable[..., Run]) -> None:
     words = ["fig3-I", "--grid", "4"]
     first = command(*words)
     assert first.code == 0
@@ -100,7 +100,7 @@ def test_the_same_command_computes_nothing_twice_and_fresh_computes_all(command:
 
 @pytest.mark.long
 @pytest.mark.skipif(sys.platform == "win32", reason="the system does not limit the size of files")
-def test_a_disk_that_fills_up_while_the_surfaces_are_written_is_one_line(tmp_path: Path) -> None:
+def test_a_disk_that_fills_up_under_the_surfaces_is_one_line(tmp_path: Path) -> None:
     script = """
 import resource, sys
 from concurrent.futures import ThreadPoolExecutor
@@ -128,7 +128,7 @@ sys.exit(main(["fig3-I", "--grid", "2", "--only", "budget", "--out", "report"], 
     assert [entry.name for entry in tmp_path.iterdir()] == ["report.tiles"]
 
 
-def test_a_full_disk_is_one_line_exit_3_and_the_run_goes_on_later(
+def test_a_full_disk_is_exit_3_and_the_run_goes_on_later(
     command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     written: list[str] = []

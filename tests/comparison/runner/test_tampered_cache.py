@@ -17,7 +17,6 @@ import numpy as np
 import pytest
 from fake_models import fake_hierarchy
 from numpy.typing import NDArray
-from places import ROOT
 
 from comparison.analyses.assumptions.variations import varied
 from comparison.analyses.claims.evidence import Evidence, gathered
@@ -25,7 +24,7 @@ from comparison.analyses.claims.smoothness import Bend
 from comparison.analyses.convergence.analysis import limit_trends
 from comparison.analyses.effective_values.analysis import read_back
 from comparison.analyses.errata.analysis import measured
-from comparison.analyses.motions.analysis import Place, StoredMotion, moved
+from comparison.analyses.motions.analysis import moved
 from comparison.analyses.scaling.analysis import scene_trends
 from comparison.runner.cache import LENGTH, MAGIC, Cache, Key
 from comparison.runner.encoding import array_of
@@ -224,12 +223,6 @@ def test_what_is_no_regular_file_is_no_result(tmp_path: Path) -> None:
     assert cache.get(KEY, Outer) is None
 
 
-def test_a_motion_whose_arrays_disagree_is_none() -> None:
-    two, three = np.zeros((2, 1, 2)), np.zeros((3, 1, 2))
-    with pytest.raises(ValueError, match="instants"):
-        StoredMotion(Place("s", 0, 0, ""), "small", np.zeros(2), two, three)
-
-
 def _types_in(declared: Any) -> set[Any]:
     if isinstance(declared, type) and is_dataclass(declared):
         hints = get_type_hints(declared)
@@ -242,7 +235,7 @@ FUNCTIONS = (drawn, gathered, limit_trends, measured, moved, read_back, scene_tr
 
 
 @pytest.mark.parametrize("solve", FUNCTIONS)
-def test_what_every_analysis_returns_is_declared_in_terms_that_can_be_read_back(solve: Callable[..., Any]) -> None:
+def test_every_analysis_returns_what_can_be_read_back(solve: Callable[..., Any]) -> None:
     """A result of an undeclared type would be computed again by every run."""
     for declared in _types_in(get_type_hints(solve)["return"]):
         assert declared not in (Any, object, dict, list, tuple, np.ndarray), declared
@@ -252,13 +245,3 @@ def test_evidence_of_the_claims_is_read_back(tmp_path: Path) -> None:
     evidence = Evidence(np.ones((2, 2, 1)), 0.1, ("ok",), (Bend(2.0, (0.1, 0.2)),), (0.5,), 0.25)
     Cache(tmp_path).put(KEY, (evidence, 1.5))
     assert pickle.dumps(Cache(tmp_path).get(KEY, tuple[Evidence, float])) == pickle.dumps((evidence, 1.5))
-
-
-def test_no_module_of_the_study_unpickles_what_is_stored() -> None:
-    users = [
-        path.relative_to(ROOT).as_posix()
-        for path in (ROOT / "comparison").rglob("*.py")
-        if "pickle" in path.read_text(encoding="utf-8").replace("allow_pickle=False", "")
-    ]
-    # a pipe to a process that the study starts itself, and words about the cache
-    assert set(users) <= {"comparison/runner/processes.py", "comparison/runner/cache.py"}

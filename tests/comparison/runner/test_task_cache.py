@@ -63,7 +63,7 @@ def _run(task: Task, folder: Path, make: Callable[[int], Executor] = ThreadPoolE
     return results
 
 
-def test_an_answer_comes_back_to_the_last_bit_and_is_not_computed_twice(tmp_path: Path) -> None:
+def test_an_answer_is_kept_to_the_last_bit(tmp_path: Path) -> None:
     task = _task()
     runs = [_run(task, tmp_path), _run(task, tmp_path, forbidden)]
     assert [results.parts["motions"].stored for results in runs] == [0, 1]
@@ -105,7 +105,7 @@ def test_a_model_is_known_by_its_source_too(monkeypatch: pytest.MonkeyPatch) -> 
     assert fingerprint(model) != before
 
 
-def test_what_names_a_fault_serves_the_run_and_is_tried_again_by_the_next(tmp_path: Path) -> None:
+def test_what_names_a_fault_is_tried_again_by_the_next_run(tmp_path: Path) -> None:
     task = Task(broken, 1, "errata", 0.1)
     calls.clear()
     results = _run(task, tmp_path)
@@ -124,7 +124,7 @@ def test_what_is_damaged_in_one_bit_is_computed_again(tmp_path: Path) -> None:
     assert _run(task, tmp_path, forbidden).parts["motions"].stored == 1, "and mended"
 
 
-def test_a_task_that_raises_or_whose_worker_dies_is_a_result_with_its_reason_and_the_others_are_computed(
+def test_a_task_that_fails_has_its_reason_and_costs_no_other(
     tmp_path: Path,
 ) -> None:
     def on_failure(argument: object, failed: TaskResult) -> object:

@@ -44,7 +44,7 @@ def forbidden(jobs: int) -> Executor:
 
 
 @pytest.mark.usefixtures("patient")
-def test_a_hang_ends_at_the_limit_of_processor_time_and_costs_no_other_task(tmp_path: Path) -> None:
+def test_a_hang_ends_at_its_limit_and_costs_no_other_task(tmp_path: Path) -> None:
     others = [Task(doubled, str(tmp_path / f"other{number}"), "test", 0.1, timeout=60.0) for number in range(6)]
     task = Task(hangs_in_compiled_code, str(tmp_path / "hanging"), "test", 1.0, timeout=1.0)
     first, *rest = _run([task, *others], tmp_path)
@@ -63,7 +63,7 @@ class Limited(ThreadPoolExecutor):
         return ended
 
 
-def test_a_repeated_run_does_not_wait_for_the_hang_again_unless_it_allows_more(tmp_path: Path) -> None:
+def test_a_repeated_run_waits_for_a_hang_only_if_it_allows_more(tmp_path: Path) -> None:
     def task(timeout: float | None) -> Task:
         return Task(doubled, str(tmp_path / "hanging"), "test", 1.0, timeout=timeout)
 
@@ -76,6 +76,7 @@ def test_a_repeated_run_does_not_wait_for_the_hang_again_unless_it_allows_more(t
     assert TaskResults(Cache(tmp_path / "cache")).missing([task(None)]), "without a limit it may take any time"
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("patient")
 def test_what_a_busy_machine_keeps_waiting_does_not_hang(tmp_path: Path) -> None:
     """2.5 s of waiting, next to no computing, under a limit of 1 s."""
@@ -83,6 +84,7 @@ def test_what_a_busy_machine_keeps_waiting_does_not_hang(tmp_path: Path) -> None
     assert result.value == 1
 
 
+@pytest.mark.long
 def test_what_computes_nothing_any_more_is_ended_in_the_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("comparison.runner.processes.STALLED", 4.0)
     (result,) = _run([Task(waits_for_ever, "", "test", 1.0, timeout=1.0)], tmp_path)
@@ -91,7 +93,7 @@ def test_what_computes_nothing_any_more_is_ended_in_the_end(tmp_path: Path, monk
 
 @pytest.mark.long
 @pytest.mark.usefixtures("patient")
-def test_the_limit_of_a_task_does_not_reach_the_next_one_in_the_same_process(tmp_path: Path) -> None:
+def test_the_limit_of_a_task_does_not_reach_the_next_one(tmp_path: Path) -> None:
     short = Task(doubled, str(tmp_path / "short"), "test", 2.0, timeout=1.0)
     endless = Task(is_busy, 2.0, "test", 1.0)
     results = _run([short, endless], tmp_path, jobs=1)
@@ -120,7 +122,7 @@ def returns_what_cannot_be_sent(place: str) -> object:
     return lambda: None
 
 
-def test_what_cannot_be_sent_from_a_worker_is_named_and_the_worker_goes_on(tmp_path: Path) -> None:
+def test_what_cannot_be_sent_from_a_worker_is_named(tmp_path: Path) -> None:
     tasks = [
         Task(raises_what_cannot_be_sent, "", "test", 3.0),
         Task(returns_what_cannot_be_sent, "", "test", 2.0),

@@ -56,9 +56,7 @@ APPEARS = {
 
 
 @pytest.mark.parametrize(("name", "finished"), APPEARS.values(), ids=APPEARS.keys())
-def test_what_appears_in_out_meanwhile_stays_and_the_report_goes_beside(
-    tmp_path: Path, name: str, finished: bool
-) -> None:
+def test_what_appears_in_out_meanwhile_stays(tmp_path: Path, name: str, finished: bool) -> None:
     if finished:
         put(tmp_path / "report", "index.html", "figures/ours.png")
     said: list[str] = []
@@ -77,7 +75,7 @@ def test_what_appears_in_out_meanwhile_stays_and_the_report_goes_beside(
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["report", "report-2"]
 
 
-def test_a_study_whose_out_was_used_meanwhile_says_where_its_report_is(
+def test_a_study_says_where_its_report_went_instead(
     command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     write = reports.report_of
@@ -99,7 +97,7 @@ def test_a_study_whose_out_was_used_meanwhile_says_where_its_report_is(
 
 
 @pytest.mark.parametrize("name", ["figures/my.png", "figures/for-paper/fig.svg", "old-tradeoff.nc/x", "empty/"])
-def test_a_file_of_the_user_anywhere_in_a_report_is_refused_at_the_start(
+def test_a_file_of_the_user_in_a_report_is_refused_at_the_start(
     command: Callable[..., Run], tmp_path: Path, name: str
 ) -> None:
     put(tmp_path / "report", "figures/ours.png")
@@ -114,7 +112,7 @@ def test_a_file_of_the_user_anywhere_in_a_report_is_refused_at_the_start(
     assert file.exists()
 
 
-def test_a_file_or_link_that_appears_in_place_of_the_report_stays(tmp_path: Path) -> None:
+def test_a_file_or_link_in_place_of_the_report_stays(tmp_path: Path) -> None:
     with replace_report(tmp_path / "report", lambda line: None) as report:
         (report.folder / "index.html").write_text("new", encoding="utf-8")
         (tmp_path / "report").write_text("mine", encoding="utf-8")
@@ -145,7 +143,7 @@ def test_a_file_added_while_the_report_is_moved_stays(tmp_path: Path, monkeypatc
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kill -9")
 @pytest.mark.parametrize("deaths", range(1, 5))
-def test_a_report_whose_run_died_while_it_was_moved_is_still_the_studys(tmp_path: Path, deaths: int) -> None:
+def test_a_report_half_moved_is_still_the_studys(tmp_path: Path, deaths: int) -> None:
     put(tmp_path / "report", "index.html", "figures/old.png", content="old")
     child = os.fork()
     if child == 0:
@@ -232,7 +230,7 @@ EXTREMES = ["--rows", "amplitude", "--models", "small", "--jobs", "1"]
 
 
 @pytest.mark.parametrize("name", ["extremes.json", "extremes.png", MANIFEST])
-def test_a_foreign_file_where_the_extremes_go_is_refused_at_the_start(
+def test_a_foreign_file_where_extremes_go_is_refused(
     tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / name).write_text("mine", encoding="utf-8")
@@ -242,7 +240,7 @@ def test_a_foreign_file_where_the_extremes_go_is_refused_at_the_start(
     assert (tmp_path / name).read_text(encoding="utf-8") == "mine"
 
 
-def test_a_foreign_file_that_appears_meanwhile_stays_and_the_extremes_go_beside(
+def test_extremes_go_beside_a_file_that_appears_meanwhile(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     mine = [tmp_path / name for name in ("extremes.json", "extremes.png", "extremes.part")]
@@ -266,7 +264,7 @@ def test_the_extremes_replace_their_own_files(tmp_path: Path, monkeypatch: pytes
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["extremes.json", "extremes.png", MANIFEST]
 
 
-def test_a_foreign_diagram_is_refused_before_anything_is_measured(
+def test_a_foreign_diagram_is_refused_before_measuring(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "fig3-I-tradeoff.pdf").write_text("mine", encoding="utf-8")
@@ -277,9 +275,7 @@ def test_a_foreign_diagram_is_refused_before_anything_is_measured(
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kill -9")
 @pytest.mark.parametrize("deaths", range(4))
-def test_a_file_that_was_being_replaced_when_its_command_was_killed_is_still_the_studys(
-    tmp_path: Path, deaths: int
-) -> None:
+def test_a_file_half_replaced_is_still_the_studys(tmp_path: Path, deaths: int) -> None:
     publish(tmp_path, {"extremes.json": b"old"}, "comparison.extremes")
     child = os.fork()
     if child == 0:
@@ -304,7 +300,7 @@ def test_a_new_file_never_takes_a_name_that_something_has(tmp_path: Path, monkey
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["run-2.gif", "run-3.gif", "run-4.gif", "run.gif"]
 
 
-def test_files_of_other_commands_written_while_the_report_is_written_are_kept(tmp_path: Path) -> None:
+def test_files_of_other_commands_in_the_report_are_kept(tmp_path: Path) -> None:
     put(tmp_path / "report")
     with replace_report(tmp_path / "report") as report:
         (report.folder / "index.html").write_text("newer", encoding="utf-8")
@@ -350,9 +346,7 @@ def test_an_odd_place_is_refused_at_the_start_in_one_line(
     assert sorted(str(path) for path in tmp_path.rglob("*")) == before
 
 
-def test_a_link_to_a_report_stays_a_link_and_the_store_is_beside_what_it_means(
-    command: Callable[..., Run], tmp_path: Path
-) -> None:
+def test_a_link_to_a_report_stays_a_link(command: Callable[..., Run], tmp_path: Path) -> None:
     (tmp_path / "link").symlink_to(tmp_path / "report")
     for _ in range(2):
         assert command(*SMALL, "--out", str(tmp_path / "link")).code == 0

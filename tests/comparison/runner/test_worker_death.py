@@ -91,7 +91,7 @@ def test_halves_of_a_batch_are_its_points_in_order() -> None:
     assert together.cost == pytest.approx(whole.cost, rel=1e-12)  # a sum in another order
 
 
-def test_an_executor_that_is_lent_says_how_many_tasks_it_takes_and_stays_open(tmp_path: Path) -> None:
+def test_a_lent_executor_states_its_width_and_stays_open(tmp_path: Path) -> None:
     class Three(ThreadPoolExecutor):
         width = 3
 

@@ -55,7 +55,7 @@ def off_by(factor: float, missing: int = 0):  # type: ignore[no-untyped-def]
 
 
 @pytest.mark.parametrize("law", ["regularised", "exact"])
-def test_an_engine_of_the_user_is_held_against_the_equations_with_its_law(law: str) -> None:
+def test_a_user_engine_is_compared_with_the_equations_of_its_law(law: str) -> None:
     scene = reference.load_scene("fig3-I").with_values({"duration": 2.0})
     limits = {"like_for_like": 1e-4, "like_for_like_maximum": 1e-4, "grid": 2, "law": law}
     assert_consistent(scene, **limits, engine=off_by(1.0))
@@ -100,7 +100,7 @@ def test_a_wrong_argument_of_the_gate_is_one_line(argument: str, value: object, 
         assert_consistent("fig3-I", like_for_like=0.1, **{argument: value})  # type: ignore[arg-type]
 
 
-def test_the_spatial_model_is_computed_for_the_total_difference_only(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_spatial_model_is_computed_for_the_total_only(monkeypatch: pytest.MonkeyPatch) -> None:
     computed: list[str] = []
 
     def execute(batch):  # type: ignore[no-untyped-def]
@@ -117,7 +117,7 @@ def test_the_spatial_model_is_computed_for_the_total_difference_only(monkeypatch
     assert "spatial" in computed
 
 
-def test_a_gate_without_a_limit_or_with_a_wrong_one_is_refused_in_one_line() -> None:
+def test_a_gate_without_a_limit_is_refused_in_one_line() -> None:
     with pytest.raises(
         ValueError, match="no limit: give one of like_for_like, like_for_like_maximum, total, total_maximum"
     ):

@@ -70,7 +70,7 @@ def test_an_example_tends_to_the_equations_with_its_step(name: str, monkeypatch:
     assert errors[1] < 0.3 * errors[0]
 
 
-def test_the_page_of_other_engines_lists_every_example_and_the_examples_say_how_they_are_used() -> None:
+def test_the_page_of_other_engines_lists_every_example() -> None:
     page = (ROOT / "docs/other-engines.md").read_text(encoding="utf-8")
     files = sorted((ROOT / "examples/engines").glob("*.py"))
     assert len(files) >= 2

@@ -21,7 +21,7 @@ def real(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
-def test_every_point_has_an_answer_with_an_error_estimate_on_both_sides(real: Path) -> None:
+def test_every_point_has_an_answer_with_an_error(real: Path) -> None:
     with xr.open_dataset(real / "surfaces.nc", engine="h5netcdf") as data:
         assert (data["status"] == "ok").all()
         assert data["mu"].sizes == {"scene": 1, "model": 6, "body": 2, "alpha1": 4, "alpha2": 4}

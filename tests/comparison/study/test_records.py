@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from browsers import CHROMIUM, FLAGS, LAPTOP, OVERLAPS, PHONE, opened, unfolded, until
+from browsers import CHROMIUM, FLAGS, OVERLAPS, PHONE, opened, unfolded, until
 from fake_models import fake_hierarchy, known_motions
 from known_analyses import analyses_are
 from places import EXAMPLES
@@ -37,7 +37,7 @@ def study() -> Study:
     return Study(tuple(map(load_scene, MIXED)), 4, 1e-3, fake_hierarchy(gap=0.01))
 
 
-def test_a_record_is_one_point_of_every_model_and_the_other_scene_keeps_its_grid(study):
+def test_a_record_is_one_point_beside_the_grid_of_others(study):
     surfaces = solved(study)
     record, grid = (surfaces.sel(scene=name) for name in MIXED)
     assert [len(batch.phases) for batch in study.batches() if batch.scene.recorded] == [1] * 6
@@ -50,7 +50,7 @@ def test_a_record_is_one_point_of_every_model_and_the_other_scene_keeps_its_grid
     assert np.isnan([*total.phases, total.peak_moves]).all()
 
 
-def test_what_needs_phases_or_amplitudes_is_not_asked_of_a_record(study):
+def test_what_needs_phases_is_not_asked_of_a_record(study):
     stages = {task.stage for task in first_tasks(Study(study.scenes[:1], 4, 1e-3), ANALYSES)}
     assert stages == {"effective values"}
     assert Pictures().tasks(Study(study.scenes[:1], 4, 1e-3), labeled_surfaces(study, [], [])) == []
@@ -102,7 +102,7 @@ def test_varied_rings_are_refused_of_a_record_in_one_line(capsys: pytest.Capture
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
-def test_the_page_shows_the_table_and_the_motions_of_a_record_without_a_click(tmp_path: Path) -> None:
+def test_the_page_shows_table_and_motions_of_a_record(tmp_path: Path) -> None:
     place = tmp_path / "report"
     with pytest.MonkeyPatch.context() as patch:
         analyses_are(patch, motions=known_motions)
@@ -110,7 +110,7 @@ def test_the_page_shows_the_table_and_the_motions_of_a_record_without_a_click(tm
         assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        for width in (PHONE, LAPTOP):
+        for width in (PHONE,):
             visit = opened(browser, place / "index.html", width)
             page = visit.page
             assert page.locator("canvas.surface:visible").count() == 0

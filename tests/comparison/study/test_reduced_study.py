@@ -40,7 +40,7 @@ def surfaces(scene: Scene, models: list[Model], full: bool):
 
 
 @pytest.mark.parametrize("name", builtin_scenes())
-def test_the_reduced_study_gives_the_full_surfaces_within_the_errors(name: str) -> None:
+def test_the_reduced_study_gives_the_full_surfaces(name: str) -> None:
     models = [model for model in (SMALL, EXACT, REGULARIZED) if model.applies(load_scene(name))]
     whole, full = surfaces(load_scene(name), models, full=True)
     fewer, reduced = surfaces(load_scene(name), models, full=False)
@@ -98,7 +98,7 @@ def test_on_an_odd_ring_the_spatial_model_is_computed_in_full() -> None:
 RECTANGLE = [[1.2, 0.8], [-1.2, 0.8], [-1.2, -0.8], [1.2, -0.8], [0.0, 0.8], [0.0, -0.8]]
 
 
-def test_positions_that_are_their_own_mirror_images_have_the_symmetry_of_the_loading() -> None:
+def test_mirrored_positions_have_the_symmetry_of_the_loading() -> None:
     scene = short().with_values({"isolator.supports": RECTANGLE, "isolator.ring": None})
     assert mirror_symmetric(scene)
     here, *there = (
@@ -191,15 +191,8 @@ def test_just_outside_the_condition_nothing_is_saved() -> None:
         assert len(study.solved(study.scenes[0], EXACT)) == computed
 
 
-def test_an_odd_grid_and_a_model_without_the_symmetry_are_computed_in_full() -> None:
+def test_an_odd_grid_is_computed_in_full() -> None:
     scene = load_scene("fig3-I")
     assert (sources(scene, 5) == np.arange(25)).all()
     plain = replace(EXACT, symmetric=never)
     assert len(Study((scene,), GRID, 1e-3, [plain]).solved(scene, plain)) == GRID**2
-
-
-def test_every_source_is_its_own_source() -> None:
-    for name in builtin_scenes():
-        for grid in (1, 2, 6, 7):
-            chosen = sources(load_scene(name), grid)
-            assert (chosen[chosen] == chosen).all()

@@ -37,7 +37,7 @@ def _solved(*silent: str) -> Study:
 
 
 @pytest.mark.parametrize("silent", ["spatial", "translational", "resolved", "small"])
-def test_the_total_leads_to_the_most_complete_model_with_values_and_the_steps_add_up(silent: str) -> None:
+def test_the_total_leads_to_the_last_model_with_values(silent: str) -> None:
     study = _solved(silent)
     surfaces = solved(study)
     study = compared_study(study, surfaces)
@@ -64,7 +64,7 @@ def test_like_for_like_is_never_said_of_other_models() -> None:
         )
 
 
-def test_the_first_screen_the_summary_and_the_terminal_say_which_model_why_and_what_helps(
+def test_page_summary_and_terminal_say_which_model_is_refused(
     command: Callable[..., Run],
 ) -> None:
     run = command("fig3-I", *GRID, hierarchy=silenced("spatial"))
@@ -103,9 +103,7 @@ def test_limits_may_be_stated_for_every_pair(command: Callable[..., Run], tmp_pa
     assert 'tests="4" failures="1"' in text
 
 
-def test_the_translational_limit_holds_the_total_where_no_body_may_turn(
-    command: Callable[..., Run], tmp_path: Path
-) -> None:
+def test_the_translational_limit_may_be_of_the_total(command: Callable[..., Run], tmp_path: Path) -> None:
     scene = _limited(tmp_path, "[acceptance]\nfailed = 99\n[acceptance.translational]\nmedian = 1e-3\n")
     run = command(scene, *GRID, "--check", hierarchy=silenced("spatial", gap=0.01))
     assert "body 1: acceptance.translational.median: 0.01 found, 0.001 allowed" in run.err

@@ -45,7 +45,7 @@ def scene_file(folder: Path, analyses: str) -> str:
 
 
 @pytest.mark.parametrize("analysis", STAGES)
-def test_an_analysis_that_is_skipped_has_no_task_and_no_other_loses_one(analysis: str) -> None:
+def test_a_skipped_analysis_has_no_task(analysis: str) -> None:
     study = Study((load_scene("fig3-I"),), 4, 1e-3)
     rest = replace(study, selection=Selection.of(study.scenes, None, [analysis]))
     every, kept = (first_tasks(part, chosen_analyses(part)) for part in (study, rest))
@@ -54,7 +54,7 @@ def test_an_analysis_that_is_skipped_has_no_task_and_no_other_loses_one(analysis
     assert len(kept) < len(every)
 
 
-def test_what_a_study_of_surfaces_alone_computes_is_their_pictures() -> None:
+def test_a_study_of_surfaces_alone_computes_their_pictures() -> None:
     study = Study((load_scene("fig3-I"),), 4, 1e-3)
     study = replace(study, selection=Selection.of(study.scenes, ["surfaces"], None))
     assert first_tasks(study, chosen_analyses(study)) == []
@@ -70,7 +70,7 @@ def test_a_selection_changes_the_key_of_no_picture(finished: Path) -> None:
     assert kept <= every
 
 
-def test_only_leaves_the_sections_asked_for_and_says_nothing_wrong_of_the_others(command: Callable[..., Run]) -> None:
+def test_only_leaves_the_sections_asked_for(command: Callable[..., Run]) -> None:
     run = command("fig3-I", *GRID, "--only", "surfaces,budget")
     assert (run.code, run.err) == (0, "")
     page = both_pages(run.report)
@@ -98,9 +98,7 @@ def test_skipped_surfaces_leave_no_picture_and_no_link_to_them(command: Callable
     assert (run.report / "surfaces.nc").exists()
 
 
-def test_a_scene_selects_its_own_analyses_and_the_command_line_comes_before_it(
-    command: Callable[..., Run], tmp_path: Path
-) -> None:
+def test_the_command_line_selects_before_the_scene(command: Callable[..., Run], tmp_path: Path) -> None:
     mine = scene_file(tmp_path, 'skip = ["differences", "surfaces"]')
     run = command(mine, "fig4-viscous", *GRID)
     page = both_pages(run.report)
@@ -144,7 +142,7 @@ def test_a_wrong_selection_is_one_line(command: Callable[..., Run], words: list[
         ('only = ["budget"]\nskip = ["claims"]', "give only or skip, not both"),
     ],
 )
-def test_a_wrong_selection_of_a_scene_is_one_line_with_the_nearest_name(
+def test_a_wrong_selection_of_a_scene_is_one_line(
     command: Callable[..., Run], tmp_path: Path, analyses: str, line: str
 ) -> None:
     run = command(scene_file(tmp_path, analyses), hierarchy=fake_hierarchy("forbidden"))
@@ -157,9 +155,7 @@ def test_motions_bring_the_surfaces_below_which_they_are_shown() -> None:
     assert {"motions", "surfaces"}.isdisjoint(selected(None, ["surfaces"]))
 
 
-def test_a_scene_of_the_users_has_the_papers_claims_and_errata_only_if_it_names_them(
-    command: Callable[..., Run], tmp_path: Path
-) -> None:
+def test_claims_and_errata_are_of_the_papers_scenes(command: Callable[..., Run], tmp_path: Path) -> None:
     text = (SCENES / "fig3-I.toml").read_text(encoding="utf-8")
     (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
     (tmp_path / "named.toml").write_text(text + '[analyses]\nonly = ["errata", "surfaces"]\n', encoding="utf-8")
@@ -178,9 +174,7 @@ def test_a_scene_of_the_users_has_the_papers_claims_and_errata_only_if_it_names_
     }
 
 
-def test_demands_of_every_phase_pair_are_computed_where_they_are_asked_for(
-    command: Callable[..., Run], tmp_path: Path
-) -> None:
+def test_demands_of_every_phase_are_computed_on_request(command: Callable[..., Run], tmp_path: Path) -> None:
     scene = load_scene("fig3-I")
     usual = Study((scene,), 4, 1e-3)
     for selection, made in (

@@ -49,14 +49,14 @@ def test_bars_are_softened_last_and_never_like_for_like(values: dict[str, object
     assert "softened" not in pairs["translational"].second.settings
 
 
-def test_the_step_has_the_phases_and_the_cost_of_the_model_that_it_softens() -> None:
+def test_a_softened_step_has_phases_and_cost_of_its_model() -> None:
     scene = on_bars()
     *_, spatial, softened = with_softened_bars(MODEL_HIERARCHY, [scene])
     assert softened.most == spatial.most
     assert seconds_per_point(scene, softened) == seconds_per_point(scene, spatial)
 
 
-def test_bars_that_buckle_refuse_the_step_and_cost_no_other_model() -> None:
+def test_bars_that_buckle_cost_no_other_model() -> None:
     scene = on_bars(**BARE, **{"bodies.1.bars.bending_stiffness": 0.2})
     hierarchy = with_softened_bars(MODEL_HIERARCHY, [scene])
     reason = refusal_of(scene, SOFTENED_TRANSLATIONAL, 1e-3)

@@ -38,7 +38,7 @@ def test_a_refused_model_is_red_and_says_what_helps(command: Callable[..., Run])
     assert "shorten the duration to 7 s" in run.out
 
 
-def test_a_missing_point_is_amber_and_a_broken_limit_stands_before_it(command: Callable[..., Run]) -> None:
+def test_a_missing_point_is_amber_behind_a_broken_limit(command: Callable[..., Run]) -> None:
     run = command(*GRID, hierarchy=fake_hierarchy("failing_point"))
     alerts = listed(run)
     assert {(alert["kind"], alert["level"]) for alert in alerts} == {("limit", "red"), ("lacking", "amber")}

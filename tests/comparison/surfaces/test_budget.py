@@ -45,7 +45,7 @@ def test_the_steps_add_up_to_the_total_at_every_point(scene: str) -> None:
         assert closure(steps_and_total) < 1e-14  # rounding of a handful of numbers near 1
 
 
-def test_the_ratio_is_held_against_the_root_of_the_sum_of_squares_of_both_errors() -> None:
+def test_the_ratio_is_in_units_of_both_errors_in_quadrature() -> None:
     """Errors 0.03 and 0.04 make u_D = 0.05; 1.0 to 0.9 is twice that, and 1.43 times their sum. The sign has no say."""
     study, surfaces = _solved(fake_hierarchy())
     first, second = {"model": "regularised"}, {"model": "translational"}
@@ -57,7 +57,7 @@ def test_the_ratio_is_held_against_the_root_of_the_sum_of_squares_of_both_errors
     assert row.median == pytest.approx(0.1)
 
 
-def test_a_budget_with_a_step_left_out_or_counted_twice_does_not_close() -> None:
+def test_a_budget_without_a_step_does_not_close() -> None:
     study, surfaces = _solved(errors_in({"exact": 0.02, "resolved": 0.02}))
     steps_and_total = steps(study, surfaces, "fig3-I", 1)
     assert closure(steps_and_total[1:]) == pytest.approx(0.02)
@@ -65,7 +65,7 @@ def test_a_budget_with_a_step_left_out_or_counted_twice_does_not_close() -> None
 
 
 @pytest.mark.parametrize("culprit", ["exact", "resolved", "regularised", "translational", "spatial"])
-def test_an_error_planted_from_one_model_on_is_blamed_on_that_model(culprit: str) -> None:
+def test_an_error_from_one_model_on_is_blamed_on_it(culprit: str) -> None:
     """A wrong stiffness, sign or mass stays in every model above the one that introduced it."""
     keys = [model.key for model in fake_hierarchy()]
     wrong = keys[keys.index(culprit) :]
@@ -82,7 +82,7 @@ def test_an_error_planted_from_one_model_on_is_blamed_on_that_model(culprit: str
 
 
 @pytest.mark.parametrize("culprit", ["exact", "resolved", "regularised", "translational"])
-def test_an_error_in_one_model_alone_shows_in_both_its_steps_and_cancels_in_the_total(culprit: str) -> None:
+def test_an_error_in_one_model_cancels_in_the_total(culprit: str) -> None:
     study, surfaces = _solved(errors_in({culprit: 0.02}))
     table = _table(study, surfaces)
     keys = list(table)
@@ -92,7 +92,7 @@ def test_an_error_in_one_model_alone_shows_in_both_its_steps_and_cancels_in_the_
     assert table[TOTAL].real == 0.0
 
 
-def test_a_coarse_step_with_an_honest_error_is_not_called_a_difference() -> None:
+def test_a_coarse_step_with_an_honest_error_is_no_difference() -> None:
     study, surfaces = _solved(errors_in({"translational": 0.02}, error_estimates={"translational": 0.03}))
     table = _table(study, surfaces)
     assert table["translational"].real == 0.0
@@ -101,7 +101,7 @@ def test_a_coarse_step_with_an_honest_error_is_not_called_a_difference() -> None
 
 @pytest.mark.parametrize("grid", [12, 34, 48, 50])
 @pytest.mark.parametrize("name", ["fig3-I", "fig3-II"])
-def test_phases_that_are_not_computed_again_are_pi_away_from_those_that_are(grid: int, name: str) -> None:
+def test_mirrored_phases_are_pi_away_from_computed_ones(grid: int, name: str) -> None:
     """34 and 50 leave the engine an even number of phases that do not divide the period evenly."""
     study, scene = Study((load_scene(name),), grid, 1e-3), load_scene(name)
     for model in study.hierarchy:
@@ -109,14 +109,14 @@ def test_phases_that_are_not_computed_again_are_pi_away_from_those_that_are(grid
         assert (2 * apart % grid == 0).all(), model.key
 
 
-def test_a_step_known_to_less_than_a_fifth_is_counted_apart_and_not_as_real() -> None:
+def test_a_step_known_to_less_than_a_fifth_is_not_real() -> None:
     for gap, expected in ((0.9, (0.0, 0.0)), (1.1, (0.0, 1.0)), (4.9, (0.0, 1.0)), (5.1, (1.0, 0.0))):
         study, surfaces = _solved(errors_in({"exact": gap * 1e-3}, error_estimates={"small": 6e-4, "exact": 8e-4}))
         entry = _table(study, surfaces)["exact"]
         assert (entry.real, entry.unresolved) == expected, "u_D is 1e-3, up to the 0.5 % that the step itself adds"
 
 
-def test_a_coarse_step_with_a_false_error_is_blamed_on_the_engine_like_for_like() -> None:
+def test_a_false_error_is_blamed_on_the_engine() -> None:
     """The like-for-like step must vanish: one far above its u_D is an error error_estimates too small, not physics."""
     study, surfaces = _solved(errors_in({"translational": 0.02}, error_estimates={"translational": 1e-6}))
     table = _table(study, surfaces)
@@ -129,7 +129,7 @@ def test_uncertainties_of_the_two_models_add_in_quadrature() -> None:
     np.testing.assert_allclose(steps(study, surfaces, "fig3-I", 1)[0].uncertainty, 5e-3, rtol=1e-12)
 
 
-def test_a_point_without_a_value_is_left_out_of_the_steps_to_and_from_it_and_of_the_sum() -> None:
+def test_a_point_without_a_value_is_left_out_of_its_steps() -> None:
     study, surfaces = _solved(errors_in({"translational": 0.02}))
     surfaces["mu"].loc[{"model": "exact", "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][6]}] = np.nan
     table = _table(study, surfaces)
@@ -148,7 +148,7 @@ def test_a_value_not_known_to_half_of_itself_counts_as_missing() -> None:
         assert _table(study, surfaces)["spatial"].points == points
 
 
-def test_a_model_too_expensive_for_every_phase_is_compared_where_it_was_asked() -> None:
+def test_a_coarse_model_is_compared_where_it_was_asked() -> None:
     study, surfaces = _solved(errors_in({"spatial": 0.02}))
     assert study.strides == {**dict.fromkeys(study.strides, 1), "spatial": 2}
     assert (surfaces["status"].sel(model="spatial")[0, ::2, ::2] == "ok").all()
@@ -168,7 +168,7 @@ def test_of_two_models_the_coarser_grid_is_part_of_the_finer(grid: int) -> None:
         assert min(model.most or grid, grid) / 3 < len(study.axis(model)) <= (model.most or grid)
 
 
-def test_a_scene_without_any_common_point_gives_nan_and_no_exception() -> None:
+def test_a_scene_without_a_common_point_gives_nan() -> None:
     study, surfaces = _solved(errors_in({}))
     surfaces["mu"].loc[{"model": "exact"}] = np.nan
     table = _table(study, surfaces)
@@ -184,7 +184,7 @@ def _with_peak_at(surfaces: xr.Dataset, model: str, row: int, column: int) -> No
     surfaces["mu"].loc[{"model": model, "body": 1}] = mu
 
 
-def test_the_peak_moves_the_short_way_round_the_square_that_closes() -> None:
+def test_the_peak_moves_the_short_way_round_the_torus() -> None:
     study, surfaces = _solved(fake_hierarchy())
     for model in study.hierarchy:
         _with_peak_at(surfaces, model.key, 0, 0)

@@ -23,7 +23,7 @@ GRID = 4
 
 
 @pytest.mark.parametrize("name", builtin_scenes())
-def test_the_budget_closes_and_no_like_for_like_step_exceeds_twice_its_uncertainty(name: str) -> None:
+def test_the_budget_of_real_models_closes(name: str) -> None:
     scene = load_scene(name)
     study = Study((scene,), GRID, 1e-3)
     surfaces = solved(study)
@@ -42,7 +42,7 @@ def test_the_budget_closes_and_no_like_for_like_step_exceeds_twice_its_uncertain
 
 
 @pytest.mark.parametrize("name", builtin_scenes())
-def test_a_step_between_equations_that_is_called_real_is_known_to_a_fifth_of_itself(name: str) -> None:
+def test_a_real_step_is_known_to_a_fifth_of_itself(name: str) -> None:
     """Held against the same step from runs a hundred times tighter."""
     scene = load_scene(name)
     study = Study((scene,), GRID, 1e-3, full=True)

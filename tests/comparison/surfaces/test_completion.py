@@ -96,7 +96,7 @@ def completed(
     return next(surface for surface in listed if (surface.model, surface.body) == ("translational", 1))
 
 
-def test_a_ridge_that_the_coarse_phases_miss_stands_in_the_completed_surface(blank: tuple[Study, xr.Dataset]) -> None:
+def test_a_ridge_between_coarse_phases_is_completed(blank: tuple[Study, xr.Dataset]) -> None:
     base, difference = ridge(*ALPHA), gap(*ALPHA)
     every = slice(None, None, FINE // COARSE)
     assert base.max() - base[every, every].max() > 0.9, "the coarse phases miss it"
@@ -129,7 +129,7 @@ def test_a_jump_in_the_difference_is_refused(blank: tuple[Study, xr.Dataset]) ->
     assert not completed(blank, ridge(*ALPHA), jump).accepted
 
 
-def test_the_surface_may_be_drawn_where_its_tiny_difference_from_the_paper_may_not(
+def test_a_surface_may_be_drawn_where_its_difference_may_not(
     blank: tuple[Study, xr.Dataset],
 ) -> None:
     rough = 5e-4 * np.random.default_rng(0).uniform(-1.0, 1.0, (FINE, FINE))
@@ -156,7 +156,7 @@ def test_points_without_a_value_leave_the_rest_completed(blank: tuple[Study, xr.
     assert np.abs(surface.mu - base - gap(*ALPHA)).max() < 2e-4
 
 
-def test_held_out_phase_pairs_without_a_value_make_the_statement_weaker(blank: tuple[Study, xr.Dataset]) -> None:
+def test_held_out_phases_without_a_value_weaken_the_statement(blank: tuple[Study, xr.Dataset]) -> None:
     base, difference = ridge(*ALPHA), gap(*ALPHA)
     (place,) = known = unused(blank[0], base + difference)
     few = known[place].mu.copy()
@@ -169,7 +169,7 @@ def test_held_out_phase_pairs_without_a_value_make_the_statement_weaker(blank: t
     assert not completed(blank, base, difference, held_out={}).accepted, "nor without any"
 
 
-def test_a_record_and_a_model_that_has_all_phases_need_no_completion(blank: tuple[Study, xr.Dataset]) -> None:
+def test_records_and_models_with_all_phases_are_not_completed(blank: tuple[Study, xr.Dataset]) -> None:
     study, surfaces = blank
     models = {surface.model for surface in completions(study, surfaces, study.scenes[0], {})}
     assert models == {"translational", "spatial"}
@@ -181,7 +181,7 @@ def test_a_record_and_a_model_that_has_all_phases_need_no_completion(blank: tupl
 
 
 @pytest.mark.parametrize(("scene", "images"), [("fig3-I", 4), ("fig3-II", 2)])
-def test_held_out_phases_are_no_mirror_images_of_each_other_or_of_computed_ones(scene: str, images: int) -> None:
+def test_held_out_phases_are_no_mirror_images(scene: str, images: int) -> None:
     model = replace(TRANSLATIONAL, most=COARSE)
     study = Study((load_scene(scene),), FINE, 1e-3, (model,))
     chosen = held_out_places(study, study.scenes[0], model)
@@ -216,7 +216,7 @@ def test_the_analysis_computes_what_is_held_out(blank: tuple[Study, xr.Dataset])
     assert reasons == {"no phase pairs were held out to check an interpolation"}
 
 
-def test_the_completed_surfaces_stand_beside_the_computed_ones_with_their_certificate(
+def test_completed_surfaces_have_their_certificate(
     blank: tuple[Study, xr.Dataset],
 ) -> None:
     study, surfaces = blank
@@ -283,7 +283,7 @@ def kept_statements(grid: int, difference: Callable[..., Array], surfaces: int) 
 
 
 @pytest.mark.parametrize("difference", [bump, noise, wave])
-def test_what_a_certificate_states_holds_for_as_many_surfaces_as_its_confidence(
+def test_a_certificate_holds_as_often_as_its_confidence(
     difference: Callable[..., Array],
 ) -> None:
     assert kept_statements(18, difference, 120) >= CONFIDENCE
@@ -301,7 +301,7 @@ def _computed_ones(study: Study, scene: Scene, model: Model) -> NDArray[np.intp]
 @pytest.mark.parametrize(
     ("chosen", "difference"), [(_first_ones, bump), (_computed_ones, noise)], ids=["not random", "used"]
 )
-def test_held_out_phases_that_were_used_or_are_not_random_break_the_statement(
+def test_held_out_phases_that_are_not_random_break_it(
     monkeypatch: pytest.MonkeyPatch, chosen: Callable[..., NDArray[np.intp]], difference: Callable[..., Array]
 ) -> None:
     monkeypatch.setattr(completion, "held_out_places", chosen)

@@ -8,7 +8,7 @@ import pytest
 from comparison.report.page_data import crossings
 
 
-def test_the_line_of_the_uncertainty_runs_where_the_difference_crosses_it() -> None:
+def test_the_line_of_the_uncertainty_is_where_it_is_crossed() -> None:
     """|D| = |cos alpha1| crosses 0.5 at pi/3 and its mirror images, whatever alpha2; lines between 48 points: 2e-3."""
     phase = 2.0 * np.pi * np.arange(48) / 48
     size = np.cos(phase)[:, None].repeat(48, axis=1)

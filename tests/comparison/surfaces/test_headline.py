@@ -27,7 +27,7 @@ def told(study: Study, surfaces: xr.Dataset, body: int = 1) -> Headline:
     return headline(study, surfaces, scene, waterfall(study, surfaces, scene, body), rows)
 
 
-def test_the_sentence_has_the_planted_size_direction_phases_and_cause() -> None:
+def test_the_sentence_has_the_planted_size_and_cause() -> None:
     later = dict.fromkeys(KEYS[1:], -0.12)
     study, surfaces = planted_study({"exact": 0.001, **later})
     result = told(study, surfaces)
@@ -40,7 +40,7 @@ def test_the_sentence_has_the_planted_size_direction_phases_and_cause() -> None:
     assert "the two codes agree to" in result.sentence
 
 
-def test_a_mean_above_zero_says_more_and_geometry_may_be_the_cause() -> None:
+def test_a_mean_above_zero_says_more() -> None:
     study, surfaces = planted_study(dict.fromkeys(KEYS, 0.05))
     result = told(study, surfaces, body=2)
     assert "body 2: the engine gives 5 % more than the paper's equations" in result.sentence
@@ -53,7 +53,7 @@ def test_two_steps_of_like_size_are_both_named() -> None:
     assert told(study, surfaces).cause.models == ("exact", "spatial", "resolved")
 
 
-def test_the_numbers_hold_the_largest_difference_of_the_scene_whatever_model_has_it() -> None:
+def test_the_headline_has_the_largest_difference_of_any_model() -> None:
     for seed in range(10):
         study, surfaces = planted_study({})
         surfaces = scattered(surfaces, seed)
@@ -66,7 +66,7 @@ def test_the_numbers_hold_the_largest_difference_of_the_scene_whatever_model_has
         assert round(100.0 * largest) in stated
 
 
-def test_a_largest_difference_of_the_finer_model_names_its_phases_and_what_it_lacks() -> None:
+def test_a_largest_difference_of_a_finer_model_names_its_phases() -> None:
     study, surfaces = planted_study({})
     surfaces["mu"].loc[{"model": "translational", "body": 1, "alpha1": 0.0, "alpha2": surfaces["alpha2"][1]}] *= 1.4
     result = told(study, surfaces)
@@ -104,7 +104,7 @@ def test_a_record_has_no_phases_and_no_mean() -> None:
     assert "mean" not in result.sentence
 
 
-def test_a_refused_model_changes_what_is_compared_and_the_sentence_says_so() -> None:
+def test_the_sentence_says_that_a_model_was_refused() -> None:
     study, surfaces = planted_study(dict.fromkeys(KEYS[1:], 0.1))
     surfaces["mu"].loc[{"model": "spatial"}] = np.nan
     result = told(study, surfaces)
@@ -126,7 +126,7 @@ def test_missing_values_are_counted_in_the_phases() -> None:
 
 
 @pytest.mark.parametrize("bodies", [1, 6])
-def test_any_number_of_bodies_and_a_single_pair_of_models_have_sentences(bodies: int) -> None:
+def test_any_number_of_bodies_has_sentences(bodies: int) -> None:
     text = load_scene("fig3-I").model_dump(exclude_none=True)
     first, second = text["bodies"]
     scene = Scene.model_validate({**text, "bodies": [first, *[second] * (bodies - 1)], "name": "tower"})
@@ -140,13 +140,13 @@ def test_any_number_of_bodies_and_a_single_pair_of_models_have_sentences(bodies:
             assert "nan" not in sentence
 
 
-def test_a_model_without_words_for_its_effect_is_named_by_its_title() -> None:
+def test_a_model_without_an_effect_is_named_by_its_title() -> None:
     study, surfaces = planted_study(dict.fromkeys(KEYS, 0.05))
     hierarchy = tuple(replace(model, effect="") for model in study.hierarchy)
     assert "Cause: the step to the exact equations." in told(replace(study, hierarchy=hierarchy), surfaces).sentence
 
 
-def test_a_cause_has_the_sign_of_the_difference_and_what_offsets_it_is_said() -> None:
+def test_a_cause_has_the_sign_of_the_difference() -> None:
     gaps = dict(zip(KEYS, (0.03, 0.03, 0.03, 0.03, -0.02)))  # geometry +3 %, turning of the bodies -5 %
     result = told(*planted_study(gaps))
     assert result.mean == pytest.approx(-0.02, rel=1e-9)
@@ -190,7 +190,7 @@ def test_no_sentence_denies_geometry_and_blames_it(seed: int) -> None:
         assert "exact" not in (*result.cause.models, *result.maximum_cause.models, *result.cause.offset)
 
 
-def test_geometry_is_not_denied_where_the_bars_at_the_largest_show_it() -> None:
+def test_geometry_is_not_denied_where_the_bars_show_it() -> None:
     study, surfaces = planted_study({"spatial": -0.1})
     assert "Cause: turning of the bodies, not geometry." in told(study, surfaces).sentence
     place = {"body": 1, "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][4]}
@@ -199,7 +199,7 @@ def test_geometry_is_not_denied_where_the_bars_at_the_largest_show_it() -> None:
     assert "Cause: turning of the bodies." in told(study, surfaces).sentence
 
 
-def test_headline_bars_and_table_have_one_mean_where_values_are_missing() -> None:
+def test_headline_bars_and_table_have_one_mean() -> None:
     study, surfaces = planted_study(dict(zip(KEYS, (0.02, -0.07, -0.05, -0.06, 0.1))))
     surfaces = scattered(surfaces)
     for key, place in (("exact", (0, 2)), ("regularised", (4, 4)), ("spatial", (6, 0))):
@@ -218,7 +218,7 @@ def test_headline_bars_and_table_have_one_mean_where_values_are_missing() -> Non
             assert spread == pytest.approx(signed.std(), rel=1e-12)
 
 
-def test_scattered_differences_of_both_signs_are_no_difference_in_the_mean() -> None:
+def test_differences_of_both_signs_are_none_in_the_mean() -> None:
     study, surfaces = planted_study({"spatial": 0.0})
     sign = np.where((np.arange(GRID)[:, None] + np.arange(GRID)) // 2 % 2, -1.0, 1.0)
     surfaces["mu"].loc[{"model": "spatial"}] *= 1.0 + 0.04 * sign

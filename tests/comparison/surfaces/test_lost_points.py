@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from fake_models import DEADLY, fake_hierarchy
+from fake_models import fake_hierarchy
 from report_texts import summary_of
 from runs import Run
 
@@ -35,9 +35,7 @@ CASES = {
 
 
 @pytest.mark.parametrize(("model", "outcome"), CASES.values(), ids=CASES.keys())
-def test_a_failing_point_is_nan_with_its_status_and_the_others_stay(
-    command: Callable[..., Run], model: str, outcome: str
-) -> None:
+def test_a_failing_point_is_nan_and_the_others_stay(command: Callable[..., Run], model: str, outcome: str) -> None:
     run = command(*GRID, hierarchy=fake_hierarchy(model, batch=1))
     assert run.code == 0
     status, mu = _status(run)
@@ -64,7 +62,7 @@ def test_lost_points_are_counted_in_the_closing_table(command: Callable[..., Run
     assert [row[-1] for row in rows] == ["1", "1"], "not ok, body 1 and body 2"
 
 
-def test_without_any_engine_the_most_complete_equations_take_its_place(command: Callable[..., Run]) -> None:
+def test_without_an_engine_the_equations_take_its_place(command: Callable[..., Run]) -> None:
     run = command(*GRID, hierarchy=fake_hierarchy("always_raising"))
     assert run.code == 0
     summary = summary_of(run.report)
@@ -95,14 +93,10 @@ def test_check_counts_lost_points_as_a_broken_limit(command: Callable[..., Run])
     assert (run.report / "index.html").exists(), "the report that shows why is there"
 
 
-def test_check_does_not_pass_a_limit_that_nothing_was_held_against(command: Callable[..., Run]) -> None:
+def test_check_passes_no_limit_without_a_comparison(command: Callable[..., Run]) -> None:
     run = command(*GRID, "--check", hierarchy=fake_hierarchy("always_raising"))
     assert run.code == 1
     assert (
         "limit broken: fig3-I: acceptance.median: nothing to compare (translational engine: no value at any" in run.err
     )
     assert "nan" not in run.err
-
-
-def test_the_deadly_phase_is_on_the_grid() -> None:
-    assert np.isclose(2.0 * np.pi * np.arange(4) / 4, DEADLY).sum() == 1

@@ -15,7 +15,7 @@ from comparison.surfaces.waterfall import waterfall
 from reference.problem import load_scene
 
 
-def test_the_bars_add_up_to_the_total_in_the_means_and_at_the_largest_difference() -> None:
+def test_the_bars_add_up_to_the_total() -> None:
     study, surfaces = planted_study({})
     surfaces = scattered(surfaces)
     for body in (1, 2):
@@ -27,7 +27,7 @@ def test_the_bars_add_up_to_the_total_in_the_means_and_at_the_largest_difference
         assert abs(largest.total.size) > abs(bars.total.size)
 
 
-def test_every_bar_is_the_planted_step_with_its_sign_relative_to_the_first_model() -> None:
+def test_every_bar_is_the_planted_step_with_its_sign() -> None:
     levels = dict(zip(KEYS, (0.03, 0.03, -0.02, -0.01, -0.01)))
     study, surfaces = planted_study(levels)
     bars = waterfall(study, surfaces, study.scenes[0], 1)
@@ -58,7 +58,7 @@ def test_only_phases_that_every_model_has_are_in_the_means() -> None:
     assert (bars.points, bars.bars[0].size) == (15, pytest.approx(0.02, rel=1e-9))
 
 
-def test_the_largest_difference_is_found_where_only_the_finer_engine_model_has_it() -> None:
+def test_the_largest_difference_may_be_of_the_finer_engine() -> None:
     """A ridge between the phases of the spatial model: the translational model shows it."""
     study, surfaces = planted_study({"spatial": 0.05})
     place = {"body": 2, "alpha1": surfaces["alpha1"][3], "alpha2": surfaces["alpha2"][5]}
@@ -97,7 +97,7 @@ def test_a_record_has_bars_of_one_point() -> None:
         ("fig3-II", 8),  # adding pi to both: two do
     ],
 )
-def test_independent_phases_are_counted_by_the_symmetries_of_the_scene(scene: str, orbits: int) -> None:
+def test_independent_phases_are_counted_by_symmetries(scene: str, orbits: int) -> None:
     study = Study((load_scene(scene),), GRID, 1e-3, MODEL_HIERARCHY)
     every = np.ones((4, 4), dtype=bool)
     models = [study.hierarchy[0], study.hierarchy[-1]]

@@ -20,7 +20,7 @@ STEPS = [_bar("exact", 0.02), _bar("resolved", -0.10), _bar("spatial", 0.03)]
 TOTAL = _bar("spatial", -0.05)
 
 
-def test_every_bar_begins_where_the_one_before_it_ends_and_the_last_ends_at_the_total() -> None:
+def test_every_bar_begins_where_the_one_before_it_ends() -> None:
     scale = scale_of([(STEPS, TOTAL)])
     *steps, total = bars_of(STEPS, TOTAL, scale)
     starts = [0.0, 0.02, -0.08]
